@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -D SOURCE_DIR=... -D OUTPUT=... -P EmbedResources.cmake
 # Writes the C++ source that holds every shipped plate, sensor, observer, plan and table of the air.
 

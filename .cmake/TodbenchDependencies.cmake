@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Every third-party package, found once. Debian 12 names; nothing is downloaded at configure time.
 
 find_package(PkgConfig REQUIRED)

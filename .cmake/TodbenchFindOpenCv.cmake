@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Of this build and of the installed CMake package: the targets opencv_PART. Debian splits OpenCV and puts OpenCVConfig.cmake only into the
 # large package, so the parts are linked by name.
 function(todbench_find_opencv)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What "cmake --install" puts where, by component: program (todbench), window (todbench-gui), development (the libraries), documentation.
 # The files that belong to a desktop, a shell or a package are in bench/package.
 
@@ -65,9 +66,38 @@ endforeach()
 set(todbench_package "${CMAKE_INSTALL_LIBDIR}/cmake/todbench")
 install(TARGETS ${todbench_installed_libraries} todbench_options todbench_all EXPORT todbench COMPONENT development)
 install(EXPORT todbench NAMESPACE todbench:: FILE todbench-targets.cmake DESTINATION "${todbench_package}" COMPONENT development)
-foreach(folder acquisition/core hvs tod sim_devices)
-  install(DIRECTORY "${folder}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/todbench/${folder}" COMPONENT development
-    FILES_MATCHING PATTERN "*.h" PATTERN lab EXCLUDE PATTERN observers EXCLUDE PATTERN sensors EXCLUDE)
+# Headers that another room includes, and the headers that those include; all others are private to their library.
+file(GLOB_RECURSE sources RELATIVE "${CMAKE_SOURCE_DIR}" CONFIGURE_DEPENDS
+  acquisition/*.h acquisition/*.cpp hvs/*.h hvs/*.cpp tod/*.h tod/*.cpp sim_devices/*.h sim_devices/*.cpp bench/*.h bench/*.cpp docs/examples/*.cpp)
+set(public_headers "")
+foreach(source ${sources})
+  cmake_path(GET source PARENT_PATH room)
+  file(STRINGS "${source}" includes REGEX "^#include \"[a-z]")
+  foreach(include ${includes})
+    string(REGEX REPLACE "^#include \"(.*)\".*" "\\1" header "${include}")
+    cmake_path(GET header PARENT_PATH home)
+    list(APPEND included_by_${source} "${header}")
+    if(NOT home STREQUAL room)
+      list(APPEND public_headers "${header}")
+    endif()
+  endforeach()
+endforeach()
+list(REMOVE_DUPLICATES public_headers)
+set(reached "")
+while(public_headers)
+  list(POP_FRONT public_headers header)
+  list(APPEND reached "${header}")
+  foreach(further ${included_by_${header}})
+    if(NOT further IN_LIST reached AND NOT further IN_LIST public_headers)
+      list(APPEND public_headers "${further}")
+    endif()
+  endforeach()
+endwhile()
+foreach(header ${reached})
+  if(header MATCHES "^(acquisition/(base|core)|hvs|tod|sim_devices)/" AND NOT header MATCHES "/lab/")
+    cmake_path(GET header PARENT_PATH room)
+    install(FILES "${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/todbench/${room}" COMPONENT development)
+  endif()
 endforeach()
 
 add_custom_target(package_libraries DEPENDS ${todbench_installed_libraries})

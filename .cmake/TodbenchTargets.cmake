@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # One function for every library of the project, so that warnings, sanitizers and include roots are the same everywhere.
 
 add_library(todbench_options INTERFACE)
@@ -123,7 +124,8 @@ set(todbench_hang_s 1800)
 
 # todbench_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [SANITIZERS address thread [UNSANITIZED ...]] [SHARDS n | EACH_CASE] [COST s]
 # [TIMED] [APART ...] [PRECOMPILED KIND]): one GoogleTest program.
-#   LABELS      of its tests for ctest; the target todbench_tests_LABEL builds the programs with that label
+#   LABELS      of its tests for ctest (science: no camera library; foreign: reads bytes from outside; study: a long form). The target
+#               todbench_tests_LABEL builds the programs with that label
 #   SANITIZERS  a build with a sanitizer has only the programs that name it
 #   UNSANITIZED cases, as --gtest_filter names them, that such a build leaves out: long loops over numbers whose code shorter cases of the
 #               same program run through as well
@@ -150,9 +152,14 @@ function(todbench_test name)
     set(ARG_PRECOMPILED tests)
   endif()
   todbench_precompile(${name} ${ARG_PRECOMPILED})
-  set_target_properties(${name} PROPERTIES UNITY_BUILD ${TODBENCH_UNITY_TESTS} UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${TODBENCH_UNITY_TESTS} UNITY_BUILD_BATCH_SIZE 12)
   set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-  add_dependencies(todbench_tests ${name})
+  # The target "all" does not contain the long forms. "./run study" builds them.
+  if("study" IN_LIST ARG_LABELS)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+  else()
+    add_dependencies(todbench_tests ${name})
+  endif()
   foreach(label ${ARG_LABELS})
     if(NOT TARGET todbench_tests_${label})
       add_custom_target(todbench_tests_${label})

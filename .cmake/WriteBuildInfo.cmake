@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -D SOURCE_DIR=... -D OUTPUT=... -D VERSION=... -D COMPILER=... -P WriteBuildInfo.cmake
 # Writes the source with the version and the commit. Runs at every build and touches its output only when it changes.
 

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # doxygen_filter.sh FILE: the comments of a header as plain text, because they are written for people: tags, backslashes and number signs in
 # a `///` comment are no markup of Doxygen. Everything else passes as it is.
 case "$1" in

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/aravis_backend.h"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -12,15 +14,17 @@
 #include "acquisition/aravis/gev_registers.h"
 #include "acquisition/aravis/glib_ptr.h"
 #include "acquisition/aravis/gvcp_client.h"
+#include "acquisition/aravis/host_network.h"
 #include "acquisition/aravis/u3v_registers.h"
 #include "acquisition/core/camera_id.h"
+#include "acquisition/core/serial_number.h"
 
 namespace todbench {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// GigE Vision bootstrap strings, the same that discovery reports: address and size in bytes.
+/// A bootstrap string of GigE Vision, as reported by discovery: address and size in bytes.
 struct BootstrapText {
   std::uint64_t address;
   std::uint32_t size;
@@ -62,7 +66,7 @@ std::string address_of(ArvDevice* device) {
   return text_or_empty(text.get());
 }
 
-/// What stands in for the serial number of a GigE camera that has none.
+/// Substitute for the serial number of a GigE camera that has none.
 std::string mac_address(ArvDevice* device) {
   guint32 high = 0, low = 0;
   if (!ARV_IS_GV_DEVICE(device) || arv_device_read_register(device, gev::mac_high, &high, nullptr) == 0 ||
@@ -73,7 +77,7 @@ std::string mac_address(ArvDevice* device) {
                      low >> 16U & 0xFFU, low >> 8U & 0xFFU, low & 0xFFU);
 }
 
-/// Asked before the camera is opened, because Aravis needs 5 s to notice.
+/// Call it before opening the camera, because Aravis needs 5 s to notice.
 bool controlled_by_another(const std::string& address) {
   if (!is_ipv4(address)) return false;
   const auto privilege = gvcp_read_register(address, gvcp_control_privilege_register, 500ms);
@@ -99,13 +103,18 @@ class AravisBackend : public CameraBackend {
     return options_.transport == AravisTransport::gige_vision ? "GigE Vision" : "USB3 Vision";
   }
   [[nodiscard]] CameraEntry entry(unsigned index) const;
-  /// A camera that is there, as Aravis calls it.
+  /// Indices of the cameras, each once. A camera with two network ports, or visible through two interfaces, has several
+  /// entries. Entries with the same vendor, model and serial number are one unit; if the serial number is a
+  /// placeholder, entries with the same hardware address. The first entry with an address in a network of this computer
+  /// is kept.
+  [[nodiscard]] std::vector<unsigned> units() const;
+  /// A present camera by its names in Aravis.
   struct Found {
     std::string name, address;
-    UsbNames usb{};  ///< of a camera on USB
+    UsbNames usb{};  ///< of a USB camera
   };
   [[nodiscard]] Result<Found> find(const std::string& id, const std::string& name);
-  /// The device of a camera whose description may be evaluated.
+  /// Returns the device of a camera whose description is safe to evaluate.
   [[nodiscard]] Result<GObjectPtr<ArvDevice>> open_device(const Found& found);
   [[nodiscard]] SourceInfo identity(ArvDevice* device, const std::string& aravis_name) const;
 
@@ -122,36 +131,67 @@ CameraEntry AravisBackend::entry(unsigned index) const {
   camera.address = text_or_empty(arv_interface_get_device_address(cameras, index));
   camera.transport = transport_name();
   camera.id = camera_id(scheme(), {camera.vendor, camera.serial});
+  camera.note = placeholder_serial_warning(camera.serial);
+  if (options_.transport == AravisTransport::gige_vision && camera.note.empty())
+    camera.note = wrong_network(camera.address, host_addresses());
   return camera;
+}
+
+std::vector<unsigned> AravisBackend::units() const {
+  std::vector<unsigned> found;
+  const unsigned count = arv_interface_get_n_devices(interface());
+  const auto hosts = host_addresses();
+  for (unsigned i = 0; i < count; ++i) {
+    const CameraEntry camera = entry(i);
+    const auto same = [&](unsigned other) {
+      const CameraEntry before = entry(other);
+      if (before.id != camera.id || before.model != camera.model) return false;
+      const std::string one = text_or_empty(arv_interface_get_device_physical_id(interface(), i)),
+                        two = text_or_empty(arv_interface_get_device_physical_id(interface(), other));
+      return !is_placeholder_serial(camera.serial) || (!one.empty() && one == two);
+    };
+    const auto twin = std::find_if(found.begin(), found.end(), same);
+    if (twin == found.end()) {
+      found.push_back(i);
+    } else if (!wrong_network(entry(*twin).address, hosts).empty()) {
+      *twin = i;
+    }
+  }
+  return found;
 }
 
 Result<std::vector<CameraEntry>> AravisBackend::list() {
   arv_interface_update_device_list(interface());
   std::vector<CameraEntry> cameras;
-  const unsigned count = arv_interface_get_n_devices(interface());
-  for (unsigned i = 0; i < count; ++i) cameras.push_back(entry(i));
+  for (const unsigned i : units()) cameras.push_back(entry(i));
   return cameras;
 }
 
 Result<AravisBackend::Found> AravisBackend::find(const std::string& id, const std::string& name) {
   if (options_.transport == AravisTransport::gige_vision && is_ipv4(name)) {
     const auto answer = gvcp_read_register(name, gvcp_version_register, 500ms);
-    if (!answer) return fail(ErrorCode::not_found, answer.error().message);
+    if (!answer) {
+      const std::string elsewhere = wrong_network(name, host_addresses());
+      return fail(ErrorCode::not_found, answer.error().message + (elsewhere.empty() ? "" : ". " + elsewhere));
+    }
     if (controlled_by_another(name)) return fail(ErrorCode::not_found, "busy: another program controls " + id);
     return Found{.name = name, .address = name};
   }
   arv_interface_update_device_list(interface());
   std::string seen;
-  const unsigned count = arv_interface_get_n_devices(interface());
-  unsigned namesakes = 0;
-  for (unsigned i = 0; i < count; ++i) namesakes += entry(i).id == id ? 1U : 0U;
+  const std::vector<unsigned> cameras = units();
+  const auto namesakes = std::count_if(cameras.begin(), cameras.end(), [&](unsigned i) { return entry(i).id == id; });
   if (namesakes > 1) {
-    return fail(ErrorCode::not_found, std::to_string(namesakes) + " cameras call themselves " + id +
-                                          "; open one by its address, or disconnect the others");
+    return fail(ErrorCode::not_found, std::to_string(namesakes) + " cameras have the id " + id +
+                                          ". Open one of them by its address, or disconnect the others");
   }
-  for (unsigned i = 0; i < count; ++i) {
+  for (const unsigned i : cameras) {
     const std::string candidate = entry(i).id;
     if (candidate == id) {
+      const std::string elsewhere = options_.transport == AravisTransport::gige_vision
+                                        ? wrong_network(entry(i).address, host_addresses())
+                                        : std::string();
+      if (!elsewhere.empty()) return fail(ErrorCode::not_found, elsewhere);
       if (controlled_by_another(entry(i).address)) {
         return fail(ErrorCode::not_found, "busy: another program controls " + id);
       }
@@ -163,10 +203,10 @@ Result<AravisBackend::Found> AravisBackend::find(const std::string& id, const st
     }
     seen += (seen.empty() ? "" : ", ") + candidate;
   }
-  return fail(ErrorCode::not_found, "no such camera; seen: " + (seen.empty() ? "none" : seen));
+  return fail(ErrorCode::not_found, "no such camera; found: " + (seen.empty() ? "none" : seen));
 }
 
-/// From the registers that every camera has, then from its description, then from what it was found by.
+/// Reads the identity from the bootstrap registers, otherwise from the description, otherwise from the discovery.
 SourceInfo AravisBackend::identity(ArvDevice* device, const std::string& aravis_name) const {
   SourceInfo info;
   info.transport = transport_name();
@@ -197,8 +237,11 @@ SourceInfo AravisBackend::identity(ArvDevice* device, const std::string& aravis_
   }
   if (info.serial.empty()) info.serial = mac_address(device);
   info.id = camera_id(scheme(), {info.vendor, info.serial});
+  if (auto warning = placeholder_serial_warning(info.serial); !warning.empty())
+    info.warnings.push_back(std::move(warning));
   if (info.serial.empty()) {
-    info.warnings.emplace_back("The camera has no serial number: it is not known again when it was lost.");
+    info.warnings.emplace_back(
+        "The camera has no serial number. If the connection is lost, the program cannot identify the camera again.");
   }
   return info;
 }
@@ -213,7 +256,7 @@ Result<GObjectPtr<ArvDevice>> AravisBackend::open_device(const Found& found) {
   if (!description) return tl::unexpected(description.error());
   GErrorSlot error;
   GObjectPtr<ArvDevice> device(arv_interface_open_device(interface(), found.name.c_str(), error.out()));
-  if (!device) return fail(ErrorCode::not_found, error ? error.message() : "it has gone");
+  if (!device) return fail(ErrorCode::not_found, error ? error.message() : "the camera is no longer connected");
   if (ARV_IS_GV_DEVICE(device.get()) && arv_gv_device_is_controller(ARV_GV_DEVICE(device.get())) == 0) {
     return fail(ErrorCode::not_found, "busy: another program controls it");
   }

@@ -1,15 +1,17 @@
-// What is said to a camera: how it is set up when it is opened, its features, its corrections, its scale.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Set-up of a camera when it is opened: features, corrections, scale. Its stream is in aravis_source.cpp.
 #include <algorithm>
 #include <optional>
 
 #include "acquisition/aravis/aravis_source.h"
 #include "acquisition/aravis/genicam_features.h"
+#include "acquisition/aravis/host_network.h"
 #include "acquisition/aravis/object_parameters.h"
 #include "acquisition/aravis/socket_buffer.h"
 #include "acquisition/aravis/test_ramp.h"
 #include "acquisition/aravis/u3v_registers.h"
+#include "acquisition/base/host_clock.h"
 #include "acquisition/core/control_text.h"
-#include "acquisition/core/host_clock.h"
 
 namespace todbench {
 namespace {
@@ -18,16 +20,16 @@ using namespace std::chrono_literals;
 
 /// A camera on loopback is a program: 8000 bytes need six times fewer packets than 1500, and the MTU is 65536.
 constexpr int loopback_packet_bytes = 8000;
-/// A test pattern is in the picture some frames after it was chosen.
+/// A test pattern appears in the picture some frames after it was selected.
 constexpr int ramp_frames = 10;
 constexpr auto ramp_patience = 1s;
-/// A correction that interrupts the stream is over by then.
+/// A correction that interrupts the stream has ended by then.
 constexpr auto longest_correction = 5s;
-/// What a plan states of a scale that was measured on the bench; never written into the camera.
+/// Feature of a plan's scale that was measured on the bench; never written to the camera.
 constexpr const char* scale_feature = "TemperatureLinearScale";
 constexpr const char* offset_feature = "TemperatureLinearOffset";
 
-/// GVCP capability register of the GigE Vision standard: bit 29 in its numbering says that packets can be had again.
+/// GVCP capability register of the GigE Vision standard: bit 29 in its numbering states support of packet resend.
 bool says_it_can_resend(ArvDevice* device) {
   if (!ARV_IS_GV_DEVICE(device)) return false;
   guint32 capability = 0;
@@ -53,8 +55,7 @@ Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> 
                                                           SourceInfo info, std::string device_address) {
   std::unique_ptr<AravisSource> source(
       new AravisSource(std::move(camera), std::move(options), std::move(info), std::move(device_address)));
-  // A client that crashed may have left the camera streaming to nowhere, with its parameters locked. Refusal is
-  // harmless.
+  // A crashed client may have left the camera streaming, with its parameters locked. A refusal is harmless.
   arv_camera_stop_acquisition(source->camera_.get(), nullptr);
   source->family_ = family_of(arv_camera_get_device(source->camera_.get()), source->info_);
   source->bytes_swapped_ = source->family_.high_byte_first;
@@ -65,7 +66,7 @@ Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> 
   source->configure_transport();
   const auto read = source->refresh();
   if (!read) return tl::unexpected(read.error());
-  // A stream is opened once here so that info() tells about the socket buffer before the first run.
+  // A stream is opened here once so that info() contains the socket buffer before the first run.
   const auto stream = source->create_stream();
   if (!stream) return tl::unexpected(stream.error());
   if (const auto checked = source->check_byte_order(); !checked) return tl::unexpected(checked.error());
@@ -79,7 +80,7 @@ Result<void> AravisSource::check_byte_order() {
   if (std::find(patterns.begin(), patterns.end(), family_.test_ramp) == patterns.end()) return {};
   if (auto set = set_feature(device, family_.test_pattern, family_.test_ramp); !set) {
     if (set.error().code == ErrorCode::disconnected) return set;
-    setup_warnings_.push_back("The camera refuses its test ramp, so the order of its bytes is not checked.");
+    setup_warnings_.push_back("The camera rejects the setting of its test ramp, so the byte order is not checked.");
     publish_socket_buffer();
     return {};
   }
@@ -94,9 +95,9 @@ Result<void> AravisSource::check_byte_order() {
   if (auto off = set_feature(device, family_.test_pattern, "Off"); !off) return off;
   if (verdict == RampVerdict::swapped) {
     bytes_swapped_ = !bytes_swapped_;
-    setup_warnings_.push_back("The test ramp arrives with its bytes swapped; they are put in order.");
+    setup_warnings_.push_back("The bytes of the test ramp arrive swapped. The program swaps the bytes of every frame.");
   } else if (verdict == RampVerdict::no_ramp) {
-    setup_warnings_.push_back("The test ramp did not arrive as one, so the order of bytes is not checked.");
+    setup_warnings_.push_back("The frame of the test ramp shows no ramp, so the byte order is not checked.");
   }
   return refresh();
 }
@@ -104,9 +105,8 @@ Result<void> AravisSource::check_byte_order() {
 void AravisSource::configure_transport() {
   ArvCamera* camera = camera_.get();
   if (arv_camera_is_gv_device(camera) == 0) return;
-  // With the privilege for a packet ring Aravis listens on the interface that the discovery came through; a camera on
-  // this host then never delivers a frame. Plain sockets behave the same for every user and have a receive buffer that
-  // can be checked.
+  // With the privilege for a packet ring Aravis listens on the interface of the discovery; a camera on this host then
+  // never delivers a frame. Plain sockets behave the same for every user, and their receive buffer can be checked.
   arv_camera_gv_set_stream_options(camera, ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
   const int packet_bytes = options_.packet_size_bytes > 0 ? options_.packet_size_bytes
                            : loopback_                    ? loopback_packet_bytes
@@ -115,8 +115,14 @@ void AravisSource::configure_transport() {
     GErrorSlot error;
     arv_camera_gv_set_packet_size_adjustment(camera, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
     arv_camera_gv_set_packet_size(camera, packet_bytes, error.out());
-    if (error) setup_warnings_.push_back("The camera refuses packets of " + std::to_string(packet_bytes) + " bytes.");
+    if (error) setup_warnings_.push_back("The camera rejects packets of " + std::to_string(packet_bytes) + " bytes.");
   }
+  // If a camera answers no test packet, its size stays unchanged even if the network cannot pass it, and no frame
+  // arrives.
+  const auto present = get_number(arv_camera_get_device(camera), "GevSCPSPacketSize");
+  if (!present) return;
+  if (auto warning = packets_too_large(device_address_, static_cast<int>(*present), host_addresses()); !warning.empty())
+    setup_warnings_.push_back(std::move(warning));
 }
 
 Result<void> AravisSource::refresh() {
@@ -124,8 +130,9 @@ Result<void> AravisSource::refresh() {
   auto format = read_stream_format(camera_.get());
   if (!format) return tl::unexpected(format.error());
   format_ = *format;
+  if (stated_frame_) format_.width = stated_frame_->width, format_.height = stated_frame_->height;
   if (bytes_swapped_) format_.big_endian = !format_.big_endian;
-  // Eight bits are a picture for people, behind a gain control, whatever the counts before it mean.
+  // Eight-bit pixels are a display picture behind a gain control; the camera's scale does not apply to them.
   RadiometricScale scale =
       format_.pixel_format == PixelFormat::mono8 ? RadiometricScale() : read_scale(device, family_);
   if (stated_kelvin_per_count_) {
@@ -171,7 +178,7 @@ Result<std::shared_ptr<ArvStream>> AravisSource::create_stream() {
 }
 
 void AravisSource::check_socket_buffer(ArvStream* stream) {
-  // AUTO makes the buffer one payload big, which loses most frames of a camera that sends in bursts.
+  // AUTO makes the buffer as large as one payload, which loses most frames of a camera that sends in bursts.
   const std::uint64_t wanted = std::max<std::uint64_t>(options_.min_socket_buffer_bytes, 8 * format_.payload_bytes);
   g_object_set(stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
                static_cast<gint>(std::min<std::uint64_t>(wanted, G_MAXINT / 2)), nullptr);
@@ -184,14 +191,14 @@ void AravisSource::check_socket_buffer(ArvStream* stream) {
     socket_buffer_warning_ =
         "The system granted a socket receive buffer of " + std::to_string(*granted) + " instead of " +
         std::to_string(wanted) +
-        " bytes; frames may be lost. Mend it with: sysctl -w net.core.rmem_max=" + std::to_string(wanted);
+        " bytes. Frames may be lost. Raise the limit with: sysctl -w net.core.rmem_max=" + std::to_string(wanted);
   }
   publish_socket_buffer();
 }
 
 void AravisSource::publish_socket_buffer() {
   info_.warnings = setup_warnings_;
-  // Counts that are no temperatures are not computed for a scene.
+  // Object parameters matter only for counts that are temperatures.
   if (info_.scale.calibrated()) {
     for (auto& note : object_parameter_notes(info_.settings)) info_.warnings.push_back(std::move(note));
   }
@@ -203,6 +210,8 @@ Result<std::string> AravisSource::get(const std::string& feature) {
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
   if (feature == scale_feature && stated_kelvin_per_count_) return control_text(*stated_kelvin_per_count_);
+  if (feature == frame_size_feature) return frame_size_text({format_.width, format_.height});
+  if (feature == nuc_command_feature) return nuc_command_;
   if (feature == offset_feature && stated_offset_k_) return control_text(*stated_offset_k_);
   auto value = get_feature(arv_camera_get_device(camera_.get()), feature);
   if (!value && value.error().code == ErrorCode::disconnected) mark_lost();
@@ -212,9 +221,10 @@ Result<std::string> AravisSource::get(const std::string& feature) {
 Result<void> AravisSource::set(const std::string& feature, const std::string& value) {
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
-  auto done = feature == scale_feature || feature == offset_feature
-                  ? state_scale(feature, value)
-                  : set_feature(arv_camera_get_device(camera_.get()), feature, value);
+  auto done = feature == scale_feature || feature == offset_feature ? state_scale(feature, value)
+              : feature == frame_size_feature                       ? state_frame(value)
+              : feature == nuc_command_feature                      ? name_nuc_command(value)
+                                               : set_feature(arv_camera_get_device(camera_.get()), feature, value);
   if (done) done = refresh();
   if (!done && done.error().code == ErrorCode::disconnected) mark_lost();
   return done;
@@ -231,13 +241,44 @@ Result<void> AravisSource::state_scale(const std::string& feature, const std::st
   return {};
 }
 
+Result<void> AravisSource::state_frame(const std::string& value) {
+  const auto size = frame_size_of(value);
+  if (!size)
+    return fail(ErrorCode::invalid_input, std::string(frame_size_feature) + " = " + value + ": expected WIDTHxHEIGHT");
+  const std::size_t bytes =
+      static_cast<std::size_t>(size->area()) * static_cast<std::size_t>(facts_of(format_.pixel_format).bytes_per_pixel);
+  if (bytes > format_.payload_bytes) {
+    return fail(ErrorCode::invalid_input, std::string(frame_size_feature) + " = " + value +
+                                              ": larger than the camera's payload of " +
+                                              std::to_string(format_.payload_bytes) + " bytes");
+  }
+  stated_frame_ = size;
+  return {};
+}
+
+Result<void> AravisSource::name_nuc_command(const std::string& value) {
+  ArvDevice* device = arv_camera_get_device(camera_.get());
+  if (ARV_IS_GC_COMMAND(arv_device_get_feature(device, value.c_str()))) {
+    nuc_command_ = value;
+    return {};
+  }
+  std::string names;
+  for (const auto& name : command_names(device)) names += (names.empty() ? "" : ", ") + name;
+  return fail(ErrorCode::invalid_input,
+              std::string(nuc_command_feature) + " = " + value +
+                  ": the camera has no such command; its commands: " + (names.empty() ? "none" : names));
+}
+
 Result<void> AravisSource::correct_nonuniformity() {
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
   ArvDevice* device = arv_camera_get_device(camera_.get());
-  const auto commands = nonuniformity_commands(device, family_);
+  const auto commands =
+      nuc_command_.empty() ? nonuniformity_commands(device, family_) : std::vector<std::string>{nuc_command_};
   if (commands.empty()) {
-    return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no command to correct its non-uniformity");
+    return fail(ErrorCode::invalid_input, "camera " + info_.id +
+                                              " has no command with a known name for the non-uniformity correction. "
+                                              "State the name in the plan: [camera] nuc_command");
   }
   if (!corrections_taken_over_) {
     const auto warning = take_over_corrections(device, family_);

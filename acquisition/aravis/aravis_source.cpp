@@ -1,4 +1,5 @@
-// The stream of a camera: buffers, arrivals, signs of life. How the camera is set up is in aravis_set_up.cpp.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stream of a camera: buffers, arrivals, heartbeat. The set-up is in aravis_set_up.cpp.
 #include "acquisition/aravis/aravis_source.h"
 
 #include <algorithm>
@@ -7,8 +8,9 @@
 #include "acquisition/aravis/frame_buffers.h"
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/gvcp_client.h"
-#include "acquisition/core/background.h"
-#include "acquisition/core/host_clock.h"
+#include "acquisition/base/background.h"
+#include "acquisition/base/host_clock.h"
+#include "acquisition/core/control_text.h"
 
 namespace todbench {
 namespace {
@@ -17,13 +19,13 @@ using namespace std::chrono_literals;
 
 /// Longer than any answer on a working network (measured below 6 ms at full load), short enough for stop().
 constexpr auto ping_patience = 400ms;
-/// Longer than a non-uniformity correction that interrupts the stream (0.5 s) is silent.
+/// Longer than the silence of a non-uniformity correction that interrupts the stream (0.5 s).
 constexpr auto silence_before_ping = 2s;
-/// Two unanswered pings and this much silence make a camera lost.
+/// A camera is lost after two unanswered pings and this silence.
 constexpr auto silence_before_lost = 3s;
 
-/// What Aravis threw away over USB because it belonged to no frame or did not fit into its buffer; 0 on a network. To
-/// be asked by the stream's own thread.
+/// Bytes that Aravis discarded over USB because they belonged to no frame or exceeded their buffer; 0 on a network.
+/// Call it on the stream's own thread.
 std::uint64_t ignored_bytes(ArvStream* stream) {
   const bool usb = stream != nullptr && ARV_IS_UV_STREAM(stream);
   return usb ? arv_stream_get_info_uint64_by_name(stream, "n_ignored_bytes") : 0;
@@ -40,10 +42,10 @@ FrameNumberKind number_kind(ArvDevice* device, AravisTransport transport) {
 AravisSource::~AravisSource() {
   stop();
   if (!is_lost() && !unreachable_stream_) return;
-  // Aravis says goodbye to the camera with five attempts of 0.5 s for every register; nobody should wait for that when
-  // the camera has gone, and nothing depends on its end.
+  // Aravis closes the connection with five attempts of 0.5 s per register. If the camera is gone, this runs in the
+  // background, because nothing depends on its end.
   finish_in_background([camera = std::move(camera_), stream = std::move(unreachable_stream_)]() mutable {
-    stream.reset();  // it has a reference to the camera's device
+    stream.reset();  // it holds a reference to the camera's device
   });
 }
 
@@ -55,7 +57,7 @@ void AravisSource::on_stream_event(void* data, ArvStreamCallbackType type, ArvBu
   Events& events = *tap.events;
   {
     const std::lock_guard lock(events.mutex);
-    // Over USB frames follow each other: what was thrown away since this one began was its own.
+    // Frames over USB are consecutive: bytes discarded since this one began were its own.
     events.arrivals.push_back({.host_time_ns = monotonic_ns(), .oversized = ignored != tap.ignored_bytes});
     events.last_sign_of_life = Clock::now();
     events.failed_pings = 0;
@@ -99,6 +101,7 @@ Result<void> AravisSource::start() {
   for (int i = buffer_count(info_.frame_rate_hz, format_.payload_bytes); i > 0; --i) {
     arv_stream_push_buffer(stream->get(), new_frame_buffer(buffer_bytes(format_)).release());
   }
+  frames_of_wrong_size_ = 0;
   sequence_ = FrameSequence(number_kind(arv_camera_get_device(camera_.get()), options_.transport), info_.frame_rate_hz);
   {
     const std::lock_guard lock(events_->mutex);
@@ -140,7 +143,7 @@ void AravisSource::stop() {
   if (reachable && answers()) {
     arv_camera_stop_acquisition(camera_.get(), nullptr);
   } else {
-    // Closing the stream writes to the camera, which takes seconds when it does not answer.
+    // Closing the stream writes to the camera, which takes seconds if it does not answer.
     unreachable_stream_ = std::move(stream);
   }
 }
@@ -169,8 +172,10 @@ Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
     GObjectPtr<ArvBuffer> buffer(arv_stream_try_pop_buffer(stream.get()));
     if (!buffer) continue;
     std::optional<Frame> frame;
+    cv::Size sent;
     if (holds_exposure(buffer.get())) {
       frame = frame_from_buffer(buffer.get(), format_);
+      sent = size_of_leader(buffer.get());
       if (arrived.oversized && frame->status == FrameStatus::complete) frame->status = FrameStatus::wrong_size;
       frame->host_time_ns = arrived.host_time_ns;
       const FramePlace place = sequence_.next({.number = frame_id_of(buffer.get()),
@@ -183,8 +188,27 @@ Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
     }
     clear_frame_id(buffer.get());
     arv_stream_push_buffer(stream.get(), buffer.release());
-    if (frame) return std::move(*frame);
+    if (frame) {
+      if (auto error = misstated_size(*frame, sent)) return tl::unexpected(*std::move(error));
+      return std::move(*frame);
+    }
   }
+}
+
+std::optional<Error> AravisSource::misstated_size(const Frame& frame, cv::Size sent) {
+  constexpr int enough = 16;
+  const bool whole = frame.status == FrameStatus::wrong_size && sent.area() > 0;
+  if (frames_of_wrong_size_ < 0 || frame.status == FrameStatus::incomplete) return std::nullopt;
+  if (!whole || sent == cv::Size(format_.width, format_.height)) {
+    frames_of_wrong_size_ = frame.status == FrameStatus::complete ? -1 : 0;
+    return std::nullopt;
+  }
+  if (++frames_of_wrong_size_ < enough) return std::nullopt;
+  return Error{ErrorCode::integrity,
+               "camera " + info_.id + " states frames of " + frame_size_text({format_.width, format_.height}) +
+                   " but sends frames of " + frame_size_text(sent) +
+                   ". If the picture is correct, state its size in the plan: [camera] frame_size = \"" +
+                   frame_size_text(sent) + "\""};
 }
 
 Error AravisSource::silence(std::chrono::milliseconds timeout) {
@@ -225,7 +249,7 @@ void AravisSource::mark_lost() {
 }
 
 Error AravisSource::disconnected() const {
-  return {ErrorCode::disconnected, "camera " + info_.id + " does not answer any more"};
+  return {ErrorCode::disconnected, "camera " + info_.id + " no longer answers"};
 }
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One open camera as a FrameSource. Private to the Aravis back end.
 #pragma once
 
@@ -20,8 +21,8 @@ namespace todbench {
 
 class AravisSource : public FrameSource {
  public:
-  /// `device_address`: IPv4 address of a GigE camera, empty for USB. `info` carries the identity; the rest is read from
-  /// the camera. Nobody else keeps a reference to its device.
+  /// `device_address`: IPv4 address of a GigE camera, empty for USB. `info` holds the identity; the rest is read from
+  /// the camera. Precondition: no other reference to the camera's device exists.
   [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(GObjectPtr<ArvCamera> camera, AravisOptions options,
                                                                    SourceInfo info, std::string device_address);
   ~AravisSource() override;
@@ -40,14 +41,14 @@ class AravisSource : public FrameSource {
   /// A buffer that came into the stream's output queue.
   struct Arrival {
     std::int64_t host_time_ns = 0;
-    bool oversized = false;  ///< bytes came for it that no buffer holds
+    bool oversized = false;  ///< more bytes arrived than the buffer holds
   };
 
-  /// What Aravis's threads report. Shared with its callbacks, so that a late one never meets a destroyed source.
+  /// Events reported by Aravis's threads. Shared with the callbacks, which may run after the source is destroyed.
   struct Events {
     std::mutex mutex;
     std::condition_variable changed;
-    std::deque<Arrival> arrivals;  ///< of every buffer in the stream's output queue, in order
+    std::deque<Arrival> arrivals;  ///< one per buffer in the stream's output queue, in order
     Clock::time_point last_sign_of_life;
     bool running = false;
     bool lost = false;
@@ -56,11 +57,11 @@ class AravisSource : public FrameSource {
     void mark_lost();
   };
 
-  /// What the callback of one stream knows; destroyed with the stream.
+  /// State of one stream's callback; destroyed with the stream.
   struct StreamTap {
     std::shared_ptr<Events> events;
     std::atomic<ArvStream*> stream = nullptr;
-    std::uint64_t ignored_bytes = 0;  ///< by the stream, when the present buffer was begun
+    std::uint64_t ignored_bytes = 0;  ///< count of the stream when the present buffer was begun
   };
 
   AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, SourceInfo info, std::string device_address);
@@ -68,10 +69,14 @@ class AravisSource : public FrameSource {
 
   [[nodiscard]] Result<void> refresh();
   [[nodiscard]] Result<void> check_byte_order();
-  /// Takes over a scale that was measured on the bench. It has precedence over what the camera says.
+  /// Takes over a scale measured on the bench. It has precedence over the scale that the camera states.
   [[nodiscard]] Result<void> state_scale(const std::string& feature, const std::string& value);
   [[nodiscard]] Result<std::shared_ptr<ArvStream>> create_stream();
   void configure_transport();
+  [[nodiscard]] Result<void> state_frame(const std::string& value);
+  [[nodiscard]] Result<void> name_nuc_command(const std::string& value);
+  /// Error for a camera that, since the start, has sent only frames of one size that differs from the stated size.
+  [[nodiscard]] std::optional<Error> misstated_size(const Frame& frame, cv::Size sent);
   void check_socket_buffer(ArvStream* stream);
   void publish_socket_buffer();
   [[nodiscard]] Error silence(std::chrono::milliseconds timeout);
@@ -81,7 +86,7 @@ class AravisSource : public FrameSource {
   [[nodiscard]] Error disconnected() const;
 
   std::shared_ptr<Events> events_ = std::make_shared<Events>();
-  WatchedCamera camera_;  ///< before the streams, which go first
+  WatchedCamera camera_;  ///< declared before the streams, which are destroyed first
   AravisOptions options_;
   SourceInfo info_;
   std::string device_address_;
@@ -90,15 +95,18 @@ class AravisSource : public FrameSource {
   std::vector<std::string> setup_warnings_;
   std::string socket_buffer_bytes_, socket_buffer_warning_;
   CameraFamily family_;
-  bool bytes_swapped_ = false;  ///< against what the camera says of their order
+  bool bytes_swapped_ = false;  ///< relative to the byte order that the camera states
   bool corrections_taken_over_ = false;
   std::optional<double> stated_kelvin_per_count_, stated_offset_k_;
+  std::optional<cv::Size> stated_frame_;  ///< by the user, for a camera that states another size than it sends
+  std::string nuc_command_;               ///< stated by the user; empty: that of the family, or found by its name
   StreamFormat format_;
+  int frames_of_wrong_size_ = 0;  ///< in a row since the start; negative: a frame of the right size has arrived
   std::shared_ptr<const RadiometricScale> scale_;
   FrameSequence sequence_{FrameNumberKind::gvsp16, 0};
   std::int64_t may_pause_until_ns_ = 0;  ///< host time until which a commanded correction may interrupt the stream
 
-  std::mutex control_;                 ///< one conversation with the camera at a time; taken before events_->mutex
+  std::mutex control_;                 ///< serialises communication with the camera; locked before events_->mutex
   std::shared_ptr<ArvStream> stream_;  ///< guarded by events_->mutex; next() keeps it alive while it copies
   std::shared_ptr<ArvStream> unreachable_stream_;  ///< of a camera that did not answer at stop(); guarded by control_
 };

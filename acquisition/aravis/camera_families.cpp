@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/camera_families.h"
 
 #include <algorithm>
@@ -17,8 +18,7 @@ bool contains_any(const std::string& text, std::initializer_list<std::string_vie
   return std::any_of(words.begin(), words.end(), [&](auto word) { return text.find(word) != std::string::npos; });
 }
 
-/// True when the model is this word or begins with it and goes on with something that is no digit: "A35", "A35 9Hz",
-/// not "A350".
+/// Whether the model is this word or continues it with a character that is no digit: "A35", "A35 9Hz", not "A350".
 bool is_model(const std::string& model, std::string_view word) {
   if (!model.starts_with(word)) return false;
   return model.size() == word.size() || std::isdigit(static_cast<unsigned char>(model[word.size()])) == 0;
@@ -28,7 +28,7 @@ bool is_model(const std::string& model, std::initializer_list<std::string_view> 
   return std::any_of(words.begin(), words.end(), [&](auto word) { return is_model(model, word); });
 }
 
-/// What is harmless to ask of any camera: features that it does not have are passed over.
+/// Features that are harmless to request from any camera; features that it lacks are skipped.
 CameraFamily unlisted() {
   CameraFamily family;
   family.name = "unlisted";
@@ -94,7 +94,7 @@ bool never_a_correction(const std::string& name) {
                              "cancel", "lens"});
 }
 
-/// 0: no correction; smaller is better otherwise.
+/// 0: no correction; otherwise smaller is better.
 int correction_rank(const std::string& command) {
   const std::string name = lower(command);
   if (never_a_correction(name)) return 0;

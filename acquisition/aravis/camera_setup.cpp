@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/camera_setup.h"
 
 #include <algorithm>
@@ -15,13 +16,14 @@
 namespace todbench {
 namespace {
 
-/// Formats that a camera is set up with: one pixel in two bytes. Mono14 stands before Mono16 so that it wins when both
+/// Formats that a camera is set to: one pixel in two bytes. Mono14 precedes Mono16 so that it is preferred if both
 /// carry 14 bits: only its name states the full scale.
 constexpr std::array usable_formats{PixelFormat::mono14, PixelFormat::mono16, PixelFormat::mono12, PixelFormat::mono10};
 
-/// Larger than any thermal camera's picture; a camera that states more would have this program reserve memory without
-/// bound.
+/// Exceeds every thermal camera's picture; the limit bounds the memory that a camera's statement can reserve.
 constexpr int most_pixels_per_side = 16384;
+
+constexpr const char* chunk_mode = "ChunkModeActive";
 
 constexpr std::array recorded_features{
     "PixelFormat",
@@ -72,7 +74,7 @@ constexpr std::array recorded_features{
     "GevSCPSBigEndian",
 };
 
-/// Bits that a Mono16 pixel really carries: what the camera says about its converter or its largest count, else 16.
+/// Significant bits of a Mono16 pixel: from the converter or the largest count that the camera states, otherwise 16.
 int bits_in_mono16(ArvDevice* device) {
   for (const char* feature : {"CMOSBitDepth", "DigitalOutput"}) {
     const auto value = get_feature(device, feature);
@@ -107,7 +109,7 @@ Result<void> choose_pixel_format(ArvDevice* device, const std::string& wanted) {
   return chosen;
 }
 
-/// Sets the best offered entry of one preference; text of the warning when the camera refuses all.
+/// Sets the best offered entry of one preference. Returns a warning if the camera refuses all entries.
 Result<std::optional<std::string>> apply(ArvDevice* device, const FeatureChoice& preference) {
   const std::string& feature = preference.feature;
   if (!has_feature(device, feature)) return std::nullopt;
@@ -129,7 +131,7 @@ std::optional<double> number(ArvDevice* device, const char* feature) {
   return value ? std::optional(*value) : std::nullopt;
 }
 
-/// The line of the family's table that the camera's present settings are.
+/// The family's linear mode that corresponds to the camera's present settings.
 const LinearMode* present_linear_scale(ArvDevice* device, const CameraFamily& family) {
   for (const auto& line : family.linear) {
     if (has_feature(device, line.mode) && get_feature(device, line.mode).value_or("") == line.mode_entry &&
@@ -140,7 +142,7 @@ const LinearMode* present_linear_scale(ArvDevice* device, const CameraFamily& fa
   return nullptr;
 }
 
-/// True when the counts are proportional to temperature now, whatever the step.
+/// Whether counts are proportional to temperature at present, with any step.
 bool temperature_linear(ArvDevice* device, const CameraFamily& family) {
   return std::any_of(family.linear.begin(), family.linear.end(), [&](const LinearMode& line) {
     return has_feature(device, line.mode) && get_feature(device, line.mode).value_or("") == line.mode_entry;
@@ -164,6 +166,14 @@ Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraF
     if (!warning) return tl::unexpected(warning.error());
     if (*warning) warnings.push_back(**warning);
   }
+  // Chunks contain nothing that is measured, and those of GigE Vision 1.x come without the size of the picture.
+  const std::string chunks = has_feature(device, chunk_mode) ? get_feature(device, chunk_mode).value_or("") : "";
+  if (chunks == "true" || chunks == "On") {
+    if (const auto off = set_feature(device, chunk_mode, chunks == "On" ? "Off" : "false"); !off) {
+      if (off.error().code == ErrorCode::disconnected) return tl::unexpected(off.error());
+      warnings.push_back("The camera still appends chunk data to its frames: " + off.error().message + ".");
+    }
+  }
   const auto chosen = choose_pixel_format(device, wanted);
   if (!chosen) return tl::unexpected(chosen.error());
   return warnings;
@@ -180,7 +190,7 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
   if (error) return error.failure(ErrorCode::not_found, "reading the image geometry");
   const auto known = pixel_format_of_pfnc(arv_camera_get_pixel_format(camera, error.out()));
   if (error) return error.failure(ErrorCode::not_found, "reading the pixel format");
-  // Eight bits are taken where somebody set them; no camera is set up so.
+  // Eight bits are accepted if the user set them; the set-up never selects them.
   if (!known || (*known != PixelFormat::mono8 &&
                  std::find(usable_formats.begin(), usable_formats.end(), *known) == usable_formats.end())) {
     return fail(ErrorCode::not_found, "pixel format " + get_feature(device, "PixelFormat").value_or("") +
@@ -192,9 +202,10 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
   if (error) return error.failure(ErrorCode::not_found, "reading the payload size");
   if (format.width > most_pixels_per_side || format.height > most_pixels_per_side ||
       format.payload_bytes > most_payload_bytes) {
-    return fail(ErrorCode::not_found, "the camera states a picture of " + std::to_string(format.width) + " x " +
+    return fail(ErrorCode::not_found, "the camera states a picture size of " + std::to_string(format.width) + " x " +
                                           std::to_string(format.height) + " pixels in " +
-                                          std::to_string(format.payload_bytes) + " bytes: larger than is accepted");
+                                          std::to_string(format.payload_bytes) +
+                                          " bytes, which is larger than the program accepts");
   }
   const auto pixels = static_cast<std::size_t>(format.width) * static_cast<std::size_t>(format.height);
   const auto bytes_per_pixel = static_cast<std::size_t>(facts_of(*known).bytes_per_pixel);
@@ -232,7 +243,7 @@ double read_frame_rate(ArvCamera* camera, const CameraFamily& family) {
   ArvDevice* device = arv_camera_get_device(camera);
   for (const auto& feature : family.frame_rate) {
     if (const auto rate = number(device, feature.c_str()); rate && std::isfinite(*rate) && *rate > 0) return *rate;
-    // "PAL50HZ", "NTSC60HZ", "Rate50Hz": the number is the rate.
+    // "PAL50HZ", "NTSC60HZ", "Rate50Hz": the digits are the rate.
     const auto entry = get_feature(device, feature);
     if (!entry) continue;
     const auto digit = std::find_if(entry->begin(), entry->end(), [](unsigned char c) { return std::isdigit(c); });
@@ -283,12 +294,12 @@ Result<std::optional<std::string>> take_over_corrections(ArvDevice* device, cons
     if (entry.empty() && std::find(entries.begin(), entries.end(), known) != entries.end()) entry = known;
   }
   if (entry.empty()) entry = commanded_entry(entries);
-  if (entry.empty()) return "The camera cannot be kept from correcting its non-uniformity when it likes.";
+  if (entry.empty()) return "The automatic non-uniformity correction of the camera cannot be switched off.";
   if (get_feature(device, modes.front()).value_or("") == entry) return std::nullopt;
   const auto done = set_feature(device, modes.front(), entry);
   if (done) return std::nullopt;
   if (done.error().code == ErrorCode::disconnected) return tl::unexpected(done.error());
-  return "The camera keeps correcting its non-uniformity when it likes: " + done.error().message + ".";
+  return "The automatic non-uniformity correction of the camera stays on: " + done.error().message + ".";
 }
 
 CameraFamily family_of(ArvDevice* device, const SourceInfo& info) {

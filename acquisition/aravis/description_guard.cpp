@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/description_guard.h"
 
 #include <algorithm>
@@ -25,7 +26,8 @@ constexpr auto progress_interval = 1s;
 constexpr const char* guard_key = "todbench-description-guard";
 
 /// Features that Aravis evaluates by itself while a camera is opened, set up and streams (arvcamera.c, arvgvdevice.c,
-/// arvgvstream.c, arvuvstream.c of 0.8). Those with Arv in front are its own unless the description has them.
+/// arvgvstream.c, arvuvstream.c of 0.8). Features that begin with Arv are Aravis's own unless the description defines
+/// them.
 constexpr std::array features_of_client{"DeviceVendorName",
                                         "DeviceModelName",
                                         "Width",
@@ -55,7 +57,7 @@ constexpr std::array features_of_client{"DeviceVendorName",
                                         "ArvGevStreamChannelSelector",
                                         "ArvGevTimestampTickFrequency"};
 
-/// Evaluated only while the camera is opened: what their lengths are is looked at just before.
+/// Evaluated only while the camera is opened: their lengths are checked directly before.
 constexpr std::array features_of_opening{"DeviceVendorName", "DeviceModelName"};
 
 bool evaluated_once(std::string_view feature) {
@@ -63,10 +65,10 @@ bool evaluated_once(std::string_view feature) {
 }
 
 std::string about(const DescriptionFault& fault) {
-  return fault.node.empty() ? fault.sentence : "of " + fault.node + ": " + fault.sentence;
+  return fault.node.empty() ? fault.sentence : "node " + fault.node + ": " + fault.sentence;
 }
 
-/// What is kept with a device.
+/// State of the guard, kept with a device.
 class Guard {
  public:
   explicit Guard(std::string_view xml) : description_(xml) {}
@@ -86,7 +88,7 @@ class Guard {
 
 Result<void> Guard::check() const {
   const auto refused = [](const std::string& why) {
-    return fail(ErrorCode::not_found, "the camera's description is not used, because " + why);
+    return fail(ErrorCode::not_found, "the camera's description is rejected: " + why);
   };
   if (!description_.faults().empty()) return refused(about(description_.faults().front()));
   for (const char* feature : features_of_client) {
@@ -94,8 +96,8 @@ Result<void> Guard::check() const {
     if (!faults.empty()) return refused(about(faults.front()));
     const auto lengths = description_.lengths_of(feature);
     if (!lengths.empty() && !evaluated_once(feature)) {
-      return refused("of " + std::string(feature) + ": it has a length, " + printable_name(lengths.front()) +
-                     ", that only the camera knows");
+      return refused("node " + std::string(feature) + ": only the camera knows its length, " +
+                     printable_name(lengths.front()));
     }
   }
   return {};
@@ -119,7 +121,7 @@ std::optional<std::string> Guard::fault_of(ArvDevice* device, const std::string&
   return std::nullopt;
 }
 
-/// Kilobytes of a description, about once a second.
+/// Reports the kilobytes read of a description about once a second.
 class Progress {
  public:
   explicit Progress(const DescriptionReading& reading) : reading_(reading) {}
@@ -196,14 +198,14 @@ Result<void> guard_device(ArvDevice* device, const std::optional<std::string>& e
   if (xml == nullptr || bytes == 0) return fail(ErrorCode::not_found, "the camera has no description");
   const std::string_view text(xml, bytes);
   if (expected && text != *expected) {
-    return fail(ErrorCode::not_found, "the camera gives another description each time it is asked");
+    return fail(ErrorCode::not_found, "the camera sends a different description at each request");
   }
   auto guard = std::make_unique<Guard>(text);
   if (auto safe = guard->check(); !safe) return safe;
   for (const char* feature : features_of_opening) {
     if (const auto fault = guard->fault_of(device, feature)) {
       return fail(ErrorCode::not_found,
-                  "the camera's description is not used, because of " + std::string(feature) + ": " + *fault);
+                  "the camera's description is rejected: feature " + std::string(feature) + ": " + *fault);
     }
   }
   g_object_set_data_full(G_OBJECT(device), guard_key, guard.release(),

@@ -1,8 +1,9 @@
-// Keeps Aravis from evaluating what a camera must not have it evaluate. Private to the Aravis back end.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Prevents Aravis from evaluating unsafe descriptions of cameras. Private to the Aravis back end.
 //
-// Aravis follows every reference of a description, reserves what a length says and divides by what a register holds,
-// but only when it is asked for a feature; before that it only builds nodes from the text. So the text is read and
-// looked at before Aravis opens a camera, and compared with what Aravis has before anything is asked of it.
+// Aravis follows every reference of a description, reserves memory by stated lengths and divides by register values,
+// but only when a feature is requested; before that it only builds nodes from the text. So the text is read and checked
+// before Aravis opens a camera, and compared with the text that Aravis holds before any feature is requested.
 #pragma once
 
 #include <chrono>
@@ -18,28 +19,28 @@
 namespace todbench {
 
 struct DescriptionReading {
-  std::chrono::milliseconds patience{30'000};  ///< for the transfer
+  std::chrono::milliseconds patience{30'000};  ///< for the whole transfer
   std::stop_token stop = {};
   std::function<void(std::string_view sentence)> on_progress = {};  ///< about once a second
 };
 
-/// The description of the GigE camera at this address, read from where it says that it is, unzipped, and safe to be
-/// evaluated; nothing where the camera does not say where. Errors: `not_found` with the sentence about what is wrong,
+/// Reads the description of the GigE camera at this address from the location that the camera states. Returns it
+/// unzipped and safe to evaluate; empty if the camera states no location. Errors: `not_found` with the reason,
 /// `interrupted`.
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const std::string& ipv4,
                                                                        const DescriptionReading& reading);
 
-/// The same of a USB3 Vision camera, from the manifest in its registers; nothing where there is no camera of these
-/// names, or another program has it.
+/// The same for a USB3 Vision camera, through the manifest in its registers; empty if no camera has these names or
+/// another program holds it.
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const UsbNames& names,
                                                                        const DescriptionReading& reading);
 
-/// Looks at the description that Aravis has of this device, and keeps what it finds with the device, for
-/// feature_fault(). To be called before anything is asked of it. `expected`: what it has to be. Errors: `not_found`.
+/// Checks the description that Aravis holds for this device, and stores the result with the device for feature_fault().
+/// Call before any feature is requested. `expected`: text that the description must equal. Errors: `not_found`.
 [[nodiscard]] Result<void> guard_device(ArvDevice* device, const std::optional<std::string>& expected);
 
-/// Why this feature must not be evaluated, as a sentence about it; nothing: it may be. Asks the camera for the lengths
-/// of registers that only it knows, and guards a device that nobody has guarded.
+/// Returns the reason why this feature must not be evaluated, as a sentence about it; empty if it may be. Reads the
+/// lengths of registers that only the camera knows, and guards a device that is not guarded yet.
 [[nodiscard]] std::optional<std::string> feature_fault(ArvDevice* device, const std::string& feature);
 
 }  // namespace todbench

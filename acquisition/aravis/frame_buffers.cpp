@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/frame_buffers.h"
 
 #include <algorithm>
@@ -8,17 +9,16 @@
 namespace todbench {
 namespace {
 
-/// Never a valid id in either numbering.
+/// An id that is invalid in both numberings.
 constexpr std::uint64_t no_frame_id = ~std::uint64_t{0};
 
 FrameStatus status_of(ArvBuffer* buffer, const StreamFormat& format) {
   switch (arv_buffer_get_status(buffer)) {
     case ARV_BUFFER_STATUS_SUCCESS: {
-      // Aravis calls a frame a success too whose leader it did not take: what is in the buffer's head is an older
-      // one's.
+      // Aravis also reports success for a frame whose leader it rejected: the buffer then holds an older leader.
       if (!frame_id_of(buffer)) return FrameStatus::incomplete;
       const auto type = arv_buffer_get_payload_type(buffer);
-      // Chunks lie behind the image.
+      // Chunks follow the image.
       const bool image = type == ARV_BUFFER_PAYLOAD_TYPE_IMAGE || type == ARV_BUFFER_PAYLOAD_TYPE_EXTENDED_CHUNK_DATA;
       const bool as_negotiated = image && arv_buffer_get_image_width(buffer) == format.width &&
                                  arv_buffer_get_image_height(buffer) == format.height &&
@@ -67,6 +67,13 @@ std::optional<std::uint64_t> frame_id_of(ArvBuffer* buffer) {
   return id != no_frame_id ? std::optional<std::uint64_t>(id) : std::nullopt;
 }
 
+cv::Size size_of_leader(ArvBuffer* buffer) {
+  if (!frame_id_of(buffer)) return {};
+  const auto type = arv_buffer_get_payload_type(buffer);
+  if (type != ARV_BUFFER_PAYLOAD_TYPE_IMAGE && type != ARV_BUFFER_PAYLOAD_TYPE_EXTENDED_CHUNK_DATA) return {};
+  return {arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer)};
+}
+
 bool holds_exposure(ArvBuffer* buffer) {
   const auto status = arv_buffer_get_status(buffer);
   return status != ARV_BUFFER_STATUS_ABORTED && status != ARV_BUFFER_STATUS_CLEARED;
@@ -76,7 +83,7 @@ Frame frame_from_buffer(ArvBuffer* buffer, const StreamFormat& format) {
   Frame frame;
   frame.status = status_of(buffer, format);
   frame.significant_bits = format.significant_bits;
-  // Without leader the buffer still holds the time of an older frame.
+  // Without a leader the buffer still holds the time of an older frame.
   if (frame_id_of(buffer)) frame.device_time_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
   StatedImage image{.format = format.pixel_format, .width = format.width, .height = format.height};
   std::size_t bytes = 0;

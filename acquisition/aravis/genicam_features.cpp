@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/genicam_features.h"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ Result<Kind> find(ArvDevice* device, const std::string& name) {
   const auto kind = kind_of(arv_device_get_feature(device, name.c_str()));
   if (!kind) return fail(ErrorCode::invalid_input, "the camera has no feature " + name);
   if (const auto fault = feature_fault(device, name)) {
-    return fail(ErrorCode::invalid_input, "feature " + name + " is not used, because " + *fault);
+    return fail(ErrorCode::invalid_input, "feature " + name + " is rejected: " + *fault);
   }
   GErrorSlot error;
   const bool available = arv_device_is_feature_available(device, name.c_str(), error.out()) != 0;
@@ -69,7 +70,7 @@ Result<void> set_integer(ArvDevice* device, const std::string& name, const std::
   gint64 low = 0;
   gint64 high = 0;
   arv_device_get_integer_feature_bounds(device, name.c_str(), &low, &high, error.out());
-  // Cameras exist whose bounds cannot be read; those judge the value themselves.
+  // The bounds of some cameras cannot be read; these cameras check the value themselves.
   if (!error && (*number < low || *number > high)) {
     return refused(name, value, "outside " + to_text(low) + " ... " + to_text(high));
   }
@@ -113,7 +114,7 @@ Result<void> set_boolean(ArvDevice* device, const std::string& name, const std::
   return {};
 }
 
-/// The names of the nodes of one kind below the root. Categories may be in each other as deep as a camera likes.
+/// Names of the nodes of one kind below the root. Categories may be nested to any depth.
 std::vector<std::string> collect(ArvGc* genicam, Kind wanted) {
   std::vector<std::string> names, open{"Root"};
   std::set<std::string> visited;
@@ -128,7 +129,7 @@ std::vector<std::string> collect(ArvGc* genicam, Kind wanted) {
     for (const GSList* item = arv_gc_category_get_features(ARV_GC_CATEGORY(node)); item != nullptr; item = item->next) {
       open.emplace_back(static_cast<const char*>(item->data));
     }
-    // The first member is taken first.
+    // Visits the first member first.
     std::reverse(open.begin() + members, open.end());
   }
   return names;
@@ -163,7 +164,7 @@ Result<std::string> get_feature(ArvDevice* device, const std::string& name) {
       break;
     case Kind::enumeration:
     case Kind::text: {
-      // Where the camera does not answer, Aravis returns memory that nobody wrote, without an end.
+      // If the camera does not answer, Aravis returns uninitialised memory without a terminator.
       const char* value = arv_device_get_string_feature_value(device, name.c_str(), error.out());
       if (!error) text = text_or_empty(value);
       break;
@@ -179,7 +180,7 @@ Result<void> set_feature(ArvDevice* device, const std::string& name, const std::
   const auto kind = find(device, name);
   if (!kind) return tl::unexpected(kind.error());
   if (*kind != Kind::command && arv_device_get_feature_access_mode(device, name.c_str()) == ARV_GC_ACCESS_MODE_RO) {
-    return refused(name, value, "the camera says read-only");
+    return refused(name, value, "the camera states that it is read-only");
   }
   GErrorSlot error;
   switch (*kind) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Camera features by name, values as text. Private to the Aravis back end.
 #pragma once
 
@@ -8,21 +9,21 @@
 
 namespace todbench {
 
-/// True when the camera describes and implements `name`.
+/// True if the camera describes and implements `name`.
 [[nodiscard]] bool has_feature(ArvDevice* device, const std::string& name);
 
-/// The value of an integer, float, enumeration, boolean or string feature. Floats are written so that they read back
+/// Returns the value of an integer, float, enumeration, boolean or string feature. The text of a float reads back
 /// exactly. Errors: `invalid_input` (no such feature, a command, write-only), `disconnected`.
 [[nodiscard]] Result<std::string> get_feature(ArvDevice* device, const std::string& name);
 
-/// Writes a feature; a command is executed whatever the value. Checks number syntax, bounds and enumeration entries
-/// before anything is sent. Errors: `invalid_input` with the permitted values named, `disconnected`.
+/// Writes a feature; a command is executed regardless of the value. Number syntax, bounds and enumeration entries are
+/// checked before anything is sent. Errors: `invalid_input` with the permitted values, `disconnected`.
 [[nodiscard]] Result<void> set_feature(ArvDevice* device, const std::string& name, const std::string& value);
 
-/// A numeric feature; `invalid_input` when it is not a number.
+/// Returns the value of a numeric feature; `invalid_input` if it is not a number.
 [[nodiscard]] Result<double> get_number(ArvDevice* device, const std::string& name);
 
-/// Entries of an enumeration that can be chosen now; empty when there is no such enumeration.
+/// Entries of an enumeration that are available now; empty if there is no such enumeration.
 [[nodiscard]] std::vector<std::string> enumeration_entries(ArvDevice* device, const std::string& name);
 
 /// Names of all commands and of all enumerations in the camera's feature tree.

@@ -1,4 +1,5 @@
-// Addresses of the registers that the GigE Vision standard gives every camera (GigE Vision 2.0, chapter 28).
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Addresses of the bootstrap registers of every GigE Vision camera (GigE Vision 2.0, chapter 28).
 #pragma once
 
 #include <cstdint>
@@ -46,7 +47,7 @@ inline constexpr std::uint32_t packet_size_mask = 0x0000FFFF;
 /// Value of gvcp_capability: packet resend, WRITEMEM, several registers in one message.
 inline constexpr std::uint32_t capabilities = 7;
 
-/// What DISCOVERY answers with: the first registers as they are.
+/// Size of the answer to DISCOVERY: the first registers unchanged.
 inline constexpr std::uint32_t discovery_bytes = 0x00F8;
 
 }  // namespace todbench::gev

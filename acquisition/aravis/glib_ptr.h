@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ownership of GLib and Aravis objects. Private to the Aravis back end.
 #pragma once
 
@@ -6,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
@@ -24,7 +25,7 @@ struct GFree {
 template <typename T>
 using GPtr = std::unique_ptr<T, GFree>;
 
-/// Receives a GError: pass `error.out()` to one call, then ask.
+/// Receives a GError: pass `error.out()` to one call, then test the object.
 class GErrorSlot {
  public:
   GErrorSlot() = default;
@@ -32,20 +33,20 @@ class GErrorSlot {
   GErrorSlot(const GErrorSlot&) = delete;
   GErrorSlot& operator=(const GErrorSlot&) = delete;
 
-  /// Forgets an earlier error. The pointer lives as long as this object.
+  /// Clears an earlier error. The pointer is valid as long as this object.
   [[nodiscard]] GError** out() {
     g_clear_error(&error_);
     return &error_;
   }
   [[nodiscard]] explicit operator bool() const { return error_ != nullptr; }
   [[nodiscard]] std::string message() const { return error_ != nullptr ? error_->message : "unknown error"; }
-  /// True when the device did not answer, as opposed to refusing.
+  /// True if the device did not answer; false if it refused.
   [[nodiscard]] bool lost() const {
     return error_ != nullptr && error_->domain == ARV_DEVICE_ERROR &&
            (error_->code == ARV_DEVICE_ERROR_TIMEOUT || error_->code == ARV_DEVICE_ERROR_NOT_CONNECTED ||
             error_->code == ARV_DEVICE_ERROR_TRANSFER_ERROR);
   }
-  /// `disconnected` when the device did not answer, `refused` otherwise.
+  /// `disconnected` if the device did not answer, otherwise `refused`.
   [[nodiscard]] tl::unexpected<Error> failure(ErrorCode refused, const std::string& doing) const {
     return fail(lost() ? ErrorCode::disconnected : refused, doing + ": " + message());
   }

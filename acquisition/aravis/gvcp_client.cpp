@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/gvcp_client.h"
 
 #include <arpa/inet.h>
@@ -11,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <vector>
+#include "acquisition/base/descriptor.h"
 
 namespace todbench {
 namespace {
@@ -18,25 +20,11 @@ namespace {
 constexpr std::uint16_t read_register_command = 0x0080;
 constexpr std::uint16_t read_memory_command = 0x0084;
 constexpr auto repeat_after = std::chrono::milliseconds(50);
-/// Most bytes of one READMEM that every device answers, how long an answer may take, and when it is asked again: a slow
+/// Largest READMEM that every device answers; time limit of an answer; time until the request is repeated. A slow
 /// device answers every repetition, each as slowly.
 constexpr std::uint32_t block_bytes = 512;
 constexpr auto block_patience = std::chrono::milliseconds(2000);
 constexpr auto repeat_block_after = std::chrono::milliseconds(250);
-
-class UdpSocket {
- public:
-  UdpSocket() : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
-  ~UdpSocket() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  UdpSocket(const UdpSocket&) = delete;
-  UdpSocket& operator=(const UdpSocket&) = delete;
-  [[nodiscard]] int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -61,7 +49,7 @@ std::uint32_t big_endian_32(const std::uint8_t* bytes) {
   return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
-/// Sends a request again and again until its acknowledge comes; the payload of that.
+/// Repeats a request until its acknowledge arrives. Returns the payload of the acknowledge.
 Result<Bytes> exchange(const std::string& ipv4, std::uint16_t command, const Bytes& payload,
                        std::chrono::milliseconds patience, std::chrono::milliseconds repeat = repeat_after) {
   using Clock = std::chrono::steady_clock;
@@ -71,30 +59,30 @@ Result<Bytes> exchange(const std::string& ipv4, std::uint16_t command, const Byt
   if (inet_pton(AF_INET, ipv4.c_str(), &device.sin_addr) != 1) {
     return fail(ErrorCode::not_found, "'" + ipv4 + "' is not an IPv4 address");
   }
-  const UdpSocket socket;
-  if (socket.fd() < 0 || ::connect(socket.fd(), reinterpret_cast<const sockaddr*>(&device), sizeof device) != 0) {
+  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0 || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&device), sizeof device) != 0) {
     return fail(ErrorCode::not_found, "no route to " + ipv4 + ": " + std::strerror(errno));
   }
   const auto deadline = Clock::now() + patience;
   for (std::uint16_t request_id = 1;; ++request_id) {
     const auto request = request_of(command, request_id, payload);
-    // A refused send (nobody listens yet) is no different from a lost one: wait and repeat.
-    [[maybe_unused]] const auto sent = ::send(socket.fd(), request.data(), request.size(), 0);
+    // A refused send (no listener yet) is handled like a lost packet: wait and repeat.
+    [[maybe_unused]] const auto sent = ::send(socket.get(), request.data(), request.size(), 0);
     const auto repeat_at = std::min(deadline, Clock::now() + repeat);
     for (;;) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(repeat_at - Clock::now());
-      pollfd readable{socket.fd(), POLLIN, 0};
+      pollfd readable{socket.get(), POLLIN, 0};
       if (left.count() <= 0 || ::poll(&readable, 1, static_cast<int>(left.count())) <= 0) break;
       std::array<std::uint8_t, 1024> reply{};
-      const auto size = ::recv(socket.fd(), reply.data(), reply.size(), MSG_DONTWAIT);
+      const auto size = ::recv(socket.get(), reply.data(), reply.size(), MSG_DONTWAIT);
       if (size < 8) {
-        // "Connection refused" wakes poll() at once; without this the loop would spin until the deadline.
+        // "Connection refused" wakes poll() at once; without this pause the loop would spin until the deadline.
         if (size < 0) ::poll(nullptr, 0, static_cast<int>(std::min<std::int64_t>(left.count(), 10)));
         continue;
       }
       const bool ours = big_endian_16(&reply[2]) == command + 1 && big_endian_16(&reply[6]) <= request_id;
       if (!ours) continue;
-      if (big_endian_16(&reply[0]) != 0) return fail(ErrorCode::not_found, ipv4 + " refuses to be read");
+      if (big_endian_16(&reply[0]) != 0) return fail(ErrorCode::not_found, ipv4 + " rejects the read request");
       return Bytes(reply.begin() + 8, reply.begin() + size);
     }
     if (Clock::now() >= deadline) return fail(ErrorCode::timeout, "no GigE Vision device answers at " + ipv4);
@@ -134,12 +122,12 @@ Result<std::string> gvcp_read_memory(const std::string& ipv4, std::uint32_t addr
   while (content.size() < bytes) {
     if (reading.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     if (Clock::now() >= deadline) {
-      return fail(ErrorCode::not_found, ipv4 + " has sent " + std::to_string(content.size()) + " of " +
+      return fail(ErrorCode::not_found, ipv4 + " sent only " + std::to_string(content.size()) + " of " +
                                             std::to_string(bytes) + " bytes in " +
                                             std::to_string(reading.patience.count() / 1000) + " s");
     }
     const auto at = static_cast<std::uint32_t>(content.size());
-    // Whole words are read.
+    // Reads are whole words.
     const std::uint32_t wanted = std::min(block_bytes, (bytes - at + 3) / 4 * 4);
     Bytes payload;
     append(payload, address + at, 4);
@@ -147,7 +135,7 @@ Result<std::string> gvcp_read_memory(const std::string& ipv4, std::uint32_t addr
     const auto answer = exchange(ipv4, read_memory_command, payload, block_patience, repeat_block_after);
     if (!answer) return tl::unexpected(answer.error());
     if (answer->size() != 4 + wanted || big_endian_32(answer->data()) != address + at) {
-      return fail(ErrorCode::not_found, ipv4 + " answers with other bytes than were asked for");
+      return fail(ErrorCode::not_found, ipv4 + " answers with bytes other than those requested");
     }
     content.append(answer->begin() + 4, answer->end());
     if (reading.on_bytes) reading.on_bytes(std::min<std::uint64_t>(content.size(), bytes));

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/image_layout.h"
 
 namespace todbench {
 namespace {
 
-/// Id and length behind the data of a chunk (GigE Vision 2.0, chapter 24; USB3 Vision 1.0, section 5.6).
+/// Id and length after the data of a chunk (GigE Vision 2.0, chapter 24; USB3 Vision 1.0, section 5.6).
 constexpr std::size_t chunk_tail_bytes = 8;
 constexpr std::size_t chunk_alignment = 8;
 
@@ -15,7 +16,7 @@ std::size_t length_in(std::span<const std::uint8_t> tail, ChunkLayout layout) {
   return length;
 }
 
-/// Bytes of the first chunk; nothing where the chunks do not fill what came.
+/// Bytes of the first chunk; empty if the chunks do not fill the received bytes exactly.
 std::optional<std::size_t> first_chunk_bytes(std::span<const std::uint8_t> received, ChunkLayout layout) {
   std::size_t end = received.size();
   while (end > chunk_tail_bytes) {

@@ -1,5 +1,5 @@
-// Where the pixels of an image are among the bytes that came for it, and whether these are as many as were stated. Pure
-// functions over untrusted bytes.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Location of an image among the received bytes, and a check of their number. Pure functions over untrusted bytes.
 #pragma once
 
 #include <cstddef>
@@ -15,23 +15,23 @@ namespace todbench {
 struct StatedImage {
   PixelFormat format = PixelFormat::mono16;
   int width = 0, height = 0;
-  int x_padding = 0;  ///< bytes behind every row
-  int y_padding = 0;  ///< bytes behind the last row
+  int x_padding = 0;  ///< bytes after every row
+  int y_padding = 0;  ///< bytes after the last row
 };
 
-/// How the bytes behind an image are arranged.
+/// Arrangement of the bytes after an image.
 enum class ChunkLayout {
-  none,           ///< there are none: every byte belongs to the image
-  big_endian,     ///< chunks, each with its id and length behind it: GigE Vision
+  none,           ///< no chunks: every byte belongs to the image
+  big_endian,     ///< chunks, each followed by its id and length: GigE Vision
   little_endian,  ///< the same: USB3 Vision
 };
 
-/// From the first byte of a row to that of the next.
+/// Bytes from the start of a row to the start of the next.
 [[nodiscard]] std::size_t row_bytes(const StatedImage& image);
 
-/// The bytes of the image, padding included, out of all that came. Nothing where they are not exactly as many as were
-/// stated: a row that is longer than stated would move every pixel behind it. The image of a chunk layout is its first
-/// chunk, which may be filled up to a whole number of eight bytes.
+/// Returns the bytes of the image, padding included. Empty if their number differs from the stated one: a row that is
+/// longer than stated would shift every later pixel. In a chunk layout the image is the first chunk, which may be
+/// padded to a multiple of eight bytes.
 [[nodiscard]] std::optional<std::span<const std::uint8_t>> image_bytes(std::span<const std::uint8_t> received,
                                                                        const StatedImage& image, ChunkLayout chunks);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/object_parameters.h"
 
 #include <array>
@@ -28,7 +29,7 @@ constexpr std::array all_parameters{"ObjectEmissivity",
                                     "ExtOpticsTemperature",
                                     "TransmittedTemperature"};
 
-/// A parameter and the value at which it changes nothing.
+/// A parameter and its neutral value.
 struct Neutral {
   const char* feature;
   double value;
@@ -37,7 +38,7 @@ constexpr std::array neutral_values{Neutral{"ObjectEmissivity", 1},   Neutral{"E
                                     Neutral{"Transmission", 1},       Neutral{"AtmosphericTransmission", 1},
                                     Neutral{"WindowTransmission", 1}, Neutral{"ExtOpticsTransmission", 1},
                                     Neutral{"WindowReflection", 0}};
-/// Cameras keep factors in steps of 1/8192 or 0.001.
+/// Cameras store factors in steps of 1/8192 or 0.001.
 constexpr double factor_step = 1e-3;
 
 std::optional<double> number_of(const std::map<std::string, std::string>& settings, const char* feature) {
@@ -61,7 +62,7 @@ std::vector<std::string> object_parameter_notes(const std::map<std::string, std:
     const auto value = number_of(settings, feature);
     if (!value || std::abs(*value - neutral) > factor_step) add(feature);
   }
-  // Where the transmission of the atmosphere is not stated as such (0), it follows from the distance.
+  // If the transmission of the atmosphere is not stated (0), it follows from the distance.
   const auto stated = number_of(settings, "EstimatedTransmission");
   if (stated && *stated > 0) {
     if (std::abs(*stated - 1) > factor_step) add("EstimatedTransmission");
@@ -69,8 +70,7 @@ std::vector<std::string> object_parameter_notes(const std::map<std::string, std:
     add("ObjectDistance");
   }
   if (not_neutral.empty()) return {};
-  return {"The camera computes its temperatures for " + not_neutral +
-          ": what it states is not the black-body temperature that it sees."};
+  return {"The camera computes its temperatures with " + not_neutral + ". These are not black-body temperatures."};
 }
 
 }  // namespace todbench

@@ -1,5 +1,6 @@
-// What a radiometric camera believes of the scene, by feature: it changes the temperatures that its counts state. Data
-// and pure functions; no camera library.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Object parameters of radiometric cameras (emissivity, distance, ...): they change the temperatures that the counts
+// represent. Data and pure functions; no camera library.
 #pragma once
 
 #include <map>
@@ -9,14 +10,14 @@
 
 namespace todbench {
 
-/// Features that tell what a camera takes for granted of object, atmosphere, window and optics, whatever its family.
-/// Sources: FLIR_A35.xml of areaDetector/ADGenICam, FLIR's node lists of A3xx ... A700; the others by the names of SFNC
-/// style that makers use. docs/cameras.md says which family has which.
+/// Features that hold a camera's assumptions about object, atmosphere, window and optics, for all families. Sources:
+/// FLIR_A35.xml of areaDetector/ADGenICam, FLIR's node lists of A3xx ... A700; the others are makers' names in the
+/// style of SFNC. docs/reference/cameras.md lists the features of each family.
 [[nodiscard]] std::span<const char* const> object_parameters();
 
-/// A sentence where, by its settings, a camera computes temperatures for anything but a black body seen through
-/// nothing: a contrast that it states is then larger than the one that it sees. Empty where all is neutral or nothing
-/// is said.
+/// Returns a warning that names the settings under which the camera computes temperatures for something other than a
+/// black body viewed directly: the contrast that it reports is then larger than the observed one. Empty if all settings
+/// are neutral or absent.
 [[nodiscard]] std::vector<std::string> object_parameter_notes(const std::map<std::string, std::string>& settings);
 
 }  // namespace todbench

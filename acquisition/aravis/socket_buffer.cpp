@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/socket_buffer.h"
 
 #include <netinet/in.h>
@@ -44,7 +45,7 @@ std::optional<std::uint64_t> request_socket_buffer(std::uint16_t local_port, std
   socklen_t size = sizeof granted;
   if (setsockopt(*fd, SOL_SOCKET, SO_RCVBUF, &asked, sizeof asked) != 0) return std::nullopt;
   if (getsockopt(*fd, SOL_SOCKET, SO_RCVBUF, &granted, &size) != 0) return std::nullopt;
-  // The kernel doubles the request to make room for its bookkeeping and reports the doubled value (man 7 socket).
+  // The kernel doubles the request for its own overhead and reports the doubled value (man 7 socket).
   return static_cast<std::uint64_t>(granted) / 2;
 }
 

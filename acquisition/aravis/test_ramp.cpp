@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/test_ramp.h"
 
 #include <cstdint>
@@ -6,7 +7,7 @@ namespace todbench {
 namespace {
 
 constexpr int least_columns = 16;
-/// Steps of ramps: 1 count per pixel, or full scale over the width: 65535 / 640 columns.
+/// Step of a ramp: 1 count per pixel, or full scale over the width (65535 / 640 columns).
 constexpr int largest_step = 128;
 constexpr double agreeing_share = 0.95;
 
@@ -26,7 +27,7 @@ bool rises(const cv::Mat1w& counts, Order order) {
     }
     for (int x = 1; x < counts.cols; ++x, ++all) {
       const int difference = order(pixels[x]) - order(pixels[x - 1]);
-      // Steps of a ramp over the full scale alternate between two neighbouring whole numbers.
+      // Steps of a ramp over the full scale alternate between two neighbouring integers.
       if (difference >= step - 1 && difference <= step + 1 && difference > 0) ++agreeing;
     }
   }

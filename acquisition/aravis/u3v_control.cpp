@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/u3v_control.h"
 
 #include <libusb-1.0/libusb.h>
@@ -20,12 +21,12 @@ constexpr std::uint16_t wants_acknowledge = 0x4000, read_command = 0x0800, read_
 constexpr std::size_t header_bytes = 12;
 constexpr std::uint32_t most_block_bytes = 512;
 constexpr unsigned transfer_ms = 500;
-/// Answers that are none of ours, or ask for patience, before a camera is given up.
+/// Limit of unrelated or pending acknowledges before a command fails.
 constexpr int most_other_answers = 20;
-/// Registers of the technology-agnostic bootstrap map, and in the tables it points to.
+/// Registers of the technology-agnostic bootstrap map and of the tables to which it points.
 constexpr std::uint64_t manifest_register = 0x1D0, longest_acknowledge = 0x18;
 constexpr std::uint64_t manifest_entry_bytes = 64;
-/// Of the interface that control messages go to.
+/// Class of the interface for control messages.
 constexpr std::uint8_t vision_class = 0xEF, vision_subclass = 0x05, control_protocol = 0x00;
 
 struct UsbExit {
@@ -130,7 +131,7 @@ Result<Bytes> Channel::read(std::uint64_t address, std::uint16_t bytes) {
   int sent = 0;
   if (libusb_bulk_transfer(handle_.get(), where_.out, command.data(), static_cast<int>(command.size()), &sent,
                            transfer_ms) != 0) {
-    return refused("the camera takes no commands");
+    return refused("the camera does not accept commands");
   }
   for (int i = 0; i < most_other_answers; ++i) {
     const auto answer = receive();
@@ -139,9 +140,9 @@ Result<Bytes> Channel::read(std::uint64_t address, std::uint16_t bytes) {
     if (number(head, 4) != message_magic || number(head + 10, 2) != id_) continue;
     if (number(head + 6, 2) == pending_acknowledge) continue;
     if (number(head + 6, 2) != read_acknowledge || number(head + 4, 2) != 0)
-      return refused("the camera refuses to be read");
+      return refused("the camera rejects the read request");
     if (number(head + 8, 2) != bytes || answer->size() != header_bytes + bytes) {
-      return refused("the camera answers with other bytes than were asked for");
+      return refused("the camera answers with bytes other than those requested");
     }
     return Bytes(answer->begin() + header_bytes, answer->end());
   }
@@ -174,7 +175,7 @@ std::optional<Channel> open_channel(libusb_context* context, const UsbNames& nam
 struct ManifestEntry {
   std::uint64_t address = 0, bytes = 0;
   bool zipped = false;
-  std::uint16_t block = 0;  ///< bytes of one reading
+  std::uint16_t block = 0;  ///< bytes of one read
 };
 
 Result<ManifestEntry> read_manifest(Channel& camera) {
@@ -187,14 +188,15 @@ Result<ManifestEntry> read_manifest(Channel& camera) {
   if (!entry) return tl::unexpected(entry.error());
   const auto acknowledge = number(longest->data(), 4);
   if (acknowledge < header_bytes + manifest_entry_bytes) {
-    return fail(ErrorCode::not_found, "the camera states answers of " + std::to_string(acknowledge) + " bytes");
+    return fail(ErrorCode::not_found, "the camera states a maximum answer length of " + std::to_string(acknowledge) +
+                                          " bytes, which is too short");
   }
   ManifestEntry found;
   found.address = number(entry->data() + 8, 8);
   found.bytes = number(entry->data() + 16, 8);
-  // The client takes five bits for the kind of file.
+  // The client uses five bits for the kind of file.
   const auto kind = number(entry->data() + 4, 4) >> 10U & 0x1FU;
-  if (kind > 1) return fail(ErrorCode::not_found, "the camera's description is of an unknown kind");
+  if (kind > 1) return fail(ErrorCode::not_found, "the camera's description has an unknown file type");
   found.zipped = kind == 1;
   found.block = static_cast<std::uint16_t>(std::min<std::uint64_t>(acknowledge - header_bytes, most_block_bytes));
   return found;
@@ -206,7 +208,7 @@ Result<std::string> read_content(Channel& camera, const ManifestEntry& entry, co
   while (content.size() < entry.bytes) {
     if (reading.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     if (Clock::now() >= deadline) {
-      return fail(ErrorCode::not_found, "the camera has sent " + std::to_string(content.size()) + " of " +
+      return fail(ErrorCode::not_found, "the camera sent only " + std::to_string(content.size()) + " of " +
                                             std::to_string(entry.bytes) + " bytes in " +
                                             std::to_string(reading.patience.count() / 1000) + " s");
     }
@@ -231,7 +233,7 @@ Result<std::optional<U3vDescriptionContent>> u3v_read_description(const UsbNames
   if (!entry) return tl::unexpected(entry.error());
   if (entry->bytes == 0 || entry->bytes > reading.most_bytes) {
     return fail(ErrorCode::not_found, "the camera states a description of " + std::to_string(entry->bytes) +
-                                          " bytes: its size is out of reason");
+                                          " bytes, expected 1 ... " + std::to_string(reading.most_bytes));
   }
   auto content = read_content(*camera, *entry, reading);
   if (!content) return tl::unexpected(content.error());

@@ -1,5 +1,6 @@
-// USB3 Vision control messages that are needed before Aravis may open a camera: where its description is, how large it
-// is, and its bytes. Source: GenCP 1.1, sections 4.2 to 4.4; USB3 Vision 1.0, section 4.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// USB3 Vision control messages needed before Aravis may open a camera: location, size and bytes of its description.
+// Source: GenCP 1.1, sections 4.2 to 4.4; USB3 Vision 1.0, section 4.
 #pragma once
 
 #include <chrono>
@@ -9,20 +10,20 @@
 #include <stop_token>
 #include <string>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// The strings of a USB device by which it is known.
+/// Strings that identify a USB device.
 struct UsbNames {
   std::string vendor, product, serial;
 };
 
 struct U3vReading {
-  std::uint64_t most_bytes = 0;                ///< of the description as it lies in the camera
-  std::chrono::milliseconds patience{30'000};  ///< for the whole
+  std::uint64_t most_bytes = 0;                ///< of the description as stored in the camera
+  std::chrono::milliseconds patience{30'000};  ///< for the whole read
   std::stop_token stop = {};
-  std::function<void(std::uint64_t done, std::uint64_t bytes)> on_bytes = {};  ///< in between, on the calling thread
+  std::function<void(std::uint64_t done, std::uint64_t bytes)> on_bytes = {};  ///< on the reading thread
 };
 
 struct U3vDescriptionContent {
@@ -30,9 +31,9 @@ struct U3vDescriptionContent {
   bool zipped = false;
 };
 
-/// Reads the first description of the manifest of the camera with these names, and leaves the camera as it was. Nothing
-/// where there is no such camera, or another program has it. Errors: `not_found` (its tables cannot be read or state
-/// what cannot be; it is too slow), `interrupted`.
+/// Reads the first description in the manifest of the camera with these names, and leaves the camera unchanged. Empty
+/// if there is no such camera or another program holds it. Errors: `not_found` (its tables are unreadable or
+/// contradictory; it is too slow), `interrupted`.
 [[nodiscard]] Result<std::optional<U3vDescriptionContent>> u3v_read_description(const UsbNames& names,
                                                                                 const U3vReading& reading);
 

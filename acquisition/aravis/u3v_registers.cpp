@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/u3v_registers.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ constexpr std::uint64_t sirm_info = 0x00, sirm_payload = 0x08, sirm_leader = 0x1
 
 /// Leaders and trailers have tens of bytes.
 constexpr std::uint32_t most_leader_bytes = 64U << 10U;
-/// Payloads are aligned to transfers of USB, which end at 1 KiB; Aravis sends no transfer above 1 MiB.
+/// Payloads are aligned to USB transfers of at most 1 KiB; Aravis sends no transfer above 1 MiB.
 constexpr std::uint32_t most_alignment_exponent = 16;
 
 std::string text_at(ArvDevice* device, std::uint64_t address) {
@@ -48,7 +49,7 @@ U3vIdentity u3v_identity(ArvDevice* device) {
 Result<void> check_stream_registers(ArvDevice* device) {
   if (!ARV_IS_UV_DEVICE(device)) return {};
   const auto refused = [](const std::string& what) {
-    return fail(ErrorCode::not_found, "the stream registers of the camera cannot be right: " + what);
+    return fail(ErrorCode::not_found, "the stream registers of the camera are invalid: " + what);
   };
   const auto sbrm = number_at<std::uint64_t>(device, abrm_sbrm);
   const auto sirm = sbrm ? number_at<std::uint64_t>(device, *sbrm + sbrm_sirm) : std::nullopt;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/aravis/watched_camera.h"
 
 #include <condition_variable>
@@ -6,10 +7,10 @@
 
 namespace todbench {
 
-/// Set by one thread, waited for by another.
+/// Set by one thread, awaited by another.
 class WatchedCamera::Flag {
  public:
-  /// Whoever waits may destroy this as soon as the lock is open.
+  /// The waiting thread may destroy this object as soon as the lock is released.
   void set(bool value) {
     const std::lock_guard lock(mutex_);
     value_ = value;
@@ -26,7 +27,7 @@ class WatchedCamera::Flag {
   bool value_ = false;
 };
 
-/// What GLib's closure owns.
+/// State owned by GLib's closure.
 struct WatchedCamera::Listener {
   std::function<void()> on_lost;
   std::shared_ptr<Flag> gone;
@@ -56,11 +57,11 @@ WatchedCamera::WatchedCamera(GObjectPtr<ArvCamera> camera, std::function<void()>
 WatchedCamera::~WatchedCamera() {
   if (!camera_) return;
   auto* device = G_OBJECT(arv_camera_get_device(camera_.get()));
-  // An emission that found the listener keeps its closure until it has called it, and by then it has its reference. One
-  // that begins from here on finds nobody to call, and GLib returns from it before it takes a reference.
+  // An emission that found the listener keeps its closure until it has called it, and by then it holds its reference to
+  // the device. A later emission finds no listener, and GLib returns before it takes a reference.
   g_signal_handler_disconnect(device, handler_);
   listener_gone_->wait();
-  // The toggle reference tells when it is the only one left: then no emission has any.
+  // The toggle reference reports when it is the last one: then no emission holds any.
   Flag last;
   g_object_add_toggle_ref(device, &WatchedCamera::on_toggled, &last);
   camera_.reset();

@@ -1,9 +1,10 @@
-// A camera of Aravis that tells when its control is lost, and that is destroyed only where that is safe. Private to the
-// Aravis back end.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An Aravis camera that reports the loss of control and is destroyed only when that is safe. Private to the Aravis back
+// end.
 //
 // Aravis emits "control-lost" on a thread of the device (heartbeat, USB events), and the destruction of the device
-// joins that thread. An emission holds a reference to the device; where it is the last one the thread joins itself and
-// GLib ends the program. So the owner is the last: he waits until no emission can be under way.
+// joins that thread. An emission holds a reference to the device; if it is the last one, the thread joins itself and
+// GLib aborts the program. So the owner must hold the last reference: it waits until no emission can be running.
 #pragma once
 
 #include <functional>
@@ -15,10 +16,10 @@ namespace todbench {
 
 class WatchedCamera {
  public:
-  /// `on_lost` is called on a thread of Aravis. It must not wait for the one that destroys this object.
+  /// `on_lost` is called on a thread of Aravis. It must not wait for the thread that destroys this object.
   WatchedCamera(GObjectPtr<ArvCamera> camera, std::function<void()> on_lost);
-  /// Destroys camera and device in this thread, after every emission of "control-lost" and after everybody else has
-  /// dropped his reference to the device: streams have to go first. Five seconds where the camera does not answer.
+  /// Destroys camera and device on this thread, after every emission of "control-lost" has ended and every other
+  /// reference to the device is gone: destroy streams first. Takes five seconds if the camera does not answer.
   ~WatchedCamera();
   WatchedCamera(WatchedCamera&&) noexcept = default;
   WatchedCamera& operator=(WatchedCamera&&) = delete;

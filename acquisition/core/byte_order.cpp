@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/core/byte_order.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ std::uint32_t difference(std::uint16_t a, std::uint16_t b) {
   return a > b ? static_cast<std::uint32_t>(a - b) : static_cast<std::uint32_t>(b - a);
 }
 
-/// Sums over a picture: differences in both orders, and every bit that is set anywhere.
+/// Sums over a picture: differences in both orders, and all bits that are set in any pixel.
 struct Sums {
   std::uint64_t as_stated = 0, swapped = 0;
   std::uint16_t bits = 0;

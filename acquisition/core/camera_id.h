@@ -1,4 +1,5 @@
-// The text that names a camera: SCHEME:NAME. What stands before the colon says which back end opens it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The text that identifies a camera: SCHEME:NAME. The scheme selects the back end that opens it.
 #pragma once
 
 #include <initializer_list>
@@ -18,14 +19,14 @@ inline constexpr std::string_view file = "file";  ///< recordings
 inline constexpr std::string_view sim = "sim";    ///< simulated sensors
 }  // namespace camera_scheme
 
-/// "SCHEME:NAME", the name as it is: "file:PATH", "sim:sc2000", "gige:192.168.1.10".
+/// Returns "SCHEME:NAME" with the name unchanged: "file:PATH", "sim:sc2000", "gige:192.168.1.10".
 [[nodiscard]] std::string camera_id(std::string_view scheme, std::string_view name);
 
-/// By identity, "gige:VENDOR-SERIAL": the parts joined by '-'; characters of them that are no letter, digit, dot or
-/// underscore become underscores. Precondition: there is a part.
+/// Returns the id by identity, "gige:VENDOR-SERIAL": the parts joined by '-'. Characters other than letters, digits,
+/// dots and underscores become underscores. Precondition: at least one part.
 [[nodiscard]] std::string camera_id(std::string_view scheme, std::initializer_list<std::string_view> identity);
 
-/// What follows "SCHEME:"; nothing where the id is of another scheme.
+/// The text after "SCHEME:"; empty if the id has another scheme.
 [[nodiscard]] std::optional<std::string> camera_name(std::string_view id, std::string_view scheme);
 [[nodiscard]] inline bool has_scheme(std::string_view id, std::string_view scheme) {
   return camera_name(id, scheme).has_value();

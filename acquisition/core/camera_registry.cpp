@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/core/camera_registry.h"
 
 #include "acquisition/core/camera_id.h"
@@ -15,6 +16,9 @@ CameraRegistry::Listing CameraRegistry::list() {
     if (!cameras) {
       listing.warnings.push_back("listing " + backend->scheme() + " cameras: " + cameras.error().message);
       continue;
+    }
+    for (const CameraEntry& camera : *cameras) {
+      if (!camera.note.empty()) listing.warnings.push_back(camera.id + ": " + camera.note);
     }
     listing.cameras.insert(listing.cameras.end(), cameras->begin(), cameras->end());
   }

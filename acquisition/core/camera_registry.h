@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Finding and opening cameras by identity.
 #pragma once
 
@@ -5,25 +6,26 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/base/result.h"
 #include "acquisition/core/frame_source.h"
-#include "acquisition/core/result.h"
 
 namespace todbench {
 
-/// A camera that a back end sees.
+/// A camera that a back end lists.
 struct CameraEntry {
   std::string id;  ///< "gige:VENDOR-SERIAL", "sim:sc2000", "file:PATH"
   std::string vendor, model, serial, transport;
-  std::string address;  ///< where it is now; never part of the identity
+  std::string address;  ///< present location; never part of the identity
+  std::string note{};   ///< one sentence if it cannot be opened as it is or cannot be identified again; otherwise empty
 };
 
-/// A family of cameras: two functions are all that is needed to add one.
+/// A family of cameras. To add one, implement list() and open().
 class CameraBackend {
  public:
   virtual ~CameraBackend() = default;
-  /// Prefix of the ids that it opens, without the colon: "gige".
+  /// Prefix of its ids, without the colon: "gige".
   [[nodiscard]] virtual std::string scheme() const = 0;
-  /// What can be opened now. Takes up to two seconds on a network.
+  /// Lists the cameras that can be opened now. Takes up to two seconds on a network.
   [[nodiscard]] virtual Result<std::vector<CameraEntry>> list() = 0;
   /// Opens by identity. Errors: `not_found` (absent, busy, access denied, no usable pixel format).
   [[nodiscard]] virtual Result<std::unique_ptr<FrameSource>> open(const std::string& id) = 0;
@@ -39,7 +41,7 @@ class CameraRegistry {
     std::vector<std::string> warnings;
   };
   [[nodiscard]] Listing list();
-  /// Opens by id; `invalid_input` for an id without a known scheme, with the schemes named.
+  /// Opens by id. Error: `invalid_input`, with the known schemes, for an id without a known scheme.
   [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id);
 
  private:

@@ -1,15 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers as the text of a camera's control.
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace todbench {
 
-/// The number that the whole text is; nothing for anything else, and for what is not finite.
+/// The finite number that the whole text represents; empty for any other text.
 [[nodiscard]] std::optional<double> control_number(std::string_view text);
-/// The shortest text from which control_number() makes the same number again.
+/// The shortest text that control_number() reads back as the same number.
 [[nodiscard]] std::string control_text(double value);
+
+/// Width and height of a text like "640x512"; empty for other texts or a side outside 1 ... 65535.
+[[nodiscard]] std::optional<cv::Size> frame_size_of(std::string_view text);
+[[nodiscard]] std::string frame_size_text(cv::Size size);
+
+/// Features of a source that its camera does not have: the frame size that it is expected to send (frame_size_text()),
+/// and the name of its command that corrects the non-uniformity.
+inline constexpr const char* frame_size_feature = "FrameSize";
+inline constexpr const char* nuc_command_feature = "NonuniformityCommand";
 
 }  // namespace todbench

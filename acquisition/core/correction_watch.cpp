@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/core/correction_watch.h"
 
 #include <algorithm>
@@ -5,13 +6,13 @@
 #include <cstdlib>
 #include <utility>
 
-#include "acquisition/core/median.h"
+#include "acquisition/base/median.h"
 
 namespace todbench {
 namespace {
 
-/// Where the noise is finer than a count, rounding decides how much two frames differ: 0.2 to 1.6 counts between
-/// successive frames of a Lepton at rest. The usual difference is taken for no less than this.
+/// Lower limit of the usual difference, in counts. If the noise is finer than a count, rounding determines the
+/// difference of two frames: 0.2 to 1.6 counts between successive frames of a Lepton at rest.
 constexpr double least_difference = 1.5;
 
 /// Every n-th pixel in both directions, about 5000 of them.

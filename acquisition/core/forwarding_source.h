@@ -1,4 +1,5 @@
-// A source in front of another: what a decorator does not change.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Base of decorators of a frame source.
 #pragma once
 
 #include <chrono>
@@ -10,7 +11,7 @@
 
 namespace todbench {
 
-/// Owns a source and passes every call to it. A decorator derives from it and overrides what it changes.
+/// Owns a source and forwards every call to it. A decorator overrides the calls that it changes.
 class ForwardingSource : public FrameSource {
  public:
   [[nodiscard]] const SourceInfo& info() const override { return source_->info(); }

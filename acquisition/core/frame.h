@@ -1,4 +1,5 @@
-// What a frame is.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A frame of a camera.
 #pragma once
 
 #include <cstdint>
@@ -10,50 +11,49 @@
 
 namespace todbench {
 
-/// How far the pixels of a frame can be trusted, as the transport tells.
+/// Trustworthiness of a frame's pixels according to the transport.
 enum class FrameStatus {
   complete,
   incomplete,  ///< data missing or late; never measured
-  wrong_size,  ///< geometry or payload differs from what was negotiated
+  wrong_size,  ///< geometry or payload differs from the negotiated one
 };
 
 [[nodiscard]] std::string_view to_string(FrameStatus status);
 
-/// What the camera itself says about its non-uniformity correction: a telemetry row, a chunk or a node.
+/// State of the non-uniformity correction as the camera reports it in a telemetry row, a chunk or a node.
 enum class CorrectionState {
-  unknown,  ///< the camera does not say
+  unknown,  ///< not reported
   idle,
   running,  ///< imminent, or the shutter is closed
 };
 
-/// How the sequence of a frame came about.
+/// Origin of a frame's sequence number.
 enum class Numbering : std::uint8_t {
-  counted,    ///< by the numbers of the camera or its driver, which fit the time that passed
-  restarted,  ///< the numbers began anew or jumped against all clocks; what is missing is estimated from time
-  timed,      ///< the numbers go on, the time does not: what is missing is estimated from time
+  counted,    ///< from the numbers of the camera or its driver, which fit the elapsed time
+  restarted,  ///< the numbers restarted or jumped against all clocks; the loss is estimated from time
+  timed,      ///< the numbers continue, the time does not; the loss is estimated from time
 };
 
 [[nodiscard]] std::string_view to_string(Numbering numbering);
 
 struct JudgedPicture;
 
-/// One exposed image. Immutable once handed out: pixels are shared, copying is cheap, any thread may read.
+/// One exposed image. Immutable after it is handed out: pixels are shared, copying is cheap, any thread may read.
 struct Frame {
-  cv::Mat1w counts;            ///< as the camera sent them, row by row from the top
-  std::uint64_t sequence = 0;  ///< counts exposures, unwrapped; a gap is a lost frame
-  std::int64_t device_time_ns =
-      0;  ///< the camera's own clock (start of transfer where the camera does not say more); 0: none
-  std::int64_t host_time_ns = 0;  ///< CLOCK_MONOTONIC when the complete frame reached the program
+  cv::Mat1w counts;                 ///< as the camera sent them, row by row from the top
+  std::uint64_t sequence = 0;       ///< number of the exposure, unwrapped; a gap means lost frames
+  std::int64_t device_time_ns = 0;  ///< the camera's clock, by default at the start of transfer; 0: none
+  std::int64_t host_time_ns = 0;    ///< CLOCK_MONOTONIC when the complete frame reached the program
   FrameStatus status = FrameStatus::complete;
   Numbering numbering = Numbering::counted;
   CorrectionState correction = CorrectionState::unknown;  ///< while this frame was exposed
-  double since_correction_s = -1;                         ///< as the camera says; negative: it does not
+  double since_correction_s = -1;                         ///< as reported by the camera; negative: not reported
   int significant_bits = 16;                              ///< full scale is 2^significant_bits - 1 counts
   std::shared_ptr<const RadiometricScale> scale;          ///< never null
-  std::shared_ptr<const JudgedPicture> judged{};          ///< null: the counts themselves
+  std::shared_ptr<const JudgedPicture> judged{};          ///< picture to judge instead of the counts; null: the counts
 };
 
-/// The frame in kelvin. Fails with `calibration` when the scale cannot say for some pixel.
+/// Returns the frame in kelvin. Error: `calibration` if the scale has no temperature for some pixel.
 [[nodiscard]] Result<cv::Mat1d> to_kelvin(const Frame& frame);
 
 }  // namespace todbench

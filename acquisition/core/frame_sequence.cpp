@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/core/frame_sequence.h"
 
 #include <algorithm>
@@ -5,28 +6,28 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/median.h"
+#include "acquisition/base/median.h"
 
 namespace todbench {
 namespace {
 
 /// Ids 1 ... 65535 repeat with this period because 0 is skipped.
 constexpr std::int64_t gvsp16_period = 65535;
-/// Aravis takes an id that is up to so much smaller than the last one for a late packet and drops it.
+/// Aravis treats an id that is up to this much below the last one as a late packet and drops it.
 constexpr std::int64_t arrival_window = 100;
-/// What a busy host may delay the news of a frame by.
+/// Longest delay of a frame's arrival on a busy host.
 constexpr double host_delay_ns = 1e9;
-/// Of the fastest camera there is, where nothing is known.
+/// Period of the fastest camera, used while the period is unknown.
 constexpr double shortest_period_ns = 1e5;
 constexpr std::size_t remembered_periods = 15;
-/// Periods seen before they are believed more than the stated one.
+/// Observed periods that are needed before they replace the stated one.
 constexpr std::size_t enough_periods = 3;
 constexpr std::size_t remembered_arrivals = 32, enough_arrivals = 16;
-/// Frames after a silence that show whether they had only been waiting. Those that waited come as fast as the program
-/// takes them; the others at the camera's rate, give or take what a busy host delays each by.
+/// Number of frames after a silence that show whether they had only been delayed. Delayed frames arrive as fast as the
+/// program takes them, others at the camera's rate, within the delays of a busy host.
 constexpr int frames_after_silence = 12;
 constexpr double least_pace = 0.6;
-/// A shorter silence of the host is nothing.
+/// Shorter silences on the host's clock are ignored.
 constexpr double least_silence_ns = 0.3e9;
 
 bool is_period(double ns) {
@@ -37,7 +38,7 @@ bool is_gvsp(FrameNumberKind kind) {
   return kind == FrameNumberKind::gvsp16 || kind == FrameNumberKind::gvsp64;
 }
 
-/// More exposures than any camera makes in a time on the host's clock.
+/// Upper limit of the exposures of any camera in a time on the host's clock.
 double most_steps(double host_ns) {
   return (2 * std::max(host_ns, 0.0) + host_delay_ns) / shortest_period_ns;
 }
@@ -104,7 +105,7 @@ std::int64_t FrameSequence::step_to(std::uint64_t number) const {
   const std::uint64_t from = anchor_->number;
   switch (kind_) {
     case FrameNumberKind::gvsp16: {
-      // A camera that does not know that 0 is skipped sends it between 65535 and 1.
+      // A camera that does not skip 0 sends it between 65535 and 1.
       if (from == gvsp16_period && number == 0) return 1;
       const auto difference =
           static_cast<std::int64_t>(number % gvsp16_period) - static_cast<std::int64_t>(from % gvsp16_period);
@@ -122,7 +123,7 @@ std::int64_t FrameSequence::step_to(std::uint64_t number) const {
   return static_cast<std::int64_t>(number - from);
 }
 
-/// Exposures between two frames that are so many periods apart.
+/// Exposures between two frames with this distance in periods.
 std::uint64_t FrameSequence::steps_in(double periods, const FrameStamp& stamp) const {
   const double host_ns = static_cast<double>(stamp.host_time_ns - anchor_->host_time_ns);
   return static_cast<std::uint64_t>(std::clamp(std::round(periods), 1.0, most_steps(host_ns)));
@@ -138,7 +139,7 @@ FrameSequence::Elapsed FrameSequence::elapsed(const FrameStamp& stamp) const {
   const auto period = device_period_.ns();
   const bool both = stamp.device_time_ns > 0 && anchor_->device_time_ns > 0;
   const double device_ns = static_cast<double>(stamp.device_time_ns) - static_cast<double>(anchor_->device_time_ns);
-  // A clock that was set anew says nothing; one that stood still neither.
+  // A clock that was set or stopped gives no time.
   const bool set_ahead = device_ns > 2 * std::max(host_ns, 0.0) + host_delay_ns;
   const bool set_back = host_ns > 2 * device_ns + host_delay_ns;
   if (both && period && device_ns > 0 && !set_ahead && !set_back) out.device = device_ns / *period;
@@ -156,7 +157,7 @@ bool FrameSequence::is_older(std::int64_t step, const FrameStamp& stamp) const {
   return std::abs(periods - by_number) <= std::max(0.6, 0.25 * std::abs(by_number));
 }
 
-/// Whether a frame with the number of the last one is another exposure all the same.
+/// Whether a frame with the number of the last one is a new exposure nevertheless.
 bool FrameSequence::is_new_exposure(std::int64_t step, const FrameStamp& stamp) const {
   if (step != 0) return true;
   if (stamp.device_time_ns == 0 || anchor_->device_time_ns == 0) return false;
@@ -165,20 +166,20 @@ bool FrameSequence::is_new_exposure(std::int64_t step, const FrameStamp& stamp) 
   return std::abs(moved_ns) > 0.5 * period.value_or(0);
 }
 
-/// Whether numbers went ahead by far more than the clocks allow.
+/// Whether the numbers advanced by far more than the clocks allow.
 bool FrameSequence::claims_too_much(std::int64_t step, const Elapsed& passed, const FrameStamp& stamp) const {
-  // A clock that begins anew takes the numbers with it, unless they go on one by one.
+  // A clock that restarts takes the numbers with it, unless they continue one by one.
   if (step > 1 && stamp.device_time_ns > 0 && stamp.device_time_ns < anchor_->device_time_ns) return true;
   const auto claimed = static_cast<double>(step);
   const double claimed_ns = claimed * host_period_.ns().value_or(shortest_period_ns);
   const double host_ns = static_cast<double>(stamp.host_time_ns - anchor_->host_time_ns);
   if (claimed > most_steps(host_ns)) return true;
   if (!passed.device) return claimed_ns > 2 * host_ns + host_delay_ns;
-  // The host may learn late of the frame before, never of time that has not passed.
+  // The preceding frame may have arrived late on the host, but host time that has not passed cannot be reported.
   return *passed.device < 0.75 * claimed - 1 && host_ns < 0.75 * claimed_ns;
 }
 
-/// Whether the camera's clock moved on by frames that its numbers do not know of.
+/// Whether the camera's clock advanced by frames that its numbers do not count.
 bool FrameSequence::hides_a_gap(std::int64_t step, const Elapsed& passed, const FrameStamp& stamp) {
   const auto last_gap = std::exchange(last_gap_, std::nullopt);
   if (!passed.device || stamp.may_pause) return false;
@@ -187,7 +188,7 @@ bool FrameSequence::hides_a_gap(std::int64_t step, const Elapsed& passed, const 
   if (*passed.device < counted + tolerance) return false;
   const double gap = *passed.device / counted;
   if (last_gap && std::abs(gap - *last_gap) < 0.1 * gap) {
-    // The same twice in succession: it is the camera's new rate.
+    // The same gap twice in succession is the camera's new rate.
     device_period_.forget();
     host_period_.forget();
     return false;
@@ -196,9 +197,9 @@ bool FrameSequence::hides_a_gap(std::int64_t step, const Elapsed& passed, const 
   return true;
 }
 
-/// Exposures that were dropped on arrival because their numbers had been seen: the numbers began anew at 0 or 1, and
-/// with them the camera's clock, so that both go on as if nothing had happened. Only the host's clock tells, and only
-/// where the silence is as long as the numbers are high. Known some frames later, when they have not come in a hurry.
+/// Exposures dropped on arrival because their numbers had been received before: numbers and camera clock restarted at 0
+/// or 1, so that both continue as if nothing had happened. Only the host's clock shows the loss, and only if the
+/// silence is as long as the numbers are high. It is confirmed some frames later, if those did not arrive in a burst.
 std::uint64_t FrameSequence::dropped_on_arrival(std::int64_t step, const Elapsed& passed, const FrameStamp& stamp) {
   const auto period = host_period_.ns();
   if (!is_gvsp(kind_) || !period || !passed.host) return 0;
@@ -211,7 +212,7 @@ std::uint64_t FrameSequence::dropped_on_arrival(std::int64_t step, const Elapsed
   }
   const double missing = *passed.host - static_cast<double>(step);
   const auto number = static_cast<double>(*stamp.number);
-  // The frame before the silence may have been told late, which makes the silence shorter.
+  // The frame before the silence may have arrived late, which shortens the silence.
   const bool as_long_as_the_numbers =
       number <= arrival_window + 1 && missing > 0.8 * number - 3 && missing < 2 * number + 3;
   if (step == 1 && !stamp.may_pause && missing * *period > least_silence_ns && as_long_as_the_numbers) {

@@ -1,4 +1,5 @@
-// The numbers that cameras and drivers give their frames, to an exposure count that never wraps; checked against time.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Converts frame numbers of cameras and drivers to an exposure count that never wraps; checked against time.
 #pragma once
 
 #include <cstdint>
@@ -9,47 +10,47 @@
 
 namespace todbench {
 
-/// How frames are numbered on the way to the program.
+/// Numbering of frames by transport.
 enum class FrameNumberKind {
   gvsp16,  ///< GigE Vision without extended ids: 16 bits, 65535 is followed by 1, 0 is never sent
   gvsp64,  ///< GigE Vision with extended ids
   wide,    ///< 64 bits, never wraps: USB3 Vision
   wrap32,  ///< V4L2
-  wrap16,  ///< a 16-bit counter that uses 0: Seek
+  wrap16,  ///< a 16-bit counter that includes 0: Seek
 };
 
-/// What is known of a frame when it arrives.
+/// Number and times of a frame at its arrival.
 struct FrameStamp {
-  std::optional<std::uint64_t> number;  ///< nothing: lost with the packet that said it
+  std::optional<std::uint64_t> number;  ///< empty: lost with its packet
   std::int64_t device_time_ns = 0;      ///< on the clock of the camera or driver; 0: none
   std::int64_t host_time_ns = 0;        ///< CLOCK_MONOTONIC at arrival
   bool may_pause = false;               ///< the camera corrects itself: it may be silent without losing exposures
 };
 
-/// Frame::sequence, and how it came about.
+/// Frame::sequence and its origin.
 struct FramePlace {
   std::uint64_t sequence = 0;
   Numbering numbering = Numbering::counted;
   bool operator==(const FramePlace&) const = default;
 };
 
-/// Turns frame numbers into Frame::sequence: 0 for the first frame of a stream, gaps where exposures were lost.
+/// Converts frame numbers to Frame::sequence: 0 for the first frame of a stream, gaps for lost exposures.
 ///
-/// Numbers are believed while the clocks do not contradict them. A number that goes back, or ahead by far more than the
-/// time that passed, began anew; numbers that go on over a time of several frames hide a loss (Aravis drops up to a
-/// hundred frames whose ids it has seen, without a word). The gap is then estimated from the camera's clock where it
-/// agrees with the host's, else from the host's.
+/// Numbers are trusted unless the clocks contradict them. A number that goes back, or ahead by far more than the
+/// elapsed time, indicates a restart. Consecutive numbers over a time of several frames hide a loss (Aravis silently
+/// drops up to a hundred frames whose ids it has already received). The gap is then estimated from the camera's clock
+/// if it agrees with the host's, otherwise from the host's.
 ///
 /// Frames must be given in the order in which the transport completed them. One thread at a time.
 class FrameSequence {
  public:
-  /// `frame_rate_hz` as the camera states it, 0: unknown.
+  /// `frame_rate_hz` as the camera states it; 0: unknown.
   FrameSequence(FrameNumberKind kind, double frame_rate_hz);
 
-  /// The place of a frame. One without number gets the place after the last one: its true place can only be that or
-  /// later, because the numbers of the frames round it differ from its own. 16-bit numbers are unwrapped over gaps of
-  /// up to 32767 frames (ten minutes at 50 Hz). A frame that is older by number and by the camera's clock gets its
-  /// older place.
+  /// Returns the place of a frame. A frame without number gets the place after the last one: its true place is that one
+  /// or later, because the numbers of its neighbours differ from its own. 16-bit numbers are unwrapped over gaps of up
+  /// to 32767 frames (ten minutes at 50 Hz). A frame that is older by number and by the camera's clock gets its older
+  /// place.
   [[nodiscard]] FramePlace next(const FrameStamp& as_told);
 
  private:
@@ -58,30 +59,30 @@ class FrameSequence {
     std::uint64_t number = 0, sequence = 0;
     std::int64_t device_time_ns = 0, host_time_ns = 0;
   };
-  /// Frame periods from the anchor to a frame, by each clock; nothing where it does not say.
+  /// Frame periods from the anchor to a frame, by each clock; empty if the clock gives no time.
   struct Elapsed {
     std::optional<double> device, host;
-    double period_ns = 0;  ///< of the host's
-    /// Of the two the one to estimate a gap from where numbers began anew: the camera's, unless far more has passed on
-    /// the host's, because then the camera's clock began anew too.
+    double period_ns = 0;  ///< of the host's clock
+    /// The period count from which to estimate a gap after a restart: the camera's clock, unless far more periods
+    /// passed on the host's clock, because then the camera's clock restarted too.
     [[nodiscard]] std::optional<double> best() const;
   };
-  /// The usual time of a frame on the clock of the camera: the median of those seen.
+  /// Frame period on the camera's clock: the median of the observed ones.
   class DevicePeriod {
    public:
     explicit DevicePeriod(double stated_ns) : stated_ns_(stated_ns) {}
     void learn(double ns);
     void forget();
     [[nodiscard]] std::optional<double> ns() const;
-    /// Scatter of the time of a frame, in periods.
+    /// Scatter of the frame period, in periods.
     [[nodiscard]] double scatter() const;
 
    private:
     double stated_ns_;
     std::deque<double> seen_ns_;
   };
-  /// The same on the clock of the host, where single frames come early and late: the stated one where the mean of those
-  /// seen does not contradict it, else the mean.
+  /// Frame period on the host's clock, on which single frames arrive early and late: the stated period unless the mean
+  /// of the observed ones contradicts it, otherwise that mean.
   class HostPeriod {
    public:
     explicit HostPeriod(double stated_ns) : stated_ns_(stated_ns) {}
@@ -97,7 +98,7 @@ class FrameSequence {
     double stated_ns_;
     std::deque<Seen> seen_;
   };
-  /// A silence on the host's clock that is no loss if the frames behind it come faster than they are exposed.
+  /// A silence on the host's clock. It is not a loss if the frames after it arrive faster than they are exposed.
   struct Silence {
     double missing = 0;  ///< periods
     std::int64_t host_time_ns = 0;
@@ -121,7 +122,7 @@ class FrameSequence {
   bool started_ = false;
   std::optional<Anchor> anchor_;
   std::uint64_t last_ = 0;
-  std::optional<double> last_gap_;  ///< device periods, where the last frame hid a gap
+  std::optional<double> last_gap_;  ///< device periods, if the last frame hid a gap
   std::optional<Silence> silence_;
 };
 

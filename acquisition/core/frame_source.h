@@ -1,4 +1,5 @@
-// A camera, as the bench sees it: simulated, recorded, emulated or real.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Interface of a camera: simulated, recorded, emulated or real.
 #pragma once
 
 #include <chrono>
@@ -8,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/base/result.h"
 #include "acquisition/core/frame.h"
-#include "acquisition/core/result.h"
 
 namespace todbench {
 
-/// Who the camera is and how it was set up; read back from the device, not what was asked for.
+/// Identity and settings of the camera, read back from the device.
 struct SourceInfo {
   std::string id;  ///< e.g. "gige:FLIR-48000123": stable over reconnects and reboots
   std::string vendor, model, serial, firmware;
@@ -24,7 +25,7 @@ struct SourceInfo {
   double frame_rate_hz = 0;  ///< 0: unknown
   RadiometricScale scale;
   std::map<std::string, std::string> settings;  ///< feature -> value read back, for provenance
-  std::vector<std::string> warnings;            ///< one sentence each, e.g. a socket buffer the system did not grant
+  std::vector<std::string> warnings;  ///< one sentence each, e.g. for a socket buffer that the system did not grant
 };
 
 /// Frames in order of exposure. Created stopped. One thread at a time, except stop(), which any thread may call.
@@ -37,21 +38,20 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
 
   [[nodiscard]] virtual const SourceInfo& info() const = 0;
-  /// Starts exposing; starting twice is harmless. Frames queued by an earlier run are gone.
+  /// Starts exposing; no effect if started. Discards frames queued by an earlier run.
   [[nodiscard]] virtual Result<void> start() = 0;
-  /// The next frame in order, including incomplete ones (see Frame::status).
-  /// Errors: `timeout` (nothing came), `interrupted` (stop() was called), `disconnected` (camera lost, or recording at
-  /// its end).
+  /// Returns the next frame in order, including incomplete ones (see Frame::status). Errors: `timeout` (no frame in
+  /// time), `interrupted` (stop() was called), `disconnected` (camera lost, or end of a recording).
   [[nodiscard]] virtual Result<Frame> next(std::chrono::milliseconds timeout) = 0;
-  /// Stops exposing and wakes a waiting next(). Harmless when stopped.
+  /// Stops exposing and wakes a waiting next(). No effect if stopped.
   virtual void stop() = 0;
 
-  /// Reads or writes one feature by its SFNC (or vendor) name, values as text.
-  /// Errors: `invalid_input` (no such feature, value refused), `disconnected`.
+  /// Reads or writes one feature by its SFNC (or vendor) name, values as text. Errors: `invalid_input` (no such
+  /// feature, value refused), `disconnected`.
   [[nodiscard]] virtual Result<std::string> get(const std::string& feature) = 0;
   [[nodiscard]] virtual Result<void> set(const std::string& feature, const std::string& value) = 0;
-  /// Has the camera correct its non-uniformity now; returns when it has been commanded, frames during it may freeze.
-  /// `invalid_input` when the camera has no such command.
+  /// Commands a non-uniformity correction and returns without waiting for its end; frames during it may freeze. Error:
+  /// `invalid_input` if the camera has no such command.
   [[nodiscard]] virtual Result<void> correct_nonuniformity() = 0;
 };
 

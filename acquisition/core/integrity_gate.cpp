@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/core/integrity_gate.h"
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 namespace todbench {
 namespace {
 
-/// A transfer that serves an old buffer again serves one of its own few; two pictures of a camera with noise differ
-/// within their first pixels, so comparing costs nothing.
+/// Frames compared with each new one: a transfer that repeats an old buffer repeats one of its own few. Two pictures of
+/// a camera with noise differ within their first pixels, so the comparison is cheap.
 constexpr std::size_t remembered_frames = 8;
 
 bool same_pixels(const cv::Mat1w& a, const cv::Mat1w& b) {
@@ -62,10 +63,10 @@ std::string_view to_string(Rejection reason) {
 
 std::string describe(const NumberingFaults& faults) {
   if (faults == NumberingFaults()) return {};
-  std::string text = "The numbers of the camera's frames do not fit the time that passed: they began anew " +
-                     std::to_string(faults.restarts) + " times and went on over a pause " +
-                     std::to_string(faults.silent_gaps) + " times; " + std::to_string(faults.estimated_lost) +
-                     " of the lost frames are estimated from time.";
+  std::string text = "The frame numbers of the camera do not agree with the elapsed time. Restarts of the numbers: " +
+                     std::to_string(faults.restarts) +
+                     ". Pauses without missing numbers: " + std::to_string(faults.silent_gaps) +
+                     ". Lost frames estimated from the time: " + std::to_string(faults.estimated_lost) + ".";
   return text;
 }
 
@@ -103,7 +104,7 @@ std::optional<Rejection> IntegrityGate::judge_pixels(const Frame& frame) {
 
 std::optional<Rejection> IntegrityGate::judge(const Frame& frame) {
   std::optional<Rejection> reason = judge_sequence(frame);
-  // A damaged frame after a gap counts as damaged: the gap is in lost().
+  // A damaged frame after a gap counts as damaged, because the gap is in lost().
   if (!reason || reason == Rejection::gapped) {
     const bool wrong_size = frame.status == FrameStatus::wrong_size || frame.counts.empty() ||
                             (options_.width > 0 && frame.counts.cols != options_.width) ||

@@ -1,27 +1,30 @@
-// What is judged in a frame where stages stand behind the camera.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The picture of a frame that is judged after processing stages behind the camera.
 #pragma once
 
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "acquisition/base/result.h"
 #include "acquisition/core/frame.h"
-#include "acquisition/core/result.h"
 
 namespace todbench {
 
-/// What stages behind the camera made of a frame, on its scale: what an observer judges in place of the counts.
+/// The output of the stages for a frame, on its scale; it is judged in place of the counts.
 struct JudgedPicture {
   cv::Mat1w counts;
-  int samples_per_pixel = 1;      ///< along each axis
-  cv::Point2d first_px = {0, 0};  ///< where sample (0, 0) is, in pixels of the frame
-  std::optional<Error> none{};    ///< why there is no picture of this frame, which nobody may judge then
+  int samples_per_pixel = 1;             ///< along each axis
+  cv::Point2d first_px = {0, 0};         ///< position of sample (0, 0), in pixels of the frame
+  cv::Mat1b cut_off{};                   ///< not 0: the output of the stages was outside the counts; empty: nowhere
+  std::optional<cv::Point2d> scan_px{};  ///< displacement of the frame that a stage assumes; empty: none
+  std::optional<Error> none{};           ///< why this frame has no picture and must not be judged
 };
 
-/// The frame with what is judged in it as its counts.
+/// Returns the frame with its judged picture as counts.
 [[nodiscard]] Frame as_judged(Frame frame);
-/// Samples per pixel and axis of what is judged; 1: the pixels.
+/// Samples per pixel and axis of the judged picture; 1: pixels.
 [[nodiscard]] int judged_samples_per_pixel(const Frame& frame);
-/// A place of the frame, in pixels, as one of what is judged, in its samples.
+/// Converts a position in the frame, in pixels, to samples of the judged picture.
 [[nodiscard]] cv::Point2d judged_place(const Frame& frame, cv::Point2d place_px);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/core/radiometric_scale.h"
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@ template <typename... Ts>
 struct Overloaded : Ts... {
   using Ts::operator()...;
 };
-// Clang 14 does not deduce the arguments of aggregates by itself.
+// Clang 14 does not deduce template arguments of aggregates by itself.
 template <typename... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
@@ -23,7 +24,7 @@ bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
 
-/// Piecewise linear y(x) with its slope, nothing outside the points.
+/// Piecewise linear y(x) with its slope; empty outside the points.
 std::optional<std::pair<double, double>> interpolated(const std::vector<double>& xs, const std::vector<double>& ys,
                                                       double x) {
   if (!(x >= xs.front() && x <= xs.back())) return std::nullopt;

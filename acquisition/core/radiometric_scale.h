@@ -1,4 +1,5 @@
-// Counts to kelvin and back.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Conversion between counts and kelvin.
 #pragma once
 
 #include <optional>
@@ -6,16 +7,16 @@
 #include <variant>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// No temperature known. Contrasts stay in counts; a measurement in kelvin is refused.
+/// Temperature unknown. Contrasts stay in counts; measurements in kelvin are refused.
 struct Uncalibrated {
   bool operator==(const Uncalibrated&) const = default;
 };
 
-/// T = offset_k + kelvin_per_count * counts: the linear-temperature modes of cameras (0.01, 0.04, 0.1 K per count).
+/// T = offset_k + kelvin_per_count * counts: linear-temperature modes of cameras (0.01, 0.04, 0.1 K per count).
 struct LinearScale {
   double kelvin_per_count = 0.01;
   double offset_k = 0;
@@ -29,25 +30,25 @@ struct TableScale {
   bool operator==(const TableScale&) const = default;
 };
 
-/// The Planck-like formula cameras publish: T = B / ln(R / (S - O) + F), S in counts.
+/// The Planck-like formula that camera makers publish: T = B / ln(R / (S - O) + F), S in counts.
 struct PlanckScale {
   double r = 0, b = 0, f = 1, o = 0;
   bool operator==(const PlanckScale&) const = default;
 };
 
-/// How the counts of a frame relate to temperature. A value; thread-safe.
+/// Relation between the counts of a frame and temperature. A value; thread-safe.
 class RadiometricScale {
  public:
   RadiometricScale() = default;
-  /// Fails with `calibration` when the numbers cannot be a scale (zero or non-finite slope, table not increasing).
+  /// Error: `calibration` if the numbers are not a scale (slope zero or not finite, table not increasing).
   [[nodiscard]] static Result<RadiometricScale> linear(LinearScale scale);
   [[nodiscard]] static Result<RadiometricScale> table(TableScale scale);
   [[nodiscard]] static Result<RadiometricScale> planck(PlanckScale scale);
 
   [[nodiscard]] bool calibrated() const { return !std::holds_alternative<Uncalibrated>(scale_); }
-  /// Temperature in kelvin, or nothing where the scale does not reach (uncalibrated, outside the table, S <= O).
+  /// Temperature in kelvin; empty outside the scale (uncalibrated, outside the table, S <= O).
   [[nodiscard]] std::optional<double> kelvin(double counts) const;
-  /// The scale as a straight line, or null where it is none: for loops over whole frames.
+  /// The scale as a straight line, for loops over whole frames; null if it is not linear.
   [[nodiscard]] const LinearScale* straight_line() const { return std::get_if<LinearScale>(&scale_); }
   /// Counts (not rounded) of a temperature; the inverse of kelvin().
   [[nodiscard]] std::optional<double> counts(double temperature_k) const;
@@ -58,7 +59,7 @@ class RadiometricScale {
   bool operator==(const RadiometricScale&) const = default;
 
   using Parameters = std::variant<Uncalibrated, LinearScale, TableScale, PlanckScale>;
-  /// What it was made of, to be stored.
+  /// The parameters, for storage.
   [[nodiscard]] const Parameters& parameters() const { return scale_; }
 
  private:

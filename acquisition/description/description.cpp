@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/description/description.h"
 
 #include <algorithm>
@@ -12,17 +13,17 @@
 namespace todbench {
 namespace {
 
-/// What of a node is asked for.
+/// The requested part of a node.
 enum class Aspect : std::size_t { value, bounds };
 
 using Place = std::pair<std::size_t, Aspect>;  ///< node and aspect
 
-/// Finding what a node depends on, and what that costs.
+/// Finds the dependencies of a node and their cost.
 class Walk {
  public:
   explicit Walk(const DescriptionNodes& nodes) : nodes_(nodes), done_(2 * nodes.nodes.size()) {}
 
-  /// A cycle, a chain that is too long or a value that is too expensive, from this place on.
+  /// Returns a cycle, a chain that is too long or a value that is too expensive, starting from this place.
   [[nodiscard]] std::optional<DescriptionFault> fault_from(Place start);
 
  private:
@@ -60,7 +61,7 @@ std::vector<Place> Walk::asked_by(Place place) const {
     if (place.second == Aspect::value) {
       if (!is_bound && reference.kind != ReferenceKind::condition) next.emplace_back(target->second, Aspect::value);
     } else {
-      // Bounds that are not stated are those of the value's node; formulas of bounds ask for the variables too.
+      // Bounds that are not stated are those of the value's node; formulas of bounds need the variables too.
       if (reference.kind == ReferenceKind::value) next.emplace_back(target->second, Aspect::bounds);
       if (is_bound || reference.kind == ReferenceKind::part || reference.kind == ReferenceKind::length) {
         next.emplace_back(target->second, Aspect::value);
@@ -74,10 +75,10 @@ std::vector<Place> Walk::asked_by(Place place) const {
 
 DescriptionFault Walk::cycle(Place again) const {
   const auto begin = std::find_if(path_.begin(), path_.end(), [&](const Step& step) { return step.place == again; });
-  std::string sentence = "its value depends on itself";
+  std::string sentence = "its value has a circular reference";
   if (path_.end() - begin > 1) {
-    sentence += ", by way of ";
-    // Who has to mend it looks for the first ones.
+    sentence += " through ";
+    // The message names only the first nodes of the cycle.
     for (auto step = begin + 1; step != path_.end() && step - begin <= 4; ++step) {
       sentence += (step - begin > 1 ? ", " : "") + name_of(step->place.first);
     }
@@ -109,13 +110,12 @@ std::optional<DescriptionFault> Walk::fault_from(Place start) {
     }
     const Known& here = known(step.place);
     if (here.depth > longest_reference_chain) {
-      return DescriptionFault{
-          DescriptionFaultKind::too_deep, name_of(step.place.first),
-          "it depends on a chain of more than " + std::to_string(longest_reference_chain) + " references"};
+      return DescriptionFault{DescriptionFaultKind::too_deep, name_of(step.place.first),
+                              "its chain of references is longer than " + std::to_string(longest_reference_chain)};
     }
     if (here.evaluations > most_evaluations) {
       return DescriptionFault{DescriptionFaultKind::too_expensive, name_of(step.place.first),
-                              "its value takes more than " + std::to_string(most_evaluations) + " evaluations"};
+                              "its value needs more than " + std::to_string(most_evaluations) + " evaluations"};
     }
     known(step.place).state = Known::State::known;
     path_.pop_back();
@@ -129,17 +129,17 @@ std::optional<DescriptionFault> length_fault(const DescriptionNode& node) {
     if (bytes >= 1 && bytes <= longest_register_bytes) continue;
     return DescriptionFault{
         DescriptionFaultKind::register_length, node.name.empty() ? node.element : printable_name(node.name),
-        "its length is " + std::to_string(bytes) + " bytes, not 1 ... " + std::to_string(longest_register_bytes)};
+        "its length is " + std::to_string(bytes) + " bytes, expected 1 ... " + std::to_string(longest_register_bytes)};
   }
   return std::nullopt;
 }
 
-/// How long a formula becomes when its expressions stand in it.
+/// Upper limit of a formula's length after its expressions are inserted.
 std::size_t full_length(const DescriptionNode& node, const std::string& formula) {
   std::size_t longest = 0;
   for (const auto& expression : node.expressions) longest = std::max(longest, expression.text.size());
   if (longest == 0) return formula.size();
-  // A name has a letter at least, and something between it and the next.
+  // A name has at least one letter and one character before the next.
   return formula.size() + longest * (formula.size() / 2 + 1);
 }
 
@@ -147,13 +147,12 @@ std::optional<DescriptionFault> formula_length_fault(const DescriptionNode& node
   for (const auto& formula : node.formulas) {
     const bool expands = full_length(node, formula) > std::size_t{64} * longest_formula;
     if (formula.size() <= longest_formula && !expands) continue;
-    return DescriptionFault{DescriptionFaultKind::formula, printable_name(node.name),
-                            "its formula is longer than any camera needs"};
+    return DescriptionFault{DescriptionFaultKind::formula, printable_name(node.name), "its formula is too long"};
   }
   return std::nullopt;
 }
 
-/// Everything that a feature depends on, also for its bounds and conditions; each after what it depends on itself.
+/// All nodes on which a feature depends, its bounds and conditions included; each after its own dependencies.
 std::vector<std::size_t> needed_for(const DescriptionNodes& nodes, const std::string& feature) {
   std::vector<std::size_t> found;
   const auto first = nodes.by_name.find(feature);
@@ -198,7 +197,7 @@ Description::Description(std::string_view xml) {
       auto fault = walk.fault_from({i, aspect});
       if (!fault) continue;
       faults_.push_back(std::move(*fault));
-      return;  // what follows is for values that have an end
+      return;  // the following checks need values without cycles
     }
   }
   if (!faults_.empty()) return;
@@ -220,12 +219,12 @@ std::vector<DescriptionFault> Description::faults_of(const std::string& feature)
     const DescriptionNode& node = nodes_.nodes[index];
     if (index < trapping_.size() && trapping_[index]) {
       found.push_back({DescriptionFaultKind::division, printable_name(node.name),
-                       "its formula can divide the smallest number by -1, which ends a program"});
+                       "its formula can divide the smallest integer by -1, which would crash the program"});
     }
     for (const auto& reference : node.references) {
       if (nodes_.by_name.contains(reference.target)) continue;
       found.push_back({DescriptionFaultKind::dangling, printable_name(node.name),
-                       "it depends on " + printable_name(reference.target) + ", which does not exist"});
+                       "it refers to " + printable_name(reference.target) + ", which does not exist"});
     }
   }
   return found;

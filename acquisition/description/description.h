@@ -1,6 +1,7 @@
-// What is wrong with the description of a GenICam camera, before anybody evaluates it. A camera may state anything; the
-// client that evaluates descriptions (Aravis 0.8) follows every reference until the stack ends, reserves what a length
-// says and divides by what a register holds.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks the description of a GenICam camera before it is evaluated. A camera may state anything; the client that
+// evaluates descriptions (Aravis 0.8) follows every reference until the stack overflows, reserves memory by stated
+// lengths and divides by register values.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@
 
 namespace todbench {
 
-/// Limits that no published description comes near: of 92 the longest chain has 19 references, the costliest value 442
+/// Limits far above every published description: of 92, the longest chain has 19 references, the costliest value 442
 /// evaluations, the longest register 32 KiB, the longest formula 2043 characters.
 inline constexpr std::size_t longest_reference_chain = 100;
 inline constexpr std::uint64_t most_evaluations = 10'000;
@@ -26,13 +27,13 @@ class Description {
  public:
   explicit Description(std::string_view xml);
 
-  /// Why the description must not be evaluated at all; empty: it may be.
+  /// Reasons why the description must not be evaluated at all; empty: it is safe.
   [[nodiscard]] const std::vector<DescriptionFault>& faults() const { return faults_; }
-  /// Why this feature must not be: something that it depends on does not exist, and would count as 0, or divides such
-  /// that the processor traps. Empty for a feature that does not exist.
+  /// Reasons why this feature must not be evaluated: it depends on a node that does not exist (and would count as 0),
+  /// or on a division that traps the processor. Empty for a feature that does not exist.
   [[nodiscard]] std::vector<DescriptionFault> faults_of(const std::string& feature) const;
   /// Nodes whose values, known only to the camera, are lengths of registers that this feature depends on; each after
-  /// those that it depends on itself. Whoever evaluates the feature looks first whether they are 1 ... 64 KiB.
+  /// the ones it depends on. Check that they are 1 ... 64 KiB before evaluating the feature.
   [[nodiscard]] std::vector<std::string> lengths_of(const std::string& feature) const;
 
  private:

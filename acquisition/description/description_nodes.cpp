@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/description/description_nodes.h"
 
 #include <libxml/parser.h>
@@ -16,7 +17,7 @@ struct ElementKind {
   std::string_view name;
   NodeKind kind;
 };
-/// Elements that are nodes of their own.
+/// Elements that are nodes.
 constexpr std::array node_elements{ElementKind{"Category", NodeKind::other},
                                    ElementKind{"Command", NodeKind::other},
                                    ElementKind{"Converter", NodeKind::other},
@@ -42,8 +43,8 @@ struct ReferenceElement {
   std::string_view name;
   ReferenceKind kind;
 };
-/// Elements whose text names a node that is evaluated. The others (pSelected, pInvalidator, pPort, pFeature) are only
-/// looked at, and cameras have cycles of them.
+/// Elements whose text names a node that is evaluated. The others (pSelected, pInvalidator, pPort, pFeature) are not
+/// evaluated, and cameras have cycles of them.
 constexpr std::array reference_elements{ReferenceElement{"pValue", ReferenceKind::value},
                                         ReferenceElement{"pValueIndexed", ReferenceKind::value},
                                         ReferenceElement{"pValueDefault", ReferenceKind::value},
@@ -59,7 +60,7 @@ constexpr std::array reference_elements{ReferenceElement{"pValue", ReferenceKind
                                         ReferenceElement{"pIsAvailable", ReferenceKind::condition},
                                         ReferenceElement{"pIsLocked", ReferenceKind::condition}};
 
-/// Other elements that are understood; what is inside any further one is passed over with it.
+/// Other known elements; an unknown element is skipped with its content.
 constexpr std::array<std::string_view, 36> plain_elements{"RegisterDescription",
                                                           "Group",
                                                           "pFeature",
@@ -115,7 +116,7 @@ std::string_view text_of(const xmlChar* text) {
   return text != nullptr ? std::string_view(reinterpret_cast<const char*>(text)) : std::string_view();
 }
 
-/// The value of an attribute; empty: it is not there.
+/// The value of an attribute; empty if absent.
 std::string_view attribute(const xmlChar** attributes, std::string_view name) {
   for (; attributes != nullptr && attributes[0] != nullptr && attributes[1] != nullptr; attributes += 2) {
     if (text_of(attributes[0]) == name) return text_of(attributes[1]);
@@ -123,7 +124,7 @@ std::string_view attribute(const xmlChar** attributes, std::string_view name) {
   return {};
 }
 
-/// What is read so far.
+/// State of the parsing.
 class Reader {
  public:
   explicit Reader(xmlParserCtxtPtr parser) : parser_(parser) {}
@@ -132,7 +133,7 @@ class Reader {
   void end();
   void characters(std::string_view text);
   void document_type() {
-    give_up({DescriptionFaultKind::entities, "", "it has a document type, which no camera needs"});
+    give_up({DescriptionFaultKind::entities, "", "it has a document type declaration, which is not accepted"});
   }
 
   [[nodiscard]] const std::optional<DescriptionFault>& fault() const { return fault_; }
@@ -142,7 +143,7 @@ class Reader {
  private:
   struct Open {
     std::string element;
-    std::optional<std::size_t> node;  ///< that this element is
+    std::optional<std::size_t> node;  ///< index of the node, if this element is one
     std::string name, offset, text;
   };
 
@@ -152,7 +153,7 @@ class Reader {
   }
   [[nodiscard]] bool count_piece() {
     if (++pieces_ > most_description_pieces) {
-      give_up({DescriptionFaultKind::too_large, "", "it has more elements than any camera needs"});
+      give_up({DescriptionFaultKind::too_large, "", "it has too many elements"});
     }
     return !fault_;
   }
@@ -189,9 +190,9 @@ std::size_t Reader::add_node(const ElementKind& row, std::string_view name) {
     }
   }
   found_.nodes.push_back(std::move(node));
-  // Entries of enumerations have names of their own, which references never mean.
+  // Entries of enumerations have names of their own, to which references never refer.
   if (!name.empty() && row.name != "EnumEntry" && !found_.by_name.emplace(name, index).second) {
-    give_up({DescriptionFaultKind::two_of_one_name, printable_name(name), "there are two nodes of this name"});
+    give_up({DescriptionFaultKind::two_of_one_name, printable_name(name), "two nodes have this name"});
   }
   return index;
 }
@@ -201,10 +202,10 @@ void Reader::start(std::string_view element, const xmlChar** attributes) {
   if (!has_root_) {
     has_root_ = true;
     if (element != "RegisterDescription") {
-      return give_up({DescriptionFaultKind::not_xml, "", "it is no description of registers"});
+      return give_up({DescriptionFaultKind::not_xml, "", "its root element is not RegisterDescription"});
     }
   } else if (element == "RegisterDescription") {
-    return give_up({DescriptionFaultKind::not_xml, "", "it has a description inside the description"});
+    return give_up({DescriptionFaultKind::not_xml, "", "it contains a second RegisterDescription"});
   }
   if (skipped_depth_ > 0 || !is_understood(element)) {
     ++skipped_depth_;
@@ -234,7 +235,7 @@ void Reader::end() {
 
 void Reader::characters(std::string_view text) {
   if (fault_ || !count_piece() || skipped_depth_ > 0 || open_.empty()) return;
-  // Only properties have a text that means anything, and none but these is kept.
+  // Only the text of properties has a meaning and is kept.
   const auto& element = open_.back().element;
   if (open_.back().node || element == "Description" || element == "ToolTip") return;
   open_.back().text += text;
@@ -263,7 +264,7 @@ void Reader::store(const Open& done) {
 
 struct FreeParser {
   void operator()(xmlParserCtxtPtr parser) const {
-    // The handler is this file's.
+    // The handler belongs to this file.
     parser->sax = nullptr;
     xmlFreeParserCtxt(parser);
   }
@@ -273,7 +274,7 @@ Reader& reader(void* data) {
   return *static_cast<Reader*>(data);
 }
 
-/// Callbacks of the first SAX interface: names with their prefixes, as the client sees them. None that loads anything.
+/// Callbacks of the first SAX interface: names with their prefixes, as in the client. No callback loads anything.
 xmlSAXHandler handler() {
   xmlSAXHandler calls{};
   calls.startElement = [](void* data, const xmlChar* name, const xmlChar** attributes) {
@@ -295,7 +296,7 @@ tl::expected<DescriptionNodes, DescriptionFault> parse_description(std::string_v
   const auto refused = [](const char* why) {
     return tl::unexpected(DescriptionFault{DescriptionFaultKind::not_xml, "", why});
   };
-  if (xml.empty() || xml.size() > std::numeric_limits<int>::max() / 2) return refused("it is empty or immense");
+  if (xml.empty() || xml.size() > std::numeric_limits<int>::max() / 2) return refused("it is empty or too large");
   xmlInitParser();
   const std::unique_ptr<xmlParserCtxt, FreeParser> parser(
       xmlCreateMemoryParserCtxt(xml.data(), static_cast<int>(xml.size())));
@@ -308,7 +309,7 @@ tl::expected<DescriptionNodes, DescriptionFault> parse_description(std::string_v
   xmlParseDocument(parser.get());
   if (read.fault()) return tl::unexpected(*read.fault());
   if (parser->wellFormed == 0) return refused("it is not well-formed XML");
-  if (!read.has_root()) return refused("it is no description of registers");
+  if (!read.has_root()) return refused("its root element is not RegisterDescription");
   return read.take();
 }
 

@@ -1,6 +1,7 @@
-// The XML text of a GenICam description as a list of nodes with their references. Says nothing of what they are worth.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parses the XML text of a GenICam description into nodes with their references. Does not judge their values.
 //
-// Read by the parser and in the mode that Aravis reads it with (libxml2, SAX 1), so that both see the same elements.
+// Uses the parser and the mode of Aravis (libxml2, SAX 1), so that both read the same elements.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +17,13 @@
 
 namespace todbench {
 
-/// Most elements and pieces of text of a description. The largest published one has 29 000 elements.
+/// Maximum number of elements and text pieces of a description. The largest published one has 29 000 elements.
 inline constexpr std::size_t most_description_pieces = 400'000;
 
 enum class NodeKind {
-  other,        ///< Category, Port, Command, Converter and whatever else has no rule of its own
+  other,        ///< Category, Port, Command, Converter and all elements without a rule of their own
   reg,          ///< Register, IntReg, MaskedIntReg, FloatReg, StringReg, StructReg
-  entry,        ///< StructEntry: bits of the StructReg that it is in
+  entry,        ///< StructEntry: bits of its StructReg
   integer,      ///< Integer
   enumeration,  ///< Enumeration
   swiss_knife,
@@ -30,7 +31,7 @@ enum class NodeKind {
 };
 
 enum class ReferenceKind {
-  value,      ///< pValue, pValueIndexed, pValueDefault: the value and, where nothing else is stated, its bounds
+  value,      ///< pValue, pValueIndexed, pValueDefault: the value and, unless stated otherwise, its bounds
   part,       ///< pAddress, pIndex, pOffset, pVariable, pCommandValue: a part of the value
   length,     ///< pLength: of a register
   bound,      ///< pMin, pMax, pInc
@@ -39,8 +40,8 @@ enum class ReferenceKind {
 
 struct NodeReference {
   ReferenceKind kind = ReferenceKind::value;
-  std::string target;  ///< name of a node, as it is in the text
-  std::string name;    ///< of a pVariable: under which formulas know it
+  std::string target;  ///< name of a node, as in the text
+  std::string name;    ///< of a pVariable: its name in formulas
 };
 
 struct NamedText {
@@ -48,13 +49,13 @@ struct NamedText {
 };
 
 struct DescriptionNode {
-  std::string name;     ///< empty: none
+  std::string name;     ///< empty: without name
   std::string element;  ///< "IntReg"
   NodeKind kind = NodeKind::other;
   std::vector<NodeReference> references;
-  std::vector<std::size_t> parts;      ///< nodes inside a register or an enumeration that it asks
-  std::optional<std::size_t> inside;   ///< of an entry: the register that it is in
-  std::vector<std::string> lengths;    ///< <Length>, as it is in the text
+  std::vector<std::size_t> parts;      ///< nodes inside a register or an enumeration that it reads
+  std::optional<std::size_t> inside;   ///< of an entry: its register
+  std::vector<std::string> lengths;    ///< <Length>, as in the text
   std::vector<std::string> values;     ///< <Value>
   std::vector<std::string> formulas;   ///< Formula, FormulaTo, FormulaFrom
   std::vector<NamedText> expressions;  ///< Expression
@@ -64,14 +65,14 @@ struct DescriptionNode {
 
 struct DescriptionNodes {
   std::vector<DescriptionNode> nodes;
-  std::unordered_map<std::string, std::size_t> by_name;  ///< of those that references can mean
+  std::unordered_map<std::string, std::size_t> by_name;  ///< nodes that references can address
 };
 
-/// The nodes, or why there are none: not_xml, entities, too_large, two_of_one_name. Takes time and memory in
-/// proportion to the text, whatever it is.
+/// Returns the nodes. Errors: not_xml, entities, too_large, two_of_one_name. Time and memory are proportional to the
+/// length of the text, for any text.
 [[nodiscard]] tl::expected<DescriptionNodes, DescriptionFault> parse_description(std::string_view xml);
 
-/// A name from a camera as it may stand in a sentence: at most 64 characters, nothing but printable ASCII.
+/// Makes a name from a camera safe for messages: at most 64 characters of printable ASCII.
 [[nodiscard]] std::string printable_name(std::string_view name);
 
 }  // namespace todbench

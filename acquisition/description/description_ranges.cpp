@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/description/description_ranges.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 namespace todbench {
 namespace {
 
-/// Of a register, unsigned where nothing else is said; all numbers where it has eight bytes or more.
+/// Range of a register, unsigned unless stated otherwise; all integers if it has eight bytes or more.
 IntegerRange register_range(const DescriptionNode& node, bool is_signed) {
   const bool of_other_length =
       std::any_of(node.references.begin(), node.references.end(),
@@ -56,7 +57,7 @@ IntegerRange DescriptionRanges::computed(const DescriptionNode& node) {
   for (const auto& text : node.values) add({whole_number(text), whole_number(text)});
   for (const auto& reference : node.references) {
     if (reference.kind == ReferenceKind::value) add(range_of(reference.target));
-    // An index may choose nothing, which is 0.
+    // An index may select no value, which gives 0.
     if (reference.kind == ReferenceKind::part) add({0, 0});
   }
   return all.value_or(IntegerRange{0, 0});
@@ -64,7 +65,7 @@ IntegerRange DescriptionRanges::computed(const DescriptionNode& node) {
 
 IntegerRange DescriptionRanges::range_in_formula(const DescriptionNode& node, FormulaMode mode,
                                                  const std::string& name) {
-  // A name that stands for several things can be any of them.
+  // An ambiguous name may have any of its values.
   std::optional<IntegerRange> all;
   const auto add = [&](IntegerRange more) { all = all ? hull(*all, more) : more; };
   for (const auto& constant : node.constants) {
@@ -72,7 +73,7 @@ IntegerRange DescriptionRanges::range_in_formula(const DescriptionNode& node, Fo
       add(range_of_formula(constant.text, mode, [](const auto&) { return IntegerRange{}; }).value);
   }
   for (const auto& expression : node.expressions) {
-    // An expression does not contain another.
+    // An expression does not contain other expressions.
     const auto inside = [&](const std::string& inner) {
       std::optional<IntegerRange> range;
       for (const auto& reference : node.references) {
@@ -97,7 +98,8 @@ FormulaRange DescriptionRanges::formula_of(const DescriptionNode& node, const st
 bool DescriptionRanges::may_trap(const DescriptionNode& node) {
   std::vector<std::string> formulas = node.formulas;
   for (const auto& expression : node.expressions) formulas.push_back(expression.text);
-  // The evaluator takes the first sign of a constant for the whole of it, and a minus then for one in the formula.
+  // The evaluator treats the first sign of a constant as its whole text, and then a minus as an operator of the
+  // formula.
   const bool all_numerals = std::all_of(node.constants.begin(), node.constants.end(), [](const NamedText& constant) {
     const auto first = constant.text.find_first_not_of(" \t\r\n");
     return first != std::string::npos && std::isdigit(static_cast<unsigned char>(constant.text[first])) != 0;

@@ -1,4 +1,5 @@
-// Which whole numbers the nodes of a description can have for values.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ranges of the integer values of a description's nodes.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +13,17 @@
 
 namespace todbench {
 
-/// A whole number as descriptions have it, in decimal or after 0x; what is behind it does not count, and none is 0.
+/// Parses an integer as in descriptions, decimal or after 0x. Later characters are ignored; 0 without a number.
 [[nodiscard]] std::int64_t whole_number(const std::string& text);
 
-/// Of nodes without cycles. Keeps what it has found and a reference to the nodes.
+/// Computes ranges of nodes without cycles. Caches its results and keeps a reference to the nodes.
 class DescriptionRanges {
  public:
   explicit DescriptionRanges(const DescriptionNodes& nodes) : nodes_(nodes), found_(nodes.nodes.size()) {}
 
-  /// What a reference to this name can have for a value.
+  /// Range of the values to which this name can refer.
   [[nodiscard]] IntegerRange range_of(const std::string& name);
-  /// Whether a formula of the node can end the program.
+  /// Whether a formula of the node can trap the processor and so end the program.
   [[nodiscard]] bool may_trap(const DescriptionNode& node);
 
  private:

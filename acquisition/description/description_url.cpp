@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/description/description_url.h"
 
 #include <fcntl.h>
@@ -9,6 +10,7 @@
 #include <charconv>
 #include <limits>
 #include <optional>
+#include "acquisition/base/descriptor.h"
 
 namespace todbench {
 namespace {
@@ -33,20 +35,6 @@ std::string printable(std::string_view text) {
   return out;
 }
 
-class Descriptor {
- public:
-  explicit Descriptor(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 }  // namespace
 
 Result<DescriptionUrl> parse_description_url(std::string_view url) {
@@ -56,14 +44,14 @@ Result<DescriptionUrl> parse_description_url(std::string_view url) {
   std::string scheme(url.substr(0, url.find(':')));
   std::transform(scheme.begin(), scheme.end(), scheme.begin(), [](unsigned char c) { return std::tolower(c); });
   if (scheme.size() >= url.size() || (scheme != "file" && scheme != "local")) {
-    return refused("only descriptions in the camera or in a file are read");
+    return refused("only descriptions stored in the camera or in a file are supported");
   }
   // Some cameras append "?SchemaVersion=1.0.0".
   std::string_view rest = url.substr(scheme.size() + 1);
   rest = rest.substr(0, rest.find_first_of("?#"));
   DescriptionUrl found;
   if (scheme == "file") {
-    // The name of a host, here always this one, does not belong to the path.
+    // The host name, here always this host, does not belong to the path.
     if (rest.starts_with("//")) rest = rest.substr(std::min(rest.size(), rest.find('/', 2)));
     if (rest.empty()) return refused("it has no path");
     found.place = DescriptionUrl::Place::file;
@@ -75,9 +63,11 @@ Result<DescriptionUrl> parse_description_url(std::string_view url) {
   if (second == std::string_view::npos || first == 0) return refused("it has no name, address and size");
   const auto address = hexadecimal(rest.substr(first + 1, second - first - 1));
   const auto bytes = hexadecimal(rest.substr(second + 1));
-  if (!address || !bytes) return refused("its address and size are no hexadecimal numbers");
-  if (*bytes == 0 || *bytes > most_description_bytes) return refused("its size is out of reason");
-  if (*address > std::numeric_limits<std::uint32_t>::max() - *bytes) return refused("its address is out of reason");
+  if (!address || !bytes) return refused("its address and size are not hexadecimal numbers");
+  if (*bytes == 0 || *bytes > most_description_bytes)
+    return refused("its size is not 1 ... " + std::to_string(most_description_bytes) + " bytes");
+  if (*address > std::numeric_limits<std::uint32_t>::max() - *bytes)
+    return refused("its address range exceeds 32 bits");
   found.address = static_cast<std::uint32_t>(*address);
   found.bytes = static_cast<std::uint32_t>(*bytes);
   found.path = rest.substr(0, first);
@@ -89,16 +79,16 @@ Result<std::string> read_description_file(const std::string& path) {
   const auto refused = [&](const char* why) {
     return fail(ErrorCode::not_found, "the camera states its description as the file " + printable(path) + ", " + why);
   };
-  const Descriptor file(path);
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat facts {};
-  if (file.fd() < 0 || ::fstat(file.fd(), &facts) != 0) return refused("which cannot be read");
-  // Files of the kernel state no size.
-  if (!S_ISREG(facts.st_mode) || facts.st_size == 0) return refused("which is no regular file");
-  if (static_cast<std::uint64_t>(facts.st_size) > most_description_bytes) return refused("which is out of reason");
+  if (file.get() < 0 || ::fstat(file.get(), &facts) != 0) return refused("which cannot be read");
+  // Kernel files state no size.
+  if (!S_ISREG(facts.st_mode) || facts.st_size == 0) return refused("which is empty or not a regular file");
+  if (static_cast<std::uint64_t>(facts.st_size) > most_description_bytes) return refused("which is too large");
   std::string text(static_cast<std::size_t>(facts.st_size), '\0');
   std::size_t done = 0;
   while (done < text.size()) {
-    const auto got = ::read(file.fd(), text.data() + done, text.size() - done);
+    const auto got = ::read(file.get(), text.data() + done, text.size() - done);
     if (got <= 0) return refused("which cannot be read");
     done += static_cast<std::size_t>(got);
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/description/description_zip.h"
 
 #include <zlib.h>
@@ -24,7 +25,7 @@ bool fits(Bytes archive, std::uint64_t at, std::uint64_t count) {
   return at <= archive.size() && count <= archive.size() - at;
 }
 
-/// As the client finds it: the last mark in the archive.
+/// Finds the end of the directory as the client does: the last mark in the archive.
 std::optional<std::size_t> end_of_directory(Bytes archive) {
   if (archive.size() < end_of_directory_bytes) return std::nullopt;
   for (std::size_t at = archive.size() - 4; at > 0; --at) {
@@ -38,7 +39,7 @@ struct Member {
   std::uint64_t data = 0, packed = 0, unpacked = 0;
 };
 
-/// The file that the client takes: its list begins with the last entry of the directory.
+/// Finds the file that the client uses: the last entry of the directory.
 Result<Member> find_member(Bytes archive) {
   const auto refused = [] { return fail(ErrorCode::not_found, "the zipped description is damaged"); };
   const auto end = end_of_directory(archive);
@@ -49,7 +50,7 @@ Result<Member> find_member(Bytes archive) {
   if (files != 1 || little_endian(archive, *end + 8, 2) != files) {
     return fail(ErrorCode::not_found, "the zipped description has " + std::to_string(files) + " files instead of one");
   }
-  // Whatever stands before the archive proper: offsets count from behind it.
+  // Offsets count from the end of any data in front of the archive.
   if (directory + directory_bytes > *end) return refused();
   const std::uint64_t before = *end - (directory + directory_bytes);
   const std::uint64_t entry = before + directory;
@@ -80,7 +81,7 @@ Result<std::string> unzip_description(Bytes archive, std::size_t most_bytes) {
   }
   const Bytes packed = archive.subspan(member->data, member->packed);
   if (member->packed > member->unpacked) return fail(ErrorCode::not_found, "the zipped description is damaged");
-  // The client takes what is no smaller than its file for stored.
+  // The client treats data that is not smaller than its file as stored.
   if (member->packed == member->unpacked) return std::string(packed.begin(), packed.end());
   std::string out(member->unpacked, '\0');
   z_stream stream{};
@@ -92,7 +93,9 @@ Result<std::string> unzip_description(Bytes archive, std::size_t most_bytes) {
   const int ended = inflate(&stream, Z_FINISH);
   const bool whole = ended == Z_STREAM_END && stream.avail_out == 0;
   inflateEnd(&stream);
-  if (!whole) return fail(ErrorCode::not_found, "the zipped description has another size than it states");
+  if (!whole)
+    return fail(ErrorCode::not_found,
+                "the unpacked size of the zipped description differs from the size that it states");
   return out;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Zipped descriptions.
 #pragma once
 
@@ -5,13 +6,13 @@
 #include <span>
 #include <string>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// The first file of a ZIP archive, as the client unpacks it: stored or deflated, and stated by the central directory.
-/// At most `most_bytes`, whatever the archive says. `not_found` where anything in it points outside, where it states
-/// another size than it has, or where it is larger.
+/// Unpacks the only file of a ZIP archive as the client does: stored or deflated, located by the central directory.
+/// Returns at most `most_bytes` regardless of the stated size. Error: `not_found` if the archive is damaged, has more
+/// than one file, differs from its stated size, or is larger.
 [[nodiscard]] Result<std::string> unzip_description(std::span<const std::uint8_t> archive, std::size_t most_bytes);
 
 }  // namespace todbench

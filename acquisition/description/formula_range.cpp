@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/description/formula_range.h"
 
 #include <algorithm>
@@ -16,9 +17,9 @@ __extension__ using Wide = __int128;
 constexpr auto smallest = std::numeric_limits<std::int64_t>::min();
 constexpr auto largest = std::numeric_limits<std::int64_t>::max();
 constexpr IntegerRange truth{0, 1};
-/// Whole numbers up to here are real ones of 64 bits too.
+/// Largest integer up to which all integers are exact in a 64-bit real.
 constexpr std::int64_t exact_reals = std::int64_t{1} << 53;
-/// Parentheses and signs inside each other.
+/// Deepest nesting of parentheses and signs.
 constexpr int most_nesting = 60;
 
 bool holds(IntegerRange range, std::int64_t value) {
@@ -29,7 +30,7 @@ bool is_any(IntegerRange range) {
   return range == IntegerRange{};
 }
 
-/// Numbers that do not fit wrap around, to any other.
+/// Numbers that do not fit wrap around to any other number.
 IntegerRange fitted(Wide low, Wide high) {
   if (low < smallest || high > largest) return {};
   return {static_cast<std::int64_t>(low), static_cast<std::int64_t>(high)};
@@ -45,7 +46,7 @@ IntegerRange product(IntegerRange a, IntegerRange b) {
   return fitted(*low, *high);
 }
 
-/// All bits up to the highest one of either.
+/// Range of all bits up to the highest one of either operand.
 IntegerRange bits_of(IntegerRange a, IntegerRange b) {
   if (a.low < 0 || b.low < 0) return {};
   const auto highest = static_cast<std::uint64_t>(std::max(a.high, b.high));
@@ -68,7 +69,7 @@ struct Operator {
   std::string_view text;
   int precedence;
 };
-/// Longer ones first. Precedence as the evaluator has it; all of them from left to right but **.
+/// Longer operators first. Precedence of the client's evaluator; all are left-associative except **.
 constexpr std::array operators{Operator{"**", 120}, Operator{"||", 10}, Operator{"&&", 20}, Operator{"<>", 70},
                                Operator{"<=", 80},  Operator{">=", 80}, Operator{">>", 90}, Operator{"<<", 90},
                                Operator{"|", 40},   Operator{"^", 50},  Operator{"&", 60},  Operator{"=", 70},
@@ -189,7 +190,7 @@ IntegerRange Parser::primary() {
 }
 
 IntegerRange Parser::number() {
-  // As the evaluator reads it: whichever is longer, a whole number with the prefixes of C or one with a fraction.
+  // As the evaluator reads it: the longer one of an integer with the prefixes of C and a real number.
   const std::string rest(text_.substr(at_));
   char* whole_end = nullptr;
   const std::int64_t whole = std::strtoll(rest.c_str(), &whole_end, 0);
@@ -198,7 +199,7 @@ IntegerRange Parser::number() {
   const auto whole_length = static_cast<std::size_t>(whole_end - rest.c_str());
   const auto real_length = parsed.ec == std::errc() ? static_cast<std::size_t>(parsed.ptr - rest.data()) : 0;
   at_ += std::max(whole_length, real_length);
-  // The evaluator may take a whole number by way of a real one: beyond these it becomes another.
+  // The evaluator may convert an integer through a real, which changes larger ones.
   if (whole > exact_reals || !(real < static_cast<double>(exact_reals))) return {};
   if (whole_length >= real_length) return {whole, whole};
   return {static_cast<std::int64_t>(real), static_cast<std::int64_t>(real) + 1};
@@ -246,7 +247,7 @@ IntegerRange Parser::combined(std::string_view op, IntegerRange a, IntegerRange 
   }
   if (op == "&") return masked(a, b);
   if (op == ">>") return {std::min<std::int64_t>(a.low, 0), std::max<std::int64_t>(a.high, 0)};
-  // Infinities and what is no number come from numbers that can be any.
+  // Infinities and NaN come from operands with any value.
   if (is_any(a) || is_any(b) || op == "**") return {};
   if (op == "+") return fitted(Wide{a.low} + b.low, Wide{a.high} + b.high);
   if (op == "-") return fitted(Wide{a.low} - b.high, Wide{a.high} - b.low);
@@ -263,7 +264,7 @@ IntegerRange hull(IntegerRange a, IntegerRange b) {
 
 FormulaRange range_of_formula(std::string_view formula, FormulaMode mode, const RangeOfName& range_of) {
   FormulaRange found = Parser(formula, mode, range_of).run();
-  // What divides nothing cannot trap, understood or not.
+  // A formula without a division cannot trap, even if it was not understood.
   const bool divides = formula.find('%') != std::string_view::npos ||
                        (mode == FormulaMode::whole && formula.find('/') != std::string_view::npos);
   found.may_trap = found.may_trap && divides;

@@ -1,7 +1,9 @@
-// Which whole numbers a formula of a GenICam description can have for values, and whether finding one can trap.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Range of the integer values of a formula of a GenICam description, and whether its evaluation can trap.
 //
-// The processor raises SIGFPE where the smallest number of 64 bits is divided by -1, and the client (Aravis' evaluator)
-// divides without looking. Sound for its grammar: what is not understood has any value.
+// The processor raises SIGFPE if the smallest 64-bit integer is divided by -1, and the client (Aravis' evaluator)
+// divides without a check. The analysis is sound for the client's grammar: parts that are not understood may have any
+// value.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +14,7 @@
 
 namespace todbench {
 
-/// Inclusive.
+/// Range of integers, both ends included.
 struct IntegerRange {
   std::int64_t low = std::numeric_limits<std::int64_t>::min();
   std::int64_t high = std::numeric_limits<std::int64_t>::max();
@@ -20,8 +22,8 @@ struct IntegerRange {
 };
 
 enum class FormulaMode {
-  whole,  ///< IntSwissKnife: / and % divide whole numbers
-  real,   ///< all others: only % does
+  whole,  ///< IntSwissKnife: / and % are integer operations
+  real,   ///< all others: only % is
 };
 
 struct FormulaRange {
@@ -29,13 +31,13 @@ struct FormulaRange {
   bool may_trap = false;
 };
 
-/// What a name in a formula can be; all numbers where it is not known.
+/// Returns the range of a name in a formula; all integers if unknown.
 using RangeOfName = std::function<IntegerRange(const std::string& name)>;
 
-/// In proportion to the length of the formula.
+/// Returns the range of the formula. Time is proportional to its length.
 [[nodiscard]] FormulaRange range_of_formula(std::string_view formula, FormulaMode mode, const RangeOfName& range_of);
 
-/// The range that holds both.
+/// Returns the smallest range that contains both.
 [[nodiscard]] IntegerRange hull(IntegerRange a, IntegerRange b);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/pixel_formats/pixel_formats.h"
 
 #include <algorithm>
@@ -51,7 +52,7 @@ void encode_run(std::span<const std::uint16_t> from, const PixelLayout& layout, 
   }
 }
 
-/// Runs of pixels that lie without a gap: the whole picture, or its rows.
+/// Runs of pixels without gaps: the whole picture, or its rows.
 struct Runs {
   std::size_t count = 0, pixels = 0, stride_bytes = 0;
 };
@@ -82,7 +83,7 @@ std::optional<PixelFormat> pixel_format_of_pfnc(std::uint32_t code) {
 }
 
 std::optional<FourccFormat> format_of_fourcc(std::uint32_t code) {
-  // The kernel has the other order of Y16 only.
+  // The kernel defines a big-endian format only for Y16.
   constexpr std::uint32_t big_endian = 1u << 31;
   if (code == (fourcc_code(PixelFormat::mono16) | big_endian)) {
     return FourccFormat{PixelFormat::mono16, ByteOrder::big_endian};
@@ -104,10 +105,10 @@ Result<std::size_t> picture_bytes(const PixelLayout& layout) {
   }
   const std::size_t row = bytes_for(layout.format, static_cast<std::size_t>(layout.width));
   if (layout.row_bytes == 0) return row * static_cast<std::size_t>(layout.height);
-  // Rows of a gigabyte are a mistake; the limit keeps the product from overflowing.
+  // Rows of a gigabyte are a mistake; the limit prevents an overflow of the product.
   if (layout.row_bytes < row || layout.row_bytes > (std::size_t{1} << 30)) {
     return fail(ErrorCode::invalid_input, described(layout) + ": rows of " + std::to_string(layout.row_bytes) +
-                                              " bytes, expected " + std::to_string(row) + " or more");
+                                              " bytes, expected at least " + std::to_string(row));
   }
   return layout.row_bytes * static_cast<std::size_t>(layout.height - 1) + row;
 }
@@ -116,8 +117,8 @@ Result<cv::Mat1w> decode_pixels(std::span<const std::uint8_t> bytes, const Pixel
   const auto needed = picture_bytes(layout);
   if (!needed) return tl::unexpected(needed.error());
   if (bytes.size() < *needed) {
-    return fail(ErrorCode::invalid_input, described(layout) + " needs " + std::to_string(*needed) +
-                                              " bytes, there are " + std::to_string(bytes.size()));
+    return fail(ErrorCode::invalid_input, described(layout) + " needs " + std::to_string(*needed) + " bytes, found " +
+                                              std::to_string(bytes.size()));
   }
   cv::Mat1w counts(layout.height, layout.width);
   const auto [runs, pixels, stride] = runs_of(layout);
@@ -133,7 +134,8 @@ Result<std::vector<std::uint8_t>> encode_pixels(const cv::Mat1w& counts, const P
   if (!needed) return tl::unexpected(needed.error());
   if (counts.cols != layout.width || counts.rows != layout.height) {
     return fail(ErrorCode::invalid_input, "a picture of " + std::to_string(counts.cols) + " x " +
-                                              std::to_string(counts.rows) + " is not " + described(layout));
+                                              std::to_string(counts.rows) + " pixels does not match the layout " +
+                                              described(layout));
   }
   const unsigned full_scale = (1u << significant_bits(layout.format)) - 1u;
   for (const std::uint16_t value : counts) {
@@ -157,8 +159,8 @@ Result<std::span<const std::uint8_t>> section_bytes(std::span<const std::uint8_t
   const std::size_t rows = row_bytes == 0 ? 0 : frame.size() / row_bytes;
   if (section.first < 0 || section.count < 1 || static_cast<std::size_t>(section.first) > rows ||
       static_cast<std::size_t>(section.count) > rows - static_cast<std::size_t>(section.first)) {
-    return fail(ErrorCode::invalid_input, "rows " + std::to_string(section.first) + " ... +" +
-                                              std::to_string(section.count) + " are not among the " +
+    return fail(ErrorCode::invalid_input, std::to_string(section.count) + " rows from row " +
+                                              std::to_string(section.first) + " on are not all among the " +
                                               std::to_string(rows) + " rows of the frame");
   }
   return frame.subspan(static_cast<std::size_t>(section.first) * row_bytes,

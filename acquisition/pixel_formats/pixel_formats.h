@@ -1,5 +1,6 @@
-// The pixel formats that are known, in one table; bytes as cameras send them, to 16-bit counts and back. Pure
-// functions; sizes are checked, nothing is assumed of the bytes.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Table of the known pixel formats; conversion between bytes as cameras send them and 16-bit counts. Pure functions;
+// sizes are checked, the bytes are not trusted.
 #pragma once
 
 #include <cstddef>
@@ -10,33 +11,33 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// How the counts of one pixel lie in the bytes.
+/// Layout of a pixel's counts in bytes.
 enum class PixelFormat {
   mono8,   ///< one byte
   mono10,  ///< two bytes, the low 10 bits
   mono12,  ///< two bytes, the low 12 bits
   mono14,  ///< two bytes, the low 14 bits
   mono16,  ///< two bytes
-  yuyv,    ///< two bytes, the first is the luma of the pixel and the second is dropped
+  yuyv,    ///< two bytes: the luma of the pixel, then a dropped byte
 };
 
-/// What is known of a format, wherever it is met: the name of the GenICam Pixel Format Naming Convention (PFNC 2.4),
-/// the 32-bit code that GigE Vision and USB3 Vision send for it, the four-character code of V4L2.
+/// Names and codes of a format: the name of the GenICam Pixel Format Naming Convention (PFNC 2.4), the 32-bit code of
+/// GigE Vision and USB3 Vision, the four-character code of V4L2.
 struct PixelFormatFacts {
   PixelFormat format;
   std::string_view name;
   std::uint32_t pfnc;
   const char* fourcc;
-  int significant_bits;  ///< bits of a pixel that can be set
+  int significant_bits;  ///< used bits of a pixel
   int bytes_per_pixel;
 };
 
-/// The formats that the back ends read and the emulated cameras send. Packed ones (Mono12p, Mono12Packed) are not among
-/// them.
+/// The formats that the back ends read and the emulated cameras send. Packed formats (Mono12p, Mono12Packed) are
+/// excluded.
 inline constexpr PixelFormatFacts pixel_format_table[] = {{PixelFormat::mono8, "Mono8", 0x01080001, "GREY", 8, 1},
                                                           {PixelFormat::mono10, "Mono10", 0x01100003, "Y10 ", 10, 2},
                                                           {PixelFormat::mono12, "Mono12", 0x01100005, "Y12 ", 12, 2},
@@ -44,7 +45,7 @@ inline constexpr PixelFormatFacts pixel_format_table[] = {{PixelFormat::mono8, "
                                                           {PixelFormat::mono16, "Mono16", 0x01100007, "Y16 ", 16, 2},
                                                           {PixelFormat::yuyv, "YUV422_8", 0x02100032, "YUYV", 8, 2}};
 
-/// The line of the table.
+/// Returns the format's entry in the table.
 [[nodiscard]] constexpr const PixelFormatFacts& facts_of(PixelFormat format) {
   for (const auto& facts : pixel_format_table) {
     if (facts.format == format) return facts;
@@ -52,14 +53,14 @@ inline constexpr PixelFormatFacts pixel_format_table[] = {{PixelFormat::mono8, "
   return pixel_format_table[0];  // not reached: every format has a line
 }
 
-/// Of pixels with two bytes of counts (mono10, 12, 14, 16); the other formats have one order only and ignore it.
+/// Byte order of pixels with two bytes of counts (mono10, 12, 14, 16); the other formats ignore it.
 enum class ByteOrder { little_endian, big_endian };
 
 /// PFNC name, e.g. "Mono14"; "YUV422_8" for yuyv.
 [[nodiscard]] constexpr std::string_view to_string(PixelFormat format) {
   return facts_of(format).name;
 }
-/// The PFNC code, and back.
+/// Conversion to and from the PFNC code.
 [[nodiscard]] constexpr std::uint32_t pfnc_code(PixelFormat format) {
   return facts_of(format).pfnc;
 }
@@ -68,16 +69,16 @@ enum class ByteOrder { little_endian, big_endian };
   return facts_of(format).significant_bits;
 }
 
-/// What a four-character code of V4L2 stands for.
+/// Meaning of a four-character code of V4L2.
 struct FourccFormat {
   PixelFormat format;
   ByteOrder order;
   bool operator==(const FourccFormat&) const = default;
 };
-/// "Y16 ", "Y16 " with bit 31 set (big-endian, listed as "Y16 -BE"), "Y14 ", "Y12 ", "Y10 ", "GREY", "YUYV"; nothing
-/// for any other. The code is v4l2_fourcc(): first character in the low byte.
+/// Recognises "Y16 ", "Y16 " with bit 31 set (big-endian, listed as "Y16 -BE"), "Y14 ", "Y12 ", "Y10 ", "GREY", "YUYV";
+/// empty for any other code. The code is v4l2_fourcc(): first character in the low byte.
 [[nodiscard]] std::optional<FourccFormat> format_of_fourcc(std::uint32_t fourcc);
-/// The code of a format, low byte first where there is an order.
+/// The code of a format, little-endian if it has a byte order.
 [[nodiscard]] std::uint32_t fourcc_code(PixelFormat format);
 
 /// A picture in memory.
@@ -85,31 +86,31 @@ struct PixelLayout {
   PixelFormat format = PixelFormat::mono16;
   ByteOrder order = ByteOrder::little_endian;
   int width = 0, height = 0;  ///< pixels, 1 ... 65535
-  /// From the first byte of a row to the first of the next. 0: rows follow each other without a gap.
+  /// Bytes from the start of a row to the start of the next. 0: rows without gaps.
   std::size_t row_bytes = 0;
 };
 
-/// Bytes that a picture needs. `invalid_input` for an impossible geometry or rows shorter than their pixels.
+/// Bytes that a picture needs. Error: `invalid_input` (impossible geometry, rows shorter than their pixels).
 [[nodiscard]] Result<std::size_t> picture_bytes(const PixelLayout& layout);
 
-/// Counts of a picture, as they are: bits above significant_bits() in two-byte formats are kept, for the integrity gate
-/// to see. More bytes than needed are ignored. Errors: `invalid_input` as picture_bytes(), or fewer bytes than needed.
+/// Returns the counts of a picture unchanged: bits above significant_bits() in two-byte formats are kept for the
+/// integrity gate. Excess bytes are ignored. Errors: `invalid_input` as picture_bytes(), or too few bytes.
 [[nodiscard]] Result<cv::Mat1w> decode_pixels(std::span<const std::uint8_t> bytes, const PixelLayout& layout);
 
-/// The inverse, for devices that send pictures; padding and dropped bytes are zero (128, no colour, for yuyv). Exactly
-/// picture_bytes() long. Errors: `invalid_input` as picture_bytes(), a picture of another size, or a pixel that does
-/// not fit into significant_bits().
+/// The inverse, for devices that send pictures; padding and dropped bytes are zero (128, no colour, for yuyv). Returns
+/// exactly picture_bytes(). Errors: `invalid_input` as picture_bytes(), a picture of another size, or a pixel that
+/// exceeds significant_bits().
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_pixels(const cv::Mat1w& counts, const PixelLayout& layout);
 
-/// Rows of a frame that mean something of their own: a picture for people above, temperatures below, telemetry last.
+/// Rows of a frame with a separate meaning: picture for display, temperatures, telemetry.
 struct RowSection {
   int first = 0, count = 0;
 };
 
-/// The bytes of a section of a frame of two-byte pixels, to be decoded by itself: cameras of the InfiRay class send
-/// 256 x 384 YUYV whose rows 192 ... 383 are 256 x 192 temperatures of 16 bits, little-endian; telemetry rows of a
-/// Lepton are 16 bits, as its picture. `row_bytes` as in PixelLayout, never 0 here. `invalid_input` when the section is
-/// not inside the bytes.
+/// Returns the bytes of a section of a frame of two-byte pixels, for separate decoding. Cameras of the InfiRay class
+/// send 256 x 384 YUYV whose rows 192 ... 383 are 256 x 192 temperatures of 16 bits, little-endian; telemetry rows of a
+/// Lepton have 16 bits like its picture. `row_bytes` as in PixelLayout, but not 0. Error: `invalid_input` if the
+/// section exceeds the bytes.
 [[nodiscard]] Result<std::span<const std::uint8_t>> section_bytes(std::span<const std::uint8_t> frame,
                                                                   std::size_t row_bytes, RowSection section);
 

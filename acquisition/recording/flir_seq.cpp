@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/flir_seq.h"
 
 #include <algorithm>
@@ -20,8 +21,7 @@ constexpr std::size_t raw_header_bytes = 32;
 constexpr std::uint16_t raw_data_type = 0x01;
 constexpr std::uint16_t camera_info_type = 0x20;
 
-/// Numbers in a stretch of the file. Reads beyond its end are zero; callers check sizes where zero would be a valid
-/// answer.
+/// Numbers in a section of the file. Reads beyond its end are zero; callers check sizes if zero would be a valid value.
 class Bytes {
  public:
   Bytes(const std::vector<char>& file, std::size_t begin, std::size_t size, bool big_endian)
@@ -75,7 +75,7 @@ Result<Record> read_record(const std::vector<char>& file, std::size_t begin) {
   if (begin + header_bytes > file.size() || std::memcmp(file.data() + begin, "FFF\0", 4) != 0) {
     return broken("no " + where);
   }
-  // The version, 100 and a few, tells the byte order of the header and the index.
+  // The version, 100 and a few, shows the byte order of the header and the index.
   const Bytes little(file, begin, header_bytes, false);
   const Bytes big(file, begin, header_bytes, true);
   const auto plausible = [](std::uint32_t version) { return version >= 100 && version < 200; };
@@ -85,7 +85,7 @@ Result<Record> read_record(const std::vector<char>& file, std::size_t begin) {
   const std::size_t index = header.u32(24);
   const std::size_t count = header.u32(28);
   if (count > 1000 || begin + index + count * index_entry_bytes > file.size()) {
-    return broken(where + " is cut off in its index");
+    return broken(where + " is truncated in its index");
   }
   Record record;
   record.end = begin + index + count * index_entry_bytes;
@@ -93,14 +93,15 @@ Result<Record> read_record(const std::vector<char>& file, std::size_t begin) {
     const Bytes entry(file, begin + index + i * index_entry_bytes, index_entry_bytes, big_endian);
     const IndexEntry found{entry.u16(0), begin + entry.u32(12), entry.u32(16)};
     if (found.type == 0) continue;
-    if (found.offset + found.length > file.size()) return broken(where + " points outside the file: it is cut off");
+    if (found.offset + found.length > file.size())
+      return broken(where + " points outside the file: the file is truncated");
     record.entries.push_back(found);
     record.end = std::max(record.end, found.offset + found.length);
   }
   return record;
 }
 
-/// Both blocks begin with the number 2 (bytes per pixel), which tells their byte order.
+/// Both blocks begin with the number 2 (bytes per pixel), which shows their byte order.
 std::optional<bool> big_endian_block(const std::vector<char>& file, const IndexEntry& entry) {
   if (Bytes(file, entry.offset, entry.length, false).u16(0) == 2) return false;
   if (Bytes(file, entry.offset, entry.length, true).u16(0) == 2) return true;
@@ -109,9 +110,9 @@ std::optional<bool> big_endian_block(const std::vector<char>& file, const IndexE
 
 Result<void> read_camera_info(const std::vector<char>& file, const IndexEntry& entry, FlirSeqFrame& frame) {
   const auto big_endian = big_endian_block(file, entry);
-  if (!big_endian) return broken("camera constants in an unknown byte order");
+  if (!big_endian) return broken("the camera constants have an unknown byte order");
   const Bytes info(file, entry.offset, entry.length, *big_endian);
-  if (info.size() < 0x390) return broken("camera constants are cut off");
+  if (info.size() < 0x390) return broken("the camera constants are truncated");
   frame.object = {info.f32(0x20), info.f32(0x24), info.f32(0x28), info.f32(0x2C),
                   info.f32(0x30), info.f32(0x34), info.f32(0x3C)};
   frame.planck = {info.f32(0x58), info.f32(0x30C), info.f32(0x5C), info.f32(0x60),
@@ -127,16 +128,16 @@ Result<void> read_camera_info(const std::vector<char>& file, const IndexEntry& e
 
 Result<void> read_raw_data(const std::vector<char>& file, const IndexEntry& entry, FlirSeqFrame& frame) {
   const auto big_endian = big_endian_block(file, entry);
-  if (!big_endian) return broken("pixels in an unknown format");
+  if (!big_endian) return broken("the pixels have an unknown format");
   const Bytes header(file, entry.offset, entry.length, *big_endian);
   frame.width = header.u16(2);
   frame.height = header.u16(4);
   frame.big_endian = *big_endian;
   frame.pixel_offset = entry.offset + raw_header_bytes;
   const std::size_t pixels = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
-  if (pixels == 0) return broken("a frame without pixels");
+  if (pixels == 0) return broken("the frame has no pixels");
   if (header.size() != raw_header_bytes + 2 * pixels) {
-    return broken("pixels are compressed or cut off: " + std::to_string(header.size()) + " bytes for " +
+    return broken("the pixels are compressed or truncated: " + std::to_string(header.size()) + " bytes for " +
                   std::to_string(frame.width) + " x " + std::to_string(frame.height));
   }
   return {};
@@ -150,7 +151,7 @@ Result<FlirSeqFrame> read_frame_description(const std::vector<char>& file, const
     if (entry.type == raw_data_type) read = read_raw_data(file, entry, frame);
     if (!read) return tl::unexpected(read.error());
   }
-  if (frame.width == 0) return broken("a record without pixels");
+  if (frame.width == 0) return broken("the record has no pixels");
   return frame;
 }
 
@@ -169,7 +170,7 @@ Result<RecordedFrame> read_pixels(std::ifstream& file, const FlirSeqFrame& frame
   file.clear();
   file.seekg(static_cast<std::streamoff>(frame.pixel_offset));
   file.read(reinterpret_cast<char*>(recorded.counts.data), bytes);
-  if (file.gcount() != bytes) return fail(ErrorCode::io, "the file became shorter");
+  if (file.gcount() != bytes) return fail(ErrorCode::io, "the file became shorter after it was opened");
   if (frame.big_endian) {
     for (auto& count : recorded.counts) count = static_cast<ushort>(count << 8 | count >> 8);
   }
@@ -237,7 +238,8 @@ Result<Recording> open_flir_seq(const std::filesystem::path& path) {
   const bool uniform = std::all_of(frames->begin(), frames->end(),
                                    [&](const FlirSeqFrame& frame) { return same_camera(frames->front(), frame); });
   if (!uniform) {
-    return fail(ErrorCode::invalid_input, path.string() + ": geometry or calibration changes within the file");
+    return fail(ErrorCode::invalid_input,
+                path.string() + ": the picture size or the calibration changes within the file");
   }
   const auto scale = planck_scale(frames->front().planck);
   if (!scale) return fail(path.string(), scale.error());

@@ -1,5 +1,6 @@
-// FLIR SEQ files: FFF records one after another, each with its own camera constants and one raw frame.
-// The layout is documented by the ExifTool project (FLIR tag tables) and checked here against a file of a FLIR SC660.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// FLIR SEQ files: a sequence of FFF records, each with its camera constants and one raw frame. Layout as documented by
+// the ExifTool project (FLIR tag tables), verified with a file of a FLIR SC660.
 #pragma once
 
 #include <filesystem>
@@ -10,18 +11,18 @@
 
 namespace todbench {
 
-/// The constants that FLIR publishes for one camera, lens and range: T = B / ln(R1 / (R2 (S + O)) + F), S in counts, T
-/// in kelvin.
+/// Planck constants of one camera, lens and range in FLIR's form: T = B / ln(R1 / (R2 (S + O)) + F), S in counts, T in
+/// kelvin.
 struct FlirPlanck {
   double r1 = 0, r2 = 0, b = 0, f = 0, o = 0;
 };
 
-/// The same curve as PlanckScale writes it, T = B / ln(R / (S - O) + F): R = R1 / R2 and O changes its sign.
-/// `calibration` when the constants cannot be a scale.
+/// Converts to PlanckScale, T = B / ln(R / (S - O) + F): R = R1 / R2, and O changes its sign. Error: `calibration` if
+/// the constants are not a scale.
 [[nodiscard]] Result<RadiometricScale> planck_scale(const FlirPlanck& planck);
 
-/// What the operator told the camera about the scene. Kept for provenance: frames are in radiance temperature
-/// (emissivity 1 and no atmosphere), which is what a black body in front of the lens has.
+/// The operator's settings about the scene. Kept for provenance: frames are in radiance temperature (emissivity 1, no
+/// atmosphere), as for a black body in front of the lens.
 struct FlirObjectParameters {
   double emissivity = 1;
   double distance_m = 0;
@@ -30,23 +31,23 @@ struct FlirObjectParameters {
   double relative_humidity = 0;  ///< 0 ... 1
 };
 
-/// One frame of the file and where its pixels are.
+/// One frame of the file and the location of its pixels.
 struct FlirSeqFrame {
-  std::uint64_t pixel_offset = 0;  ///< bytes from the start of the file
+  std::uint64_t pixel_offset = 0;  ///< from the start of the file, in bytes
   bool big_endian = false;         ///< of the pixels
   int width = 0, height = 0;
-  std::int64_t device_time_ns = 0;  ///< camera clock, since 1970 as the camera believed; 0: not stated
+  std::int64_t device_time_ns = 0;  ///< the camera's clock, since 1970; 0: not stated
   FlirPlanck planck;
   FlirObjectParameters object;
   std::string camera_model, camera_serial, camera_software;
 };
 
 /// Finds every record. Errors: `io`, `invalid_input` (not an FFF file, a record that points outside the file,
-/// compressed pixels, or no frame at all).
+/// compressed pixels, no frame).
 [[nodiscard]] Result<std::vector<FlirSeqFrame>> read_flir_seq(const std::filesystem::path& path);
 
-/// The file as a recording; the scale is that of the first frame. `invalid_input` when frames differ in geometry or
-/// constants.
+/// Opens the file as a recording; the scale is that of the first frame. Error: `invalid_input` if frames differ in
+/// geometry or constants.
 [[nodiscard]] Result<Recording> open_flir_seq(const std::filesystem::path& path);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/frame_stream.h"
 
 #include <fcntl.h>
@@ -15,8 +16,10 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/base/descriptor.h"
+#include "acquisition/base/safe_file.h"
+#include "acquisition/base/system_reason.h"
 #include "acquisition/core/camera_id.h"
-#include "acquisition/core/system_reason.h"
 #include "acquisition/recording/stream_header.h"
 
 namespace todbench {
@@ -27,7 +30,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are stored as
 constexpr char magic[] = "TODBREC1";
 constexpr std::size_t magic_bytes = 8;
 
-/// In front of every record: what it is, how long, and checksums of this head and of what follows.
+/// Head of every record: kind, length, and checksums of this head and of the payload.
 struct RecordHead {
   std::array<char, 4> kind{};
   std::uint32_t payload_bytes = 0;
@@ -36,7 +39,7 @@ struct RecordHead {
 };
 static_assert(sizeof(RecordHead) == 16);
 
-/// In front of the pixels of a frame.
+/// Head of a frame's pixels.
 struct FrameHead {
   std::uint64_t sequence = 0;
   std::int64_t device_time_ns = 0;
@@ -53,7 +56,7 @@ constexpr std::uint32_t most_failure = std::uint32_t{1} << 16;
 constexpr std::uint32_t most_reading = std::uint32_t{1} << 16;
 
 std::uint32_t crc_of(const void* data, std::size_t bytes, std::uint32_t start = 0) {
-  // Lengths are below 2^31, and zlib takes 32-bit ones.
+  // Lengths are below 2^31, and zlib accepts 32-bit lengths.
   return static_cast<std::uint32_t>(::crc32(start, static_cast<const Bytef*>(data), static_cast<uInt>(bytes)));
 }
 
@@ -65,21 +68,16 @@ std::uint32_t crc_of(const RecordHead& head) {
 class File {
  public:
   explicit File(int descriptor) : descriptor_(descriptor) {}
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  ~File() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  [[nodiscard]] bool open() const { return descriptor_ >= 0; }
+  [[nodiscard]] bool open() const { return descriptor_.is_open(); }
   [[nodiscard]] std::uint64_t size() const {
     struct stat facts {};
-    return ::fstat(descriptor_, &facts) == 0 && facts.st_size > 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;
+    return ::fstat(descriptor_.get(), &facts) == 0 && facts.st_size > 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;
   }
-  /// All of it or false.
+  /// Reads all bytes; otherwise false.
   [[nodiscard]] bool read(std::uint64_t offset, void* to, std::size_t bytes) const {
     auto* at = static_cast<char*>(to);
     while (bytes > 0) {
-      const ssize_t got = ::pread(descriptor_, at, bytes, static_cast<off_t>(offset));
+      const ssize_t got = ::pread(descriptor_.get(), at, bytes, static_cast<off_t>(offset));
       if (got < 0 && errno == EINTR) continue;
       if (got <= 0) return false;
       at += got;
@@ -90,10 +88,10 @@ class File {
   }
 
  private:
-  int descriptor_;
+  Descriptor descriptor_;
 };
 
-/// Where a frame is in the file.
+/// Position of a frame in the file.
 struct FramePlace {
   std::uint64_t offset = 0;  ///< of its payload
   RecordHead head;
@@ -106,7 +104,8 @@ bool plausible(const FrameHead& head, std::uint32_t payload_bytes) {
 
 Result<RecordedFrame> read_frame(const File& file, const FramePlace& place) {
   FrameHead head;
-  if (!file.read(place.offset, &head, sizeof head)) return fail(ErrorCode::io, "the file became shorter");
+  if (!file.read(place.offset, &head, sizeof head))
+    return fail(ErrorCode::io, "the file became shorter after it was opened");
   RecordedFrame frame;
   if (!plausible(head, place.head.payload_bytes)) {
     frame.status = FrameStatus::incomplete;
@@ -116,7 +115,7 @@ Result<RecordedFrame> read_frame(const File& file, const FramePlace& place) {
   if (pixel_bytes > 0) {
     frame.counts.create(head.height, head.width);
     if (!file.read(place.offset + sizeof head, frame.counts.data, pixel_bytes))
-      return fail(ErrorCode::io, "the file became shorter");
+      return fail(ErrorCode::io, "the file became shorter after it was opened");
   }
   std::uint32_t crc = crc_of(&head, sizeof head);
   if (pixel_bytes > 0) crc = crc_of(frame.counts.data, pixel_bytes, crc);
@@ -141,7 +140,7 @@ std::string payload_text(const File& file, std::uint64_t offset, std::size_t byt
   return text;
 }
 
-/// Walks over the records of a file; each kind into its place.
+/// Reads the records of a file and sorts them by kind.
 class StreamIndex {
  public:
   StreamIndex(const File& file, std::uint64_t size) : file_(file), size_(size) {}
@@ -173,7 +172,7 @@ class StreamIndex {
       frames.push_back({offset, head});
       return {};
     }
-    // Kinds that are not known are from a later version and of no concern here.
+    // Unknown kinds are from a later version and are ignored.
     const bool header_record = is(head, "HEAD") && !header && head.payload_bytes <= most_header;
     const bool correction_record = is(head, "FCOR");
     const bool failure_record =
@@ -182,7 +181,7 @@ class StreamIndex {
     if (!header_record && !failure_record && !reading_record) return {};
     const std::string payload = payload_text(file_, offset, head.payload_bytes);
     if (crc_of(payload.data(), payload.size()) != head.payload_crc || payload.size() != head.payload_bytes) {
-      // A reading that is left out would put the next one in its place.
+      // An omitted reading would put the next one in its place.
       if (reading_record) readings.emplace_back();
       return header_record ? Result<void>(fail(ErrorCode::invalid_input, "the header is damaged")) : Result<void>();
     }
@@ -277,7 +276,9 @@ Result<void> FrameStreamWriter::append_failure(const Error& error, FailedCall ca
 Result<void> FrameStreamWriter::append_reading(const Reading& reading) {
   const std::string text = reading.tag + " " + reading.value;
   if (reading.tag.empty() || reading.tag.find(' ') != std::string::npos || text.size() > most_reading)
-    return fail(ErrorCode::invalid_input, "a reading '" + reading.tag + "' cannot be recorded");
+    return fail(
+        ErrorCode::invalid_input,
+        "the reading '" + reading.tag + "' cannot be recorded: its tag has a blank or is empty, or it is too long");
   return write_record("TOLD", text.data(), text.size(), nullptr, 0);
 }
 
@@ -289,25 +290,26 @@ Result<void> FrameStreamWriter::sync() {
 Result<std::uint64_t> FrameStreamWriter::verified_frames() {
   if (auto synced = sync(); !synced) return tl::unexpected(synced.error());
   const auto again = open_frame_stream(path());
-  if (!again) return fail("reading it again", with_code(ErrorCode::io, again.error()));
+  if (!again) return fail("reading the file back", with_code(ErrorCode::io, again.error()));
   if (again->recording.frame_count != frames_ || again->torn_bytes > 0) {
     return fail(ErrorCode::io, path().string() + ": holds " + std::to_string(again->recording.frame_count) +
-                                   " frames, and " + std::to_string(frames_) + " were written");
+                                   " frames, but " + std::to_string(frames_) + " were written");
   }
   return frames_;
 }
 
 bool is_frame_stream(const std::filesystem::path& path) {
-  const File file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const File file(open_to_read(path).value_or(-1));
   char begin[magic_bytes] = {};
   return file.open() && file.read(0, begin, sizeof begin) && std::memcmp(begin, magic, magic_bytes) == 0;
 }
 
 Result<FrameStream> open_frame_stream(const std::filesystem::path& path) {
   const std::string name = path.string();
-  const auto file = std::make_shared<const File>(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file->open()) return fail(ErrorCode::io, name + ": " + system_reason());
-  if (!is_frame_stream(path)) return fail(ErrorCode::invalid_input, name + ": not a recording of this program");
+  const auto opened = open_to_read(path);
+  if (!opened) return tl::unexpected(opened.error());
+  const auto file = std::make_shared<const File>(*opened);
+  if (!is_frame_stream(path)) return fail(ErrorCode::invalid_input, name + ": not a recording of todbench");
   StreamIndex index(*file, file->size());
   if (auto walked = index.walk(); !walked) return fail(name, walked.error());
   if (!index.header) return fail(ErrorCode::invalid_input, name + ": the recording has no header");
@@ -319,8 +321,8 @@ Result<FrameStream> open_frame_stream(const std::filesystem::path& path) {
   stream.recording.info.id = camera_id(camera_scheme::file, name);
   stream.recording.info.transport = "recording";
   if (stream.torn_bytes > 0) {
-    stream.recording.info.warnings.push_back("the recording was cut off: " + std::to_string(stream.torn_bytes) +
-                                             " bytes behind its last whole frame are left out");
+    stream.recording.info.warnings.push_back("the recording is truncated: " + std::to_string(stream.torn_bytes) +
+                                             " bytes after its last complete frame are ignored");
   }
   stream.recording.frame_count = index.frames.size();
   stream.recording.failures = std::move(index.failures);

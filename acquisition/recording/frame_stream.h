@@ -1,4 +1,6 @@
-// Recordings as the bench writes them: everything a camera delivered, appended as it came. Format: docs/recordings.md.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Recordings of the bench: every frame and failure of a camera, appended in order of arrival. Format:
+// docs/reference/recordings.md.
 #pragma once
 
 #include <cstdint>
@@ -17,42 +19,42 @@
 
 namespace todbench {
 
-/// What a recording begins with.
+/// Start of a recording.
 struct StreamHeader {
   SourceInfo info;  ///< of the camera, as read back when the recording began
   std::string created_utc;
   std::int64_t created_host_ns = 0;                ///< CLOCK_MONOTONIC at `created_utc`
-  std::map<std::string, std::string> annotations;  ///< what else is to be known, e.g. what changed the target
+  std::map<std::string, std::string> annotations;  ///< further facts, e.g. about changes of the target
 };
 
-/// An answer that the measuring program got beside its frames: what it had asked for, and what it was told.
+/// A reply that the measuring program received besides the frames: the question and the answer.
 struct Reading {
-  std::string tag;    ///< without a space; empty: damaged in the file
-  std::string value;  ///< numbers as text
+  std::string tag;    ///< the question, without spaces; empty: damaged in the file
+  std::string value;  ///< the answer; numbers as text
   bool operator==(const Reading&) const = default;
 };
 
-/// Appends to a recording. Every record is handed to the system whole, with checksums, before the call returns: a crash
-/// of the program loses nothing, one of the machine at most what the system had not written yet. Move-only; several
-/// threads may append, each record is whole. Errors: `io` with the path; what a full disk cut off is taken back, and
-/// nothing is appended any more: a recording has no holes. Nothing is appended to a file that was deleted either.
+/// Appends to a recording. Every record is complete and has checksums, and is passed to the system before the call
+/// returns: a crash of the program loses no record, a crash of the machine only records that the system had not yet
+/// written. Move-only; several threads may append. Errors: `io` with the path. After a failed write (full disk, deleted
+/// file) the partial record is truncated and nothing more is appended, so that a recording has no holes.
 class FrameStreamWriter {
  public:
-  /// Creates the file or empties it.
+  /// Creates or truncates the file.
   [[nodiscard]] static Result<FrameStreamWriter> create(const std::filesystem::path& file, const StreamHeader& header);
   FrameStreamWriter(FrameStreamWriter&&) noexcept = default;
   FrameStreamWriter& operator=(FrameStreamWriter&&) noexcept = default;
 
-  /// A frame as it came, whatever its status; `invalid_input` for one of more than 2^29 pixels.
+  /// Appends a frame of any status; `invalid_input` if it has more than 2^29 pixels.
   [[nodiscard]] Result<void> append(const Frame& frame);
-  /// Instead of a frame, or of a correction, the camera failed.
+  /// Appends a failure of the camera in place of a frame or a correction.
   [[nodiscard]] Result<void> append_failure(const Error& error, FailedCall call);
-  /// What the measuring program was told between two frames; `invalid_input` for a tag that is empty or has a space, or
+  /// Appends a reply received between two frames; `invalid_input` for a tag that is empty or contains a space, or for
   /// more than 64 KiB.
   [[nodiscard]] Result<void> append_reading(const Reading& reading);
-  /// Waits until everything is on the disk, and fails unless it is where it was created.
+  /// Waits until everything is on the disk. Fails if the file is no longer at its path.
   [[nodiscard]] Result<void> sync();
-  /// sync(), and opens the file again: what a reader finds in it. Fails unless that is what was appended.
+  /// Calls sync() and reads the file again. Returns the number of frames; fails if it differs from the appended number.
   [[nodiscard]] Result<std::uint64_t> verified_frames();
 
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
@@ -66,23 +68,23 @@ class FrameStreamWriter {
 
   WrittenFile file_;
   std::uint64_t frames_ = 0;
-  std::optional<Error> refused_;                                            ///< why nothing is appended any more
-  std::unique_ptr<std::mutex> appending_ = std::make_unique<std::mutex>();  ///< guards all of it
+  std::optional<Error> refused_;  ///< the error after which nothing more is appended
+  std::unique_ptr<std::mutex> appending_ = std::make_unique<std::mutex>();  ///< guards all other members
 };
 
-/// An opened recording. Readings and failures are in their order; a failure stands before the frame with its index.
+/// An opened recording. Readings and failures are in order; a failure precedes the frame with its index.
 struct FrameStream {
   StreamHeader header;
   Recording recording;
   std::vector<Reading> readings;
-  std::uint64_t torn_bytes = 0;  ///< behind the last whole record: what a crash left of the next one
+  std::uint64_t torn_bytes = 0;  ///< after the last complete record: rest of a record interrupted by a crash
 };
 
 /// Whether a file begins like a recording of the bench.
 [[nodiscard]] bool is_frame_stream(const std::filesystem::path& file);
 
-/// Finds every record; pixels are read when they are asked for. A frame whose checksum does not fit is served as
-/// incomplete. Errors: `io`, `invalid_input` (not such a file, or damaged before its first record).
+/// Finds every record; pixels are read on demand. A frame with a wrong checksum is returned as incomplete. Errors:
+/// `io`, `invalid_input` (not a recording of the bench, or damaged before its first record).
 [[nodiscard]] Result<FrameStream> open_frame_stream(const std::filesystem::path& file);
 
 }  // namespace todbench

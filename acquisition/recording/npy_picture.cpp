@@ -1,4 +1,5 @@
-// Pictures in NumPy's format: a header that is a literal of Python, then the values.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures in NumPy's format: a header that is a Python literal, then the values.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/base/npy_header.h"
 #include "acquisition/recording/picture_file.h"
 
 namespace todbench {
@@ -18,7 +20,7 @@ static_assert(std::endian::native == std::endian::little, "values are swapped wh
 
 constexpr int longest_side = 65535;
 
-/// What the header says, as text.
+/// The entries of the header, as text.
 struct Header {
   std::string descr, order;
   std::vector<std::int64_t> shape;
@@ -29,7 +31,7 @@ tl::unexpected<Error> broken() {
   return fail(ErrorCode::invalid_input, "the header of the .npy file is broken");
 }
 
-/// What stands behind 'KEY': up to the end of its value.
+/// The value of 'KEY' as text, up to its end.
 std::optional<std::string_view> value_of(std::string_view header, std::string_view key) {
   for (const char quote : {'\'', '"'}) {
     const std::size_t at = header.find(quote + std::string(key) + quote);
@@ -99,7 +101,7 @@ double value_at(const char* bytes, bool swapped) {
   return static_cast<double>(value);
 }
 
-/// A type of values and how to read one.
+/// A type of values and its decoder.
 struct ValueType {
   std::string_view name;
   std::size_t size;
@@ -127,7 +129,7 @@ constexpr std::array value_types{type_of<std::uint8_t>("u1"),  type_of<std::uint
 }  // namespace
 
 Result<PictureFile> parse_npy(std::string_view bytes) {
-  if (!bytes.starts_with("\x93NUMPY")) return fail(ErrorCode::invalid_input, "not a .npy file");
+  if (!bytes.starts_with(npy_magic)) return fail(ErrorCode::invalid_input, "not a .npy file");
   const auto header = header_of(bytes);
   if (!header) return tl::unexpected(header.error());
   const std::string_view descr = header->descr;
@@ -148,7 +150,7 @@ Result<PictureFile> parse_npy(std::string_view bytes) {
     return fail(ErrorCode::invalid_input, "the picture in the .npy file is empty or too large");
   const std::size_t values = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
   if (bytes.size() - header->data_at != values * type->size)
-    return fail(ErrorCode::invalid_input, "the .npy file does not hold as many values as its header says");
+    return fail(ErrorCode::invalid_input, "the number of values in the .npy file differs from its header");
   PictureFile file;
   file.picture.create(static_cast<int>(rows), static_cast<int>(columns));
   const bool swapped = descr[0] == '>', fortran = header->order == "F";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/picture_file.h"
 
 #include <algorithm>
@@ -5,10 +6,23 @@
 #include <string>
 #include <system_error>
 
+#include "acquisition/base/npy_header.h"
+#include "acquisition/core/byte_order.h"
+
 namespace todbench {
 namespace {
 
 constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 31;
+
+/// Whether the bytes of 16-bit samples are exchanged: the byte order that a file states may be wrong.
+bool is_byte_swapped(const PictureFile& file) {
+  if (!file.counts || file.counts->second - file.counts->first != 65535) return false;
+  cv::Mat1w counts;
+  cv::Mat1d(file.picture - file.counts->first).convertTo(counts, CV_16U);
+  // Undoes the offset of signed samples: only the sign bit differs.
+  if (file.counts->first < 0) cv::bitwise_xor(counts, cv::Scalar(0x8000), counts);
+  return byte_order_evidence(counts, {}).verdict == ByteOrderVerdict::swapped;
+}
 
 }  // namespace
 
@@ -27,7 +41,7 @@ Result<PictureFile> read_picture(const std::filesystem::path& path) {
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   if (file.gcount() <= 0) return wrong("cannot be read");
   Result<PictureFile> picture;
-  if (start == "\x93NUMPY") {
+  if (start == npy_magic) {
     std::string bytes(size, '\0');
     file.clear();
     file.seekg(0);
@@ -40,6 +54,8 @@ Result<PictureFile> read_picture(const std::filesystem::path& path) {
     return wrong("expected a TIFF or .npy file");
   }
   if (!picture) return fail(path.string(), picture.error());
+  if (is_byte_swapped(*picture))
+    return fail(ErrorCode::integrity, path.string() + ": the two bytes of its pixels are swapped");
   return picture;
 }
 

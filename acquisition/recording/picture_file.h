@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One picture from a file: TIFF or .npy, in whole counts or in any linear unit.
 #pragma once
 
@@ -7,26 +8,27 @@
 #include <string_view>
 #include <utility>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
 struct PictureFile {
   cv::Mat1d picture;
-  /// What the file's type can hold at least and at most; nothing for floating point.
+  /// Smallest and largest value of the file's integer type; empty for floating point.
   std::optional<std::pair<double, double>> counts{};
 };
 
-/// A TIFF of one page (one sample of 8, 16 or 32 bits, or of 32 or 64 bits floating point, in rows or strips, any byte
-/// order and lossless compression) or a .npy array of two dimensions (integers of 8 to 64 bits, floating point of 32 or
-/// 64, both byte orders, C and Fortran order), told by the first bytes. Values may be NaN. `invalid_input` with the
-/// path where it is neither or cannot be read.
+/// Reads a TIFF or .npy file, recognised by its first bytes. TIFF: one page, one sample of 8, 16 or 32 bits, or of 32
+/// or 64 bits floating point, in rows or strips, any byte order and lossless compression, rotated by its tag
+/// Orientation, 0 the darkest. .npy: an array of two dimensions, integers of 8 to 64 bits, floating point of 32 or 64,
+/// both byte orders, C and Fortran order. Values may be NaN. Errors: `invalid_input` with the path (neither format, or
+/// unreadable); `integrity` if the two bytes of 16-bit samples are exchanged.
 [[nodiscard]] Result<PictureFile> read_picture(const std::filesystem::path& path);
 
-/// The bytes of a .npy file (NumPy format 1.0 to 3.0). `invalid_input` without a path.
+/// Reads the bytes of a .npy file (NumPy format 1.0 to 3.0). Error: `invalid_input` without a path.
 [[nodiscard]] Result<PictureFile> parse_npy(std::string_view bytes);
 
-/// A TIFF file. `invalid_input` without the path.
+/// Reads a TIFF file. Error: `invalid_input` without the path.
 [[nodiscard]] Result<PictureFile> read_tiff_picture(const std::filesystem::path& path);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/raw_recording.h"
 
 #include <bit>
@@ -18,7 +19,7 @@ Result<RecordedFrame> read_frame(std::ifstream& file, const RawRecordingFormat& 
   file.clear();
   file.seekg(static_cast<std::streamoff>(index) * bytes);
   file.read(reinterpret_cast<char*>(frame.counts.data), bytes);
-  if (file.gcount() != bytes) return fail(ErrorCode::io, "the file became shorter");
+  if (file.gcount() != bytes) return fail(ErrorCode::io, "the file became shorter after it was opened");
   return frame;
 }
 
@@ -27,7 +28,8 @@ Result<RecordedFrame> read_frame(std::ifstream& file, const RawRecordingFormat& 
 Result<Recording> open_raw_recording(const std::filesystem::path& path, const RawRecordingFormat& format) {
   const std::string name = path.string();
   if (format.width < 1 || format.height < 1 || format.width > 65536 || format.height > 65536) {
-    return fail(ErrorCode::invalid_input, name + ": a raw recording needs its width and height in pixels");
+    return fail(ErrorCode::invalid_input,
+                name + ": state the width and height of a raw recording in pixels, 1 ... 65536");
   }
   if (format.significant_bits < 1 || format.significant_bits > 16) {
     return fail(ErrorCode::invalid_input, name + ": significant bits must be 1 ... 16");

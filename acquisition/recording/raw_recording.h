@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Recordings without a header: 16-bit little-endian counts, row by row, frame after frame.
 #pragma once
 
@@ -7,7 +8,7 @@
 
 namespace todbench {
 
-/// What a raw file cannot say about itself.
+/// Format of a raw file, which has no header.
 struct RawRecordingFormat {
   int width = 0, height = 0;
   int significant_bits = 16;
@@ -15,8 +16,8 @@ struct RawRecordingFormat {
   RadiometricScale scale = {};  ///< uncalibrated unless stated
 };
 
-/// Errors: `io` (cannot be read), `invalid_input` (impossible geometry; a file that is empty or does not hold a whole
-/// number of frames: it is short or the geometry is wrong).
+/// Opens a raw recording. Errors: `io` (unreadable), `invalid_input` (impossible geometry; a file that is empty or does
+/// not hold a whole number of frames: it is truncated or the geometry is wrong).
 [[nodiscard]] Result<Recording> open_raw_recording(const std::filesystem::path& path, const RawRecordingFormat& format);
 
 }  // namespace todbench

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/recorded_source.h"
 
 #include <atomic>
 #include <chrono>
 #include <utility>
 
-#include "acquisition/core/host_clock.h"
+#include "acquisition/base/host_clock.h"
 
 namespace todbench {
 namespace {
@@ -46,7 +47,7 @@ class RecordedSource : public FrameSource {
   [[nodiscard]] Result<std::string> get(const std::string& feature) override {
     const auto setting = recording_.info.settings.find(feature);
     if (setting != recording_.info.settings.end()) return setting->second;
-    return fail(ErrorCode::invalid_input, "the recording does not tell " + feature);
+    return fail(ErrorCode::invalid_input, "the recording does not contain the feature " + feature);
   }
 
   [[nodiscard]] Result<void> set(const std::string& feature, const std::string& value) override {
@@ -60,7 +61,7 @@ class RecordedSource : public FrameSource {
   }
 
  private:
-  /// Whether the camera failed at this point when it was asked for the same.
+  /// Whether the recorded camera failed at this point in the same call.
   [[nodiscard]] bool fails_now(FailedCall call) const {
     if (playback_ != Playback::replay || failure_ >= recording_.failures.size()) return false;
     const RecordedFailure& failure = recording_.failures[failure_];
@@ -94,9 +95,9 @@ class RecordedSource : public FrameSource {
   std::shared_ptr<const RadiometricScale> scale_;
   std::uint64_t position_ = 0;
   std::uint64_t next_sequence_ = 0;
-  std::size_t failure_ = 0;  ///< the next one
+  std::size_t failure_ = 0;  ///< index of the next failure
   bool dead_ = false;
-  std::atomic<bool> running_ = false;  ///< the only thing that stop() touches from another thread
+  std::atomic<bool> running_ = false;  ///< the only member that stop() accesses from another thread
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A recording as a camera.
 #pragma once
 
@@ -11,47 +12,47 @@
 
 namespace todbench {
 
-/// One recorded picture. What a recording does not say is never made up.
+/// One recorded picture. Values that the recording does not state have their defaults.
 struct RecordedFrame {
   cv::Mat1w counts;
   std::int64_t device_time_ns = 0;        ///< 0: not stated
-  std::optional<std::uint64_t> sequence;  ///< nothing: one more than the frame before
+  std::optional<std::uint64_t> sequence;  ///< empty: one more than the frame before
   std::int64_t host_time_ns = 0;          ///< of the host that recorded it; 0: not stated
   FrameStatus status = FrameStatus::complete;
   Numbering numbering = Numbering::counted;
   CorrectionState correction = CorrectionState::unknown;
   double since_correction_s = -1;
-  std::optional<int> significant_bits;  ///< nothing: those of the recording
+  std::optional<int> significant_bits;  ///< empty: as in the recording
 };
 
-/// What the recorded camera was asked for when it failed.
+/// The call that failed on the recorded camera.
 enum class FailedCall { next, correct_nonuniformity };
 
-/// Something else than a frame, or than success, that the recorded camera answered with.
+/// A recorded failure of the camera in place of a frame or of a correction.
 struct RecordedFailure {
-  std::uint64_t before_frame = 0;  ///< index of the frame that came next
+  std::uint64_t before_frame = 0;  ///< index of the next frame
   Error error;
   FailedCall call = FailedCall::next;
 };
 
-/// An opened recording: who took it, how many frames, and how to read one. `read` is called from the thread of next()
-/// with an index below `frame_count` and owns what it needs.
+/// An opened recording: camera, number of frames, and a function that reads one. `read` is called on the thread of
+/// next() with an index below `frame_count` and owns everything it needs.
 struct Recording {
   SourceInfo info;
   std::uint64_t frame_count = 0;
   std::function<Result<RecordedFrame>(std::uint64_t index)> read;
-  std::vector<RecordedFailure> failures{};  ///< in order; only a replay answers with them
+  std::vector<RecordedFailure> failures{};  ///< in order; only a replay returns them
 };
 
-/// How a recording is served.
+/// Times and failures of a served recording.
 enum class Playback {
-  camera,  ///< as a camera of now: the time of arrival is now, failures of then are left out
-  replay,  ///< as it was: times of then, failures of then, also of a correction of the non-uniformity
+  camera,  ///< as from a live camera: host times are now, recorded failures are omitted
+  replay,  ///< as recorded: recorded times and failures, also of non-uniformity corrections
 };
 
-/// Serves the frames in order, as fast as they are asked for, sequence 0 first unless the recording says otherwise.
-/// start() after stop() begins at the first frame again. The end of the recording is `disconnected`, as is a frame that
-/// cannot be read any more. Features: the entries of info().settings can be read; none can be written.
+/// Serves the frames in order, as fast as they are requested; the sequence begins at 0 unless the recording states
+/// otherwise. start() after stop() begins at the first frame again. The end of the recording and a frame that has
+/// become unreadable are `disconnected`. Features: the entries of info().settings, read-only.
 [[nodiscard]] std::unique_ptr<FrameSource> recorded_source(Recording recording, Playback playback = Playback::camera);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/recording_backend.h"
 
 #include <charconv>
@@ -29,7 +30,7 @@ Result<std::map<std::string, double>> parsed_query(const std::string& query) {
     const bool number = equals != std::string::npos && equals + 1 < item.size() &&
                         std::from_chars(item.data() + equals + 1, last, value).ptr == last;
     if (!number) return fail(ErrorCode::invalid_input, "'" + item + "' is not KEY=NUMBER");
-    if (!values.emplace(key, value).second) return fail(ErrorCode::invalid_input, key + " is given twice");
+    if (!values.emplace(key, value).second) return fail(ErrorCode::invalid_input, key + " is stated twice");
   }
   return values;
 }
@@ -40,7 +41,7 @@ Result<RawRecordingFormat> raw_format(std::map<std::string, double> values) {
     return node.empty() ? otherwise : node.mapped();
   };
   RawRecordingFormat format;
-  // What is no whole number or out of range becomes one that is refused later.
+  // A number that is not an integer or out of range becomes -1, which is refused later.
   const auto whole = [&](const char* key, double otherwise) {
     const double value = take(key, otherwise);
     return value >= 0 && value <= 65536 && value == std::floor(value) ? static_cast<int>(value) : -1;
@@ -50,7 +51,7 @@ Result<RawRecordingFormat> raw_format(std::map<std::string, double> values) {
   format.significant_bits = whole("bits", 16);
   format.frame_rate_hz = take("frame_rate_hz", 0);
   if (!std::isfinite(format.frame_rate_hz) || format.frame_rate_hz < 0)
-    return fail(ErrorCode::invalid_input, "frame_rate_hz must be 0 or more");
+    return fail(ErrorCode::invalid_input, "frame_rate_hz must be at least 0");
   const bool calibrated = values.contains("kelvin_per_count");
   const double kelvin_per_count = take("kelvin_per_count", 0);
   const double offset_k = take("offset_k", 0);
@@ -79,10 +80,6 @@ class RecordingBackend : public CameraBackend {
   }
 };
 
-bool is_tiff(const std::filesystem::path& path) {
-  return path.extension() == ".tif" || path.extension() == ".tiff";
-}
-
 }  // namespace
 
 Result<Recording> open_recording(const std::filesystem::path& path, const std::string& query) {
@@ -90,7 +87,10 @@ Result<Recording> open_recording(const std::filesystem::path& path, const std::s
   const bool folder = std::filesystem::is_directory(path, error);
   if (!folder && !std::filesystem::is_regular_file(path, error))
     return fail(ErrorCode::not_found, path.string() + ": no such file");
-  if (!folder && is_frame_stream(path)) {
+  const bool is_stream = !folder && is_frame_stream(path);
+  if (!query.empty() && !folder && (is_stream || path.extension() == ".seq"))
+    return fail(ErrorCode::invalid_input, path.string() + ": the file contains its format; remove '?" + query + "'");
+  if (is_stream) {
     auto stream = open_frame_stream(path);
     if (!stream) return tl::unexpected(stream.error());
     return std::move(stream->recording);
@@ -100,9 +100,10 @@ Result<Recording> open_recording(const std::filesystem::path& path, const std::s
   if (!values) return fail(path.string(), values.error());
   const auto format = raw_format(*values);
   if (!format) return fail(path.string(), format.error());
-  if (!folder && !is_tiff(path)) return open_raw_recording(path, *format);
+  if (!folder && !has_tiff_name(path)) return open_raw_recording(path, *format);
   if (format->width != 0 || format->height != 0)
-    return fail(ErrorCode::invalid_input, path.string() + ": a TIFF states its width and height itself");
+    return fail(ErrorCode::invalid_input,
+                path.string() + ": a TIFF file contains its width and height; do not state them");
   return open_tiff_stack(path, {format->significant_bits, format->frame_rate_hz, format->scale});
 }
 

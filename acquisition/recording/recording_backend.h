@@ -1,4 +1,5 @@
-// Recordings by id, next to the cameras.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Recordings by id, like cameras.
 #pragma once
 
 #include <filesystem>
@@ -10,17 +11,20 @@
 
 namespace todbench {
 
-/// A recording of any kind, told apart by its content or its name:
-///   a recording of the bench          by its first bytes
-///   PATH.seq                          FLIR SEQ, which describes itself
-///   PATH.tif, PATH.tiff, a folder     16-bit TIFF; query
-///   [bits=14][&frame_rate_hz=9][&kelvin_per_count=0.01[&offset_k=0]] anything else                     raw 16-bit
-///   little-endian; query width=160&height=120 and the same
+/// Opens a recording of any kind, identified by its first bytes or its name:
+/// | file                           kind                     query
+/// | -----------------------------  -----------------------  ---------------------------------------------------
+/// | any name, by its first bytes   recording of the bench   ignored
+/// | *.seq                          FLIR SEQ                 ignored
+/// | *.tif, *.tiff, a folder        16-bit TIFF              [bits=14][&frame_rate_hz=9][&kelvin_per_count=0.01
+/// |                                                         [&offset_k=0]]
+/// | any other name                 raw 16-bit counts,       width=160&height=120 and the same
+/// |                                little-endian
 /// Errors: `invalid_input` (key, number, damaged or short file), `not_found` (no such file), `io`.
 [[nodiscard]] Result<Recording> open_recording(const std::filesystem::path& path, const std::string& query);
 
-/// Scheme "file". Lists nothing: a recording is named, not discovered. Opens "file:PATH" and "file:PATH?QUERY" as
-/// open_recording() does.
+/// Scheme "file". list() is empty, because recordings are not discovered. Opens "file:PATH" and "file:PATH?QUERY" with
+/// open_recording().
 [[nodiscard]] std::unique_ptr<CameraBackend> recording_backend();
 
 }  // namespace todbench

@@ -1,4 +1,5 @@
-// A camera whose frames are recorded on their way.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A camera whose frames are recorded as they pass through.
 #pragma once
 
 #include <memory>
@@ -7,9 +8,8 @@
 
 namespace todbench {
 
-/// Hands on what `camera` does and appends every frame and every failure of next() and of a correction to `stream`
-/// before it returns them. When the disk refuses, next() fails with `io`. The stream is shared with whoever appends
-/// readings to it.
+/// Forwards every call to `camera`. Appends every frame and every failure of next() and of a correction to `stream`
+/// before returning it. next() fails with `io` if the disk refuses. The stream is shared with the writer of readings.
 [[nodiscard]] std::unique_ptr<FrameSource> recording_camera(std::unique_ptr<FrameSource> camera,
                                                             std::shared_ptr<FrameStreamWriter> stream);
 

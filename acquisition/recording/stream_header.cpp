@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/stream_header.h"
 
 #include <cmath>
@@ -26,13 +27,12 @@ Json scale_json(const RadiometricScale& scale) {
   return {{"kind", "uncalibrated"}};
 }
 
-/// A rate that a number can be; 0, which is unknown, of what a camera states against all reason. JSON has no number for
-/// the others.
+/// Returns the rate; 0 (unknown) for a rate that is not finite or not positive, because JSON has no number for these.
 double known_rate(double frame_rate_hz) {
   return std::isfinite(frame_rate_hz) && frame_rate_hz > 0 ? frame_rate_hz : 0;
 }
 
-/// Reads keys of one object and remembers the first that is missing or of the wrong kind.
+/// Reads keys of one object and keeps the first error, a missing key or a wrong type.
 class Reader {
  public:
   explicit Reader(const Json& object) : object_(object) {}
@@ -113,7 +113,7 @@ Result<RadiometricScale> scale_from(const Json& json) {
     scale = RadiometricScale::planck(
         {.r = reader.number("r"), .b = reader.number("b"), .f = reader.number("f"), .o = reader.number("o")});
   } else if (kind != "uncalibrated") {
-    return fail(ErrorCode::invalid_input, "scale: unknown kind");
+    return fail(ErrorCode::invalid_input, "scale: the kind is unknown");
   }
   if (reader.problem())
     return fail(ErrorCode::invalid_input, "scale: key '" + *reader.problem() + "' is missing or wrong");
@@ -146,7 +146,7 @@ std::string stream_header_text(const StreamHeader& header) {
             {"annotations", Json::object()}};
   for (const auto& [key, value] : info.settings) json["camera"]["settings"][key] = value;
   for (const auto& [key, value] : header.annotations) json["annotations"][key] = value;
-  // Text of a device need not be UTF-8; what is not becomes a replacement character.
+  // Text of a device need not be UTF-8; invalid bytes become replacement characters.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -154,7 +154,7 @@ Result<StreamHeader> parse_stream_header(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return fail(ErrorCode::invalid_input, "the header is not JSON");
   Reader reader(json);
-  if (reader.text("schema") != schema) return fail(ErrorCode::invalid_input, "the header is of an unknown kind");
+  if (reader.text("schema") != schema) return fail(ErrorCode::invalid_input, "the header has an unknown schema");
   StreamHeader header;
   header.created_utc = reader.text("created_utc");
   header.created_host_ns = reader.whole("created_host_ns", 0, std::numeric_limits<std::int64_t>::max());

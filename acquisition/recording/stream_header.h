@@ -1,4 +1,5 @@
-// The header of a recording as JSON text.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Header of a recording as JSON text.
 #pragma once
 
 #include <string>
@@ -9,7 +10,7 @@
 namespace todbench {
 
 [[nodiscard]] std::string stream_header_text(const StreamHeader& header);
-/// `invalid_input` naming the key. Numbers are exactly as they were written.
+/// Error: `invalid_input` with the key. Numbers read back exactly as written.
 [[nodiscard]] Result<StreamHeader> parse_stream_header(std::string_view text);
 
 }  // namespace todbench

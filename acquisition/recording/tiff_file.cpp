@@ -1,19 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/tiff_file.h"
 
+#include <unistd.h>
+
+#include <charconv>
 #include <cstdarg>
 #include <cstdio>
+#include <opencv2/core/utility.hpp>
+#include <string_view>
+#include <system_error>
+
+#include "acquisition/base/safe_file.h"
 
 namespace todbench {
 namespace {
 
-/// A row of 65535 pixels and the tables of a page fit many times; a file that wants more is broken or hostile.
+/// Fits a row of 65535 pixels and the tables of a page many times; a file that needs more is broken or hostile.
 constexpr tmsize_t most_memory = tmsize_t{256} << 20;
 
-/// Keeps the first complaint of libtiff about one file.
+/// Keeps the first message of libtiff about one file.
 int keep_message(TIFF*, void* user, const char* /*module*/, const char* format, va_list arguments) {
   auto& message = *static_cast<std::string*>(user);
   if (message.empty()) {
-    char text[200];  // libtiff speaks in formats of printf
+    char text[200];  // libtiff passes formats of printf
     std::vsnprintf(text, sizeof text, format, arguments);
     message = text;
   }
@@ -24,6 +33,9 @@ int keep_quiet(TIFF*, void*, const char*, const char*, va_list) {
   return 1;
 }
 
+/// Largest expansion of a byte by libtiff's lossless compressions.
+constexpr std::uint64_t most_expansion = 4096;
+
 }  // namespace
 
 TiffFile::TiffFile(const std::filesystem::path& path, const char* mode) {
@@ -31,8 +43,14 @@ TiffFile::TiffFile(const std::filesystem::path& path, const char* mode) {
   TIFFOpenOptionsSetMaxSingleMemAlloc(options, most_memory);
   TIFFOpenOptionsSetErrorHandlerExtR(options, keep_message, &message_);
   TIFFOpenOptionsSetWarningHandlerExtR(options, keep_quiet, nullptr);
-  tiff_.reset(TIFFOpenExt(path.c_str(), mode, options));
+  // libtiff closes the descriptor with the file, but leaves it open if it refuses the file.
+  const int descriptor = open_to_read(path).value_or(-1);
+  if (descriptor >= 0) tiff_.reset(TIFFFdOpenExt(descriptor, path.c_str(), mode, options));
+  if (descriptor >= 0 && !tiff_) ::close(descriptor);
   TIFFOpenOptionsFree(options);
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  if (!unknown) size_bytes_ = bytes;
 }
 
 TiffPage page_of(const TiffFile& file) {
@@ -42,7 +60,95 @@ TiffPage page_of(const TiffFile& file) {
   TIFFGetFieldDefaulted(file.get(), TIFFTAG_BITSPERSAMPLE, &page.bits);
   TIFFGetFieldDefaulted(file.get(), TIFFTAG_SAMPLESPERPIXEL, &page.samples);
   TIFFGetFieldDefaulted(file.get(), TIFFTAG_SAMPLEFORMAT, &page.kind);
+  TIFFGetFieldDefaulted(file.get(), TIFFTAG_ORIENTATION, &page.orientation);
+  TIFFGetFieldDefaulted(file.get(), TIFFTAG_COMPRESSION, &page.compression);
+  TIFFGetField(file.get(), TIFFTAG_PHOTOMETRIC, &page.photometric);
   return page;
+}
+
+Result<void> check_layout(const TiffFile& file, const TiffPage& page) {
+  if (TIFFIsTiled(file.get()) != 0)
+    return fail(ErrorCode::invalid_input, "the picture is stored in tiles, expected strips");
+  if (page.photometric != PHOTOMETRIC_MINISBLACK && page.photometric != PHOTOMETRIC_MINISWHITE) {
+    return fail(ErrorCode::invalid_input, "the tag PhotometricInterpretation is " + std::to_string(page.photometric) +
+                                              ", expected 0 or 1 (grey levels)");
+  }
+  if (page.orientation < ORIENTATION_TOPLEFT || page.orientation > ORIENTATION_LEFTBOT)
+    return fail(ErrorCode::invalid_input,
+                "the tag Orientation is " + std::to_string(page.orientation) + ", expected 1 ... 8");
+  return {};
+}
+
+TiffRows::TiffRows(const TiffFile& file, const TiffPage& page, std::size_t row_bytes)
+    : file_(file), page_(page), row_(row_bytes) {}
+
+Result<void> TiffRows::may_hold() {
+  if (page_.compression == COMPRESSION_NONE) {
+    if (TIFFReadScanline(file_.get(), row_.data(), page_.height - 1, 0) >= 0) return {};
+  } else if (row_.size() * static_cast<std::uint64_t>(page_.height) / most_expansion <= file_.size_bytes()) {
+    return {};
+  }
+  return fail(ErrorCode::io, file_.why("the picture cannot be read"));
+}
+
+Result<const std::vector<char>*> TiffRows::next() {
+  if (TIFFReadScanline(file_.get(), row_.data(), next_++, 0) < 0)
+    return fail(ErrorCode::io, file_.why("the picture cannot be read"));
+  return &row_;
+}
+
+cv::Mat oriented(const cv::Mat& stored, std::uint16_t orientation) {
+  cv::Mat turned = stored;
+  if (exchanges_axes(orientation)) turned = stored.t();
+  constexpr int rows = 0, columns = 1, both = -1;
+  const auto flipped = [&](int axis) {
+    cv::Mat out;
+    cv::flip(turned, out, axis);
+    return out;
+  };
+  switch (orientation) {
+    case ORIENTATION_TOPRIGHT:
+    case ORIENTATION_RIGHTTOP:
+      return flipped(columns);
+    case ORIENTATION_BOTRIGHT:
+    case ORIENTATION_RIGHTBOT:
+      return flipped(both);
+    case ORIENTATION_BOTLEFT:
+    case ORIENTATION_LEFTBOT:
+      return flipped(rows);
+    default:
+      return turned;
+  }
+}
+
+Result<std::optional<ImageJStack>> image_j_stack(const TiffFile& file, std::uint64_t directories) {
+  const char* description = nullptr;
+  if (TIFFGetField(file.get(), TIFFTAG_IMAGEDESCRIPTION, &description) == 0 || description == nullptr)
+    return std::nullopt;
+  const std::string_view text = description;
+  constexpr std::string_view key = "\nimages=";
+  const std::size_t at = text.find(key);
+  if (!text.starts_with("ImageJ=") || at == std::string_view::npos) return std::nullopt;
+  ImageJStack stack;
+  const char* first = text.data() + at + key.size();
+  if (std::from_chars(first, text.data() + text.size(), stack.images).ec != std::errc())
+    return fail(ErrorCode::invalid_input, "the ImageJ description in the file states no number of images");
+  if (stack.images <= 1 || stack.images == directories) return std::nullopt;
+  const auto wrong = [&](const std::string& why) {
+    return fail(ErrorCode::invalid_input,
+                "ImageJ states " + std::to_string(stack.images) + " images in this file, " + why);
+  };
+  if (directories != 1) return wrong("but it has " + std::to_string(directories) + " pages");
+  const TiffPage page = page_of(file);
+  if (page.compression != COMPRESSION_NONE) return wrong("but its only page is compressed");
+  std::uint64_t* offsets = nullptr;
+  if (TIFFGetField(file.get(), TIFFTAG_STRIPOFFSETS, &offsets) == 0 || offsets == nullptr)
+    return wrong("but the offset of the first one is missing");
+  stack.offset = offsets[0];
+  const std::uint64_t image_bytes = std::uint64_t{page.width} * page.height * (page.bits / 8U) * page.samples;
+  const std::uint64_t room = file.size_bytes() > stack.offset ? file.size_bytes() - stack.offset : 0;
+  if (image_bytes == 0 || stack.images > room / image_bytes) return wrong("but the file is too short for them");
+  return stack;
 }
 
 }  // namespace todbench

@@ -1,4 +1,5 @@
-// An open TIFF file and what libtiff had to say about it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An open TIFF file with libtiff's messages.
 #pragma once
 
 #include <tiffio.h>
@@ -6,23 +7,30 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// Not moved: libtiff keeps the address of the message. One thread at a time.
+/// Not movable, because libtiff keeps the address of the message. One thread at a time.
 class TiffFile {
  public:
-  /// `mode` as TIFFOpen() takes it.
+  /// `mode`: a reading mode of TIFFOpen(). Pipes and devices are not opened.
   TiffFile(const std::filesystem::path& path, const char* mode);
   TiffFile(const TiffFile&) = delete;
   TiffFile& operator=(const TiffFile&) = delete;
 
-  /// Null where the file could not be opened.
+  /// Null if the file could not be opened.
   [[nodiscard]] TIFF* get() const { return tiff_.get(); }
-  /// The first complaint of libtiff.
+  /// The first message of libtiff; `otherwise` if there is none.
   [[nodiscard]] std::string why(const char* otherwise) const { return message_.empty() ? otherwise : message_; }
   void close() { tiff_.reset(); }
+  /// Bytes of the file; 0: unknown.
+  [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
 
  private:
   struct Close {
@@ -30,16 +38,56 @@ class TiffFile {
   };
   std::string message_;  ///< outlives tiff_
   std::unique_ptr<TIFF, Close> tiff_;
+  std::uint64_t size_bytes_ = 0;
 };
 
-/// What the tags of the current page say; 0 and libtiff's defaults where they say nothing.
+/// The tags of the current page; 0 or libtiff's defaults if absent.
 struct TiffPage {
   std::uint32_t width = 0, height = 0;
   std::uint16_t bits = 1, samples = 1, kind = SAMPLEFORMAT_UINT;
+  std::uint16_t orientation = ORIENTATION_TOPLEFT, photometric = PHOTOMETRIC_MINISBLACK, compression = COMPRESSION_NONE;
 
-  /// As large as any picture is.
+  /// Whether both sides are 1 ... 65535.
   [[nodiscard]] bool has_size() const { return width >= 1 && height >= 1 && width <= 65535 && height <= 65535; }
+  [[nodiscard]] bool white_is_zero() const { return photometric == PHOTOMETRIC_MINISWHITE; }
 };
 [[nodiscard]] TiffPage page_of(const TiffFile& file);
+
+/// Refuses everything but pictures of one sample a pixel in strips: tiles, colour tables, an invalid tag Orientation.
+/// Error: `invalid_input`.
+[[nodiscard]] Result<void> check_layout(const TiffFile& file, const TiffPage& page);
+
+/// Reads the rows of the current page in file order, from the top, each `row_bytes` long. Rows of a compressed strip
+/// can only be read in order. A page that states more than its file can hold is refused before memory is allocated:
+/// libtiff's lossless compressions expand a byte to at most 4096. Errors: `io`.
+class TiffRows {
+ public:
+  TiffRows(const TiffFile& file, const TiffPage& page, std::size_t row_bytes);
+  [[nodiscard]] Result<void> may_hold();
+  /// The next row; valid until the next call.
+  [[nodiscard]] Result<const std::vector<char>*> next();
+
+ private:
+  const TiffFile& file_;
+  TiffPage page_;
+  std::vector<char> row_;
+  std::uint32_t next_ = 0;
+};
+
+/// Rotates the picture as its tag Orientation demands: row 0 at the top, column 0 at the left. Orientations 5 to 8
+/// exchange rows and columns.
+[[nodiscard]] cv::Mat oriented(const cv::Mat& stored, std::uint16_t orientation);
+[[nodiscard]] constexpr bool exchanges_axes(std::uint16_t orientation) {
+  return orientation >= ORIENTATION_LEFTTOP;
+}
+
+/// Pictures that ImageJ wrote one after another with one directory for all ("images=N" in the description).
+struct ImageJStack {
+  std::uint64_t images = 0;
+  std::uint64_t offset = 0;  ///< of the first pixel in the file
+};
+/// Reads the stack of the first page; empty if the file states no number of images or one. Error: `invalid_input` (the
+/// file does not hold the stated number).
+[[nodiscard]] Result<std::optional<ImageJStack>> image_j_stack(const TiffFile& file, std::uint64_t directories);
 
 }  // namespace todbench

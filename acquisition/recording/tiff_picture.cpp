@@ -1,4 +1,5 @@
-// One picture from a TIFF, of any type of sample that a picture of a camera is exported in.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reads one picture from a TIFF, with any type of sample in which cameras' pictures are exported.
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -18,7 +19,7 @@ void append(const std::vector<char>& row, cv::Mat1d& picture, int y) {
   }
 }
 
-/// How the samples of a page are stored.
+/// Storage of a page's samples.
 struct Samples {
   void (*append)(const std::vector<char>& row, cv::Mat1d& picture, int y);
   std::size_t bytes;
@@ -46,46 +47,46 @@ std::optional<Samples> samples_of(std::uint16_t kind, std::uint16_t bits) {
   return std::nullopt;
 }
 
-/// A picture that claims more rows than the file has bytes would only cost memory: its last row is looked at first.
-/// Within a compressed strip rows are read in their order only; no lossless compression makes more than 4096 bytes of
-/// one.
-bool may_hold(const TiffFile& file, const std::filesystem::path& path, std::vector<char>& row, std::uint32_t height) {
-  std::uint16_t compression = COMPRESSION_NONE;
-  TIFFGetFieldDefaulted(file.get(), TIFFTAG_COMPRESSION, &compression);
-  if (compression == COMPRESSION_NONE) return TIFFReadScanline(file.get(), row.data(), height - 1, 0) >= 0;
-  std::error_code unknown;
-  const auto bytes = std::filesystem::file_size(path, unknown);
-  return !unknown && row.size() * static_cast<std::uint64_t>(height) / 4096 <= bytes;
-}
-
 }  // namespace
 
 Result<PictureFile> read_tiff_picture(const std::filesystem::path& path) {
   const TiffFile file(path, "r");
   if (file.get() == nullptr) return fail(ErrorCode::invalid_input, file.why("not a TIFF file"));
   const TiffPage page = page_of(file);
-  const auto [width, height, bits, samples, kind] = page;
+  const auto width = page.width, height = page.height;
+  const auto bits = page.bits, samples = page.samples;
   if (!page.has_size()) return fail(ErrorCode::invalid_input, "the picture is empty or too large");
-  const auto stored = samples_of(kind, bits);
+  const auto stored = samples_of(page.kind, bits);
   if (samples != 1 || !stored) {
     return fail(ErrorCode::invalid_input, "the picture has " + std::to_string(samples) + " samples of " +
                                               std::to_string(bits) +
-                                              " bits per pixel, expected one of 8, 16 or 32 bits or floating point");
+                                              " bits per pixel, expected one integer sample of 8, 16 or 32 bits or one "
+                                              "floating-point sample of 32 or 64 bits");
   }
-  if (TIFFIsTiled(file.get()) != 0) return fail(ErrorCode::invalid_input, "the picture is stored in tiles");
+  if (auto checked = check_layout(file, page); !checked) return tl::unexpected(checked.error());
+  if (page.white_is_zero() && !stored->counts)
+    return fail(ErrorCode::invalid_input,
+                "the tag PhotometricInterpretation states that 0 is white, which is accepted for integer values only");
   if (TIFFScanlineSize(file.get()) != static_cast<tmsize_t>(width * stored->bytes))
-    return fail(ErrorCode::invalid_input, file.why("the picture has rows of another length"));
+    return fail(ErrorCode::invalid_input, file.why("the rows of the picture have an unexpected length"));
   if (TIFFLastDirectory(file.get()) == 0) return fail(ErrorCode::invalid_input, "the file holds more than one picture");
-  std::vector<char> row(width * stored->bytes);
-  if (!may_hold(file, path, row, height)) return fail(ErrorCode::invalid_input, file.why("the picture cannot be read"));
+  const auto stack = image_j_stack(file, 1);
+  if (!stack) return tl::unexpected(stack.error());
+  if (*stack) return fail(ErrorCode::invalid_input, "the file holds more than one picture");
+  TiffRows rows(file, page, width * stored->bytes);
+  const auto unreadable = [](const Error& error) { return fail(ErrorCode::invalid_input, error.message); };
+  if (auto holds = rows.may_hold(); !holds) return unreadable(holds.error());
   PictureFile out;
   out.picture.create(static_cast<int>(height), static_cast<int>(width));
   out.counts = stored->counts;
   for (int y = 0; y < out.picture.rows; ++y) {
-    if (TIFFReadScanline(file.get(), row.data(), static_cast<std::uint32_t>(y), 0) < 0)
-      return fail(ErrorCode::invalid_input, file.why("the picture cannot be read"));
-    stored->append(row, out.picture, y);
+    const auto row = rows.next();
+    if (!row) return unreadable(row.error());
+    stored->append(**row, out.picture, y);
   }
+  // Inverts the values, because the largest one is the darkest.
+  if (page.white_is_zero()) out.picture = out.counts->first + out.counts->second - out.picture;
+  out.picture = oriented(out.picture, page.orientation);
   return out;
 }
 

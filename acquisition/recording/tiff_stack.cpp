@@ -1,8 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/tiff_stack.h"
 
 #include <tiffio.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -13,59 +20,120 @@
 namespace todbench {
 namespace {
 
-/// Size of the current page, when it is one that can be read.
+/// Size of the current page after its orientation is applied, if the page is readable.
 Result<cv::Size> page_size(const TiffFile& file) {
   const TiffPage page = page_of(file);
-  const auto [width, height, bits, samples, kind] = page;
+  const bool counts = page.kind == SAMPLEFORMAT_UINT || page.kind == SAMPLEFORMAT_VOID;
   if (!page.has_size()) return fail(ErrorCode::invalid_input, "a page has no size or is too large");
-  if (bits != 16 || samples != 1 || (kind != SAMPLEFORMAT_UINT && kind != SAMPLEFORMAT_VOID)) {
-    return fail(ErrorCode::invalid_input, "a page has " + std::to_string(samples) + " samples of " +
-                                              std::to_string(bits) +
-                                              " bits per pixel, expected one of 16 unsigned bits");
+  if (page.bits != 16 || page.samples != 1 || !counts) {
+    return fail(ErrorCode::invalid_input, "a page has " + std::to_string(page.samples) + " samples of " +
+                                              std::to_string(page.bits) +
+                                              " bits per pixel, expected one unsigned sample of 16 bits");
   }
-  if (TIFFIsTiled(file.get()) != 0) return fail(ErrorCode::invalid_input, "a page is stored in tiles, expected strips");
-  if (TIFFScanlineSize(file.get()) != static_cast<tmsize_t>(width) * 2)
-    return fail(ErrorCode::invalid_input, file.why("a page has rows of another length"));
-  return cv::Size(static_cast<int>(width), static_cast<int>(height));
+  if (auto checked = check_layout(file, page); !checked) return tl::unexpected(checked.error());
+  if (TIFFScanlineSize(file.get()) != static_cast<tmsize_t>(page.width) * 2)
+    return fail(ErrorCode::invalid_input, file.why("the rows of a page have an unexpected length"));
+  const cv::Size size(static_cast<int>(page.width), static_cast<int>(page.height));
+  return exchanges_axes(page.orientation) ? cv::Size(size.height, size.width) : size;
+}
+
+/// Applies the tag Orientation and makes 0 the darkest.
+cv::Mat1w shown(const cv::Mat1w& stored, const TiffPage& page) {
+  cv::Mat1w counts = oriented(stored, page.orientation);
+  if (page.white_is_zero()) counts = cv::Mat1w(~counts);
+  return counts;
 }
 
 Result<cv::Mat1w> read_page(const TiffFile& file) {
-  const auto size = page_size(file);
-  if (!size) return tl::unexpected(size.error());
-  // A page that claims more rows than the file has bytes would only cost memory: look at the last row first.
-  std::vector<std::uint16_t> last(static_cast<std::size_t>(size->width));
-  if (TIFFReadScanline(file.get(), last.data(), static_cast<std::uint32_t>(size->height - 1), 0) < 0)
-    return fail(ErrorCode::io, file.why("a page cannot be read"));
-  cv::Mat1w counts(*size);
-  for (int row = 0; row < size->height; ++row) {
-    if (TIFFReadScanline(file.get(), counts.ptr(row), static_cast<std::uint32_t>(row), 0) < 0)
-      return fail(ErrorCode::io, file.why("a page cannot be read"));
+  if (const auto size = page_size(file); !size) return tl::unexpected(size.error());
+  const TiffPage page = page_of(file);
+  TiffRows rows(file, page, std::size_t{2} * page.width);
+  if (auto holds = rows.may_hold(); !holds) return tl::unexpected(holds.error());
+  cv::Mat1w counts(static_cast<int>(page.height), static_cast<int>(page.width));
+  for (int y = 0; y < counts.rows; ++y) {
+    const auto row = rows.next();
+    if (!row) return tl::unexpected(row.error());
+    std::memcpy(counts.ptr(y), (*row)->data(), (*row)->size());
   }
-  return counts;
+  return shown(counts, page);
+}
+
+/// Picture `image` of an ImageJ stack whose one directory is the present one.
+Result<cv::Mat1w> read_image(const TiffFile& file, const std::filesystem::path& path, const ImageJStack& stack,
+                             std::uint64_t image) {
+  const TiffPage page = page_of(file);
+  cv::Mat1w counts(static_cast<int>(page.height), static_cast<int>(page.width));
+  const std::uint64_t bytes = counts.total() * counts.elemSize();
+  std::ifstream stream(path, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(stack.offset + image * bytes));
+  stream.read(reinterpret_cast<char*>(counts.data), static_cast<std::streamsize>(bytes));
+  if (stream.gcount() != static_cast<std::streamsize>(bytes))
+    return fail(ErrorCode::io, "the file became shorter after it was opened");
+  if (TIFFIsByteSwapped(file.get()) != 0)
+    TIFFSwabArrayOfShort(counts.ptr<std::uint16_t>(), static_cast<tmsize_t>(counts.total()));
+  return shown(counts, page);
 }
 
 /// One page of one file.
 struct Page {
   std::size_t file = 0;
-  std::uint64_t offset = 0;  ///< of its directory
+  std::uint64_t offset = 0;            ///< of its directory
+  std::optional<ImageJStack> stack{};  ///< set if the directory is that of many pictures
+  std::uint64_t image = 0;             ///< of `stack`
 };
 
-Result<std::vector<std::filesystem::path>> files_of(const std::filesystem::path& path) {
-  std::error_code problem;
-  if (!std::filesystem::is_directory(path, problem)) return std::vector{path};
+/// Natural order of names: numbers in them are compared as numbers, f_2 before f_10.
+bool naturally_before(const std::string& a, const std::string& b) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0, k = 0;
+  while (i < a.size() && k < b.size()) {
+    if (!digit(a[i]) || !digit(b[k])) {
+      if (a[i] != b[k]) return a[i] < b[k];
+      ++i, ++k;
+      continue;
+    }
+    const auto number = [&](const std::string& text, std::size_t& at) {
+      while (at + 1 < text.size() && text[at] == '0' && digit(text[at + 1])) ++at;
+      const std::size_t first = at;
+      while (at < text.size() && digit(text[at])) ++at;
+      return std::string_view(text).substr(first, at - first);
+    };
+    const std::string_view one = number(a, i), other = number(b, k);
+    if (one.size() != other.size()) return one.size() < other.size();
+    if (one != other) return one < other;
+  }
+  if (i < a.size() || k < b.size()) return i >= a.size();
+  return a < b;  // they differ in leading zeros only
+}
+
+/// Files of a recording in the order of their exposures.
+struct FilesInOrder {
   std::vector<std::filesystem::path> files;
+  bool letters_differ = false;  ///< the alphabetical order of their names differs
+};
+
+Result<FilesInOrder> files_of(const std::filesystem::path& path) {
+  std::error_code problem;
+  if (!std::filesystem::is_directory(path, problem)) return FilesInOrder{{path}};
+  FilesInOrder found;
   for (const auto& entry : std::filesystem::directory_iterator(path, problem)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension == ".tif" || extension == ".tiff") files.push_back(entry.path());
+    if (has_tiff_name(entry.path())) found.files.push_back(entry.path());
   }
   if (problem) return fail(ErrorCode::io, path.string() + ": " + problem.message());
-  if (files.empty()) return fail(ErrorCode::invalid_input, path.string() + ": no file *.tif or *.tiff in it");
-  std::sort(files.begin(), files.end());
-  return files;
+  if (found.files.empty())
+    return fail(ErrorCode::invalid_input, path.string() + ": the folder contains no *.tif or *.tiff file");
+  std::sort(found.files.begin(), found.files.end(), [](const auto& a, const auto& b) {
+    return naturally_before(a.filename().string(), b.filename().string());
+  });
+  found.letters_differ = !std::is_sorted(found.files.begin(), found.files.end());
+  return found;
 }
 
 /// Adds the pages of one file; all must have the size of the first.
 Result<void> add_pages(const TiffFile& file, std::size_t number, std::vector<Page>& pages, cv::Size& size) {
+  const std::uint64_t directories = TIFFNumberOfDirectories(file.get());
+  const auto stack = image_j_stack(file, directories);
+  if (!stack) return tl::unexpected(stack.error());
   do {
     const auto page = page_size(file);
     if (!page) return tl::unexpected(page.error());
@@ -73,15 +141,16 @@ Result<void> add_pages(const TiffFile& file, std::size_t number, std::vector<Pag
     if (*page != size) {
       return fail(ErrorCode::invalid_input, "page " + std::to_string(pages.size() + 1) + " is " +
                                                 std::to_string(page->width) + " x " + std::to_string(page->height) +
-                                                ", the first one " + std::to_string(size.width) + " x " +
+                                                ", but the first page is " + std::to_string(size.width) + " x " +
                                                 std::to_string(size.height));
     }
-    pages.push_back({number, TIFFCurrentDirOffset(file.get())});
+    const std::uint64_t images = *stack ? (*stack)->images : 1;
+    for (std::uint64_t k = 0; k < images; ++k) pages.push_back({number, TIFFCurrentDirOffset(file.get()), *stack, k});
     if (TIFFLastDirectory(file.get()) != 0) return {};
   } while (TIFFReadDirectory(file.get()) != 0);
-  // The last page that can be read points to another one.
+  // The last readable page points to another one.
   return fail(ErrorCode::invalid_input,
-              "page " + std::to_string(pages.size() + 1) + " is missing: " + file.why("the file is cut off"));
+              "page " + std::to_string(pages.size() + 1) + " is missing: " + file.why("the file is truncated"));
 }
 
 /// Reads pages in any order; the file of the last one stays open.
@@ -97,8 +166,9 @@ class PageReader {
       number_ = page.file;
     }
     if (open_->get() == nullptr) return fail(ErrorCode::io, open_->why("cannot be opened again"));
-    if (TIFFSetSubDirectory(open_->get(), page.offset) == 0) return fail(ErrorCode::io, open_->why("a page is gone"));
-    auto counts = read_page(*open_);
+    if (TIFFSetSubDirectory(open_->get(), page.offset) == 0)
+      return fail(ErrorCode::io, open_->why("a page is missing"));
+    auto counts = page.stack ? read_image(*open_, files_[page.file], *page.stack, page.image) : read_page(*open_);
     if (!counts) return fail(files_[page.file].string(), counts.error());
     RecordedFrame frame;
     frame.counts = *std::move(counts);
@@ -114,18 +184,25 @@ class PageReader {
 
 }  // namespace
 
+bool has_tiff_name(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".tif" || extension == ".tiff";
+}
+
 Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffFormat& format) {
   if (format.significant_bits < 1 || format.significant_bits > 16)
     return fail(ErrorCode::invalid_input, path.string() + ": significant bits must be 1 ... 16");
-  auto files = files_of(path);
-  if (!files) return tl::unexpected(files.error());
+  auto found = files_of(path);
+  if (!found) return tl::unexpected(found.error());
+  std::vector<std::filesystem::path>& files = found->files;
   std::vector<Page> pages;
   cv::Size size;
-  for (std::size_t i = 0; i < files->size(); ++i) {
-    const TiffFile file((*files)[i], "r");
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const TiffFile file(files[i], "r");
     if (file.get() == nullptr)
-      return fail(ErrorCode::invalid_input, (*files)[i].string() + ": " + file.why("not a TIFF file"));
-    if (auto added = add_pages(file, i, pages, size); !added) return fail((*files)[i].string(), added.error());
+      return fail(ErrorCode::invalid_input, files[i].string() + ": " + file.why("not a TIFF file"));
+    if (auto added = add_pages(file, i, pages, size); !added) return fail(files[i].string(), added.error());
   }
   Recording recording;
   recording.info.id = camera_id(camera_scheme::file, path.string());
@@ -138,8 +215,13 @@ Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffF
   recording.info.frame_rate_hz = format.frame_rate_hz;
   recording.info.scale = format.scale;
   recording.info.settings = {{"Width", std::to_string(size.width)}, {"Height", std::to_string(size.height)}};
+  if (found->letters_differ) {
+    recording.info.warnings.push_back(
+        "The files are read in the order of the numbers in their names: " + files.front().filename().string() +
+        " first, " + files.back().filename().string() + " last. Their alphabetical order differs.");
+  }
   recording.frame_count = pages.size();
-  recording.read = [reader = std::make_shared<PageReader>(*std::move(files), std::move(pages))](std::uint64_t index) {
+  recording.read = [reader = std::make_shared<PageReader>(std::move(files), std::move(pages))](std::uint64_t index) {
     return reader->read(index);
   };
   return recording;

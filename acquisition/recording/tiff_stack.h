@@ -1,4 +1,5 @@
-// 16-bit TIFF: one file of many pages, or a folder of files of one page each, through libtiff.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// 16-bit TIFF through libtiff: one file of many pages, or a folder of files with one page each.
 #pragma once
 
 #include <filesystem>
@@ -7,17 +8,22 @@
 
 namespace todbench {
 
-/// What a TIFF cannot say about itself.
+/// Properties that a TIFF does not state.
 struct TiffFormat {
   int significant_bits = 16;
   double frame_rate_hz = 0;     ///< 0: unknown
   RadiometricScale scale = {};  ///< uncalibrated unless stated
 };
 
-/// A file of pages, or a folder whose files *.tif and *.tiff are taken in the order of their names. One sample of 16
-/// unsigned bits per pixel in rows or strips, any byte order, any lossless compression that libtiff reads, also
-/// BigTIFF. Pages are read when they are asked for. Errors: `io`, `invalid_input` (not a TIFF, another kind of picture,
-/// pages of different size, no page).
+/// Whether the name of a file ends in .tif or .tiff, in letters of either case.
+[[nodiscard]] bool has_tiff_name(const std::filesystem::path& path);
+
+/// Opens a file of pages, or a folder whose files *.tif and *.tiff are ordered by the numbers in their names (f_2
+/// before f_10; a warning reports it if the alphabetical order differs). One sample of 16 unsigned bits per pixel in
+/// rows or strips, any byte order, any lossless compression that libtiff reads, also BigTIFF and uncompressed ImageJ
+/// stacks with one directory. The tags Orientation and PhotometricInterpretation (0 as white) are applied. Pages are
+/// read on demand. Errors: `io`, `invalid_input` (not a TIFF, another kind of picture, pages of different size, no
+/// page, fewer images than ImageJ states).
 [[nodiscard]] Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffFormat& format);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/tiff_writer.h"
 
 #include <array>
@@ -13,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie in memory");
 
-/// Little-endian, BigTIFF, eight bytes to an offset; then the offset of the first directory.
+/// Little-endian, BigTIFF, eight bytes per offset; the offset of the first directory follows.
 constexpr std::array<std::uint8_t, 16> file_head{'I', 'I', 43, 0, 8, 0, 0, 0};
 constexpr std::uint64_t first_link = 8;
 
@@ -32,7 +33,7 @@ void put(std::vector<std::uint8_t>& to, Number number) {
   std::memcpy(to.data() + at, &number, sizeof number);
 }
 
-/// The directory of a page whose pixels are at `offset`, in the order of the tags, with no page behind it.
+/// The directory of a page whose pixels are at `offset`, in the order of the tags, without a next page.
 std::vector<std::uint8_t> directory_of(const cv::Mat1w& counts, std::uint64_t offset) {
   const auto width = static_cast<std::uint64_t>(counts.cols), height = static_cast<std::uint64_t>(counts.rows);
   const std::array entries{Entry{256, of_32_bits, width},
@@ -75,7 +76,7 @@ Result<void> TiffWriter::append_page(const cv::Mat1w& counts) {
   if (auto present = file_.check_present(); !present) return present;
   const cv::Mat1w pixels = counts.isContinuous() ? counts : cv::Mat1w(counts.clone());
   if (auto written = file_.append(pixels.data, 2 * pixels.total()); !written) return written;
-  // Directories begin at whole words; a filled one also keeps 64-bit numbers aligned.
+  // Directories begin at whole words; the padding also aligns 64-bit numbers.
   constexpr std::uint64_t alignment = 8;
   const std::array<std::uint8_t, alignment> filler{};
   const std::uint64_t missing = (alignment - file_.bytes() % alignment) % alignment;
@@ -89,8 +90,10 @@ Result<void> TiffWriter::append_page(const cv::Mat1w& counts) {
 }
 
 Result<void> TiffWriter::append(const cv::Mat1w& counts) {
-  if (counts.empty()) return fail(ErrorCode::invalid_input, file_.path().string() + ": a page needs pixels");
-  if (broken_) return fail(ErrorCode::io, file_.path().string() + ": ended where the disk refused to go on");
+  if (counts.empty())
+    return fail(ErrorCode::invalid_input, file_.path().string() + ": a page without pixels cannot be written");
+  if (broken_)
+    return fail(ErrorCode::io, file_.path().string() + ": the write of an earlier page failed, so no page is appended");
   const std::uint64_t before = file_.bytes();
   auto written = append_page(counts);
   if (written) {
@@ -108,10 +111,10 @@ Result<std::uint64_t> TiffWriter::verified_pages() {
   if (auto synced = file_.sync(); !synced) return tl::unexpected(synced.error());
   if (pages_ == 0) return 0;
   const auto again = open_tiff_stack(file_.path(), {});
-  if (!again) return fail("reading it again", with_code(ErrorCode::io, again.error()));
+  if (!again) return fail("reading the file back", with_code(ErrorCode::io, again.error()));
   if (again->frame_count != pages_) {
     return fail(ErrorCode::io, file_.path().string() + ": holds " + std::to_string(again->frame_count) +
-                                   " pages, and " + std::to_string(pages_) + " were written");
+                                   " pages, but " + std::to_string(pages_) + " were written");
   }
   return pages_;
 }

@@ -1,4 +1,5 @@
-// Pages of 16 bits into a TIFF file that can be read at any moment.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Writes 16-bit pages to a TIFF file that is readable at any moment.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +10,18 @@
 
 namespace todbench {
 
-/// Writes pages one after another, uncompressed, little-endian, BigTIFF (there is no limit of 4 GiB). A page is whole
-/// in the file, pixels and directory, before the page in front of it points to it: a file whose writer was killed, or
-/// whose disk is full, is read up to its last whole page. Move-only, one thread at a time. Errors: `io` with the path;
-/// what a full disk cut off is taken back, and nothing is appended any more.
+/// Appends pages, uncompressed, little-endian, BigTIFF (no limit of 4 GiB). A page is complete in the file, pixels and
+/// directory, before the preceding page points to it: after a kill or on a full disk the file is readable up to its
+/// last complete page. Move-only, one thread at a time. Errors: `io` with the path; an incomplete page is then
+/// truncated and nothing more is appended.
 class TiffWriter {
  public:
   [[nodiscard]] static Result<TiffWriter> create(const std::filesystem::path& path);
 
-  /// One page; `invalid_input` for an empty picture.
+  /// Appends one page; `invalid_input` for an empty picture.
   [[nodiscard]] Result<void> append(const cv::Mat1w& counts);
-  /// Waits until everything is on the disk, and opens the file again: the pages that a reader finds in it, 0 for a file
-  /// without any, which is no TIFF. Fails unless they are those that were appended.
+  /// Waits until everything is on the disk and reads the file again. Returns the number of pages found, 0 for a file
+  /// without pages (not a valid TIFF). Fails if it differs from the appended number.
   [[nodiscard]] Result<std::uint64_t> verified_pages();
 
   [[nodiscard]] std::uint64_t pages() const { return pages_; }
@@ -31,8 +32,8 @@ class TiffWriter {
 
   WrittenFile file_;
   std::uint64_t pages_ = 0;
-  std::uint64_t link_offset_ = 0;  ///< where the offset of the next directory belongs
-  bool broken_ = false;            ///< a page was refused by the disk
+  std::uint64_t link_offset_ = 0;  ///< position for the offset of the next directory
+  bool broken_ = false;            ///< the disk refused a page
 };
 
 }  // namespace todbench

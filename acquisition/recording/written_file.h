@@ -1,31 +1,30 @@
-// A file that is being written and must be on the disk when it is said to be. Private to the recordings.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A file under construction that verifiably reaches the disk. Private to the recordings.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/descriptor.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
 /// Owns the descriptor. Move-only. Every error is `io` with the path.
 class WrittenFile {
  public:
-  /// Creates the file or empties it.
+  /// Creates the file; an existing one is replaced, a link is not followed.
   [[nodiscard]] static Result<WrittenFile> create(const std::filesystem::path& path);
-  WrittenFile(WrittenFile&& other) noexcept;
-  WrittenFile& operator=(WrittenFile&& other) noexcept;
-  ~WrittenFile();
 
-  /// Writes at the end. A part of it may be in the file when it fails.
+  /// Writes at the end. After a failure part of the data may be in the file.
   [[nodiscard]] Result<void> append(const void* data, std::size_t bytes);
-  /// Writes over what is there.
+  /// Overwrites existing bytes.
   [[nodiscard]] Result<void> overwrite(std::uint64_t offset, const void* data, std::size_t bytes);
-  /// Takes back what is behind the first `bytes`, as far as the disk allows.
+  /// Truncates the file to `bytes`, if the disk allows it.
   void cut(std::uint64_t bytes);
-  /// Fails when the file was deleted: what is written then is in no folder and gone with the program.
+  /// Fails if the file was deleted: further data would be in no folder and lost at the end of the program.
   [[nodiscard]] Result<void> check_present() const;
-  /// Waits until everything is on the disk, and fails unless the path still leads to it.
+  /// Waits until everything is on the disk. Fails if the path no longer leads to this file.
   [[nodiscard]] Result<void> sync() const;
 
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
@@ -36,7 +35,7 @@ class WrittenFile {
   [[nodiscard]] Result<void> failed(const std::string& why) const;
 
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
   std::uint64_t bytes_ = 0;
 };
 

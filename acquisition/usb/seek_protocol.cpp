@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/usb/seek_protocol.h"
 
 #include <algorithm>
@@ -78,7 +79,7 @@ std::vector<SeekTransfer> pro_initialisation() {
   return all;
 }
 
-/// Half of the median of the pixels that are not zero; 0 when all are.
+/// Half of the median of the pixels that are not zero; 0 if all are zero.
 double dead_limit(const cv::Mat1w& picture) {
   std::vector<std::uint16_t> values;
   for (const auto value : picture) {
@@ -194,8 +195,10 @@ SeekDeadPixels::SeekDeadPixels(const cv::Mat1w& calibration_picture) {
       if (state(y, x) == known) put_dead_neighbours_into(ring, {x, y});
     }
   }
-  // Each ring is found from the one outside it: every pixel is looked at once, however large the defect.
+  pixels_ = calibration_picture.total();
+  // Each ring is found from the one outside it, so every pixel is visited once even in large defects.
   while (!ring.empty()) {
+    ++depth_;
     for (const auto at : ring) {
       Filled filled{.at = at, .from = {}, .neighbours = 0};
       each_neighbour(at, [&](cv::Point from) {
@@ -208,6 +211,18 @@ SeekDeadPixels::SeekDeadPixels(const cv::Mat1w& calibration_picture) {
     for (const auto at : ring) put_dead_neighbours_into(next, at);
     ring = std::move(next);
   }
+}
+
+Result<void> SeekDeadPixels::check() const {
+  constexpr double most_share = 0.1;
+  constexpr int most_depth = 2;
+  const double share = pixels_ == 0 ? 0 : static_cast<double>(dead_) / static_cast<double>(pixels_);
+  if (share <= most_share && depth_ <= most_depth && (dead_ == 0 || !order_.empty())) return {};
+  return fail(ErrorCode::calibration, std::to_string(dead_) + " of " + std::to_string(pixels_) +
+                                          " pixels are dead in the camera's calibration frame, up to " +
+                                          std::to_string(depth_) +
+                                          " pixels deep in one defect. The program fills in at most 10 % of the "
+                                          "pixels, and defects up to 2 pixels deep");
 }
 
 void SeekDeadPixels::fill(cv::Mat1w& picture) const {

@@ -1,5 +1,6 @@
-// What Seek Thermal cameras say over USB: pure functions from bytes to pictures, no device. The facts are those that
-// the libseek-thermal project published (OpenThermal); Seek documents nothing.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Protocol of Seek Thermal cameras over USB: pure functions from bytes to pictures, no device. Source: the
+// libseek-thermal project (OpenThermal); Seek publishes no documentation.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
@@ -23,8 +24,8 @@ enum class SeekModel {
   compact_pro,  ///< 289d:0011, picture 320 x 240
 };
 
-/// Where things are in a frame of 16-bit little-endian words. The first row of every frame is a header, and the picture
-/// does not fill the rest.
+/// Layout of a frame of 16-bit little-endian words. The first row of every frame is a header, and the picture does not
+/// fill the remaining rows.
 struct SeekGeometry {
   std::uint16_t product_id;
   int raw_width, raw_height;  ///< words
@@ -51,29 +52,29 @@ enum class SeekRequest : std::uint8_t {
   get_operation_mode = 0x3D,
   set_image_processing_mode = 0x3E,
   get_firmware_info = 0x4E,
-  start_image_transfer = 0x53,  ///< four bytes: how many words
+  start_image_transfer = 0x53,  ///< four bytes: the number of words
   target_platform = 0x54,
   set_firmware_info_features = 0x55,
   set_factory_settings_features = 0x56,
   get_factory_settings = 0x58,
 };
 
-/// One control transfer. `data` is what is sent; of a reading request only its size counts.
+/// One control transfer. `data` holds the bytes to send; for a reading request only its size counts.
 struct SeekTransfer {
   SeekRequest request;
   std::vector<std::uint8_t> data;
   [[nodiscard]] bool reads() const;
 };
-/// What has to be exchanged before the first frame, in order.
+/// Transfers required before the first frame, in order.
 [[nodiscard]] std::vector<SeekTransfer> seek_initialisation(SeekModel model);
-/// What puts the camera to sleep; sent three times, as its own software does.
+/// Puts the camera to sleep. Send it three times, as the camera's own software does.
 [[nodiscard]] SeekTransfer seek_sleep();
-/// Asks for one frame.
+/// Requests one frame.
 [[nodiscard]] SeekTransfer seek_frame_request(SeekModel model);
 
-/// What a frame shows, by its number on the wire; there are further ones, all of them for calibration.
+/// Content of a frame, by its number on the wire. There are further numbers, all for calibration.
 enum class SeekFrameKind : std::uint16_t {
-  shutter = 1,      ///< the closed shutter: the offsets of the pixels
+  shutter = 1,      ///< the closed shutter: offsets of the pixels
   image = 3,        ///< the scene
   calibration = 4,  ///< the first after initialisation: dead pixels are zero
 };
@@ -82,24 +83,30 @@ struct SeekFrame {
   std::uint16_t kind = 0;     ///< a SeekFrameKind, or another number
   std::uint16_t counter = 0;  ///< exposures, wraps at 2^16
   std::uint16_t temperature_word = 0;
-  cv::Mat1w picture;  ///< as sent; shutter offsets and dead pixels still in it
+  cv::Mat1w picture;  ///< as sent, without correction of shutter offsets and dead pixels
   [[nodiscard]] bool is(SeekFrameKind k) const { return kind == static_cast<std::uint16_t>(k); }
 };
-/// Reads a frame. `invalid_input` when the bytes are not exactly one frame.
+/// Reads a frame. Error: `invalid_input` if the bytes are not exactly one frame.
 [[nodiscard]] Result<SeekFrame> parse_seek_frame(std::span<const std::uint8_t> bytes, SeekModel model);
-/// The counter of a frame of which only the beginning came; nothing when that is too short.
+/// Counter of a truncated frame; empty if the bytes end before it.
 [[nodiscard]] std::optional<std::uint16_t> seek_counter(std::span<const std::uint8_t> bytes, SeekModel model);
 
-/// The pixels that carry no picture, and from which neighbours each is filled. A pixel is dead when it is zero in the
-/// calibration frame, or below half of the median of the pixels that are not. It gets the mean, rounded down, of those
-/// of its four neighbours that live or have been filled before it; pixels inside larger defects are filled from the
-/// rim inwards, each ring from the ring outside it, so that the result does not depend on the order within a ring.
+/// Pixels without a signal, and the neighbours that replace each. A pixel is dead if it is zero in the calibration
+/// frame or below half of the median of the pixels that are not zero. It gets the mean, rounded down, of those of its
+/// four neighbours that live or were filled before it. Larger defects are filled from the rim inwards, each ring from
+/// the ring outside it, so that the result does not depend on the order within a ring.
 class SeekDeadPixels {
  public:
   SeekDeadPixels() = default;  ///< none
   explicit SeekDeadPixels(const cv::Mat1w& calibration_picture);
   [[nodiscard]] std::size_t count() const { return dead_; }
-  /// Fills the dead pixels. Precondition: the geometry of the calibration picture, or no dead pixels.
+  /// Depth of the deepest pixel inside a defect; 1 for a pixel with a living neighbour.
+  [[nodiscard]] int depth() const { return depth_; }
+  /// Error: `calibration` if too much is replaced: more than 10 % of the pixels (a Compact omits every fifteenth by
+  /// design, 6.7 %, and has 0.3 to 1 % of dead ones), or a defect more than 2 pixels deep, which hides a target of 4
+  /// pixels.
+  [[nodiscard]] Result<void> check() const;
+  /// Fills the dead pixels. Precondition: same geometry as the calibration picture, or no dead pixels.
   void fill(cv::Mat1w& picture) const;
 
  private:
@@ -109,14 +116,15 @@ class SeekDeadPixels {
     int neighbours;
   };
   std::vector<Filled> order_;
-  std::size_t dead_ = 0;
+  std::size_t dead_ = 0, pixels_ = 0;
+  int depth_ = 0;
 };
 
-/// Count of a picture that is as warm as the shutter.
+/// Count of a pixel at the temperature of the shutter.
 inline constexpr int seek_shutter_level = 0x4000;
 
-/// Picture less shutter picture plus seek_shutter_level, clipped to 16 bits, dead pixels filled. A pixel that is 0 or
-/// 65535 as sent stays so, for the integrity gate to see.
+/// Returns picture - shutter picture + seek_shutter_level, clipped to 16 bits, with dead pixels filled. A pixel sent as
+/// 0 or 65535 keeps its value for the integrity gate.
 [[nodiscard]] cv::Mat1w corrected_seek_picture(const cv::Mat1w& picture, const cv::Mat1w& shutter,
                                                const SeekDeadPixels& dead);
 

@@ -1,24 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/usb/seek_source.h"
 
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/base/host_clock.h"
 #include "acquisition/core/control_text.h"
-#include "acquisition/core/host_clock.h"
+#include "acquisition/core/serial_number.h"
 
 namespace todbench {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// A camera sometimes swallows the beginning of the first frame after initialisation: it is initialised again.
+/// A camera sometimes drops the beginning of the first frame after initialisation; it is then initialised again.
 constexpr int initialisation_attempts = 3;
-/// Frames until the shutter's; a camera sends it among the first ten.
+/// Most frames before the shutter's; a camera sends it among the first ten.
 constexpr int most_calibration_frames = 40;
 constexpr auto calibration_frame_timeout = 900ms;
-/// However slowly its bytes come; at 7 Hz a frame is there after 0.15 s, and the shutter takes half a second.
+/// Time limit of a frame, even if its bytes arrive slowly: at 7 Hz a frame takes 0.15 s, and the shutter half a second.
 constexpr auto calibration_frame_patience = 2s;
-/// All attempts together; a camera needs two seconds.
+/// Time limit of all attempts together; a camera needs two seconds.
 constexpr auto calibration_patience = 20s;
 /// Eight seconds of the fastest camera, 23 MiB.
 constexpr std::size_t frames_kept = 128;
@@ -51,6 +53,8 @@ Result<std::unique_ptr<FrameSource>> SeekSource::create(UsbContext context, cons
   info.height = geometry(camera.model).picture.height;
   info.pixel_format = "Mono16";
   info.significant_bits = 16;
+  if (auto warning = placeholder_serial_warning(info.serial); !warning.empty())
+    info.warnings.push_back(std::move(warning));
   info.settings["ShutterLevel"] = std::to_string(seek_shutter_level);
   source->update_scale();
   return source;
@@ -70,7 +74,7 @@ Result<void> SeekSource::initialise() {
     if (!running_) return fail(ErrorCode::interrupted, "stopped");
     auto done = connection_.control(transfer);
     if (!done && transfer.request == SeekRequest::target_platform && done.error().code == ErrorCode::io) {
-      // A program that ended without putting the camera to sleep left it streaming: it refuses until it sleeps.
+      // If a program ended without putting the camera to sleep, the camera still streams and refuses until it sleeps.
       sleep();
       done = connection_.control(transfer);
     }
@@ -88,7 +92,7 @@ Result<SeekFrame> SeekSource::read_frame(std::chrono::steady_clock::time_point l
   while (bytes.size() < wanted) {
     if (!running_) return fail(ErrorCode::interrupted, "stopped");
     if (std::chrono::steady_clock::now() > deadline) {
-      return fail(ErrorCode::io, "its first frames do not come in time");
+      return fail(ErrorCode::io, "its first frames did not arrive in time");
     }
     const auto more = connection_.bulk_in(wanted - bytes.size(), calibration_frame_timeout);
     if (!more) return tl::unexpected(more.error());
@@ -103,10 +107,11 @@ Result<void> SeekSource::read_calibration_frames(std::chrono::steady_clock::time
   const auto first = read_frame(deadline);
   if (!first) return tl::unexpected(first.error());
   if (!first->is(SeekFrameKind::calibration)) {
-    return fail(ErrorCode::io, "the first frame is of kind " + std::to_string(first->kind) + ", not 4");
+    return fail(ErrorCode::io, "the first frame is of kind " + std::to_string(first->kind) + ", expected 4");
   }
   dead_ = SeekDeadPixels(first->picture);
   info_.settings["DeadPixels"] = std::to_string(dead_.count());
+  if (auto sound = dead_.check(); !sound) return sound;
   for (int k = 0; k < most_calibration_frames && running_; ++k) {
     const auto frame = read_frame(deadline);
     if (!frame) return tl::unexpected(frame.error());
@@ -116,7 +121,7 @@ Result<void> SeekSource::read_calibration_frames(std::chrono::steady_clock::time
     return {};
   }
   if (!running_) return fail(ErrorCode::interrupted, "stopped");
-  return fail(ErrorCode::io, "no shutter frame among " + std::to_string(most_calibration_frames));
+  return fail(ErrorCode::io, "no shutter frame among the first " + std::to_string(most_calibration_frames) + " frames");
 }
 
 Result<void> SeekSource::calibrate() {
@@ -126,7 +131,9 @@ Result<void> SeekSource::calibrate() {
     done = initialise();
     if (done) done = read_calibration_frames(deadline);
     if (std::chrono::steady_clock::now() > deadline) break;
-    if (done || done.error().code == ErrorCode::disconnected || done.error().code == ErrorCode::interrupted) break;
+    if (done || done.error().code == ErrorCode::disconnected || done.error().code == ErrorCode::interrupted ||
+        done.error().code == ErrorCode::calibration)
+      break;
   }
   return done;
 }
@@ -160,7 +167,7 @@ void SeekSource::sleep() {
 void SeekSource::stop() {
   running_ = false;
   const std::lock_guard lock(mutex_);
-  // A start() between the two lines above wins: its stream goes on.
+  // A start() between the two lines above has precedence: its stream continues.
   if (running_ || !stream_) return;
   stream_->end();  // a reader may still hold it
   stream_.reset();
@@ -209,7 +216,7 @@ Result<Frame> SeekSource::next(std::chrono::milliseconds timeout) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     const auto arrival = stream->next(std::max(left, 0ms));
     if (!arrival) return failed(arrival.error());
-    // Calibration goes on for some frames after the first shutter picture: the sequence begins with the first image.
+    // Calibration continues for some frames after the first shutter picture: the sequence begins with the first image.
     const auto parsed = pictures_begun_ ? Result<SeekFrame>() : parse_seek_frame(arrival->bytes, model_);
     if (!pictures_begun_ && (!parsed || !parsed->is(SeekFrameKind::image))) {
       if (parsed && parsed->is(SeekFrameKind::shutter)) {
@@ -224,13 +231,13 @@ Result<Frame> SeekSource::next(std::chrono::milliseconds timeout) {
 
 tl::unexpected<Error> SeekSource::failed(const Error& error) {
   if (error.code == ErrorCode::disconnected) lost_ = true;
-  // What the camera refused while it was there is no loss of the camera, but nothing can be measured with it.
+  // An error of a camera that is still present is not a loss, but the camera cannot be measured.
   const auto code = error.code == ErrorCode::io ? ErrorCode::not_found : error.code;
   return fail("camera " + info_.id, with_code(code, error));
 }
 
 Error SeekSource::disconnected() const {
-  return {ErrorCode::disconnected, "camera " + info_.id + " has gone"};
+  return {ErrorCode::disconnected, "camera " + info_.id + " is no longer connected"};
 }
 
 Result<std::string> SeekSource::get(const std::string& feature) {
@@ -265,7 +272,8 @@ Result<void> SeekSource::set(const std::string& feature, const std::string& valu
 }
 
 Result<void> SeekSource::correct_nonuniformity() {
-  return fail(ErrorCode::invalid_input, "camera " + info_.id + " closes its shutter by itself, not on command");
+  return fail(ErrorCode::invalid_input,
+              "camera " + info_.id + " closes its shutter automatically; it has no command for a correction");
 }
 
 }  // namespace todbench

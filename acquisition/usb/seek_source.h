@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One open Seek camera as a FrameSource. Private to the USB back end.
 #pragma once
 
@@ -15,7 +16,7 @@ namespace todbench {
 
 class SeekSource final : public FrameSource {
  public:
-  /// Takes the camera. Errors: `not_found`.
+  /// Takes over the opened camera. Errors: `not_found`.
   [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(UsbContext context, const SeekOnBus& camera,
                                                                    std::string id, UsbConnection connection);
   ~SeekSource() override;
@@ -33,14 +34,14 @@ class SeekSource final : public FrameSource {
   /// Initialises the camera and reads frames until dead pixels and shutter picture are known.
   [[nodiscard]] Result<void> calibrate();
   [[nodiscard]] Result<void> initialise();
-  /// The calibration frame, the frames after it up to the shutter's, and the shutter's.
+  /// Reads the calibration frame and the following frames up to and including the shutter's.
   [[nodiscard]] Result<void> read_calibration_frames(std::chrono::steady_clock::time_point deadline);
-  /// In two seconds and by `latest`, however slowly its bytes come.
+  /// Reads a frame within two seconds and before `latest`, even if its bytes arrive slowly.
   [[nodiscard]] Result<SeekFrame> read_frame(std::chrono::steady_clock::time_point latest);
   [[nodiscard]] Frame frame_of(const SeekArrival& arrival);
   void sleep();
   void update_scale();
-  /// Remembers a loss.
+  /// Records a loss and passes the error on.
   [[nodiscard]] tl::unexpected<Error> failed(const Error& error);
   [[nodiscard]] Error disconnected() const;
 
@@ -49,13 +50,13 @@ class SeekSource final : public FrameSource {
   SeekModel model_;
   SourceInfo info_;
   std::shared_ptr<const RadiometricScale> scale_;
-  double kelvin_per_count_ = 0, offset_k_ = 0;  ///< as the user states; 0: not stated
+  double kelvin_per_count_ = 0, offset_k_ = 0;  ///< stated by the user; 0: not stated
   SeekDeadPixels dead_;
   cv::Mat1w shutter_;
   std::int64_t shutter_time_ns_ = 0;
-  bool pictures_begun_ = false;  ///< the first image has come, from which frames are counted
+  bool pictures_begun_ = false;  ///< the first image has arrived, from which frames are counted
   FrameSequence sequence_{FrameNumberKind::wrap16, 0};
-  bool corrected_last_ = false;  ///< the frame before was one of a correction
+  bool corrected_last_ = false;  ///< the preceding frame was part of a correction
 
   std::atomic<bool> running_{false};
   std::atomic<bool> lost_{false};

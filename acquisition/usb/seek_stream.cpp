@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/usb/seek_stream.h"
 
 #include <sys/time.h>
@@ -5,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "acquisition/core/host_clock.h"
+#include "acquisition/base/host_clock.h"
 
 namespace todbench {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr unsigned request_timeout_ms = 1000;
 /// A camera sends 7 ... 15 frames a second; its shutter takes about half a second.
 constexpr unsigned read_timeout_ms = 1500;
-/// A transfer that fails for another reason than a timeout is tried again so often.
+/// Failures in succession, timeouts excluded, after which the camera is lost.
 constexpr int most_failures = 5;
 
 }  // namespace
@@ -39,14 +40,14 @@ SeekStream::SeekStream(UsbContext context, UsbConnection& connection, SeekModel 
 Result<std::unique_ptr<SeekStream>> SeekStream::start(UsbContext context, UsbConnection& connection, SeekModel model,
                                                       std::size_t waiting) {
   auto stream = std::unique_ptr<SeekStream>(new SeekStream(context, connection, model, waiting));
-  // Removal ends the transfers too; a camera that leaves between two of them is noticed only so.
+  // Removal also ends the transfers; between two transfers only this callback detects it.
   libusb_device_descriptor descriptor{};
   libusb_get_device_descriptor(libusb_get_device(connection.handle()), &descriptor);
   libusb_hotplug_register_callback(context.get(), LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT, 0, descriptor.idVendor,
                                    descriptor.idProduct, LIBUSB_HOTPLUG_MATCH_ANY, &SeekStream::on_left, stream.get(),
                                    &stream->hotplug_);
   stream->submit(Step::requesting);
-  if (stream->lost_) return fail(ErrorCode::disconnected, "the camera has gone");
+  if (stream->lost_) return fail(ErrorCode::disconnected, "the camera is no longer connected");
   stream->events_ = std::thread([raw = stream.get()] { raw->serve_events(); });
   return stream;
 }
@@ -78,7 +79,7 @@ void SeekStream::serve_events() {
   }
 }
 
-/// Called before the event thread exists, and then on it.
+/// Called before the event thread exists, and later on it.
 void SeekStream::submit(Step step) {
   libusb_transfer* transfer = step == Step::requesting ? requesting_.get() : reading_.get();
   if (step == Step::requesting) {
@@ -137,7 +138,7 @@ void SeekStream::deliver() {
   arrival.host_time_ns = monotonic_ns();
   const std::lock_guard lock(mutex_);
   if (arrivals_.size() >= most_waiting_) {
-    // A reader this far behind loses the newest, but for the shutter's picture: the frames behind it hang on it.
+    // A slow reader loses the newest frames except the shutter's, on which later frames depend.
     const auto parsed = parse_seek_frame(arrival.bytes, model_);
     if (!parsed || !parsed->is(SeekFrameKind::shutter)) return;
     arrivals_.pop_back();
@@ -147,7 +148,7 @@ void SeekStream::deliver() {
 }
 
 void SeekStream::retry(int status) {
-  // A camera that is busy with its shutter may let a request time out; every other failure is counted.
+  // A camera that is busy with its shutter may let a request time out; all other failures are counted.
   failures_ = status == LIBUSB_TRANSFER_TIMED_OUT || status == LIBUSB_TRANSFER_CANCELLED ? 0 : failures_ + 1;
   if (failures_ >= most_failures) return lose();
   submit(Step::requesting);
@@ -178,7 +179,7 @@ Result<SeekArrival> SeekStream::next(std::chrono::milliseconds timeout) {
     arrivals_.pop_front();
     return arrival;
   }
-  if (lost_) return fail(ErrorCode::disconnected, "the camera has gone");
+  if (lost_) return fail(ErrorCode::disconnected, "the camera is no longer connected");
   return fail(something ? ErrorCode::internal : ErrorCode::timeout,
               "no frame within " + std::to_string(timeout.count()) + " ms");
 }

@@ -1,5 +1,6 @@
-// The stream of frames of an opened Seek camera: asynchronous transfers, one frame requested at a time, as the camera
-// wants it. Private to the USB back end.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stream of frames of an opened Seek camera: asynchronous transfers, one frame requested at a time as the camera
+// demands. Private to the USB back end.
 #pragma once
 
 #include <chrono>
@@ -11,22 +12,22 @@
 #include <thread>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "acquisition/usb/usb_connection.h"
 
 namespace todbench {
 
-/// What came for one request.
+/// Bytes received for one request.
 struct SeekArrival {
-  std::vector<std::uint8_t> bytes;  ///< fewer than a frame when the transfer ended early
+  std::vector<std::uint8_t> bytes;  ///< fewer than a frame if the transfer ended early
   std::int64_t host_time_ns = 0;    ///< CLOCK_MONOTONIC at the end of the transfer
 };
 
 /// Requests and receives frames on a thread of its own from creation to end().
 class SeekStream {
  public:
-  /// `connection` outlives it. `waiting`: frames kept for a slow reader; further ones are dropped, which
-  /// shows as a gap in the camera's counter. Errors: `disconnected`.
+  /// `connection` must outlive the stream. `waiting`: maximum number of frames kept for a slow reader; further frames
+  /// are dropped and show as a gap in the camera's counter. Errors: `disconnected`.
   [[nodiscard]] static Result<std::unique_ptr<SeekStream>> start(UsbContext context, UsbConnection& connection,
                                                                  SeekModel model, std::size_t waiting);
   ~SeekStream();
@@ -35,7 +36,7 @@ class SeekStream {
 
   /// The next arrival. Errors: `timeout`, `interrupted` (end() was called), `disconnected`. Any thread.
   [[nodiscard]] Result<SeekArrival> next(std::chrono::milliseconds timeout);
-  /// Ends the stream and every next() from now on; takes milliseconds. Any thread, one at a time.
+  /// Ends the stream and every present and later next(), within milliseconds. Any thread, one at a time.
   void end();
 
  private:
@@ -62,15 +63,15 @@ class SeekStream {
   std::size_t frame_bytes_;
   std::size_t most_waiting_;
   std::vector<std::uint8_t> request_, frame_;  ///< buffers of the transfers
-  std::size_t received_ = 0;                   ///< bytes of the frame so far
+  std::size_t received_ = 0;                   ///< bytes of the present frame received so far
   int failures_ = 0;                           ///< in succession
   TransferPtr requesting_, reading_;
   libusb_hotplug_callback_handle hotplug_{};
 
-  std::mutex mutex_;  ///< guards what follows
+  std::mutex mutex_;  ///< guards the following members
   std::condition_variable changed_;
   std::deque<SeekArrival> arrivals_;
-  bool under_way_ = false;  ///< a transfer has been submitted and has not been called back
+  bool under_way_ = false;  ///< a transfer has been submitted and its callback has not run
   bool ending_ = false, lost_ = false;
   libusb_transfer* submitted_ = nullptr;
 

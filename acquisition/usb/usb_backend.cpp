@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/usb/usb_backend.h"
 
 #include <sys/time.h>
@@ -6,13 +7,14 @@
 #include <utility>
 
 #include "acquisition/core/camera_id.h"
+#include "acquisition/core/serial_number.h"
 #include "acquisition/usb/seek_source.h"
 #include "acquisition/usb/usb_connection.h"
 
 namespace todbench {
 namespace {
 
-/// A camera that answered, and its id.
+/// A camera that answered, with its id.
 struct Found {
   SeekOnBus on_bus;
   UsbConnection connection;
@@ -21,7 +23,7 @@ struct Found {
 
 struct Search {
   std::vector<Found> found;
-  std::string unusable;  ///< a clause for each that could not be asked for its serial number
+  std::string unusable;  ///< a clause for each camera whose serial number could not be read
 };
 
 Result<Search> search(libusb_context* context) {
@@ -57,7 +59,8 @@ class UsbBackend final : public CameraBackend {
                          .model = std::string(to_string(camera.on_bus.model)),
                          .serial = camera.serial,
                          .transport = "USB (Seek)",
-                         .address = camera.on_bus.address});
+                         .address = camera.on_bus.address,
+                         .note = placeholder_serial_warning(camera.serial)});
     }
     if (entries.empty() && !seen->unusable.empty()) return fail(ErrorCode::not_found, seen->unusable.substr(2));
     return entries;
@@ -72,8 +75,8 @@ class UsbBackend final : public CameraBackend {
     const auto namesakes =
         std::count_if(seen->found.begin(), seen->found.end(), [&id](const Found& camera) { return camera.id == id; });
     if (namesakes > 1) {
-      return fail(ErrorCode::not_found, std::to_string(namesakes) + " cameras call themselves " + id +
-                                            "; unplug the others: they cannot be told apart");
+      return fail(ErrorCode::not_found, std::to_string(namesakes) + " cameras have the id " + id +
+                                            ". The program cannot distinguish them: connect only one");
     }
     for (auto& camera : seen->found) {
       if (camera.id != id) {
@@ -82,7 +85,7 @@ class UsbBackend final : public CameraBackend {
       }
       return SeekSource::create(*context, camera.on_bus, camera.id, std::move(camera.connection));
     }
-    return fail(ErrorCode::not_found, "no such camera; seen: " + (names.empty() ? "none" : names) + seen->unusable);
+    return fail(ErrorCode::not_found, "no such camera; found: " + (names.empty() ? "none" : names) + seen->unusable);
   }
 };
 

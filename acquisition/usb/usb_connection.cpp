@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/usb/usb_connection.h"
 
 #include <fmt/format.h>
@@ -66,7 +67,7 @@ Result<UsbConnection> UsbConnection::open(const SeekOnBus& camera) {
   libusb_device_handle* raw = nullptr;
   if (const int error = libusb_open(camera.device.get(), &raw); error != 0) {
     std::string message = camera.address + ": " + usb_error_text(error);
-    if (error == LIBUSB_ERROR_ACCESS) message += "; a udev rule is missing, todbench doctor prints it";
+    if (error == LIBUSB_ERROR_ACCESS) message += "; a udev rule is missing. Run todbench doctor, which prints it";
     return fail(ErrorCode::not_found, message);
   }
   libusb_set_auto_detach_kernel_driver(raw, 1);
@@ -86,7 +87,8 @@ Result<std::vector<std::uint8_t>> UsbConnection::control(const SeekTransfer& tra
   const std::string doing = "request " + std::to_string(static_cast<int>(transfer.request));
   if (done < 0) return failed(doing, done);
   if (static_cast<std::size_t>(done) != data.size()) {
-    return fail(ErrorCode::io, doing + ": " + std::to_string(done) + " of " + std::to_string(data.size()) + " bytes");
+    return fail(ErrorCode::io,
+                doing + ": transferred " + std::to_string(done) + " of " + std::to_string(data.size()) + " bytes");
   }
   return data;
 }
@@ -111,13 +113,13 @@ Result<std::string> UsbConnection::serial_number() {
     if (size > 0) return std::string(text.begin(), text.begin() + size);
   }
   const auto chip = control({SeekRequest::read_chip_id, std::vector<std::uint8_t>(12)});
-  if (!chip) return fail("reading the chip's number", chip.error());
-  // A chip that was never given one: every other such chip has the same.
+  if (!chip) return fail("reading the chip number", chip.error());
+  // A chip without a programmed number: every other such chip has the same.
   const auto blank = [&chip](std::uint8_t value) {
     return std::all_of(chip->begin(), chip->end(), [value](std::uint8_t byte) { return byte == value; });
   };
   if (blank(0x00) || blank(0xFF))
-    return fail(ErrorCode::not_found, "the camera has neither a serial nor a chip's number");
+    return fail(ErrorCode::not_found, "the camera has neither a serial number nor a chip number");
   return hexadecimal(*chip);
 }
 

@@ -1,4 +1,5 @@
-// libusb's objects with an owner: a context, the devices that it sees, an opened device with its claimed interface.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Owners of libusb's objects: a context, its devices, an opened device with its claimed interface.
 #pragma once
 
 #include <libusb.h>
@@ -11,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "acquisition/usb/seek_protocol.h"
 
 namespace todbench {
 
-/// Shared by everything that came out of it, because libusb wants it to end last.
+/// Shared by every object created from it, because libusb requires that it is destroyed last.
 using UsbContext = std::shared_ptr<libusb_context>;
 [[nodiscard]] Result<UsbContext> usb_context();
 
@@ -25,7 +26,7 @@ struct UsbDeviceDeleter {
 };
 using UsbDevicePtr = std::unique_ptr<libusb_device, UsbDeviceDeleter>;
 
-/// What libusb says of an error, for people.
+/// Text of a libusb error, for people.
 [[nodiscard]] std::string usb_error_text(int error);
 
 /// A Seek camera on the bus, not opened.
@@ -36,18 +37,19 @@ struct SeekOnBus {
 };
 [[nodiscard]] Result<std::vector<SeekOnBus>> seek_cameras(libusb_context* context);
 
-/// An opened camera with interface 0 claimed. Owns it; gives it back on destruction. One thread at a time.
+/// An opened camera with interface 0 claimed. Owns it and releases it on destruction. One thread at a time.
 class UsbConnection {
  public:
-  /// Errors: `not_found`: access denied (the message says what mends it), busy, or it has gone.
+  /// Error: `not_found`: access denied (the message names the remedy), busy, or unplugged.
   [[nodiscard]] static Result<UsbConnection> open(const SeekOnBus& camera);
 
-  /// One vendor request to the interface. Returns what was read. Errors: `disconnected`, `timeout`, `io`.
+  /// Performs one vendor request to the interface. Returns the bytes read. Errors: `disconnected`, `timeout`, `io`.
   [[nodiscard]] Result<std::vector<std::uint8_t>> control(const SeekTransfer& transfer);
-  /// Reads up to `bytes` from the camera's bulk endpoint; less when it ends its transfer early. Errors as control().
+  /// Reads up to `bytes` from the camera's bulk endpoint; fewer if the camera ends its transfer early. Errors as
+  /// control().
   [[nodiscard]] Result<std::vector<std::uint8_t>> bulk_in(std::size_t bytes, std::chrono::milliseconds timeout);
 
-  /// The serial number in the descriptors, or the chip's in hexadecimal where they have none.
+  /// The serial number in the descriptors, or that of the chip in hexadecimal if they have none.
   [[nodiscard]] Result<std::string> serial_number();
   [[nodiscard]] Result<std::string> firmware();
   [[nodiscard]] libusb_device_handle* handle() const { return handle_.get(); }

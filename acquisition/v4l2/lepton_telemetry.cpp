@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/v4l2/lepton_telemetry.h"
 
 #include <cmath>

@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/v4l2/v4l2_backend.h"
 
 #include "acquisition/core/camera_id.h"
+#include "acquisition/core/serial_number.h"
 #include "acquisition/v4l2/v4l2_source.h"
 #include "acquisition/v4l2/video_listing.h"
 
@@ -23,7 +25,8 @@ class V4l2Backend final : public CameraBackend {
                          .model = node.model,
                          .serial = node.serial,
                          .transport = "V4L2 (" + node.driver + ")",
-                         .address = node.node});
+                         .address = node.node,
+                         .note = placeholder_serial_warning(node.serial)});
     }
     return cameras;
   }
@@ -36,7 +39,7 @@ class V4l2Backend final : public CameraBackend {
       if (node.id == id || camera_id(camera_scheme::v4l2, node.node) == id) return V4l2Source::create(node, options_);
       seen += (seen.empty() ? "" : ", ") + node.id;
     }
-    std::string message = "no such camera; seen: " + (seen.empty() ? "none" : seen);
+    std::string message = "no such camera; found: " + (seen.empty() ? "none" : seen);
     for (const auto& sentence : listing->unreadable) message += "; " + sentence;
     return fail(ErrorCode::not_found, message);
   }

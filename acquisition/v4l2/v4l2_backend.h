@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // UVC and other kernel cameras through Video4Linux.
 #pragma once
 
@@ -9,19 +10,19 @@
 namespace todbench {
 
 struct V4l2Options {
-  /// PFNC name of the counts: "Mono16", "Mono14", "Mono8" ...; empty: the format that carries the most.
+  /// PFNC name of the counts: "Mono16", "Mono14", "Mono8" ...; empty: the format with the most significant bits.
   std::string pixel_format;
   unsigned buffers = 8;  ///< shared with the driver; a receiving thread empties them at once
 };
 
-/// Cameras by identity, "v4l2:VENDOR-MODEL-SERIAL" as the USB device tells it, or by where they are now,
-/// "v4l2:/dev/video2". A camera without serial number is told by its port. Y16, Y14, Y12, Y10 and GREY are counts;
-/// YUYV is measured only of cameras that send temperatures below their picture (256 x 384 and the like).
+/// Lists and opens cameras by identity, "v4l2:VENDOR-MODEL-SERIAL" from the USB device, or by their present node,
+/// "v4l2:/dev/video2". A camera without serial number is identified by its port. Y16, Y14, Y12, Y10 and GREY are
+/// counts; YUYV is measured only if the camera sends temperatures below its picture (256 x 384 and the like).
 ///
-/// Features beside the controls of the driver: PixelFormat, Width, Height, AcquisitionFrameRate,
-/// DeviceVendorName, DeviceModelName, DeviceSerialNumber, and TemperatureLinearScale and TemperatureLinearOffset:
-/// kelvin per count and kelvin at count 0. Setting the scale states what the camera does not tell; it never changes the
-/// camera.
+/// Features in addition to the controls of the driver: PixelFormat, Width, Height, AcquisitionFrameRate,
+/// DeviceVendorName, DeviceModelName, DeviceSerialNumber, and TemperatureLinearScale and TemperatureLinearOffset
+/// (kelvin per count, kelvin at count 0). Setting the scale states a value that the camera does not report; it never
+/// changes the camera.
 [[nodiscard]] std::unique_ptr<CameraBackend> v4l2_backend(V4l2Options options = {});
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/v4l2/v4l2_source.h"
 
 #include <poll.h>
@@ -8,20 +9,36 @@
 #include <array>
 #include <utility>
 
+#include "acquisition/base/host_clock.h"
 #include "acquisition/core/control_text.h"
-#include "acquisition/core/host_clock.h"
+#include "acquisition/core/serial_number.h"
 
 namespace todbench {
 namespace {
 
-/// How often a waiting reader looks by itself, for a driver that wakes nobody when its device has gone.
+/// Polling interval of a waiting reader, for drivers that do not wake it when their device is gone.
 constexpr std::chrono::milliseconds longest_nap{250};
 /// A Lepton that corrects itself at the start of a stream is silent for up to 3 s.
 constexpr std::chrono::seconds patience_with_first_frame{5};
-/// A correction that interrupts the stream is over by then.
+/// A correction that interrupts the stream has ended by then.
 constexpr std::int64_t longest_correction_ns = 5'000'000'000;
 /// Frames between the receiving thread and the reader: 5 s of a 50 Hz camera, 37 MiB of 320 x 240.
 constexpr std::size_t most_arrivals = 256;
+
+/// Tiny1 modules measure up to 150 degrees Celsius in their high-gain mode (data sheet). This limit is 180 degrees in
+/// counts of 1/64 K; if more than a hundredth of the pixels exceed it, they are not single bad pixels.
+constexpr double most_high_gain_counts = 64 * (180 + 273.15);
+constexpr double most_share_above = 0.01;
+
+bool beyond_high_gain(const cv::Mat1w& counts) {
+  const auto above = static_cast<double>(cv::countNonZero(counts > most_high_gain_counts));
+  return above > most_share_above * static_cast<double>(counts.total());
+}
+
+std::shared_ptr<const RadiometricScale> no_scale() {
+  static const auto none = std::make_shared<const RadiometricScale>();
+  return none;
+}
 
 std::string kernel_version(std::uint32_t version) {
   return std::to_string(version >> 16U & 0xFFU) + "." + std::to_string(version >> 8U & 0xFFU) + "." +
@@ -30,7 +47,7 @@ std::string kernel_version(std::uint32_t version) {
 
 }  // namespace
 
-V4l2Source::V4l2Source(VideoNode node, V4l2Options options, VideoDevice device, VideoWatch watch, FileDescriptor wake)
+V4l2Source::V4l2Source(VideoNode node, V4l2Options options, VideoDevice device, VideoWatch watch, Descriptor wake)
     : node_(std::move(node)),
       options_(std::move(options)),
       watch_(std::move(watch)),
@@ -42,29 +59,43 @@ V4l2Source::~V4l2Source() {
 }
 
 Result<std::unique_ptr<FrameSource>> V4l2Source::create(const VideoNode& node, const V4l2Options& options) {
-  // The watch begins before the node is opened, so that no removal falls between.
+  // The watch begins before the node is opened, so that no removal is missed.
   auto watch = VideoWatch::create();
   if (!watch) return tl::unexpected(watch.error());
   auto device = VideoDevice::open(node.node);
   if (!device) return tl::unexpected(device.error());
-  FileDescriptor wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-  if (!wake.valid()) return fail(ErrorCode::io, "no event descriptor can be made");
+  Descriptor wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (!wake.is_open()) return fail(ErrorCode::io, "the event descriptor cannot be created");
   auto source = std::unique_ptr<V4l2Source>(
       new V4l2Source(node, options, std::move(*device), std::move(*watch), std::move(wake)));
-  if (const auto set = source->take_layout(options.pixel_format); !set) return tl::unexpected(set.error());
+  if (const auto set = source->take_layout({.pixel_format = options.pixel_format}); !set)
+    return tl::unexpected(set.error());
   source->controls_ = list_controls(source->device_);
   source->refresh();
   if (const auto learnt = source->learn_scale(); !learnt) return tl::unexpected(learnt.error());
   return source;
 }
 
-Result<void> V4l2Source::take_layout(const std::string& wanted) {
-  auto layout = choose_layout(device_.modes(), node_.family(), wanted);
+Result<void> V4l2Source::take_layout(const WantedLayout& wanted) {
+  auto layout = choose_layout(device_.modes(wanted.frame), node_.family(), wanted);
   if (!layout) return tl::unexpected(layout.error());
   layout = device_.set_format(*layout);
   if (!layout) return tl::unexpected(layout.error());
   layout_ = *layout;
+  wanted_ = wanted;
+  telemetry_came_ = false;
   return {};
+}
+
+Result<void> V4l2Source::set_layout(const std::string& feature, const std::string& value) {
+  WantedLayout wanted = wanted_;
+  if (feature == "PixelFormat") {
+    wanted.pixel_format = value;
+  } else {
+    wanted.frame = frame_size_of(value);
+    if (!wanted.frame) return fail(ErrorCode::not_found, "WIDTHxHEIGHT in pixels, for example 640x512");
+  }
+  return take_layout(wanted);
 }
 
 void V4l2Source::refresh() {
@@ -81,7 +112,7 @@ void V4l2Source::refresh() {
   info_.frame_rate_hz = device_.frame_rate_hz();
   info_.settings = {{"VideoFormat", fourcc_text(layout_.mode.fourcc) + " " + std::to_string(layout_.mode.width) + "x" +
                                         std::to_string(layout_.mode.height)},
-                    {"TelemetryRows", std::to_string(layout_.telemetry_rows)},
+                    {"TelemetryRows", std::to_string(layout_.telemetry_rows + layout_.foreign_rows)},
                     {"DriverVersion", kernel_version(device_.capability().version)}};
   for (const auto& control : controls_) {
     if (!control.readable) continue;
@@ -89,13 +120,26 @@ void V4l2Source::refresh() {
   }
   info_.warnings.clear();
   if (node_.serial.empty()) {
-    info_.warnings.emplace_back("The camera has no serial number: it is known by the port it is plugged into.");
+    info_.warnings.emplace_back("The camera has no serial number. The program identifies it by its USB port.");
   }
+  if (auto warning = placeholder_serial_warning(node_.serial); !warning.empty())
+    info_.warnings.push_back(std::move(warning));
   if (layout_.significant_bits == 8) {
-    info_.warnings.emplace_back("The camera sends 8 bits: its steps may be coarser than its noise.");
+    info_.warnings.emplace_back("The camera sends 8 bits. One count may be larger than its noise.");
+  }
+  if (layout_.kelvin_per_count > 0 && !stated_kelvin_per_count_) {
+    info_.warnings.emplace_back(
+        "The camera does not report its gain mode. The program assumes the high-gain mode of this family, with 1/64 K "
+        "per count. If the camera is in another mode, state TemperatureLinearScale in [camera.settings]. Counts above "
+        "180 degrees Celsius, the limit of the high-gain mode, have no temperature.");
+  }
+  if (node_.family() == VideoFamily::boson && layout_.kelvin_per_count == 0 && !stated_kelvin_per_count_) {
+    info_.warnings.emplace_back(
+        "A Boson reports neither its scale nor its gain mode over USB video. Its counts have no temperature until "
+        "TemperatureLinearScale is stated in [camera.settings].");
   }
   const double kelvin_per_count = stated_kelvin_per_count_.value_or(layout_.kelvin_per_count);
-  // What telemetry told stays true until it tells otherwise.
+  // A scale from telemetry stays valid until telemetry changes it.
   RadiometricScale scale = layout_.telemetry_rows > 0 ? info_.scale : RadiometricScale();
   if (kelvin_per_count > 0) {
     scale =
@@ -114,7 +158,7 @@ Result<void> V4l2Source::start() {
   if (is_lost()) return tl::unexpected(disconnected());
   if (receiver_.joinable()) return {};
   if (!device_.check_format(layout_)) {
-    // Another program may have used the camera since; its format is set again.
+    // Another program may have used the camera since then; its format is set again.
     if (const auto set = device_.set_format(layout_); !set) return fail("starting " + info_.id, noted(set.error()));
   }
   std::uint64_t stale = 0;
@@ -157,7 +201,7 @@ void V4l2Source::receive(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const auto taken = device_.take([this](const VideoBuffer& buffer) { keep(buffer); });
     if (!taken) {
-      // Every failure of a stream ends it: only opening the camera again mends it.
+      // Every failure of a stream ends it: only reopening the camera helps.
       mark_lost();
       return;
     }
@@ -196,12 +240,13 @@ void V4l2Source::keep(const VideoBuffer& buffer) {
     frame.counts = cv::Mat1w::zeros(layout_.picture.size());
     frame.status = FrameStatus::wrong_size;
   }
+  if (picture && picture->begins_in_the_middle) frame.status = FrameStatus::incomplete;
   if (buffer.oversized) frame.status = FrameStatus::wrong_size;
-  // UVC marks a frame with missing packets so.
+  // UVC marks frames with missing packets.
   if (buffer.damaged) frame.status = FrameStatus::incomplete;
   {
     const std::lock_guard lock(inbox_.mutex);
-    // A reader that is this far behind loses the newest, which shows as a gap.
+    // A slow reader loses the newest frames, which shows as a gap.
     if (inbox_.arrivals.size() < most_arrivals) inbox_.arrivals.push_back(std::move(arrival));
   }
   inbox_.changed.notify_all();
@@ -217,6 +262,7 @@ std::optional<Frame> V4l2Source::finished(Arrival arrival) {
       return std::nullopt;
     }
     last_counter_ = telemetry.frame_counter;
+    telemetry_came_ = true;
     frame.device_time_ns = std::int64_t{telemetry.time_ms} * 1'000'000;
     const bool corrects = telemetry.ffc_state() == FfcState::imminent || telemetry.ffc_state() == FfcState::in_progress;
     frame.correction = corrects ? CorrectionState::running : CorrectionState::idle;
@@ -232,7 +278,8 @@ std::optional<Frame> V4l2Source::finished(Arrival arrival) {
                       .may_pause = corrects || corrected || frame.host_time_ns < may_pause_until_ns_});
   frame.sequence = place.sequence;
   frame.numbering = place.numbering;
-  frame.scale = scale_;
+  const bool assumed = layout_.kelvin_per_count > 0 && !stated_kelvin_per_count_;
+  frame.scale = assumed && beyond_high_gain(frame.counts) ? no_scale() : scale_;
   return std::move(frame);
 }
 
@@ -245,9 +292,18 @@ RadiometricScale V4l2Source::scale_of(const LeptonTelemetry& telemetry) const {
 Result<void> V4l2Source::learn_scale() {
   if (layout_.telemetry_rows == 0) return {};
   if (auto started = start(); !started) return started;
-  const auto frame = next(patience_with_first_frame);
+  const auto deadline = Clock::now() + patience_with_first_frame;
+  Result<Frame> frame;
+  do {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+    frame = next(std::max(left, std::chrono::milliseconds(1)));
+  } while (frame && !telemetry_came_ && Clock::now() < deadline);
   stop();
   if (!frame) return fail("reading the telemetry", frame.error());
+  if (!telemetry_came_) {
+    info_.warnings.emplace_back(
+        "The rows below the picture contain no telemetry, so the scale and the corrections of the camera are unknown.");
+  }
   return {};
 }
 
@@ -290,13 +346,14 @@ Error V4l2Source::noted(const Error& error) {
 }
 
 Error V4l2Source::disconnected() const {
-  return {ErrorCode::disconnected, "camera " + info_.id + " has gone"};
+  return {ErrorCode::disconnected, "camera " + info_.id + " is no longer connected"};
 }
 
 Result<std::string> V4l2Source::get(const std::string& feature) {
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
   if (feature == "PixelFormat") return info_.pixel_format;
+  if (feature == frame_size_feature) return frame_size_text({layout_.mode.width, layout_.mode.height});
   if (feature == "Width") return std::to_string(info_.width);
   if (feature == "Height") return std::to_string(info_.height);
   if (feature == "DeviceVendorName") return info_.vendor;
@@ -323,18 +380,21 @@ Result<void> V4l2Source::set(const std::string& feature, const std::string& valu
     const bool is_scale = feature == "TemperatureLinearScale";
     if (!kelvin || (is_scale && !(*kelvin > 0))) return refused(is_scale ? "kelvin per count, above 0" : "kelvin");
     (is_scale ? stated_kelvin_per_count_.emplace() : stated_offset_k_) = *kelvin;
-  } else if (feature == "PixelFormat" || feature == "AcquisitionFrameRate") {
+  } else if (feature == "PixelFormat" || feature == frame_size_feature || feature == "AcquisitionFrameRate") {
     if (receiver_.joinable())
       return fail(ErrorCode::invalid_input, feature + " cannot change while the camera streams");
     const auto rate = control_number(value);
-    if (feature == "PixelFormat") {
-      done = take_layout(value);
+    if (feature != "AcquisitionFrameRate") {
+      done = set_layout(feature, value);
       if (!done && done.error().code == ErrorCode::not_found) return refused(done.error().message);
     } else if (!rate) {
       return refused("frames per second");
     } else {
       done = device_.set_frame_rate(*rate);
     }
+  } else if (feature == nuc_command_feature) {
+    if (find_control(controls_, value) == nullptr) return refused("the name of a control of the camera");
+    nuc_command_ = value;
   } else if (const VideoControl* known = find_control(controls_, feature)) {
     done = set_control(device_, *known, value);
   } else {
@@ -348,9 +408,12 @@ Result<void> V4l2Source::set(const std::string& feature, const std::string& valu
 Result<void> V4l2Source::correct_nonuniformity() {
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
-  const VideoControl* button = nonuniformity_button(controls_);
+  const VideoControl* button =
+      nuc_command_.empty() ? nonuniformity_button(controls_) : find_control(controls_, nuc_command_);
   if (button == nullptr) {
-    return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no control that corrects its non-uniformity");
+    return fail(ErrorCode::invalid_input, "camera " + info_.id +
+                                              " has no control with a known name for the non-uniformity correction. "
+                                              "State the name in the plan: [camera] nuc_command");
   }
   may_pause_until_ns_ = monotonic_ns() + longest_correction_ns;
   if (const auto done = set_control(device_, *button, "1"); !done) return tl::unexpected(noted(done.error()));

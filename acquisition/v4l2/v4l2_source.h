@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One open camera as a FrameSource. Private to the V4L2 back end.
 #pragma once
 
@@ -21,7 +22,7 @@ namespace todbench {
 
 class V4l2Source final : public FrameSource {
  public:
-  /// Sets the format and reads back what the camera became. Errors: `not_found`.
+  /// Sets the format and reads the result back. Errors: `not_found`.
   [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(const VideoNode& node, const V4l2Options& options);
   ~V4l2Source() override;
 
@@ -36,14 +37,14 @@ class V4l2Source final : public FrameSource {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// A frame as the receiving thread read it.
+  /// A frame from the receiving thread.
   struct Arrival {
     Frame frame;  ///< without sequence and scale
     std::uint32_t sequence = 0;
     std::optional<LeptonTelemetry> telemetry;
   };
 
-  /// What the receiving thread and the reader share.
+  /// State shared by the receiving thread and the reader.
   struct Inbox {
     std::mutex mutex;
     std::condition_variable changed;
@@ -52,48 +53,52 @@ class V4l2Source final : public FrameSource {
     bool lost = false;
   };
 
-  V4l2Source(VideoNode node, V4l2Options options, VideoDevice device, VideoWatch watch, FileDescriptor wake);
+  V4l2Source(VideoNode node, V4l2Options options, VideoDevice device, VideoWatch watch, Descriptor wake);
 
-  [[nodiscard]] Result<void> take_layout(const std::string& wanted);
+  [[nodiscard]] Result<void> take_layout(const WantedLayout& wanted);
+  [[nodiscard]] Result<void> set_layout(const std::string& feature, const std::string& value);
   void refresh();
   void set_scale(const RadiometricScale& scale);
   [[nodiscard]] RadiometricScale scale_of(const LeptonTelemetry& telemetry) const;
-  /// Reads one frame of a camera that tells its scale only there.
+  /// Reads frames of a camera that reports its scale only in telemetry, until one does. The first frames may be empty.
   [[nodiscard]] Result<void> learn_scale();
 
-  /// The receiving thread: takes every frame at once, so that its host time is that of its arrival and the driver never
+  /// The receiving thread: takes every frame at once, so that its host time is the time of arrival and the driver never
   /// lacks a buffer.
   void receive(const std::stop_token& stop);
   void keep(const VideoBuffer& buffer);
   [[nodiscard]] bool device_has_gone();
-  /// Sequence and scale; nothing when the camera sent the same frame twice.
+  /// Fills in sequence and scale; empty if the camera sent the same frame twice.
   [[nodiscard]] std::optional<Frame> finished(Arrival arrival);
 
   [[nodiscard]] bool is_lost() const;
   void mark_lost();
   [[nodiscard]] Error disconnected() const;
-  /// Passes an error on, and remembers a loss.
+  /// Passes an error on and records a loss.
   [[nodiscard]] Error noted(const Error& error);
 
   VideoNode node_;
   V4l2Options options_;
-  VideoWatch watch_;     ///< of the receiving thread
-  FileDescriptor wake_;  ///< eventfd that ends its poll()
+  VideoWatch watch_;  ///< used by the receiving thread
+  Descriptor wake_;   ///< eventfd that ends poll() of the receiving thread
   SourceInfo info_;
   std::shared_ptr<const RadiometricScale> scale_;
   VideoLayout layout_;
-  std::optional<double> stated_kelvin_per_count_;  ///< by the user, for cameras that do not say
+  WantedLayout wanted_;
+  std::string nuc_command_;  ///< control that corrects the non-uniformity; empty: found by its name
+  std::optional<double> stated_kelvin_per_count_;  ///< by the user, for cameras that do not report it
   double stated_offset_k_ = 0;
 
-  // Of the reader, over one run.
+  // Members of the reader, for one run.
   FrameSequence sequence_{FrameNumberKind::wrap32, 0};
-  bool corrected_last_ = false;          ///< the frame before was exposed during a correction
+  bool corrected_last_ = false;          ///< the preceding frame was exposed during a correction
   std::int64_t may_pause_until_ns_ = 0;  ///< host time until which a commanded correction may interrupt the stream
-  std::uint32_t repeated_ = 0;           ///< frames that the camera sent twice, taken out of the sequence
+  std::uint32_t repeated_ = 0;           ///< frames that the camera sent twice, excluded from the sequence
   std::optional<std::uint32_t> last_counter_;
+  bool telemetry_came_ = false;  ///< since the layout was set
 
-  std::mutex control_;  ///< one of start, stop, get, set at a time; taken before inbox_.mutex
-  VideoDevice device_;  ///< of the receiving thread while it runs, except its controls
+  std::mutex control_;  ///< serialises start, stop, get and set; locked before inbox_.mutex
+  VideoDevice device_;  ///< used by the receiving thread while it runs, except for controls
   std::vector<VideoControl> controls_;
   mutable Inbox inbox_;
   std::jthread receiver_;

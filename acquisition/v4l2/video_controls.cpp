@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/v4l2/video_controls.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-/// A driver whose enumeration does not end is cut here.
+/// Limit for a driver whose enumeration does not end.
 constexpr int most_controls = 1024;
 constexpr std::int64_t most_entries = 256;
 
@@ -45,7 +46,7 @@ std::map<std::int64_t, std::string> menu_of(const VideoDevice& device, const Vid
     entry.index = static_cast<__u32>(value);
     if (device.call(VIDIOC_QUERYMENU, &entry) != 0) continue;
     std::int64_t number = 0;
-    std::memcpy(&number, entry.name, sizeof number);  // name and value share their place
+    std::memcpy(&number, entry.name, sizeof number);  // name and value share their memory
     menu[value] = control.type == V4L2_CTRL_TYPE_MENU ? text_of(entry.name) : std::to_string(number);
   }
   return menu;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Controls of a V4L2 device by name, values as text. Private to the V4L2 back end.
 #pragma once
 
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "acquisition/v4l2/video_device.h"
 
 namespace todbench {
@@ -20,17 +21,18 @@ struct VideoControl {
   std::map<std::int64_t, std::string> menu;  ///< value -> entry, of menus
 };
 
-/// Integers, booleans, menus and buttons of a device; other kinds are passed over.
+/// Lists integers, booleans, menus and buttons of a device; other kinds are skipped.
 [[nodiscard]] std::vector<VideoControl> list_controls(const VideoDevice& device);
 [[nodiscard]] const VideoControl* find_control(const std::vector<VideoControl>& controls, const std::string& name);
 
-/// Menus read as their entry. `invalid_input`: not readable.
+/// Returns the value; a menu as its entry. Error: `invalid_input` (not readable).
 [[nodiscard]] Result<std::string> get_control(const VideoDevice& device, const VideoControl& control);
-/// Menus take an entry or its number, buttons anything. `invalid_input`: not a value of this control, or refused.
+/// Sets the value; a menu accepts an entry or its number, a button anything. Error: `invalid_input` (not a value of
+/// this control, or refused).
 [[nodiscard]] Result<void> set_control(const VideoDevice& device, const VideoControl& control,
                                        const std::string& value);
 
-/// The button that corrects the non-uniformity: a name with NUC, FFC, shutter, flat field or calibration in it.
+/// The button that corrects the non-uniformity: its name contains NUC, FFC, shutter, flat field or calibration.
 [[nodiscard]] const VideoControl* nonuniformity_button(const std::vector<VideoControl>& controls);
 
 }  // namespace todbench

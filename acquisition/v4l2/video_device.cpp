@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/v4l2/video_device.h"
 
 #include <fcntl.h>
@@ -15,9 +16,9 @@ namespace todbench {
 namespace {
 
 constexpr std::uint32_t capture = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-/// Enumerations of a hostile or broken driver end here.
+/// Limit for the enumerations of a hostile or broken driver.
 constexpr std::uint32_t most_formats = 256;
-/// What no camera has; a driver makes its largest of it.
+/// Larger than any camera; a driver replaces it by its largest size.
 constexpr int largest_tried = 16384;
 /// More buffers than any driver grants.
 constexpr std::uint32_t most_buffers = 1024;
@@ -45,7 +46,7 @@ std::string name_of_errno(int error_number) {
   return std::strerror(error_number);
 }
 
-/// 32 fractional bits of a rate are too many for drivers; thousandths keep 29.97 Hz.
+/// Drivers cannot handle 32 fractional bits of a rate; thousandths keep 29.97 Hz.
 v4l2_fract interval_of(double frame_rate_hz) {
   return {.numerator = 1000, .denominator = static_cast<__u32>(std::lround(1000 * frame_rate_hz))};
 }
@@ -60,18 +61,9 @@ v4l2_buffer mapped_buffer(std::uint32_t index) {
 
 }  // namespace
 
-FileDescriptor::~FileDescriptor() {
-  if (fd_ >= 0) ::close(fd_);
-}
-FileDescriptor::FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  return *this;
-}
-
 Error video_error(int error_number, const std::string& doing, ErrorCode otherwise) {
   if (error_number == ENODEV || error_number == ENXIO || error_number == ESHUTDOWN) {
-    return {ErrorCode::disconnected, doing + ": the device has gone"};
+    return {ErrorCode::disconnected, doing + ": the device is no longer connected"};
   }
   if (error_number == EBUSY) return {otherwise, doing + ": busy: another program uses the camera"};
   return {otherwise, doing + ": " + name_of_errno(error_number)};
@@ -83,11 +75,11 @@ VideoDevice::Mapping::~Mapping() {
 VideoDevice::Mapping::Mapping(Mapping&& other) noexcept
     : data_(std::exchange(other.data_, nullptr)), length_(other.length_) {}
 
-VideoDevice::VideoDevice(FileDescriptor fd, VideoCapability capability)
+VideoDevice::VideoDevice(Descriptor fd, VideoCapability capability)
     : fd_(std::move(fd)), capability_(std::move(capability)) {}
 
 VideoDevice::~VideoDevice() {
-  if (fd_.valid()) stop();
+  if (fd_.is_open()) stop();
 }
 
 int VideoDevice::call(unsigned long request, void* argument) const {
@@ -98,18 +90,19 @@ int VideoDevice::call(unsigned long request, void* argument) const {
 }
 
 Result<VideoDevice> VideoDevice::open(const std::string& node) {
-  FileDescriptor fd(::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
-  if (!fd.valid()) {
+  Descriptor fd(::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
+  if (!fd.is_open()) {
     const int reason = errno;
-    const std::string mend = reason == EACCES || reason == EPERM
-                                 ? "; add yourself to the group 'video' or install the udev rule of docs/cameras.md"
-                                 : "";
+    const std::string mend =
+        reason == EACCES || reason == EPERM
+            ? "; add yourself to the group 'video' or install the udev rule of docs/guide/connect-a-camera.md"
+            : "";
     return fail(ErrorCode::not_found, "opening " + node + ": " + name_of_errno(reason) + mend);
   }
   VideoDevice device(std::move(fd), {});
   v4l2_capability said{};
   if (const int error = device.call(VIDIOC_QUERYCAP, &said); error != 0) {
-    return fail(ErrorCode::not_found, node + " is no video device: " + name_of_errno(error));
+    return fail(ErrorCode::not_found, node + " is not a video device: " + name_of_errno(error));
   }
   const std::uint32_t can = (said.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? said.device_caps : said.capabilities;
   device.capability_ = {.driver = text_of(said.driver),
@@ -166,7 +159,7 @@ std::vector<VideoMode> VideoDevice::tried_sizes(std::uint32_t fourcc) const {
   return modes;
 }
 
-std::vector<VideoMode> VideoDevice::modes() const {
+std::vector<VideoMode> VideoDevice::modes(const std::optional<cv::Size>& also) const {
   std::vector<VideoMode> modes;
   for (std::uint32_t f = 0; f < most_formats; ++f) {
     v4l2_fmtdesc format{};
@@ -175,6 +168,10 @@ std::vector<VideoMode> VideoDevice::modes() const {
     if (call(VIDIOC_ENUM_FMT, &format) != 0) break;
     auto sizes = listed_sizes(format.pixelformat);
     if (sizes.empty()) sizes = tried_sizes(format.pixelformat);
+    if (also) {
+      const auto mode = tried({format.pixelformat, also->width, also->height});
+      if (mode && std::find(sizes.begin(), sizes.end(), *mode) == sizes.end()) sizes.push_back(*mode);
+    }
     modes.insert(modes.end(), sizes.begin(), sizes.end());
   }
   return modes;
@@ -195,13 +192,13 @@ Result<VideoLayout> VideoDevice::set_format(VideoLayout layout) {
   const v4l2_pix_format& pix = format.fmt.pix;
   if (pix.pixelformat != layout.mode.fourcc || pix.width != static_cast<__u32>(layout.mode.width) ||
       pix.height != static_cast<__u32>(layout.mode.height)) {
-    return fail(ErrorCode::not_found, doing + ": the camera made " + fourcc_text(pix.pixelformat) + " " +
-                                          std::to_string(pix.width) + "x" + std::to_string(pix.height) + " of it");
+    return fail(ErrorCode::not_found, doing + ": the camera set " + fourcc_text(pix.pixelformat) + " " +
+                                          std::to_string(pix.width) + "x" + std::to_string(pix.height) + " instead");
   }
   // Some drivers leave bytesperline at 0: rows without padding.
   layout.row_bytes = std::max<std::size_t>(layout.row_bytes, pix.bytesperline);
   image_bytes_ = pix.sizeimage;
-  // A driver that moves whole pages says so of every frame. What a USB camera sends is all picture.
+  // A driver that transfers whole pages states this size for every frame. Frames of a USB camera contain no filler.
   const std::size_t rows = layout.row_bytes * static_cast<std::size_t>(layout.mode.height);
   const bool whole_pages = image_bytes_ % page_bytes == 0 && image_bytes_ > rows && image_bytes_ - rows < page_bytes;
   layout.filler_bytes = whole_pages && capability_.driver != "uvcvideo" ? image_bytes_ - rows : 0;
@@ -233,7 +230,8 @@ double VideoDevice::frame_rate_hz() const {
 
 Result<void> VideoDevice::set_frame_rate(double frame_rate_hz) {
   if (!(frame_rate_hz >= 0.1 && frame_rate_hz <= 10000)) {
-    return fail(ErrorCode::invalid_input, "a frame rate of " + std::to_string(frame_rate_hz) + " Hz");
+    return fail(ErrorCode::invalid_input,
+                "a frame rate of " + std::to_string(frame_rate_hz) + " Hz, expected 0.1 ... 10000 Hz");
   }
   v4l2_streamparm parameters{};
   parameters.type = capture;
@@ -247,7 +245,7 @@ Result<void> VideoDevice::set_frame_rate(double frame_rate_hz) {
 Result<void> VideoDevice::map_and_queue(unsigned index) {
   v4l2_buffer buffer = mapped_buffer(index);
   if (const int error = call(VIDIOC_QUERYBUF, &buffer); error != 0) {
-    return tl::unexpected(video_error(error, "asking for a buffer", ErrorCode::not_found));
+    return tl::unexpected(video_error(error, "querying a buffer", ErrorCode::not_found));
   }
   void* data = ::mmap(nullptr, buffer.length, PROT_READ | PROT_WRITE, MAP_SHARED, fd_.get(), buffer.m.offset);
   if (data == MAP_FAILED) {
@@ -256,7 +254,7 @@ Result<void> VideoDevice::map_and_queue(unsigned index) {
   buffers_.emplace_back(data, buffer.length);
   buffer = mapped_buffer(index);
   if (const int error = call(VIDIOC_QBUF, &buffer); error != 0) {
-    return tl::unexpected(video_error(error, "queueing a buffer", ErrorCode::not_found));
+    return tl::unexpected(video_error(error, "enqueuing a buffer", ErrorCode::not_found));
   }
   return {};
 }
@@ -273,11 +271,13 @@ Result<void> VideoDevice::start(unsigned buffers) {
   requested_ = true;
   Result<void> done;
   if (request.count > most_buffers) {
-    done = fail(ErrorCode::not_found, "the driver grants " + std::to_string(request.count) + " buffers");
+    done = fail(ErrorCode::not_found, "the driver grants " + std::to_string(request.count) + " buffers, at most " +
+                                          std::to_string(most_buffers) + " are supported");
   }
   for (unsigned i = 0; i < request.count && done; ++i) done = map_and_queue(i);
   if (done && request.count < 2) {
-    done = fail(ErrorCode::not_found, "the driver grants " + std::to_string(request.count) + " buffers, 2 are needed");
+    done = fail(ErrorCode::not_found,
+                "the driver grants " + std::to_string(request.count) + " buffers, at least 2 are needed");
   }
   if (done) {
     int type = capture;
@@ -305,7 +305,7 @@ Result<bool> VideoDevice::take(const std::function<void(const VideoBuffer&)>& us
   v4l2_buffer buffer = mapped_buffer(0);
   if (const int error = call(VIDIOC_DQBUF, &buffer); error != 0) {
     if (error == EAGAIN) return false;
-    return tl::unexpected(video_error(error, "taking a buffer", ErrorCode::disconnected));
+    return tl::unexpected(video_error(error, "dequeuing a buffer", ErrorCode::disconnected));
   }
   if (buffer.index >= buffers_.size()) {
     return fail(ErrorCode::disconnected, "the driver returned buffer " + std::to_string(buffer.index) + " of " +
@@ -320,7 +320,7 @@ Result<bool> VideoDevice::take(const std::function<void(const VideoBuffer&)>& us
        .oversized = stated > bytes.size() || (image_bytes_ > 0 && stated > image_bytes_)});
   v4l2_buffer again = mapped_buffer(buffer.index);
   if (const int error = call(VIDIOC_QBUF, &again); error != 0) {
-    return tl::unexpected(video_error(error, "queueing a buffer", ErrorCode::disconnected));
+    return tl::unexpected(video_error(error, "enqueuing a buffer", ErrorCode::disconnected));
   }
   return true;
 }

@@ -1,5 +1,6 @@
-// What the rows of a video frame mean: all of it a picture, a picture for people above temperatures, or a picture with
-// telemetry below. Pure functions over untrusted bytes.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Meaning of the rows of a video frame: all picture, a display picture above temperatures, or a picture with telemetry
+// below. Pure functions over untrusted bytes.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +11,21 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "acquisition/v4l2/lepton_telemetry.h"
 
 namespace todbench {
 
-/// Families of cameras whose rows have a meaning that the four-character code does not tell.
+/// Families of cameras whose rows have a meaning that the four-character code does not state.
 enum class VideoFamily {
   plain,             ///< every row is picture
   temperature_rows,  ///< InfiRay Tiny1 class: YUYV whose lower half is temperature, 1/64 K per count
-  lepton,            ///< PureThermal: Y16 with telemetry rows below the picture when that size is chosen
+  lepton,            ///< PureThermal: Y16 with telemetry rows below the picture if that size is chosen
+  boson,             ///< FLIR Boson: Y16 of 640x512 or 320x256, telemetry rows above or below if they are on
 };
 
-/// The family of a USB camera: PureThermal 1e4e:0100; Tiny1 class 0bda:5830 and 0bda:5840 (InfiRay P2 Pro, Topdon
-/// TC001).
+/// Returns the family of a USB camera: PureThermal 1e4e:0100; Boson 09cb:4007; Tiny1 class 0bda:5830 and 0bda:5840
+/// (InfiRay P2 Pro, Topdon TC001).
 [[nodiscard]] VideoFamily video_family(std::uint16_t usb_vendor, std::uint16_t usb_product);
 
 /// A format and size that a camera offers.
@@ -33,32 +35,47 @@ struct VideoMode {
   bool operator==(const VideoMode&) const = default;
 };
 
-/// How a frame of a mode is to be read.
+/// Interpretation of the frames of a mode.
 struct VideoLayout {
   VideoMode mode;
-  std::size_t row_bytes = 0;     ///< from row to row, as the driver says
-  std::size_t filler_bytes = 0;  ///< behind the last row, of a driver that moves whole pages
+  std::size_t row_bytes = 0;     ///< distance between rows, as the driver reports
+  std::size_t filler_bytes = 0;  ///< after the last row, of a driver that transfers whole pages
   std::string pixel_format;      ///< PFNC name of the counts
   int significant_bits = 16;
-  cv::Rect picture;             ///< rows that hold counts
-  int telemetry_rows = 0;       ///< below the picture
-  double kelvin_per_count = 0;  ///< 0: the family does not say
+  cv::Rect picture;        ///< rows that hold counts
+  int telemetry_rows = 0;  ///< below the picture, of a Lepton
+  /// Rows without picture, all above or all below it; `picture` then begins at the first row that may be either. Their
+  /// position is found in each frame: they differ more from their neighbours than rows of the picture.
+  int foreign_rows = 0;
+  double kelvin_per_count = 0;  ///< 0: the family does not state it
 };
 
-/// The mode that carries the most: 16 bits before 14, 12, 10 and 8; with telemetry rows before without; the largest
-/// picture. `wanted`: a PFNC name ("Mono16", "Mono14", "Mono8") to choose among; empty: the best. Errors: `not_found`
-/// with what the camera offers: YUYV of a camera without temperature rows is a picture for people, nothing to measure.
-[[nodiscard]] Result<VideoLayout> choose_layout(const std::vector<VideoMode>& modes, VideoFamily family,
-                                                const std::string& wanted);
+/// Most additional rows that count as telemetry if a mode is higher than another one of the same camera and width:
+/// telemetry of the Boson and the Tau takes up to 4.
+inline constexpr int most_foreign_rows = 4;
 
-/// A frame as it was read.
+/// The user's choice of a mode; empty members are chosen automatically.
+struct WantedLayout {
+  std::string pixel_format{};       ///< PFNC name: "Mono16", "Mono14", "Mono8"
+  std::optional<cv::Size> frame{};  ///< size of the mode, telemetry rows included
+};
+
+/// Chooses the best mode: 16 bits before 14, 12, 10 and 8; then the largest picture; a Lepton with telemetry rows
+/// before without, others without before with. If a mode has up to four rows more than another one of the same format
+/// and width, these rows are telemetry. Error: `not_found` with the camera's modes; YUYV of a camera without
+/// temperature rows is a display picture and cannot be measured.
+[[nodiscard]] Result<VideoLayout> choose_layout(const std::vector<VideoMode>& modes, VideoFamily family,
+                                                const WantedLayout& wanted);
+
+/// A decoded frame.
 struct VideoPicture {
   cv::Mat1w counts;
+  bool begins_in_the_middle = false;  ///< of a frame with temperature rows: its two halves are displaced
   std::optional<LeptonTelemetry> telemetry;
 };
 
-/// Counts and telemetry of one frame. `invalid_input` when there are not as many bytes as the layout says: with more,
-/// the rows are longer than the driver states, or there are others than it states, and every pixel would be in doubt.
+/// Decodes counts and telemetry of one frame. Error: `invalid_input` if the number of bytes differs from the layout.
+/// With more bytes the rows are longer than the driver states, or other rows exist, and every pixel is in doubt.
 [[nodiscard]] Result<VideoPicture> read_video_frame(std::span<const std::uint8_t> bytes, const VideoLayout& layout);
 
 /// "Y16 ", "YUYV", "Y16 -BE": for messages.

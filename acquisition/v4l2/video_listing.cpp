@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/v4l2/video_listing.h"
 
 #include <libudev.h>
@@ -28,7 +29,7 @@ std::string text_or_empty(const char* text) {
   return text != nullptr ? text : "";
 }
 
-/// A sysfs attribute without the blanks around it.
+/// A sysfs attribute without surrounding blanks.
 std::string attribute(udev_device* device, const char* name) {
   std::string text = text_or_empty(device != nullptr ? udev_device_get_sysattr_value(device, name) : nullptr);
   const auto visible = [](unsigned char c) { return std::isgraph(c) != 0; };
@@ -45,7 +46,7 @@ std::string first_of(std::string preferred, std::string fallback) {
   return preferred.empty() ? std::move(fallback) : std::move(preferred);
 }
 
-/// Names come from the USB device's own strings; udev's data base is not needed, so a system without udevd works too.
+/// Names come from the USB device's own strings. udev's database is not needed, so a system without udevd works too.
 VideoNode described(udev_device* video, const VideoCapability& capability) {
   VideoNode node;
   node.node = text_or_empty(udev_device_get_devnode(video));
@@ -97,7 +98,7 @@ void tell_apart(std::vector<VideoNode>& nodes) {
 Result<VideoListing> list_video_nodes() {
   const Owned<udev> context(udev_new());
   const Owned<udev_enumerate> found(context ? udev_enumerate_new(context.get()) : nullptr);
-  if (!found) return fail(ErrorCode::io, "udev cannot be asked for video devices");
+  if (!found) return fail(ErrorCode::io, "udev cannot list the video devices");
   udev_enumerate_add_match_subsystem(found.get(), "video4linux");
   udev_enumerate_scan_devices(found.get());
   VideoListing listing;
@@ -129,7 +130,7 @@ VideoWatch::VideoWatch(VideoWatch&&) noexcept = default;
 VideoWatch& VideoWatch::operator=(VideoWatch&&) noexcept = default;
 
 Result<VideoWatch> VideoWatch::create() {
-  // udevd tells of a device when its node has its permissions; without udevd only the kernel does.
+  // udevd reports a device when its node has its permissions; without udevd only the kernel reports it.
   const bool has_daemon = ::access("/run/udev/control", F_OK) == 0;
   auto state = std::make_unique<State>();
   state->context.reset(udev_new());
@@ -139,7 +140,7 @@ Result<VideoWatch> VideoWatch::create() {
   if (!state->monitor ||
       udev_monitor_filter_add_match_subsystem_devtype(state->monitor.get(), "video4linux", nullptr) < 0 ||
       udev_monitor_enable_receiving(state->monitor.get()) < 0) {
-    return fail(ErrorCode::io, "udev cannot be asked for arrivals and removals");
+    return fail(ErrorCode::io, "udev cannot report connected and disconnected devices");
   }
   return VideoWatch(std::move(state));
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/chain_options.h"
 
 #include <utility>
@@ -7,22 +8,26 @@
 namespace todbench {
 
 void ChainOptions::add_sensor_to(CLI::App& command) {
-  command.add_option("--sensor", sensor, "name or file")->required();
+  command.add_option("--sensor", sensor, "sensor: name or file")->required();
 }
 
 void ChainOptions::add_to(CLI::App& command, const std::string& sentence_of_observer) {
   command
       .add_option("--atmosphere", atmosphere,
-                  "clear, us-standard, midlatitude-summer, midlatitude-winter, subarctic-winter, tropical, "
-                  "beer-lambert (with --extinction-per-km); or FILE.csv, or a MODTRAN tape7")
+                  "atmosphere along the path: clear, us-standard, midlatitude-summer, midlatitude-winter, "
+                  "subarctic-winter, tropical, beer-lambert (with --extinction-per-km), a CSV file or a MODTRAN tape7")
       ->capture_default_str();
-  command.add_option("--haze", haze, "aerosol of the shipped tables")->capture_default_str();
-  command.add_option("--extinction-per-km", extinction_per_km, "of the contrast")
+  command.add_option("--haze", haze, "aerosol model of the shipped atmospheres")->capture_default_str();
+  command
+      .add_option("--extinction-per-km", extinction_per_km,
+                  "extinction coefficient of the contrast in 1/km; with the atmosphere clear, a value above 0 selects "
+                  "beer-lambert")
       ->check(number_in(0, 1e4))
       ->capture_default_str();
-  command.add_option("--microscan", microscan, "in place of the sensor's")->check(whole_number(1, 4));
+  command.add_option("--microscan", microscan, "samples per detector pitch and axis; default: the value of the sensor")
+      ->check(whole_number(1, 4));
   command.add_option("--observer", observer, sentence_of_observer)->capture_default_str();
-  command.add_option("--accuracy", accuracy, "draft, normal or reference")
+  command.add_option("--accuracy", accuracy, "accuracy of the simulation: draft, normal or reference")
       ->check(CLI::IsMember({"draft", "normal", "reference"}))
       ->capture_default_str();
 }

@@ -1,16 +1,17 @@
-// The options of commands that look at a scene through air with a sensor.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options of commands that look at a scene through air with a sensor.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "acquisition/core/accuracy.h"
+#include "acquisition/base/accuracy.h"
 #include "bench/plan/atmospheres.h"
 #include "bench/plan/descriptions.h"
 
 namespace todbench {
 
-/// What stands between a scene and the answer.
+/// The chain from a scene to the answer.
 struct SeeingChain {
   SensorSpec sensor;
   TemplateObserverSpec observer;
@@ -18,17 +19,17 @@ struct SeeingChain {
   Atmosphere air;
 };
 
-/// Must live as long as the command.
+/// Lives as long as the command.
 struct ChainOptions {
   std::string sensor, observer = "hvs-1", atmosphere = "clear", haze = "rural-23km", accuracy = "normal";
   double extinction_per_km = 0;
-  int microscan = 0;  ///< 0: the sensor's own
+  int microscan = 0;  ///< 0: that of the sensor
 
-  /// --sensor, which is required.
+  /// Adds --sensor, which is required.
   void add_sensor_to(CLI::App& command);
-  /// All others.
+  /// Adds all other options.
   void add_to(CLI::App& command, const std::string& sentence_of_observer);
-  /// Reads what they name. Errors: as the loaders.
+  /// Loads the named parts. Errors: those of the loaders.
   [[nodiscard]] Result<SeeingChain> load() const;
 };
 

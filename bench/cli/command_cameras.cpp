@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench devices, todbench emulate
 #include <memory>
 
@@ -56,10 +57,10 @@ int run_emulate(Console& console, const EmulationArguments& arguments, StopSigna
     std::string before_the_command;
     for (const auto& [name, value] : environment) before_the_command += name + "=" + value + " ";
     for (const auto& [name, value] : lab.camera_settings()) {
-      console.text("the plan has to state [camera.settings] " + name + " = \"" + value + "\"");
+      console.text("the plan must state [camera.settings] " + name + " = \"" + value + "\"");
     }
     if (!environment.empty()) {
-      console.text("the device node exists for programs that are started with it: " + before_the_command +
+      console.text("the device node exists only for programs started with this environment: " + before_the_command +
                    "todbench measure PLAN.toml");
     }
     console.text("running until Ctrl-C");
@@ -69,15 +70,16 @@ int run_emulate(Console& console, const EmulationArguments& arguments, StopSigna
 #else
   (void)arguments;
   (void)stop;
-  return report_error(console,
-                      {ErrorCode::not_found, "this build has no camera libraries, so nothing can be emulated"});
+  return report_error(
+      console, {ErrorCode::not_found,
+                "this build has no camera libraries and cannot emulate the laboratory; build todbench with Aravis"});
 #endif
 }
 
 }  // namespace
 
 void add_devices_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("devices", "lists the cameras that every back end sees");
+  auto* command = app.add_subcommand("devices", "lists the cameras that each back end finds");
   finish_command(*command, program, [](Console& console) { return run_devices(console); });
 }
 
@@ -85,58 +87,69 @@ void add_emulate_command(CLI::App& app, Program& program) {
   auto* command =
       app.add_subcommand("emulate", "runs the emulated laboratory until Ctrl-C: camera, black body, plate stage");
   auto a = std::make_shared<EmulationArguments>();
-  command->add_option("--camera", a->camera, "interface of the camera")
+  command->add_option("--camera", a->camera, "interface of the emulated camera")
       ->check(CLI::IsMember(emulated_cameras()))
       ->capture_default_str();
-  command->add_option("--sensor", a->sensor, "name or file of the sensor inside the camera")->capture_default_str();
-  command->add_option("--interface", a->interface_address, "IPv4 address to serve on")
+  command->add_option("--sensor", a->sensor, "sensor of the emulated camera: name or file")->capture_default_str();
+  command
+      ->add_option("--interface", a->interface_address,
+                   "IPv4 address on which the camera and the instruments are served")
       ->check(CLI::ValidIPV4)
       ->capture_default_str();
   command->add_option("--serial", a->serial, "serial number of the camera")->capture_default_str();
-  command->add_option("--plates", a->plates, "names or files, separated by commas")
+  command->add_option("--plates", a->plates, "plates of the laboratory: names or files, separated by commas")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
-  command->add_option("--distance-m", a->distance_m, "from camera to plate")
+  command->add_option("--distance-m", a->distance_m, "distance from the camera to the plate in m")
       ->check(number_in(0.1, 1000))
       ->capture_default_str();
-  command->add_option("--black-body-port", a->black_body_port, "0: the system chooses")
+  command->add_option("--black-body-port", a->black_body_port, "TCP port of the black body; 0: any free port")
       ->check(whole_number(0, 65535))
       ->capture_default_str();
-  command->add_option("--stage-port", a->stage_port, "0: the system chooses")
+  command->add_option("--stage-port", a->stage_port, "TCP port of the plate stage; 0: any free port")
       ->check(whole_number(0, 65535))
       ->capture_default_str();
-  command->add_option("--stage-jitter-mm", a->stage_jitter_mm, "standard deviation of the place while the stage runs")
+  command
+      ->add_option("--stage-jitter-mm", a->stage_jitter_mm,
+                   "random displacement of the plate during a run of the stage: standard deviation in mm")
       ->check(number_in(0, 10))
       ->capture_default_str();
   command
       ->add_option("--black-body-time-constant-s", a->black_body_time_constant_s,
-                   "of the black body's approach to a contrast")
+                   "time constant in s with which the black body approaches a new contrast")
       ->check(number_in(1e-4, 1000))
       ->capture_default_str();
-  command->add_option("--drift-k-per-min", a->drift_k_per_min, "of the mean after a correction, at first")
+  command
+      ->add_option("--drift-k-per-min", a->drift_k_per_min,
+                   "initial drift of the mean after a correction (NUC), in K/min")
       ->check(number_in(-100, 100))
       ->capture_default_str();
   command
-      ->add_option("--drift-pattern-k-per-min", a->drift_pattern_k_per_min,
-                   "of the fixed pattern after a correction, standard deviation over the pixels, at first")
+      ->add_option(
+          "--drift-pattern-k-per-min", a->drift_pattern_k_per_min,
+          "initial growth of the fixed pattern after a correction (NUC), in K/min; standard deviation over the pixels")
       ->check(number_in(0, 100))
       ->capture_default_str();
-  command->add_option("--drift-time-constant-s", a->drift_time_constant_s, "of both; 0: they are linear")
+  command
+      ->add_option("--drift-time-constant-s", a->drift_time_constant_s,
+                   "time constant of both drifts in s; 0: the drifts are linear")
       ->check(number_in(0, 1e6))
       ->capture_default_str();
-  command->add_flag("!--no-trigger", a->trigger, "the stage does not tell when a run began in the camera's clock");
-  command->add_option(
-      "--monitor", a->monitor_file,
-      "a monitor before the camera that shows the levels of this .npy file, as 'todbench-gui --pictures "
-      "--copy' writes it; in place of the plates");
-  command->add_option("--monitor-pixel-mm", a->monitor_pixel_mm, "of the monitor, centre to centre")
+  command->add_flag("!--no-trigger", a->trigger,
+                    "the stage does not report when a run began in the clock of the camera");
+  command->add_option("--monitor", a->monitor_file,
+                      "shows the levels of this .npy file on a monitor in front of the camera, instead of the plates; "
+                      "'todbench-gui --pictures --copy' writes such a file");
+  command->add_option("--monitor-pixel-mm", a->monitor_pixel_mm, "pixel pitch of the monitor in mm")
       ->check(number_in(0.001, 100))
       ->capture_default_str();
-  command->add_option("--monitor-span-k", a->monitor_span_k, "contrast of white beside black as the camera sees it")
+  command
+      ->add_option("--monitor-span-k", a->monitor_span_k,
+                   "observed contrast between white and black of the monitor, in K")
       ->check(number_in(0.001, 10000))
       ->capture_default_str();
-  command->add_option("--monitor-gamma", a->monitor_gamma, "light of the monitor is its level to this power")
+  command->add_option("--monitor-gamma", a->monitor_gamma, "gamma of the monitor: its light is the level to this power")
       ->check(number_in(0.2, 5))
       ->capture_default_str();
   finish_command(*command, program, [a, &program](Console& console) {

@@ -1,13 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/command_compare_models.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include "bench/cli/scene_files.h"
-#include "bench/enhance/model_comparison_page.h"
+#include "bench/enhance/decidable.h"
 #include "bench/judgement/verdict.h"
+#include "bench/model_comparison/model_comparison_page.h"
 #include "bench/report/html.h"
 #include "bench/session/json_output.h"
 #include "bench/text/files.h"
@@ -30,14 +33,17 @@ Json model_json(const ComparedModel& model, const PackageResult& result) {
           {"error", result.error ? Json(result.error->message) : Json()}};
 }
 
-/// Acuity and its interval of the result at a contrast, under "acuity_SIDE_per_mrad".
+/// Adds acuity and interval of the result at a contrast, under "acuity_SIDE_per_mrad".
 void add_acuity(Json& point, const std::string& side, const PackageResult& result, double set_delta_t_k) {
   point["acuity_" + side + "_per_mrad"] = nullptr;
   point["acuity_" + side + "_ci95_per_mrad"] = json_interval({});
   for (const TodPoint& found : result.curve.points) {
     if (!same_contrast(found.set_delta_t_k, set_delta_t_k)) continue;
-    point["acuity_" + side + "_per_mrad"] = json_number(acuity_per_mrad(found.fit));
+    point["acuity_" + side + "_per_mrad"] = json_number(identified_acuity_per_mrad(found));
     point["acuity_" + side + "_ci95_per_mrad"] = json_interval(acuity_interval(found.fit.ci95));
+    point["adequacy_" + side] = adequacy_json(found.adequacy);
+    const auto judged = judged_point(result, set_delta_t_k);
+    point["judged_gain_" + side] = judged ? json_number(judged->gain) : Json();
   }
 }
 
@@ -49,6 +55,7 @@ Json comparison_of_models_json(const ModelComparison& comparison, const std::str
     add_acuity(point, "b", comparison.result_b, ratio.set_delta_t_k);
     point["ratio"] = json_number(ratio.ratio);
     point["ratio_ci95"] = json_interval(ratio.ci95);
+    point["withheld"] = ratio.withheld.empty() ? Json() : Json(ratio.withheld);
     const auto apart = parts(ratio);
     point["parts"] = apart ? Json(*apart) : Json();
     points.push_back(std::move(point));
@@ -81,7 +88,7 @@ void say_models(Console& console, const ModelComparison& comparison) {
   std::vector<TableRow> rows;
   const auto acuity_at = [](const PackageResult& result, double set_delta_t_k) -> std::optional<double> {
     for (const TodPoint& point : result.curve.points) {
-      if (same_contrast(point.set_delta_t_k, set_delta_t_k)) return acuity_per_mrad(point.fit);
+      if (same_contrast(point.set_delta_t_k, set_delta_t_k)) return identified_acuity_per_mrad(point);
     }
     return std::nullopt;
   };
@@ -94,10 +101,10 @@ void say_models(Console& console, const ModelComparison& comparison) {
          : *apart ? "yes"
                   : "not shown"});
   }
-  console.table({"contrast (K)", "A (1/mrad)", "B (1/mrad)", "B / A", "95 %", "they part"}, rows);
+  console.table({"set contrast (K)", "A (1/mrad)", "B (1/mrad)", "B / A", "95 %", "different"}, rows);
   if (comparison.parts_at_per_mrad)
-    console.text(
-        fmt::format("moduli differ by more than 0.01 from {:.3g} cycles/mrad on", *comparison.parts_at_per_mrad));
+    console.text(fmt::format("the MTFs of A and B differ by more than 0.01 from {:.3g} cycles/mrad upwards",
+                             *comparison.parts_at_per_mrad));
   for (const auto& sentence : comparison.notes) console.note(sentence);
 }
 
@@ -131,24 +138,35 @@ int run_compare_models(Console& console, const CompareModelsArguments& a, const 
   console.text("page: " + (folder / "models.html").string());
   for (const PackageResult* result : {&found->result_a, &found->result_b}) {
     if (!result->error) continue;
-    console.error(
-        fmt::format("{}: {} ({} trials)", one_line(result->name), result->error->message, result->trials.size()));
+    console.error(fmt::format("{}: {} (trials until then: {})", one_line(result->name), result->error->message,
+                              result->trials.size()));
     return exit_code(result->error->code);
   }
-  return 0;
+  int code = 0;
+  for (const PackageResult* result : {&found->result_a, &found->result_b}) {
+    for (const TodPoint& point : result->curve.points) {
+      const auto why = why_undecided(*result, point.set_delta_t_k);
+      if (why.empty()) continue;
+      console.text(fmt::format("not fit for a decision: {:g} K: {}", point.set_delta_t_k, why));
+    }
+    code = std::max(code, exit_code(*result));
+  }
+  return code;
 }
 
 }  // namespace
 
 void add_compare_models_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("compare-models", "two sensors, observers or packages before the same scenes");
+  auto* command =
+      app.add_subcommand("compare-models", "compares two sensors, observers or packages with the same scenes");
   auto a = std::make_shared<CompareModelsArguments>();
-  command->add_option("A", a->a, "sensor, observer or package of stages: name or file; 'none' is no package")
+  command->add_option("A", a->a, "sensor, observer or package of stages: name or file; 'none' means no package")
       ->required();
-  command->add_option("B", a->b, "another of the same kind")->required();
-  command->add_option("--plan", a->plan, "plan that says scenes, contrasts and trials")->capture_default_str();
-  command->add_option("--out", a->out, "folder for page and numbers")->capture_default_str();
-  command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
+  command->add_option("B", a->b, "sensor, observer or package of the same kind as A")->required();
+  command->add_option("--plan", a->plan, "plan with scenes, contrasts and number of trials: name or file")
+      ->capture_default_str();
+  command->add_option("--out", a->out, "folder for the page and the numbers")->capture_default_str();
+  command->add_flag("--force", a->overwrite, "overwrites the results in an existing folder");
   finish_command(*command, program,
                  [a, &program](Console& console) { return run_compare_models(console, *a, program); });
 }

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench conformity, todbench budget
 #include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/conformity.h"
 #include "bench/judgement/uncertainty_budget.h"
@@ -21,7 +22,7 @@ struct ConformityArguments {
   std::optional<double> coverage_factor, guard_band, risk, fleet_mean, fleet_sd;
 };
 
-/// Other names under which the rules are known.
+/// Other names of the rules.
 const std::map<std::string, std::string> rule_names{{"guarded_acceptance", "guarded"},
                                                     {"guarded_both", "guarded_acceptance_and_rejection"}};
 
@@ -36,7 +37,7 @@ double guard_band_of(const ConformityArguments& a) {
   if (a.guard_band) return *a.guard_band;
   if (a.risk) return guard_band_for_risk(*a.risk, a.measured);
   if (a.coverage_factor) return *a.coverage_factor * a.measured.u;
-  // 95.45 %: a factor of 2 where u is known well, that of Student's t where it is not.
+  // 95.45 %: factor 2 if u is well known, otherwise Student's t.
   if (a.measured.degrees_of_freedom) return guard_band_for_risk(distribution::tail_above(2, std::nullopt), a.measured);
   return 2 * a.measured.u;
 }
@@ -62,6 +63,8 @@ Json conformity_json(const ConformityArguments& a, const Conformity& found, cons
             {"acceptance_limits", limits_json(found.acceptance)},
             {"acceptance_zone_is_empty", found.acceptance_zone_is_empty}};
   if (risks) {
+    json["consumer_risk"] = json_number(risks->consumer_risk);
+    json["producer_risk"] = json_number(risks->producer_risk);
     json["global_risks"] = {{"p_conforming", json_number(risks->p_conforming)},
                             {"p_accepted", json_number(risks->p_accepted)},
                             {"consumer_risk", json_number(risks->consumer_risk)},
@@ -86,18 +89,19 @@ void print_conformity(Console& console, const ConformityArguments& a, const Conf
 
 int run_conformity(Console& console, const ConformityArguments& a) {
   if (a.fleet_mean.has_value() != a.fleet_sd.has_value())
-    return report_error(console, {ErrorCode::invalid_input, "--fleet-mean and --fleet-sd belong together"});
+    return report_error(console, {ErrorCode::invalid_input, "--fleet-mean and --fleet-sd must be given together"});
   const auto found = conformity(a.measured, a.tolerance, rule_of(a.rule), guard_band_of(a));
   if (!found) return report_error(console, with_context("conformity", found.error()));
   std::optional<GlobalRisks> risks;
   if (a.fleet_sd) {
-    const auto computed = global_risks({*a.fleet_mean, *a.fleet_sd}, a.measured.u, a.tolerance, found->acceptance);
+    const auto computed = global_risks({*a.fleet_mean, *a.fleet_sd}, {a.measured.u, a.measured.degrees_of_freedom},
+                                       a.tolerance, found->acceptance);
     if (!computed) return report_error(console, with_context("conformity", computed.error()));
     risks = *computed;
   }
   if (found->acceptance_zone_is_empty) {
-    console.note("nothing can pass: twice the guard band of " + number_text(found->guard_band) +
-                 " is more than the tolerance");
+    console.note("no value can pass, because twice the guard band of " + number_text(found->guard_band) +
+                 " is wider than the tolerance; widen the limits or reduce the guard band");
   }
   if (console.json())
     console.object(conformity_json(a, *found, risks));
@@ -144,7 +148,7 @@ void print_budget(Console& console, const UncertaintyBudget& budget, const Combi
     const BudgetRow& row = budget.rows[i];
     const BudgetShare& share = combined.shares[i];
     rows.push_back({row.name, number_text(row.value), std::string(to_string(row.distribution)),
-                    row.degrees_of_freedom ? fixed(row.degrees_of_freedom, 0) : "many",
+                    row.degrees_of_freedom ? fixed(row.degrees_of_freedom, 0) : "infinite",
                     number_text(row.sensitivity.value_or(1)), fixed(share.contribution, 6),
                     fixed(share.share_percent, 1)});
   }
@@ -154,11 +158,11 @@ void print_budget(Console& console, const UncertaintyBudget& budget, const Combi
   const std::string unit = budget.unit.empty() ? "" : " " + budget.unit;
   console.table({"quantity", "value"},
                 {{"standard uncertainty", fixed(combined.u, 6) + unit},
-                 {"effective degrees of freedom", combined.nu_eff ? fixed(combined.nu_eff, 1) : "many"},
+                 {"effective degrees of freedom", combined.nu_eff ? fixed(combined.nu_eff, 1) : "infinite"},
                  {"coverage factor, 95 %", fixed(combined.k, 4)},
                  {"expanded, GUM", fixed(combined.expanded_gum, 6) + unit},
                  {"expanded, Monte Carlo", fixed(combined.expanded_monte_carlo, 6) + unit},
-                 {"expanded, the larger", fixed(combined.expanded, 6) + unit}});
+                 {"expanded, larger of both", fixed(combined.expanded, 6) + unit}});
 }
 
 int run_budget(Console& console, const std::string& file, std::uint64_t seed) {
@@ -176,36 +180,44 @@ int run_budget(Console& console, const std::string& file, std::uint64_t seed) {
 }  // namespace
 
 void add_conformity_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("conformity", "a value with its uncertainty against limits, by a named rule");
+  auto* command =
+      app.add_subcommand("conformity", "judges a value with its uncertainty against tolerance limits, by a named rule");
   auto a = std::make_shared<ConformityArguments>();
-  constexpr double most = 1e300;
-  command->add_option("--value", a->measured.value, "measured")->required()->check(number_in(-most, most));
-  command->add_option("--u", a->measured.u, "its standard uncertainty")->required()->check(number_in(0, most));
-  command->add_option("--nu", a->measured.degrees_of_freedom, "degrees of freedom of the uncertainty; default: many")
+  constexpr double most = 1e100;
+  command->add_option("--value", a->measured.value, "measured value")->required()->check(number_in(-most, most));
+  command->add_option("--u", a->measured.u, "standard uncertainty of the value")->required()->check(number_in(0, most));
+  command
+      ->add_option("--nu", a->measured.degrees_of_freedom, "degrees of freedom of the uncertainty; default: infinite")
       ->check(number_in(1, most));
   command->add_option("--at-least", a->tolerance.at_least, "lower tolerance limit")->check(number_in(-most, most));
   command->add_option("--at-most", a->tolerance.at_most, "upper tolerance limit")->check(number_in(-most, most));
   std::vector<std::string> names;
   for (const ConformityRule rule : conformity_rules) names.emplace_back(to_string(rule));
   for (const auto& [name, meant] : rule_names) names.push_back(name);
-  command->add_option("--rule", a->rule, "simple, guarded, non_binary or guarded_acceptance_and_rejection")
+  command
+      ->add_option("--rule", a->rule, "decision rule: simple, guarded, non_binary or guarded_acceptance_and_rejection")
       ->check(CLI::IsMember(names))
       ->capture_default_str();
-  auto* band =
-      command->add_option("--guard-band", a->guard_band, "in the unit of the value")->check(number_in(0, most));
-  auto* risk = command->add_option("--guard-band-risk", a->risk, "of a wrong acceptance at the acceptance limit")
+  auto* band = command->add_option("--guard-band", a->guard_band, "guard band in the unit of the value")
+                   ->check(number_in(0, most));
+  auto* risk = command
+                   ->add_option("--guard-band-risk", a->risk,
+                                "sets the guard band from this risk of a wrong acceptance at the acceptance limit")
                    ->check(number_in(1e-9, 0.5))
                    ->excludes(band);
   command
       ->add_option("--coverage-factor", a->coverage_factor,
-                   "the guard band is so many standard uncertainties; default: 2, with --nu as many of Student's t "
-                   "leave as little")
+                   "guard band in standard uncertainties; default: 2, or with --nu the factor of Student's t with the "
+                   "same risk")
       ->check(number_in(0, 1e6))
       ->excludes(band)
       ->excludes(risk);
-  command->add_option("--fleet-mean", a->fleet_mean, "of true values over the fleet: global risks too")
+  command
+      ->add_option("--fleet-mean", a->fleet_mean,
+                   "mean of the true values of the fleet; with --fleet-sd, adds the global risks")
       ->check(number_in(-most, most));
-  command->add_option("--fleet-sd", a->fleet_sd, "their standard deviation")->check(number_in(0, most));
+  command->add_option("--fleet-sd", a->fleet_sd, "standard deviation of the true values of the fleet")
+      ->check(number_in(0, most));
   finish_command(*command, program, [a](Console& console) {
     if (const auto known = rule_names.find(a->rule); known != rule_names.end()) a->rule = known->second;
     return run_conformity(console, *a);
@@ -214,7 +226,7 @@ void add_conformity_command(CLI::App& app, Program& program) {
 
 void add_budget_command(CLI::App& app, Program& program) {
   auto* command =
-      app.add_subcommand("budget", "combines the rows of an uncertainty budget, by the GUM and Monte Carlo");
+      app.add_subcommand("budget", "combines the rows of an uncertainty budget, by the GUM and by Monte Carlo");
   auto file = std::make_shared<std::string>();
   command->add_option("BUDGET.toml", *file, "file with [[component]] tables")->required();
   finish_command(*command, program,

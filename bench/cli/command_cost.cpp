@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench cost
 #include <filesystem>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "bench/report/cost_figure.h"
 #include "bench/run/rebuild_report.h"
 #include "bench/session/cost_record.h"
+#include "bench/session/foreign_files.h"
 #include "bench/session/signature.h"
 #include "bench/studies/cost_study.h"
 #include "bench/text/files.h"
@@ -38,38 +40,41 @@ void print_cost(const Console& console, const CostFrontier& frontier) {
                fixed(frontier.reference_s, 1) + " s, standard error " +
                fixed(frontier.reference_standard_error_percent, 2) + " %; spent " + fixed(frontier.spent_s, 0) +
                " s of the budget of " + fixed(frontier.budget_s, 0) + " s");
-  console.text("paired: with the random numbers of a reference of " + std::to_string(frontier.paired_draws) +
-               " draws; best: nothing measured is both faster and nearer, standard error included");
+  console.text("paired: with the same random numbers as a reference of " + std::to_string(frontier.paired_draws) +
+               " draws; best: no measured setting is both faster and more accurate, standard error included");
 }
 
-struct Asked {
+struct CostPlan {
   LoadedPlan plan;
   std::vector<std::string> accepted_changes{};  ///< of the session
 };
 
-/// The plan that is named, or that of the session.
-Result<Asked> plan_of(Console& console, const CostArguments& arguments) {
+/// Returns the named plan, or that of the session.
+Result<CostPlan> plan_of(Console& console, const CostArguments& arguments) {
   if (!arguments.plan.empty() && !arguments.session.empty())
-    return fail(ErrorCode::invalid_input, "--session: the plan is that of the session, so no PLAN.toml may be named");
+    return fail(ErrorCode::invalid_input, "--session already provides the plan: omit either PLAN.toml or --session");
   if (arguments.plan.empty() && arguments.session.empty())
     return fail(ErrorCode::invalid_input, "cost: PLAN.toml or --session is required");
   if (arguments.session.empty()) {
     auto plan = read_plan(arguments.plan);
     if (!plan) return tl::unexpected(plan.error());
-    return Asked{*std::move(plan)};
+    return CostPlan{*std::move(plan)};
   }
   if (auto open = require_unsigned(arguments.session); !open) return tl::unexpected(open.error());
+  // Check now, before the costs are measured, that they can be written.
+  if (auto none = require_no_links(arguments.session); !none) return tl::unexpected(none.error());
   auto session = opened(console, arguments.session, arguments.opening);
   if (!session) return tl::unexpected(session.error());
   auto plan = LoadedPlan::of(std::move(session->plan), std::move(session->parts));
   if (!plan) return tl::unexpected(plan.error());
-  return Asked{*std::move(plan), std::move(session->accepted_changes)};
+  return CostPlan{*std::move(plan), std::move(session->accepted_changes)};
 }
 
-/// cost.json and, from the folder as it then is, the report; the manifest follows both. The files may have been changed
-/// while the costs were measured.
+/// Writes cost.json, then the report from the present folder, then the manifest. The files may have changed while the
+/// costs were measured.
 Result<void> into_session(const CostFrontier& frontier, const std::filesystem::path& folder, const Opening& opening) {
   if (auto open = require_unsigned(folder); !open) return open;
+  if (auto own = opening.accept_changed ? require_no_links(folder) : require_no_foreign_file(folder); !own) return own;
   auto session = open_session(folder, opening);
   if (!session) return tl::unexpected(session.error());
   if (auto written = write_file_atomically(folder / "cost.json", to_page(cost_json(frontier))); !written)
@@ -96,7 +101,7 @@ Result<void> write_results(const CostFrontier& frontier, const CostArguments& ar
   return into_session(frontier, arguments.session, arguments.opening);
 }
 
-/// What frames and graded answers buy in this plan.
+/// Precision frontier of the plan: frames and graded answers against bench time.
 Result<std::vector<PrecisionChoice>> precision_of(const LoadedPlan& loaded, std::stop_token stop) {
   EffectPlanner planner;
   const auto inputs = experiment_inputs(loaded, planner);
@@ -119,14 +124,14 @@ int run_cost(Console& console, const CostArguments& arguments, const Program& pr
   if (!precision && precision.error().code == ErrorCode::interrupted) return report_error(console, precision.error());
   if (console.json()) {
     Json json = cost_json(*frontier);
-    // What a session keeps is what is printed of it.
+    // The frontier is printed only, not stored in the session, so it is left out for a session.
     if (precision && arguments.session.empty()) json["frontier"] = frontier_json(*precision);
     add_accepted_changes(json, arguments.opening, asked->accepted_changes);
     console.object(json);
   }
   if (frontier->reference.empty()) {
     for (const auto& note : frontier->notes) console.note(note);
-    console.error("the plan has no identifiable threshold: there is nothing whose error could be measured");
+    console.error("the plan has no identifiable threshold, so no error can be measured");
     return exit_code(VerdictKind::inconclusive);
   }
   if (auto written = write_results(*frontier, arguments); !written) return report_error(console, written.error());
@@ -139,14 +144,16 @@ int run_cost(Console& console, const CostArguments& arguments, const Program& pr
 }  // namespace
 
 void add_cost_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("cost", "what accuracy costs in time: the frontier, measured on this machine");
+  auto* command = app.add_subcommand("cost", "measures the time that accuracy costs on this machine");
   auto a = std::make_shared<CostArguments>();
-  command->add_option("PLAN.toml", a->plan, "name or file; or --session");
+  command->add_option("PLAN.toml", a->plan, "plan: name or file; required without --session");
   command->add_option("--session", a->session,
-                      "in place of a plan: measures for that of this session folder, keeps the result there as "
-                      "cost.json and rebuilds its report with it");
-  command->add_option("--svg", a->svg, "writes the figures to this file");
-  command->add_option("--budget-s", a->budget_s, "wall time for all of it; what does not fit is left unmeasured")
+                      "uses the plan of this session folder, stores the result there as cost.json and rebuilds the "
+                      "report");
+  command->add_option("--svg", a->svg, "writes the figures to this SVG file");
+  command
+      ->add_option("--budget-s", a->budget_s,
+                   "wall time of the whole study in s; settings that do not fit are not measured")
       ->check(number_in(0.1, 86400))
       ->capture_default_str();
   add_accept_changed(*command, a->opening.accept_changed);

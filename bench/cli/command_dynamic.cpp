@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/command_dynamic.h"
 
 #include <fmt/format.h>
@@ -5,11 +6,11 @@
 #include <memory>
 #include <utility>
 
+#include "bench/cli/run_display.h"
 #include "bench/cli/seeded_plan.h"
-#include "bench/cli/shown_run.h"
-#include "bench/enhance/dynamic_json.h"
-#include "bench/enhance/dynamic_session.h"
 #include "bench/judgement/verdict_record.h"
+#include "bench/moving_target/dynamic_json.h"
+#include "bench/moving_target/dynamic_session.h"
 #include "bench/plan/descriptions.h"
 #include "bench/session/json_output.h"
 #include "bench/session/session_folder.h"
@@ -50,7 +51,7 @@ int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program&
   const auto loaded = with_seed(read_plan(a.plan), program.common);
   if (!loaded) return report_error(console, loaded.error());
   const Plan& plan = loaded->plan();
-  console.phase("measuring before a target that moves");
+  console.phase("measuring a moving target");
   const auto said = [&](const MovingPassRecord& pass) {
     if (!pass.dropped.empty() && !console.json()) console.text(fmt::format("pass {}: {}", pass.pass, pass.dropped));
   };
@@ -72,45 +73,45 @@ int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program&
   }
   std::vector<TableRow> rows;
   for (const DynamicContrast& at : found->contrasts) add_rows(rows, at.speeds, {fmt::format("{:g}", at.set_delta_t_k)});
-  console.table(
-      {"contrast (K)", "speed (mrad/s)", "px/frame", "observer", "acuity (1/mrad)", "95 %", "to rest", "95 %"}, rows);
-  console.text(fmt::format("places of the large triangles are {:.3f} px from the line at the stage's speed",
+  console.table({"set contrast (K)", "speed (mrad/s)", "px/frame", "observer", "acuity (1/mrad)", "95 %",
+                 "ratio to rest", "95 %"},
+                rows);
+  console.text(fmt::format("the large triangles deviate from the motion reported by the stage by {:.3f} px (rms)",
                            found->residual_px));
   if (const auto& tau = found->time_constant)
-    console.text(fmt::format("time constant {:.2f} ms, 95 % {}, from {} passes to the right and to the left",
+    console.text(fmt::format("time constant {:.2f} ms, 95 % {}, from {} passes in both directions",
                              tau->time_constant_ms, range(tau->ci95_ms, 2), tau->passes));
   console.text("report: " + (outcome.folder / "report.html").string());
   if (outcome.ended_by) return report_error(console, *outcome.ended_by);
-  // A plan that demands nothing is done when it is measured.
+  // A plan without limits needs no verdict.
   if (plan.limits.acuity.empty()) return 0;
-  console.text("verdict of the plate at rest: " + std::string(to_string(outcome.verdict.decision)));
+  console.text("verdict for the plate at rest: " + std::string(to_string(outcome.verdict.decision)));
   return exit_code(outcome.verdict.decision);
 }
 
 Json dynamic_json(const std::vector<DynamicAcuity>& found, const SensorSpec& sensor, const DynamicArguments& a,
                   std::uint64_t seed) {
-  return {
-      {"sensor", sensor.name},
-      {"observer", a.observer},
-      {"delta_t_k", a.delta_t_k},
-      {"time_constant_ms", sensor.time_constant_ms},
-      {"exposure_ms", sensor.exposure_ms},
-      {"row_time_us", sensor.row_time_us},
-      {"frame_rate_hz", sensor.frame_rate_hz},
-      {"frames", a.frames},
-      {"passes", a.passes},
-      {"direction", "x, both ways in turn"},
-      {"package", a.package.empty() ? Json() : Json(a.package)},
-      {"lag", a.package.empty() ? "removed" : "that of time constant and exposure removed, that of the package not"},
-      {"internal_noise", "per decision"},
-      {"seed", seed},
-      {"speeds", speeds_json(found)}};
+  return {{"sensor", sensor.name},
+          {"observer", a.observer},
+          {"delta_t_k", a.delta_t_k},
+          {"time_constant_ms", sensor.time_constant_ms},
+          {"exposure_ms", sensor.exposure_ms},
+          {"row_time_us", sensor.row_time_us},
+          {"frame_rate_hz", sensor.frame_rate_hz},
+          {"frames", a.frames},
+          {"passes", a.passes},
+          {"direction", "x, both ways in turn"},
+          {"package", a.package.empty() ? Json() : Json(a.package)},
+          {"lag", a.package.empty() ? "removed" : "removed for time constant and exposure, not for the package"},
+          {"internal_noise", "per decision"},
+          {"seed", seed},
+          {"speeds", speeds_json(found)}};
 }
 
 int run_dynamic(Console& console, const DynamicArguments& a, const Program& program) {
   if (!a.plan.empty()) return run_dynamic_plan(console, a, program);
   if (a.speeds_mrad_s.empty())
-    return report_error(console, {ErrorCode::invalid_input, "either a plan or --speeds-mrad-s is needed"});
+    return report_error(console, {ErrorCode::invalid_input, "a plan or --speeds-mrad-s is required"});
   auto sensor = load_sensor(a.sensor);
   if (!sensor) return report_error(console, sensor.error());
   if (a.time_constant_ms >= 0) sensor->time_constant_ms = a.time_constant_ms;
@@ -133,53 +134,61 @@ int run_dynamic(Console& console, const DynamicArguments& a, const Program& prog
     auto read = read_package(a.package);
     if (!read) return report_error(console, read.error());
     package = *std::move(read);
-    if (auto same = refuse_finer_pictures(package, "a target that moves"); !same)
+    if (auto same = refuse_finer_pictures(package, "a moving target"); !same)
       return report_error(console, same.error());
     options.stages = [&package] { return made_stages(package, {}); };
   }
-  console.phase("simulating " + sensor->name + " before a moving target");
+  console.phase("simulating " + sensor->name + " with a moving target");
   const auto found = dynamic_acuity(*sensor, observer, std::move(options));
   if (!found) return report_error(console, found.error());
   if (console.json()) console.object(dynamic_json(*found, *sensor, a, program.common.seed));
   std::vector<TableRow> rows;
   add_rows(rows, *found, {});
-  console.table({"speed (mrad/s)", "px/frame", "observer", "acuity (1/mrad)", "95 %", "to static", "95 %"}, rows);
+  console.table({"speed (mrad/s)", "px/frame", "observer", "acuity (1/mrad)", "95 %", "ratio to rest", "95 %"}, rows);
   return 0;
 }
 
 }  // namespace
 
 void add_dynamic_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("dynamic", "acuity before a target that moves, beside one that rests");
+  auto* command = app.add_subcommand(
+      "dynamic", "acuity for a moving target, compared with a target at rest: simulated or measured");
   auto a = std::make_shared<DynamicArguments>();
-  auto* plan =
-      command->add_option("plan", a->plan, "name or file: its camera before a plate that moves as [motion] says");
+  auto* plan = command->add_option(
+      "plan", a->plan, "plan: name or file; measures with its camera while the plate moves as [motion] states");
   auto* out = command->add_option("--out", a->out,
-                                  "session folder of a plan; default: session-TIME-NAME in the current folder");
-  auto* force = command->add_flag("--force", a->overwrite, "overwrite the session in an existing folder");
+                                  "session folder, only with a plan; default: session-TIME-NAME in the current folder");
+  auto* force = command->add_flag("--force", a->overwrite, "overwrites the session in an existing folder");
   out->needs(plan);
   force->needs(plan);
-  command->add_option("--sensor", a->sensor, "name or file")->capture_default_str();
-  command->add_option("--observer", a->observer, "name or file")->capture_default_str();
-  command->add_option("--delta-t-k", a->delta_t_k, "contrast in kelvin")
+  command->add_option("--sensor", a->sensor, "sensor: name or file")->capture_default_str();
+  command->add_option("--observer", a->observer, "observer: name or file")->capture_default_str();
+  command->add_option("--delta-t-k", a->delta_t_k, "set contrast in K")
       ->capture_default_str()
       ->check(number_in(-1000, 1000));
-  command->add_option("--speeds-mrad-s", a->speeds_mrad_s, "speeds along x; 0 is added")
+  command->add_option("--speeds-mrad-s", a->speeds_mrad_s, "speeds along x in mrad/s; 0 is added")
       ->expected(1, 32)
       ->check(number_in(0, 1e6));
-  command->add_option("--frames", a->frames, "of a pass")->capture_default_str()->check(whole_number(1, 64));
-  command->add_option("--passes", a->passes, "to the right and to the left in turn")
+  command->add_option("--frames", a->frames, "frames per pass")->capture_default_str()->check(whole_number(1, 64));
+  command->add_option("--passes", a->passes, "passes per speed, alternately to the right and to the left")
       ->capture_default_str()
       ->check(whole_number(2, 10000));
   command
-      ->add_option("--sizes-pitch", a->sizes_pitch, "sizes in detector pitches in place of those round the threshold")
+      ->add_option("--sizes-pitch", a->sizes_pitch,
+                   "sizes of the triangles in detector pitches; default: sizes around the threshold")
       ->expected(2, 32)
       ->check(number_in(0.1, 40));
-  command->add_option("--time-constant-ms", a->time_constant_ms, "in place of the sensor's")->check(number_in(0, 1000));
-  command->add_option("--exposure-ms", a->exposure_ms, "in place of the sensor's")->check(number_in(0, 1000));
-  command->add_option("--row-time-us", a->row_time_us, "in place of the sensor's")->check(number_in(0, 1e4));
-  command->add_option("--package", a->package, "file of stages behind the camera; their lag is not taken out");
-  command->add_option("--accuracy", a->accuracy, "of the simulation")
+  command
+      ->add_option("--time-constant-ms", a->time_constant_ms,
+                   "time constant of the detector in ms; default: the value of the sensor")
+      ->check(number_in(0, 1000));
+  command->add_option("--exposure-ms", a->exposure_ms, "exposure time in ms; default: the value of the sensor")
+      ->check(number_in(0, 1000));
+  command->add_option("--row-time-us", a->row_time_us, "readout time per row in us; default: the value of the sensor")
+      ->check(number_in(0, 1e4));
+  command->add_option("--package", a->package,
+                      "package of stages behind the camera, a file; the lag of the stages is not removed");
+  command->add_option("--accuracy", a->accuracy, "accuracy of the simulation")
       ->capture_default_str()
       ->check(CLI::IsMember({"draft", "normal"}));
   for (CLI::Option* option : command->get_options()) {

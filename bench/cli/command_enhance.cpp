@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/command_enhance.h"
 
 #include <fmt/format.h>
@@ -6,16 +7,18 @@
 #include <filesystem>
 #include <memory>
 
+#include "bench/cli/findings.h"
+#include "bench/cli/run_display.h"
 #include "bench/cli/scene_files.h"
 #include "bench/cli/session_argument.h"
-#include "bench/cli/shown_run.h"
+#include "bench/enhance/decidable.h"
 #include "bench/enhance/enhancement_page.h"
 #include "bench/judgement/verdict.h"
+#include "bench/picture_files/encoded_picture.h"
 #include "bench/report/html.h"
 #include "bench/run/experiment.h"
 #include "bench/session/json_output.h"
 #include "bench/session/trials_csv.h"
-#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
@@ -37,11 +40,17 @@ Json enhanced_points_json(const PackageResult& result) {
     const auto ratio = std::find_if(result.ratios.begin(), result.ratios.end(),
                                     [&](const auto& r) { return same_contrast(r.set_delta_t_k, point.set_delta_t_k); });
     const bool any = ratio != result.ratios.end();
+    const auto judged = judged_point(result, point.set_delta_t_k);
     points.push_back({{"set_delta_t_k", point.set_delta_t_k},
-                      {"acuity_per_mrad", json_number(acuity_per_mrad(point.fit))},
+                      {"acuity_per_mrad", json_number(identified_acuity_per_mrad(point))},
                       {"acuity_ci95_per_mrad", json_interval(acuity_interval(point.fit.ci95))},
                       {"ratio", any ? json_number(ratio->ratio) : Json()},
-                      {"ratio_ci95", any ? json_interval(ratio->ci95) : Json()}});
+                      {"ratio_ci95", any ? json_interval(ratio->ci95) : Json()},
+                      {"withheld", any && !ratio->withheld.empty() ? Json(ratio->withheld) : Json()},
+                      {"verdict", to_string(point.fit.verdict)},
+                      {"adequacy", adequacy_json(point.adequacy)},
+                      {"judged_gain", judged ? json_number(judged->gain) : Json()},
+                      {"judged_noise_k", judged ? json_number(judged->noise_k) : Json()}});
   }
   return points;
 }
@@ -102,15 +111,20 @@ void say_enhancement(Console& console, const Enhancement& enhancement) {
         ratio = r.ratio;
         interval = r.ci95;
       }
-      rows.push_back({result.name, fmt::format("{:g}", point.set_delta_t_k), fixed(acuity_per_mrad(point.fit), 3),
-                      fixed(ratio, 3), range(interval, 3), fmt::format("{:.3g}", result.frame_ms)});
+      rows.push_back({result.name, fmt::format("{:g}", point.set_delta_t_k),
+                      fixed(identified_acuity_per_mrad(point), 3), fixed(ratio, 3), range(interval, 3),
+                      fmt::format("{:.3g}", result.frame_ms)});
     }
   }
-  console.table({"package", "contrast (K)", "acuity (1/mrad)", "ratio", "95 %", "ms a frame"}, rows);
+  console.table({"package", "set contrast (K)", "acuity (1/mrad)", "ratio", "95 %", "ms/frame"}, rows);
+  for (const auto& result : enhancement.results) {
+    for (const auto& point : result.curve.points)
+      print_findings(console, point.adequacy, fmt::format("{} at {:g} K: ", result.name, point.set_delta_t_k));
+  }
 }
 
-/// The plan as its camera is measured for packages: every frame is kept, answers are right or wrong, and after a change
-/// of the target as many frames are left out as any package remembers.
+/// Returns the plan for measuring packages with its camera: all frames are stored, answers are binary, and after a
+/// change of the target as many frames are discarded as the longest memory of the packages.
 Result<LoadedPlan> live_plan(const EnhanceArguments& a, const std::vector<EnhancementPackage>& packages,
                              const Program& program) {
   auto loaded = read_camera_plan(a.plan);
@@ -126,10 +140,10 @@ Result<LoadedPlan> live_plan(const EnhanceArguments& a, const std::vector<Enhanc
   return loaded->with(std::move(plan));
 }
 
-/// Where the session is that the camera of the plan was measured into.
+/// Measures with the camera of the plan; returns the folder of the session.
 Result<std::filesystem::path> measured_session(Console& console, const LoadedPlan& loaded,
                                                const std::filesystem::path& folder, const std::stop_token& stop) {
-  ShownRun shown(console, loaded.plan());
+  RunDisplay shown(console, loaded.plan());
   const auto outcome = measure_plan(loaded, {.folder = folder / "session"}, shown.listener(), stop);
   console.end_progress();
   if (!outcome) return tl::unexpected(outcome.error());
@@ -147,10 +161,12 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
   std::error_code problem;
   const bool folder_given = std::filesystem::is_directory(a.plan, problem);
   if (a.live && folder_given)
-    return report_error(console, {ErrorCode::invalid_input, "--live measures the camera of a plan, this is a folder"});
+    return report_error(
+        console, {ErrorCode::invalid_input, "--live needs a plan with a camera, but " + a.plan + " is a folder"});
   const bool recorded = folder_given || a.live;
   if (recorded && a.dither > 1)
-    return report_error(console, {ErrorCode::invalid_input, "--dither is for the frames of a simulated sensor"});
+    return report_error(
+        console, {ErrorCode::invalid_input, "--dither needs a simulated sensor; recorded frames cannot be dithered"});
   auto loaded = a.live     ? live_plan(a, packages, program)
                 : recorded ? recorded_plan(a.plan, a.opening)
                            : read_plan(a.plan);
@@ -184,10 +200,17 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
   console.text("page: " + (folder / "enhancement.html").string());
   int code = 0;
   for (const auto& result : found->results) {
-    if (!result.error) continue;
-    console.error(fmt::format("package {}: {} ({} trials are kept)", one_line(result.name), result.error->message,
+    if (!result.error) {
+      for (const TodPoint& point : result.curve.points) {
+        if (const auto why = why_undecided(result, point.set_delta_t_k); !why.empty())
+          console.text(fmt::format("not fit for a decision: {:g} K: {}", point.set_delta_t_k, why));
+      }
+      if (code == 0) code = exit_code(result);
+      continue;
+    }
+    console.error(fmt::format("package {}: {} (trials kept: {})", one_line(result.name), result.error->message,
                               result.trials.size()));
-    if (code == 0) code = exit_code(result.error->code);
+    if (code == 0 || code == 3) code = exit_code(result.error->code);
   }
   return code;
 }
@@ -195,23 +218,26 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
 }  // namespace
 
 void add_enhance_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("enhance", "the same frames through enhancement packages and through none");
+  auto* command =
+      app.add_subcommand("enhance", "compares enhancement packages on the same frames, with and without each package");
   auto a = std::make_shared<EnhanceArguments>();
   command
       ->add_option("PLAN", a->plan,
-                   "plan whose simulated sensor is before the packages (with --live its camera), or session folder "
-                   "with recorded frames")
+                   "plan whose simulated sensor delivers the frames (with --live, its camera), or session folder with "
+                   "recorded frames")
       ->required();
-  command->add_option("--packages", a->packages, "files of packages")->required()->expected(1, 16);
-  command->add_option("--out", a->out, "folder for page, numbers and pictures")->capture_default_str();
-  command->add_option("--dither", a->dither, "n: the simulated sensor looks at n x n places of a pixel in turn")
+  command->add_option("--packages", a->packages, "files of the packages")->required()->expected(1, 16);
+  command->add_option("--out", a->out, "folder for the page, the numbers and the pictures")->capture_default_str();
+  command
+      ->add_option("--dither", a->dither,
+                   "number of subpixel positions per axis that the simulated sensor visits in turn: n gives n x n")
       ->capture_default_str()
       ->check(whole_number(1, 4));
   command->add_flag(
       "--live", a->live,
-      "measures the camera of the plan first, once, into the folder 'session' of --out: its frames go through "
-      "the packages");
-  command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
+      "first measures once with the camera of the plan, into the folder 'session' of --out; the packages process "
+      "these frames");
+  command->add_flag("--force", a->overwrite, "overwrites the results in an existing folder");
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_enhance(console, *a, program); });
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench history add, show, check, prior, export, event
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "bench/session/manifest.h"
 #include "bench/session/provenance.h"
 #include "bench/text/files.h"
+#include "bench/text/spreadsheet.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -28,7 +30,7 @@ struct HistoryArguments {
   double horizon_days = 365;
 };
 
-/// Kinds of events after which a unit is another one.
+/// Kinds of events that start a new series, because the unit has changed.
 constexpr std::array begins_anew{"repair", "firmware", "recalibration", "transport"};
 
 Json unit_json(const HistoryUnit& unit) {
@@ -44,14 +46,14 @@ double months_between(const HistorySeries& series) {
   return gaps[gaps.size() / 2] / 30.436875;
 }
 
-/// A limit on the scale of the chart.
+/// Returns the limit, on the scale of the chart.
 std::optional<double> limit_of(const HistorySeries& series, const HistoryArguments& a) {
   const auto& limit = a.at_least ? a.at_least : a.at_most;
   if (!limit) return std::nullopt;
   return series.scale == "ln" ? std::log(*limit) : *limit;
 }
 
-Json crossing_json(const Crossing& found) {
+Json crossing_json(const LimitCrossing& found) {
   const auto date = [](const std::optional<double>& days) { return days ? Json(date_of_days(*days)) : Json(); };
   return {{"kind", to_string(found.kind)},
           {"slope_per_year", json_number(found.slope_per_year)},
@@ -117,7 +119,7 @@ int run_add(Console& console, const HistoryArguments& a) {
   for (const std::string& folder : a.folders) {
     const auto sessions = session_folders_below(folder);
     if (!sessions) return report_error(console, sessions.error());
-    if (sessions->empty()) refused.push_back(folder + ": no session folder in it");
+    if (sessions->empty()) refused.push_back(folder + ": contains no session folder");
     for (const auto& one : *sessions) {
       const auto session = read_history_session(one);
       if (!session) {
@@ -184,10 +186,10 @@ int run_show(Console& console, const HistoryArguments& a) {
   const auto events = index->events(a.serial);
   if (!events) return report_error(console, events.error());
   if (all->empty())
-    return report_error(console, {ErrorCode::not_found, a.serial + ": no values of such a unit in " + a.index});
-  Json charts = Json::array();
-  for (const HistorySeries& series : *all) charts.push_back(chart_json(series, a));
+    return report_error(console, {ErrorCode::not_found, a.serial + ": no values of this unit in the index " + a.index});
   if (console.json()) {
+    Json charts = Json::array();
+    for (const HistorySeries& series : *all) charts.push_back(chart_json(series, a));
     Json listed = Json::array();
     for (const HistoryEvent& event : *events)
       listed.push_back({{"utc", event.utc}, {"kind", event.kind}, {"text", event.text}});
@@ -196,19 +198,31 @@ int run_show(Console& console, const HistoryArguments& a) {
   }
   std::vector<TableRow> rows;
   for (const HistorySeries& series : *all) {
-    const auto add = [&](const std::string& started_utc, const ChartValue& value, const std::string& mark) {
-      rows.push_back({series.measure + (series.condition.empty() ? "" : " " + series.condition), started_utc,
-                      fixed(shown_value(series, value.value), 4), fixed(value.u, 4), mark});
+    const std::string name = series.measure + (series.condition.empty() ? "" : " " + series.condition);
+    const auto add = [&](const std::string& started_utc, const ChartValue& value, const ChartPoint* point,
+                         const std::string& state) {
+      const bool charted = point != nullptr && !point->in_reference;
+      rows.push_back({name, started_utc, fixed(shown_value(series, value.value), 4), fixed(value.u, 4),
+                      charted ? fixed(point->ewma, 2) + " of " + fixed(point->ewma_limit, 2) : "",
+                      charted ? fixed(point->cusum_up, 1) + ", " + fixed(point->cusum_down, 1) : "", state});
     };
     for (const EarlierValue& earlier : series.earlier)
-      add(earlier.started_utc, earlier.value, "before " + earlier.ended_by);
-    for (std::size_t i = 0; i < series.values.size(); ++i) add(series.started_utc[i], series.values[i], "");
+      add(earlier.started_utc, earlier.value, nullptr, "before " + earlier.ended_by);
+    const auto chart = control_chart(series.values, ChartDesign());
+    for (std::size_t i = 0; i < series.values.size(); ++i) {
+      const ChartPoint* point = chart ? &chart->points[i] : nullptr;
+      add(series.started_utc[i], series.values[i], point,
+          point == nullptr      ? ""
+          : point->in_reference ? "reference"
+          : point->signal       ? "ALARM"
+                                : "in control");
+    }
   }
-  console.table({"measure", "started", "value", "u", "not in the chart"}, rows);
+  console.table({"measure", "started", "value", "u", "EWMA (sd)", "CUSUM up, down (sd)", "state"}, rows);
   return 0;
 }
 
-/// Manifests that are no longer those of the index.
+/// Returns the sessions whose manifests differ from the index.
 std::vector<std::string> lost_sessions(const std::vector<HistorySession>& sessions) {
   std::vector<std::string> lost;
   for (const HistorySession& session : sessions) {
@@ -218,10 +232,10 @@ std::vector<std::string> lost_sessions(const std::vector<HistorySession>& sessio
   return lost;
 }
 
-/// A check of what is nowhere in the index, or against a limit that no value can have, would find nothing to report.
+/// Rejects a check of units that are not in the index, or against an impossible limit: it could not report anything.
 Result<void> can_be_checked(const std::vector<HistorySession>& sessions, const HistoryArguments& a) {
   if (!a.serial.empty() && sessions.empty())
-    return fail(ErrorCode::not_found, a.serial + ": no such unit in " + a.index);
+    return fail(ErrorCode::not_found, a.serial + ": no unit with this serial number in the index " + a.index);
   if (a.measure.empty()) return {};
   const auto limit = a.at_least ? a.at_least : a.at_most;
   bool known = false;
@@ -230,18 +244,21 @@ Result<void> can_be_checked(const std::vector<HistorySession>& sessions, const H
       if (value.measure != a.measure) continue;
       known = true;
       if (limit && (!std::isfinite(*limit) || (value.scale == "ln" && !(*limit > 0))))
-        return fail(ErrorCode::invalid_input, "history check: a limit of " + a.measure + " is a number above 0");
+        return fail(ErrorCode::invalid_input,
+                    "history check: expected a finite limit of " + a.measure + (value.scale == "ln" ? " above 0" : ""));
     }
   }
-  if (!known) return fail(ErrorCode::not_found, "no value of measure '" + one_line(a.measure) + "' in " + a.index);
+  if (!known)
+    return fail(ErrorCode::not_found, "no value of measure '" + one_line(a.measure) + "' in the index " + a.index);
   return {};
 }
 
 int run_check(Console& console, const HistoryArguments& a) {
   if (a.at_least && a.at_most)
-    return report_error(console, {ErrorCode::invalid_input, "history check: one limit at a time"});
+    return report_error(console,
+                        {ErrorCode::invalid_input, "history check: --at-least and --at-most exclude each other"});
   if ((a.at_least || a.at_most) && a.measure.empty())
-    return report_error(console, {ErrorCode::invalid_input, "history check: a limit needs --measure"});
+    return report_error(console, {ErrorCode::invalid_input, "history check: --at-least and --at-most need --measure"});
   const auto index = HistoryIndex::open(a.index);
   if (!index) return report_error(console, index.error());
   const auto sessions = index->sessions(a.serial.empty() ? std::nullopt : std::optional(a.serial));
@@ -251,12 +268,12 @@ int run_check(Console& console, const HistoryArguments& a) {
   if (!all) return report_error(console, all.error());
   std::vector<std::string> warnings, predicted;
   for (const std::string& path : lost_sessions(*sessions))
-    warnings.push_back(path + ": the session is not there as it was added");
+    warnings.push_back(path + ": the session is missing or has changed since it was added");
   for (const HistorySeries& series : *all) {
     const std::string name = series.unit.model + " " + series.unit.serial + ", " + series.measure +
                              (series.condition.empty() ? "" : " at " + series.condition);
     const auto chart = control_chart(series.values, {});
-    if (chart && chart->signalled()) warnings.push_back(name + ": beyond the limits of its chart");
+    if (chart && chart->signalled()) warnings.push_back(name + ": a value is beyond the limits of the control chart");
     const auto limit = limit_of(series, a);
     if (!limit) continue;
     const double last = series.values.back().value;
@@ -267,8 +284,8 @@ int run_check(Console& console, const HistoryArguments& a) {
     const auto found = crossing(series.values, chart ? chart->scatter : 0, *limit);
     if (found && found->kind == CrossingKind::found && found->best_days &&
         *found->best_days <= series.values.back().days + a.horizon_days) {
-      predicted.push_back(name + ": the limit is met about " + date_of_days(*found->best_days) + ", not before " +
-                          date_of_days(*found->earliest_days) + " (95 %)");
+      predicted.push_back(name + ": predicted to reach the limit about " + date_of_days(*found->best_days) +
+                          ", not before " + date_of_days(*found->earliest_days) + " (95 %)");
     }
   }
   const int code = !predicted.empty() ? exit_code(VerdictKind::fail)
@@ -293,8 +310,8 @@ int run_export(Console& console, const HistoryArguments& a) {
     for (const HistoryValue& v : s.values) {
       for (const std::string& field : {s.unit.vendor, s.unit.model, s.unit.serial, s.unit.lens, s.firmware,
                                        s.started_utc, s.state, v.measure, v.condition, v.unit, v.scale})
-        csv += csv_field(field) + ",";
-      csv += number_text(v.value) + "," + number_text(v.u) + "," + csv_field(s.path) + "\n";
+        csv += spreadsheet_field(field) + ",";
+      csv += number_text(v.value) + "," + number_text(v.u) + "," + spreadsheet_field(s.path) + "\n";
     }
   }
   if (a.out.empty()) {
@@ -316,7 +333,7 @@ int run_event(Console& console, const HistoryArguments& a) {
   if (!index) return report_error(console, index.error());
   if (auto added = index->add_event({a.serial, utc, a.kind, a.text}); !added)
     return report_error(console, added.error());
-  console.note("kept: " + a.kind + " of " + a.serial + ", " + utc);
+  console.note("recorded: " + a.kind + " of " + a.serial + ", " + utc);
   return 0;
 }
 
@@ -372,64 +389,72 @@ int run_prior(Console& console, const HistoryArguments& a) {
 }  // namespace
 
 void add_history_command(CLI::App& app, Program& program) {
-  auto* history = app.add_subcommand("history", "sessions by unit over the years: control charts and drift");
+  auto* history =
+      app.add_subcommand("history", "keeps the sessions of each unit over the years: control charts and drift");
   history->require_subcommand(1);
   const auto begun = [&](const char* name, const char* sentence) {
     auto* command = history->add_subcommand(name, sentence);
     auto a = std::make_shared<HistoryArguments>();
-    command->add_option("--index", a->index, "file of the index; it can be made again from the session folders")
+    command
+        ->add_option("--index", a->index,
+                     "file of the index, which 'history add' can create again from the session folders")
         ->capture_default_str();
     return std::pair(command, a);
   };
   {
-    const auto [command, a] = begun("add", "adds session folders, or all below a folder; again changes nothing");
-    command->add_option("DIR", a->folders, "session folders, or folders of them")->required();
+    const auto [command, a] =
+        begun("add", "adds session folders, or all session folders below a folder; known sessions are left unchanged");
+    command->add_option("DIR", a->folders, "session folders, or folders that contain them")->required();
     finish_command(*command, program, [a = a](Console& console) { return run_add(console, *a); });
   }
   {
-    const auto [command, a] = begun("show", "units, or values and charts of one");
-    command->add_option("SERIAL", a->serial, "serial number; without it the units");
-    command->add_option("--measure", a->measure, "acuity, netd, ...; without it all");
-    command->add_option("--at-least", a->at_least, "limit whose crossing is predicted");
-    command->add_option("--at-most", a->at_most, "the same from above")->excludes("--at-least");
+    const auto [command, a] = begun("show", "lists the units, or the values and charts of one unit");
+    command->add_option("SERIAL", a->serial, "serial number; default: list of all units");
+    command->add_option("--measure", a->measure, "measure, for example acuity or netd; default: all");
+    command->add_option("--at-least", a->at_least, "lower limit; predicts when the measure crosses it")
+        ->check(number_in(-1e12, 1e12));
+    command->add_option("--at-most", a->at_most, "upper limit; predicts when the measure crosses it")
+        ->check(number_in(-1e12, 1e12))
+        ->excludes("--at-least");
     finish_command(*command, program, [a = a](Console& console) { return run_show(console, *a); });
   }
   {
     const auto [command, a] =
-        begun("check", "whether sessions are as they were added, charts signal or a limit is near");
-    command->add_option("SERIAL", a->serial, "serial number; without it all units");
-    command->add_option("--measure", a->measure, "acuity, netd, ...; without it all");
-    command->add_option("--at-least", a->at_least, "limit of the measure");
-    command->add_option("--at-most", a->at_most, "the same from above");
-    command->add_option("--horizon-days", a->horizon_days, "how far ahead a limit matters")
+        begun("check", "checks for changed sessions, alarms of the control charts and limits that are reached soon");
+    command->add_option("SERIAL", a->serial, "serial number; default: all units");
+    command->add_option("--measure", a->measure, "measure, for example acuity or netd; default: all");
+    command->add_option("--at-least", a->at_least, "lower limit of the measure")->check(number_in(-1e12, 1e12));
+    command->add_option("--at-most", a->at_most, "upper limit of the measure")->check(number_in(-1e12, 1e12));
+    command->add_option("--horizon-days", a->horizon_days, "reports limits that are reached within this number of days")
         ->check(number_in(0, 36525))
         ->capture_default_str();
     finish_command(*command, program, [a = a](Console& console) { return run_check(console, *a); });
   }
   {
-    const auto [command, a] = begun("prior", "what the units of a model say of the next one: rows of a plan");
+    const auto [command, a] =
+        begun("prior", "computes a prior for the next unit from the units of the same model, as rows of a plan");
     command->add_option("MODEL", a->model, "model of the cameras")->required();
-    command->add_option("--vendor", a->vendor, "needed where several have such a model");
-    command->add_option("--lens", a->lens, "needed where units have several");
-    command->add_option("--without", a->serial, "serial number of the unit that is to be judged");
-    command->add_option("--measure", a->measure, "acuity, netd, ...; without it all");
-    command->add_option("--out", a->out, "file for the rows; without it standard output");
+    command->add_option("--vendor", a->vendor, "vendor; required if several vendors have this model");
+    command->add_option("--lens", a->lens, "lens; required if the units have different lenses");
+    command->add_option("--without", a->serial, "serial number of the unit to be judged, which the prior must exclude");
+    command->add_option("--measure", a->measure, "measure, for example acuity or netd; default: all");
+    command->add_option("--out", a->out, "file for the rows; default: standard output");
     finish_command(*command, program, [a = a](Console& console) { return run_prior(console, *a); });
   }
   {
-    const auto [command, a] = begun("export", "every value as CSV");
-    command->add_option("SERIAL", a->serial, "serial number; without it all units");
-    command->add_option("--out", a->out, "file; without it standard output");
+    const auto [command, a] = begun("export", "writes every value as CSV");
+    command->add_option("SERIAL", a->serial, "serial number; default: all units");
+    command->add_option("--out", a->out, "CSV file; default: standard output");
     finish_command(*command, program, [a = a](Console& console) { return run_export(console, *a); });
   }
   {
-    const auto [command, a] = begun("event", "keeps what happened to a unit: its charts begin anew after it");
-    command->add_option("SERIAL", a->serial, "serial number")->required();
-    command->add_option("--kind", a->kind, "repair, firmware, recalibration or transport")
+    const auto [command, a] = begun("event", "records an event of a unit; its charts begin anew after the event");
+    command->add_option("SERIAL", a->serial, "serial number of the unit")->required();
+    command->add_option("--kind", a->kind, "kind of the event: repair, firmware, recalibration or transport")
         ->required()
         ->check(CLI::IsMember(std::vector<std::string>(begins_anew.begin(), begins_anew.end())));
-    command->add_option("--text", a->text, "what was done");
-    command->add_option("--utc", a->utc, "when; default: now");
+    command->add_option("--text", a->text, "description of the event");
+    command->add_option("--utc", a->utc, "time of the event, YYYY-MM-DDTHH:MM:SSZ; default: now");
     finish_command(*command, program, [a = a](Console& console) { return run_event(console, *a); });
   }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/command_identify.h"
 
 #include <fmt/format.h>
@@ -55,7 +56,8 @@ Json criterion_json_of(const SetCriterion& criterion) {
   return {{"value", json_number(criterion.value)}, {"ci95", json_interval(criterion.ci95)}};
 }
 
-/// Wilson's, of as many independent answers as have the scatter of the draws; where all draws agree, of the draws.
+/// Wilson's interval for the number of independent answers that gives the scatter of the draws; if all draws agree, for
+/// the number of draws.
 Interval interval_of(const IdentificationPoint& point) {
   const double p = point.proportion(), variance = std::pow(point.standard_error(), 2);
   const double answers = variance > 0 ? p * (1 - p) / variance : static_cast<double>(point.by_draw.size());
@@ -69,7 +71,7 @@ Json effort_json(const IdentificationEffort& effort) {
 }
 
 std::string effort_text(const IdentificationEffort& effort) {
-  return fmt::format("{:.0f} decisions, templates of {:.0f} MB a range, about {:.0f} s of processor time",
+  return fmt::format("{:.0f} decisions, at most {:.0f} MB of templates per range, about {:.0f} s of processor time",
                      effort.decisions, effort.largest_bytes / 1e6, std::ceil(effort.processor_s));
 }
 
@@ -126,7 +128,7 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
 }
 
 void print_identification(Console& console, const IdentificationStudyTask& task, const IdentificationStudy& study) {
-  console.text(fmt::format("{} targets of {} before {}, observer {}; mean size {:.3g} m, mean dT_RSS {:.3g} K",
+  console.text(fmt::format("{} targets of {}, sensor {}, observer {}; mean size {:.3g} m, mean dT_RSS {:.3g} K",
                            task.set.targets.size(), task.set.name, task.sensor.name, task.observer.name, study.size_m,
                            study.dt_rss_k));
   std::vector<TableRow> rows;
@@ -137,10 +139,10 @@ void print_identification(Console& console, const IdentificationStudyTask& task,
   console.table({"range [m]", "transmittance", "P correct", "95 %"}, rows);
   console.text("");
   console.text("75 % correct at " + fixed(study.r75_m.value, 1) + " m, 95 %: " + range(study.r75_m.ci95, 1) + " m");
-  console.text("of the set: M75 " + fixed(study.m75.value, 2) + " (" + range(study.m75.ci95, 2) + "), V50 " +
+  console.text("criteria of the set: M75 " + fixed(study.m75.value, 2) + " (" + range(study.m75.ci95, 2) + "), V50 " +
                fixed(study.v50.value, 2) + " (" + range(study.v50.ci95, 2) + ")");
   if (study.predicted) {
-    console.text(fmt::format("predicted by the TOD curve with M75 {:g}: ", task.m75) +
+    console.text(fmt::format("range predicted by the TOD curve with M75 {:g}: ", task.m75) +
                  fixed(study.predicted->r75_m, 1) + " m" +
                  (study.predicted->reason.empty() ? "" : "; " + study.predicted->reason));
   }
@@ -163,7 +165,7 @@ int run_identify(Console& console, const IdentifyArguments& a, const Program& pr
     return exit_code(VerdictKind::pass);
   }
   console.note("planned: " + effort_text(*effort));
-  console.phase("identifying");
+  console.phase("simulating the identification of the targets");
   const auto study = study_identification(*task);
   console.end_progress();
   if (!study) return report_error(console, study.error());
@@ -179,35 +181,38 @@ int run_identify(Console& console, const IdentifyArguments& a, const Program& pr
 }  // namespace
 
 void add_identify_command(CLI::App& app, Program& program) {
-  auto* command =
-      app.add_subcommand("identify", "an observer tells the targets of a set apart: right answers by range, M75, V50");
+  auto* command = app.add_subcommand(
+      "identify", "predicts how well an observer identifies the targets of a set: correct answers by range, M75, V50");
   auto a = std::make_shared<IdentifyArguments>();
-  command->add_option("SET.toml", a->set, "name or file")->required();
+  command->add_option("SET.toml", a->set, "set of targets: name or file")->required();
   a->chain.add_sensor_to(*command);
-  command->add_option("--ranges", a->ranges_m, "in m, increasing, separated by commas")
+  command->add_option("--ranges", a->ranges_m, "ranges in m, increasing, separated by commas")
       ->required()
       ->delimiter(',')
       ->check(number_in(1e-3, 1e6));
-  a->chain.add_to(*command, "name or file");
-  command->add_option("--decisions", a->decisions, "for every target at every range")
+  a->chain.add_to(*command, "observer: name or file");
+  command->add_option("--decisions", a->decisions, "number of decisions per target and range")
       ->check(whole_number(16, 1000000))
       ->capture_default_str();
   command
       ->add_option("--templates", a->templates,
-                   "what the observer knows: camera (the targets behind this camera) or ideal (without any blur of it)")
+                   "templates of the observer: camera (targets as this camera shows them) or ideal (without the blur "
+                   "of the camera)")
       ->check(CLI::IsMember({"camera", "ideal"}))
       ->capture_default_str();
   command
-      ->add_option("--cues", a->cues, "what differs between targets: all, or shape (one size, one temperature a view)")
+      ->add_option("--cues", a->cues,
+                   "differences between targets: all, or shape (all views scaled to one size and one temperature)")
       ->check(CLI::IsMember({"all", "shape"}))
       ->capture_default_str();
   command
-      ->add_option("--cn2", a->cn2,
-                   "structure parameter of the turbulence along the path of every range in m^(-2/3); default: that of "
-                   "the sensor, 0")
+      ->add_option(
+          "--cn2", a->cn2,
+          "structure parameter of the turbulence along the path to every range, in m^(-2/3); default: the value "
+          "of the sensor")
       ->check(number_in(0, 1e-11));
-  command->add_flag("--plan", a->plan, "say what it would take, and end");
-  command->add_option("--m75", a->m75, "of the range that the TOD curve predicts")
+  command->add_flag("--plan", a->plan, "prints the predicted effort and ends");
+  command->add_option("--m75", a->m75, "criterion M75 for the range that the TOD curve predicts")
       ->check(number_in(1e-6, 1e6))
       ->capture_default_str();
   finish_command(*command, program, [a, &program](Console& console) { return run_identify(console, *a, program); });

@@ -1,4 +1,5 @@
-// The command line as data: what its manual says and what a shell may complete.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line as data: for the manual and for completion in a shell.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,29 +12,29 @@
 
 namespace todbench {
 
-/// The commands that help lists, as they were added; what only a build or a shell calls is in no group.
+/// Returns the commands that help lists, in the order they were added; commands for builds and shells have no group.
 [[nodiscard]] std::vector<const CLI::App*> visible_commands(const CLI::App& app);
 
-/// A page of the whole, then one for each visible command.
+/// Returns a page for the program, then one for each visible command.
 [[nodiscard]] std::vector<ManualPage> manual_pages(const CLI::App& app, const std::string& version,
                                                    const std::string& date);
 
-/// What may stand in place of a word.
+/// Candidates for the completion of a word.
 struct Completion {
-  std::vector<std::string> words;  ///< sorted as a person should see them; not narrowed to what was typed
-  bool files = false;              ///< and any file or folder
+  std::vector<std::string> words;  ///< in the order of display; not narrowed to the typed letters
+  bool files = false;              ///< also any file or folder
 };
 
-/// What may stand in place of the last of `words`, which begin after the name of the program. `cameras` is asked only
-/// where a camera is wanted: it looks at every interface.
+/// Returns the candidates for the last of `words`, which start after the name of the program. `cameras` is called only
+/// if a camera is expected, because it searches every interface.
 [[nodiscard]] Completion completion(const CLI::App& app, const std::vector<std::string>& words,
                                     const std::function<std::vector<std::string>()>& cameras);
 
-/// `todbench complete WORDS...`, which the shell calls: a line for each word that may stand in place of the last one,
-/// ":files" behind them where any file may. Not a command of the parser, because the words are whatever was typed.
+/// Implements `todbench complete WORDS...`, called by the shell: prints one line for each candidate for the last word,
+/// then ":files" if any file may follow. Not a command of the parser, because it takes arbitrary words.
 void print_completions(const CLI::App& app, const std::vector<std::string>& words);
 
-/// `todbench manual`, which help does not list; `app` outlives the run.
+/// Adds `todbench manual`, which help does not list; `app` outlives the run.
 void add_manual_command(CLI::App& app, Program& program);
 
 }  // namespace todbench

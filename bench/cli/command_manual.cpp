@@ -1,4 +1,5 @@
-// todbench manual, todbench complete WORDS...: what the packages and the shell ask for; help does not list them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// todbench manual, todbench complete WORDS...: for packages and the shell; help does not list them.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -46,15 +47,15 @@ void print_completions(const CLI::App& app, const std::vector<std::string>& word
   const Completion offered = completion(app, words, cameras_now);
   const Console console({});
   for (const std::string& word : offered.words) console.text(word);
-  // No word of the program begins with a colon.
+  // No word of the program starts with a colon.
   if (offered.files) console.text(":files");
 }
 
 void add_manual_command(CLI::App& app, Program& program) {
-  auto* manual = app.add_subcommand("manual", "writes the pages for man(1)");
+  auto* manual = app.add_subcommand("manual", "writes the manual pages for man(1)");
   auto a = std::make_shared<ManualArguments>();
-  manual->add_option("--out", a->folder, "folder, which exists")->required();
-  manual->add_option("--date", a->date, "of the release, YYYY-MM-DD")->required()->check(is_date());
+  manual->add_option("--out", a->folder, "existing folder for the pages")->required();
+  manual->add_option("--date", a->date, "date of the release, YYYY-MM-DD")->required()->check(is_date());
   manual->group("");
   manual->callback([a, &app, &program] {
     program.chosen = [a, &app] {

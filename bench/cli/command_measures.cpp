@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench sfr, todbench sitf
 #include <algorithm>
 #include <memory>
@@ -18,13 +19,15 @@ struct SfrArguments {
   std::string picture, axis;
   std::vector<int> region;
   std::optional<double> pitch_mrad;
+  std::optional<double> f_number, pitch_um, halo_at_most;
+  std::vector<double> wavelength_um;
 };
 
 Result<cv::Mat1d> cut(const cv::Mat1d& picture, const std::vector<int>& region) {
   if (region.empty()) return picture;
   const cv::Rect wanted(region[0], region[1], region[2], region[3]);
   if ((wanted & cv::Rect(0, 0, picture.cols, picture.rows)) != wanted) {
-    return fail(ErrorCode::invalid_input, "--region reaches beyond the picture of " + std::to_string(picture.cols) +
+    return fail(ErrorCode::invalid_input, "--region extends beyond the picture of " + std::to_string(picture.cols) +
                                               " x " + std::to_string(picture.rows) + " pixels");
   }
   return picture(wanted).clone();
@@ -36,10 +39,29 @@ Json numbers_json(const std::vector<double>& values, double factor = 1) {
   return list;
 }
 
+/// Without a statement about halos, the low end is open if only the bound on their share limits it.
+Interval interval_of(const SlantedEdge& edge, std::size_t i, const SfrArguments& arguments) {
+  const bool low = edge.low_known[i] || arguments.halo_at_most;
+  return {low ? std::optional(edge.mtf_low[i]) : std::nullopt, edge.mtf_high[i]};
+}
+
+/// Returns the tails that remain for the stated aperture, band and pitch.
+Result<TailBounds> tail_bounds(const SfrArguments& a) {
+  TailBounds bounds;
+  const bool any = a.f_number || a.pitch_um || !a.wavelength_um.empty();
+  if (any && !(a.f_number && a.pitch_um && !a.wavelength_um.empty()))
+    return fail(ErrorCode::invalid_input, "--f-number, --wavelength-um and --pitch-um: expected all three or none");
+  if (any) {
+    const double mean_um = 0.5 * (a.wavelength_um.front() + a.wavelength_um.back());
+    bounds = diffraction_bounds(*a.f_number, mean_um, *a.pitch_um);
+  }
+  if (a.halo_at_most) bounds.most_halo = *a.halo_at_most;
+  return bounds;
+}
+
 Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
   Json intervals = Json::array();
-  for (std::size_t i = 0; i < edge.mtf.size(); ++i)
-    intervals.push_back({json_number(edge.mtf_low[i]), json_number(edge.mtf_high[i])});
+  for (std::size_t i = 0; i < edge.mtf.size(); ++i) intervals.push_back(json_interval(interval_of(edge, i, arguments)));
   const std::optional<double> pitch = arguments.pitch_mrad;
   const auto per_mrad = [&](const std::optional<double>& per_pitch) {
     return pitch && per_pitch ? json_number(*per_pitch / *pitch) : Json();
@@ -58,6 +80,8 @@ Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
           {"frequency_per_mrad", pitch ? numbers_json(edge.frequency_per_pitch, 1 / *pitch) : Json()},
           {"mtf", numbers_json(edge.mtf)},
           {"mtf_ci95", intervals},
+          {"widest_halo_pitch", json_number(edge.widest_halo_pitch)},
+          {"halo_allowance", json_number(edge.halo_allowance)},
           {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
           {"mtf50_per_mrad", per_mrad(edge.mtf50_per_pitch)},
           {"notes", edge.notes}};
@@ -70,7 +94,7 @@ void print_sfr(Console& console, const SlantedEdge& edge, const SfrArguments& ar
   std::vector<TableRow> rows;
   for (std::size_t i = 0; i < edge.mtf.size(); i += 5) {
     const double frequency = edge.frequency_per_pitch[i];
-    TableRow row{fixed(frequency, 2), fixed(edge.mtf[i], 4), range({edge.mtf_low[i], edge.mtf_high[i]}, 4)};
+    TableRow row{fixed(frequency, 2), fixed(edge.mtf[i], 4), range(interval_of(edge, i, arguments), 4)};
     if (arguments.pitch_mrad) row.insert(row.begin() + 1, fixed(frequency / *arguments.pitch_mrad, 4));
     rows.push_back(row);
   }
@@ -81,7 +105,7 @@ void print_sfr(Console& console, const SlantedEdge& edge, const SfrArguments& ar
   console.text("MTF 0.5 at " + fixed(edge.mtf50_per_pitch, 4) + " cycles per pitch");
 }
 
-/// Values at the end of what the file's type holds may have been more.
+/// Whether values reach the end of the range of the file's type, so that they may be clipped.
 bool reaches_end(const PictureFile& file) {
   if (!file.counts) return false;
   double low = 0, high = 0;
@@ -96,9 +120,20 @@ int run_sfr(Console& console, const SfrArguments& arguments) {
   if (!picture) return report_error(console, with_context(arguments.picture, picture.error()));
   SlantedEdgeOptions options;
   if (!arguments.axis.empty()) options.axis = arguments.axis == "x" ? EdgeAxis::x : EdgeAxis::y;
+  const auto bounds = tail_bounds(arguments);
+  if (!bounds) return report_error(console, bounds.error());
+  options.tails = *bounds;
   auto edge = slanted_edge(*picture, options);
   if (!edge) return report_error(console, with_context(arguments.picture, edge.error()));
-  if (reaches_end(*file)) edge->notes.emplace_back("pixels are at the end of what the file's type holds");
+  if (reaches_end(*file))
+    edge->notes.emplace_back("pixels have the lowest or highest value of the pixel type and may be clipped");
+  if (!arguments.halo_at_most &&
+      !std::all_of(edge->low_known.begin(), edge->low_known.end(), [](bool k) { return k; })) {
+    edge->notes.emplace_back(
+        "a halo cannot be distinguished from shading, because the picture is too noisy or too small: the MTF has no "
+        "lower limit. Average more frames, include more of the two sides, or state the largest share of halos "
+        "(--halo-at-most).");
+  }
   for (const auto& note : edge->notes) console.note(note);
   if (console.json())
     console.object(sfr_json(*edge, arguments));
@@ -107,7 +142,7 @@ int run_sfr(Console& console, const SfrArguments& arguments) {
   return 0;
 }
 
-/// The column of the first name that the header has.
+/// Returns the column of the first name in the header.
 std::optional<std::size_t> column_of(const CsvTable& table, std::initializer_list<std::string_view> names) {
   for (const std::string_view name : names) {
     const auto found = std::find(table.header.begin(), table.header.end(), name);
@@ -120,7 +155,7 @@ struct StepColumns {
   std::size_t delta_t_k = 0, signal = 0;
   std::optional<std::size_t> signal_u{};
   std::string unit{};
-  std::vector<std::string> unused{};  ///< names of columns that nothing is taken from
+  std::vector<std::string> unused{};  ///< names of unused columns
 };
 
 Result<StepColumns> step_columns(const CsvTable& table) {
@@ -130,7 +165,7 @@ Result<StepColumns> step_columns(const CsvTable& table) {
   if (!signal) return table.wrong(1, "expected a column counts (or signal, signal_k)");
   for (const auto& name : table.header) {
     if (std::count(table.header.begin(), table.header.end(), name) > 1)
-      return table.wrong(1, "the column '" + one_line(name) + "' is there twice");
+      return table.wrong(1, "the column '" + one_line(name) + "' occurs twice");
   }
   StepColumns columns{*temperature, *signal,
                       column_of(table, {"counts_se", "counts_u", "u_counts", "signal_u", "signal_se"})};
@@ -173,7 +208,7 @@ Result<Steps> read_steps(const std::string& file) {
     if (columns->signal_u && !row.fields[*columns->signal_u].empty()) {
       const auto uncertainty = number(*columns->signal_u);
       if (!uncertainty) return tl::unexpected(uncertainty.error());
-      if (!(*uncertainty > 0)) return table->wrong(row.line, "the uncertainty of the signal has to be above 0");
+      if (!(*uncertainty > 0)) return table->wrong(row.line, "the uncertainty of the signal must be above 0");
       step.signal_u = *uncertainty;
     }
     steps.steps.push_back(step);
@@ -216,7 +251,7 @@ int run_sitf(Console& console, const std::string& file) {
       {"quantity", "value", "unit"},
       {{"slope", fixed(line->slope, 5), unit},
        {"standard uncertainty", fixed(line->slope_u, 5), unit},
-       {"  from those stated", fixed(line->slope_u_stated, 5), unit},
+       {"  from the stated uncertainties", fixed(line->slope_u_stated, 5), unit},
        {"  from the scatter", fixed(line->slope_u_scatter, 5), unit},
        {"offset", fixed(line->offset, 3), steps->unit},
        {"chi squared", fixed(line->chi2, 3), std::to_string(line->degrees_of_freedom) + " degrees of freedom"},
@@ -228,24 +263,45 @@ int run_sitf(Console& console, const std::string& file) {
 }  // namespace
 
 void add_sfr_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("sfr", "MTF from a picture of a slanted edge (TIFF or .npy)");
+  auto* command = app.add_subcommand("sfr", "measures the MTF from a picture of a slanted edge (TIFF or .npy)");
   auto a = std::make_shared<SfrArguments>();
   command->add_option("PICTURE", a->picture, "file with one straight edge between two flat fields")->required();
-  command->add_option("--axis", a->axis, "along which the frequency runs: x for a nearly vertical edge; default: found")
+  command
+      ->add_option("--axis", a->axis,
+                   "axis of the spatial frequency: x for a nearly vertical edge; default: detected from the picture")
       ->check(CLI::IsMember({"x", "y"}));
-  command->add_option("--region", a->region, "X,Y,WIDTH,HEIGHT of the part of the picture with the edge, in pixels")
+  command
+      ->add_option("--region", a->region,
+                   "X,Y,WIDTH,HEIGHT of the region with the edge, in pixels; default: the whole picture")
       ->delimiter(',')
       ->expected(4)
       ->check(whole_number(0, 65535));
-  command->add_option("--pitch-mrad", a->pitch_mrad, "angle of a pixel: frequencies per milliradian too")
+  command
+      ->add_option("--pitch-mrad", a->pitch_mrad,
+                   "angle of a pixel (IFOV) in mrad; adds frequencies in cycles per mrad")
       ->check(number_in(1e-6, 1e6));
+  command
+      ->add_option(
+          "--f-number", a->f_number,
+          "f-number of the lens; with --wavelength-um and --pitch-um it bounds the tails of the line spread function")
+      ->check(number_in(0.1, 100));
+  command->add_option("--wavelength-um", a->wavelength_um, "spectral band LOW,HIGH in um, or its central wavelength")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->check(number_in(0.1, 100));
+  command->add_option("--pitch-um", a->pitch_um, "detector pitch in um")->check(number_in(0.1, 1000));
+  command
+      ->add_option("--halo-at-most", a->halo_at_most,
+                   "largest share of the step that halos can have, if known; it bounds the lower end of the intervals")
+      ->check(number_in(0, 0.9));
   finish_command(*command, program, [a](Console& console) { return run_sfr(console, *a); });
 }
 
 void add_sitf_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("sitf", "signal transfer from steps of temperature in a CSV file");
+  auto* command = app.add_subcommand("sitf", "fits the signal transfer (SiTF) to temperature steps in a CSV file");
   auto file = std::make_shared<std::string>();
-  command->add_option("STEPS.csv", *file, "columns delta_t_k, counts and, where it is known, counts_se")->required();
+  command->add_option("STEPS.csv", *file, "file with the columns delta_t_k, counts and, if known, counts_se")
+      ->required();
   finish_command(*command, program, [file](Console& console) { return run_sitf(console, *file); });
 }
 

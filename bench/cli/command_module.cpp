@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/command_module.h"
 
 #include <fmt/format.h>
@@ -58,7 +59,7 @@ ModulePlan planned(const ModuleArguments& a, ModulePlace place) {
 }
 
 std::string said_of_network(bool cut) {
-  return cut ? "it had no network" : "it had the network of this host";
+  return cut ? "the module had no network" : "the module had the network of this host";
 }
 
 int run_observer_check(Console& console, const ModuleArguments& a) {
@@ -84,17 +85,17 @@ int run_observer_check(Console& console, const ModuleArguments& a) {
                     {"reason", nullptr}});
     return 0;
   }
-  console.text("keeps the contract of an observer: one score for each alternative, two processes agree bit for bit");
+  console.text("keeps the contract of an observer: one score per alternative, two processes agree bit for bit");
   console.text(said_of_network(report->network_cut));
-  console.text(fmt::format("{:.3f} ms a target of 5 samples", report->latency_ms));
+  console.text(fmt::format("{:.3f} ms per target of 5 samples", report->latency_ms));
   std::vector<TableRow> rows;
   for (const JudgedSize& size : report->sizes) {
     rows.push_back({fmt::format("{:g}", size.size_samples), std::to_string(size.samples_per_pitch),
                     fmt::format("{} x {}", size.window_samples, size.window_samples),
                     fmt::format("{} of {}", size.right, size.asked)});
   }
-  console.table({"size (samples)", "samples/pitch", "patch", "right without sensor noise"}, rows);
-  if (report->order_matters) console.note("its scores of a patch depend on the patches before it");
+  console.table({"size (samples)", "samples/pitch", "patch", "correct without sensor noise"}, rows);
+  if (report->order_matters) console.note("the scores of a patch depend on the patches before it");
   return 0;
 }
 
@@ -121,11 +122,10 @@ int run_sensor_check(Console& console, const ModuleArguments& a) {
   console.text(fmt::format("keeps the contract of a sensor: frames of {} sizes, two processes agree bit for bit",
                            report->shapes.size()));
   console.text(said_of_network(report->network_cut));
-  console.text(fmt::format("{:.3f} ms a frame of 320 x 240 pixels", report->latency_ms));
-  console.text(fmt::format(
-      "{}, deviation {:.2g}; a scene of 1 K is answered with {:.4g} K, noise {:.3g} K from frame "
-      "to frame",
-      report->linear ? "linear" : "not linear", report->linearity_deviation, report->response, report->noise_k));
+  console.text(fmt::format("{:.3f} ms per frame of 320 x 240 pixels", report->latency_ms));
+  console.text(fmt::format("{}, deviation {:.2g}; response to a scene of 1 K: {:.4g} K, temporal noise {:.3g} K",
+                           report->linear ? "linear" : "not linear", report->linearity_deviation, report->response,
+                           report->noise_k));
   return 0;
 }
 
@@ -144,10 +144,10 @@ int run_check(Console& console, const ModuleArguments& a) {
     return 0;
   }
   console.text(
-      fmt::format("keeps the contract: {} shapes answered, two processes agree bit for bit", report->shapes.size()));
+      fmt::format("keeps the contract: {} shapes processed, two processes agree bit for bit", report->shapes.size()));
   console.text(said_of_network(report->network_cut));
-  console.text(fmt::format("{:.3f} ms an exchange of 320 x 240 numbers", report->latency_ms));
-  console.text(fmt::format("{}, deviation {:.2g}; response to an impulse: sum {:.4g}, middle {:.4g}",
+  console.text(fmt::format("{:.3f} ms per exchange of 320 x 240 numbers", report->latency_ms));
+  console.text(fmt::format("{}, deviation {:.2g}; impulse response: sum {:.4g}, centre {:.4g}",
                            report->linear ? "linear" : "not linear", report->linearity_deviation, report->impulse_sum,
                            report->impulse_response(4, 4)));
   return 0;
@@ -156,22 +156,32 @@ int run_check(Console& console, const ModuleArguments& a) {
 }  // namespace
 
 void add_module_command(CLI::App& app, Program& program) {
-  auto* module = app.add_subcommand("module", "stages of the chain as programs of the user's");
+  auto* module = app.add_subcommand("module", "tests programs of the user that are stages of the chain");
   module->require_subcommand(1);
-  auto* check = module->add_subcommand("check", "whether a program keeps the contract of a module, and what it does");
+  auto* check = module->add_subcommand(
+      "check", "tests whether a program keeps the contract of a module, and reports its properties");
   auto a = std::make_shared<ModuleArguments>();
-  check->add_option("COMMAND", a->command, "for a shell, in quotes")->required();
-  check->add_option("--limit-ms", a->limit_ms, "for an answer")->check(whole_number(1, 600000))->capture_default_str();
-  check->add_option("--memory-mib", a->memory_mib, "address space that each of its processes may have; 0: no limit")
+  check->add_option("COMMAND", a->command, "command for a shell, in quotes")->required();
+  check->add_option("--limit-ms", a->limit_ms, "longest time for an answer in ms")
+      ->check(whole_number(1, 600000))
+      ->capture_default_str();
+  check
+      ->add_option("--memory-mib", a->memory_mib,
+                   "largest address space of each process of the module in MiB; 0: no limit")
       ->check(whole_number(0, 1 << 20))
       ->capture_default_str();
-  check->add_option("--place", a->place, "in the chain: picture to picture, scene to frame, or patch to scores")
+  check
+      ->add_option(
+          "--place", a->place,
+          "place in the chain: picture (picture to picture), sensor (scene to frame) or observer (patch to scores)")
       ->check(CLI::IsMember({std::string(to_string(ModulePlace::picture)), std::string(to_string(ModulePlace::sensor)),
                              std::string(to_string(ModulePlace::observer))}))
       ->capture_default_str();
-  check->add_option("--observer", a->observer, "of place observer: whose window and internal noise the patches have")
+  check
+      ->add_option("--observer", a->observer,
+                   "observer whose window and internal noise the patches have, for the place observer")
       ->capture_default_str();
-  check->add_flag("--network", a->network, "leaves it the network of this host");
+  check->add_flag("--network", a->network, "gives the module access to the network of this host");
   finish_command(*check, program, [a](Console& console) { return run_check(console, *a); });
 }
 

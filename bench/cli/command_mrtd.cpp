@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/command_mrtd.h"
 
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ Result<MrtdStudyTask> mrtd_task(const MrtdArguments& a, const Program& program) 
   auto chain = a.chain.load();
   if (!chain) return tl::unexpected(chain.error());
   if (a.range_m == 0 && chain->air.name != "clear")
-    return fail(ErrorCode::invalid_input, "--atmosphere acts over a path: --range-m is missing");
+    return fail(ErrorCode::invalid_input, "--atmosphere needs the length of the path: add --range-m");
   task.range_m = a.range_m;
   task.air = std::move(chain->air);
   task.trial.sensor = std::move(chain->sensor);
@@ -104,7 +105,8 @@ void print_mrtd(Console& console, const MrtdStudyTask& task, const MrtdStudy& st
   console.text("virtual MRTD of " + task.trial.sensor.name + ", observer " + task.trial.observer.name + ", " +
                std::string(to_string(task.trial.criterion)));
   if (task.range_m > 0) {
-    console.text(fmt::format("contrasts of bars at {:g} m; transmittance {:.4f}", task.range_m, study.transmittance));
+    console.text(fmt::format("contrasts of the bars at a range of {:g} m; transmittance {:.4f}", task.range_m,
+                             study.transmittance));
   }
   for (const auto& curve : study.curves) {
     std::vector<TableRow> rows;
@@ -116,8 +118,9 @@ void print_mrtd(Console& console, const MrtdStudyTask& task, const MrtdStudy& st
     }
     console.text("");
     console.text(curve.axis == BarAxis::horizontal ? "horizontal axis" : "vertical axis");
-    console.table({"f [/mrad]", "f/Nyquist", "MRTD [K]", "95 %", "best phase", "worst phase", "formula", "reason"},
-                  rows);
+    console.table(
+        {"f [/mrad]", "f/Nyquist", "MRTD [K]", "95 %", "best phase [K]", "worst phase [K]", "formula [K]", "reason"},
+        rows);
   }
 }
 
@@ -125,7 +128,7 @@ int run_mrtd(Console& console, const MrtdArguments& a, const Program& program) {
   const auto task = mrtd_task(a, program);
   if (!task) return report_error(console, task.error());
   for (const auto& sentence : task->air.notes) console.note(sentence);
-  console.phase("judging bars");
+  console.phase("simulating the MRTD");
   const auto study = study_mrtd(*task);
   console.end_progress();
   if (!study) return report_error(console, study.error());
@@ -144,7 +147,7 @@ int run_mrtd(Console& console, const MrtdArguments& a, const Program& program) {
   } else {
     print_mrtd(console, *task, *study);
   }
-  // What lies beyond Nyquist has no MRTD by rule; anything else that was asked for and has no threshold is open.
+  // Frequencies beyond Nyquist have no MRTD by rule; any other requested frequency without a threshold is inconclusive.
   const bool all = std::all_of(study->curves.begin(), study->curves.end(), [](const auto& curve) {
     return std::all_of(curve.points.begin(), curve.points.end(), [](const auto& point) {
       return point.found.threshold_k || point.found.frequency_over_nyquist > 1 + 1e-9;
@@ -157,37 +160,50 @@ int run_mrtd(Console& console, const MrtdArguments& a, const Program& program) {
 
 void add_mrtd_command(CLI::App& app, Program& program) {
   auto* command =
-      app.add_subcommand("mrtd", "four bars before a simulated camera, judged by the observer of the triangles");
+      app.add_subcommand("mrtd", "predicts the MRTD of a simulated camera: the observer judges four-bar targets");
   auto a = std::make_shared<MrtdArguments>();
   a->chain.add_sensor_to(*command);
-  a->chain.add_to(*command, "name or file");
-  command->add_option("--range-m", a->range_m, "from the camera to the bars; default: no air between them")
+  a->chain.add_to(*command, "observer: name or file");
+  command
+      ->add_option("--range-m", a->range_m,
+                   "distance from the camera to the bars in m; default: no atmosphere between them")
       ->check(number_in(1e-3, 1e6));
   command
       ->add_option("--criterion", a->criterion,
-                   "four-or-five (two intervals, free of bias), bars-resolved (yes or no), or detection (no MRTD)")
+                   "task of the observer: four-or-five (two-interval forced choice, free of bias), bars-resolved (yes "
+                   "or no) or detection (not an MRTD)")
       ->check(CLI::IsMember({"four-or-five", "bars-resolved", "detection"}))
       ->capture_default_str();
-  command->add_option("--axis", a->axis, "that resolves the bars: horizontal, vertical or both")
+  command->add_option("--axis", a->axis, "axis across which the bars are resolved: horizontal, vertical or both")
       ->check(CLI::IsMember({"horizontal", "vertical", "both"}))
       ->capture_default_str();
-  auto* absolute = command->add_option("--frequencies-per-mrad", a->frequencies_per_mrad, "separated by commas")
-                       ->delimiter(',')
-                       ->check(number_in(1e-6, 1e6));
-  command->add_option("--of-nyquist", a->of_nyquist, "frequencies over the Nyquist frequency of the samples")
+  auto* absolute =
+      command
+          ->add_option("--frequencies-per-mrad", a->frequencies_per_mrad,
+                       "spatial frequencies in cycles per mrad, separated by commas; default: those of --of-nyquist")
+          ->delimiter(',')
+          ->check(number_in(1e-6, 1e6));
+  command
+      ->add_option(
+          "--of-nyquist", a->of_nyquist,
+          "spatial frequencies as fractions of the Nyquist frequency, separated by commas; default: 0.2 to 1.2")
       ->delimiter(',')
       ->check(number_in(1e-3, 4))
       ->excludes(absolute);
-  command->add_option("--draws", a->draws, "of noise, for every frequency")
+  command->add_option("--draws", a->draws, "noise draws per frequency; more draws narrow the intervals")
       ->check(whole_number(64, 100000))
       ->capture_default_str();
-  command->add_option("--snr-threshold", a->formula.snr_threshold, "of the MRTD formula")
+  command
+      ->add_option("--snr-threshold", a->formula.snr_threshold,
+                   "signal-to-noise ratio at threshold in the MRTD formula")
       ->check(number_in(1e-6, 1e6))
       ->capture_default_str();
-  command->add_option("--eye-integration-s", a->formula.eye_integration_s, "of the MRTD formula")
+  command
+      ->add_option("--eye-integration-s", a->formula.eye_integration_s,
+                   "integration time of the eye in the MRTD formula, in s")
       ->check(number_in(1e-4, 10))
       ->capture_default_str();
-  command->add_option("--svg", a->svg, "writes the figure to this file");
+  command->add_option("--svg", a->svg, "writes the figure to this SVG file");
   command->add_option("--page", a->page, "writes figure and tables to this HTML file");
   finish_command(*command, program, [a, &program](Console& console) { return run_mrtd(console, *a, program); });
 }

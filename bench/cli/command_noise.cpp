@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench noise
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/input_gate.h"
 #include "bench/cli/noise_components.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
@@ -33,27 +35,26 @@ struct NoiseArguments {
   bool components_only = false, across_corrections = false;
 };
 
-/// Neighbours that correlate by more than this change together: the scene moved, and nothing of it is the camera's
-/// noise.
+/// If neighbours correlate by more than this, the scene moved, and the result is not the camera's noise.
 constexpr double moved_scene = 0.8;
 
-/// Beyond this correlation successive frames understate the noise of one by 5 % and more.
+/// Above this correlation successive frames understate the noise of one by 5 % or more.
 constexpr double white_enough = 0.1;
 
 struct Frames {
   std::vector<TimedPicture> pictures;
   bool kelvin = false;
-  double unit_per_count = 1;  ///< 0: not known
+  double unit_per_count = 1;  ///< 0: unknown
   cv::Mat1d saturated;        ///< frames in which a pixel was at either end of the counts
 };
 
-/// In kelvin where the recording says how, else in counts.
+/// In kelvin if the recording has a scale, otherwise in counts.
 Result<cv::Mat1f> picture_of(const Frame& frame, bool in_kelvin) {
   cv::Mat1f picture;
   if (in_kelvin) {
     auto kelvin = to_kelvin(frame);
     if (!kelvin) return tl::unexpected(kelvin.error());
-    // Single precision keeps a tenth of a millikelvin of what is left above freezing.
+    // Single precision resolves a tenth of a millikelvin in degrees Celsius.
     cv::Mat1d(*kelvin - 273.15).convertTo(picture, CV_32F);
   } else {
     frame.counts.convertTo(picture, CV_32F);
@@ -61,11 +62,11 @@ Result<cv::Mat1f> picture_of(const Frame& frame, bool in_kelvin) {
   return picture;
 }
 
-/// Tells new exposures from repeated ones, and the segments between corrections of the camera from each other. Whether
-/// a jump of the level is a correction is told by the frames behind it.
+/// Separates new exposures from repeated ones, and the segments between corrections of the camera. The frames after a
+/// jump of the level decide whether it is a correction.
 class Segments {
  public:
-  /// The segment of a frame; nothing for one that is no new exposure or was made during a correction.
+  /// Returns the segment of a frame; empty for a repeated frame and for one during a correction.
   [[nodiscard]] std::optional<int> of(const Frame& frame) {
     const bool repeated =
         !last_.empty() && last_.size() == frame.counts.size() && cv::norm(last_, frame.counts, cv::NORM_INF) == 0;
@@ -86,7 +87,7 @@ class Segments {
   bool jumped_ = false;
 };
 
-/// Makes segments of the jumps of the level behind which it stays another one.
+/// Starts a new segment at each jump after which the level stays changed.
 void split_at_jumps(std::vector<TimedPicture>& pictures, const std::vector<std::size_t>& jumps) {
   constexpr std::size_t nearby = 8;  // frames of the same segment on either side
   std::vector<double> levels;
@@ -104,25 +105,27 @@ void split_at_jumps(std::vector<TimedPicture>& pictures, const std::vector<std::
   for (std::size_t k = 0; k < pictures.size(); ++k) pictures[k].segment += added += more[k];
 }
 
-/// What a count is worth where the picture is, in kelvin; 0: not known.
+/// Returns kelvin per count at the level of the picture; 0: unknown.
 double kelvin_per_count(const Frame& frame, const RadiometricScale& scale) {
   return std::abs(scale.kelvin_per_count(cv::mean(frame.counts)[0]).value_or(0));
 }
 
-/// 1 where a pixel is at either end of the counts.
+/// 1 if a pixel is at either end of the counts.
 cv::Mat1b saturated_pixels(const Frame& frame) {
   const double full = std::pow(2.0, frame.significant_bits) - 1;
   const cv::Mat1b ends = (frame.counts == 0) | (frame.counts >= full);
   return ends & 1;
 }
 
-/// All complete frames that are exposures of their own.
-Result<Frames> frames_of(const std::string& id) {
+/// Reads all complete frames that are separate exposures.
+Result<Frames> frames_of(const std::string& id, Console& console) {
   auto source =
       recording_backend()->open(has_scheme(id, camera_scheme::file) ? id : camera_id(camera_scheme::file, id));
-  // Here a recording is an input file and no device.
+  // A recording is an input file here, not a device.
   if (!source) return fail(ErrorCode::invalid_input, source.error().message);
   if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());
+  for (const auto& warning : (*source)->info().warnings) console.note(warning);
+  InputGate gate;
   Frames frames;
   frames.kelvin = (*source)->info().scale.calibrated();
   Segments segments;
@@ -130,11 +133,15 @@ Result<Frames> frames_of(const std::string& id) {
   for (;;) {
     auto frame = (*source)->next(std::chrono::seconds(1));
     if (!frame && frame.error().code == ErrorCode::disconnected) {
+      if (auto sound = gate.verdict(); !sound) return fail(id, sound.error());
+      for (const auto& sentence : {gate.note(), gate.cadence()}) {
+        if (!sentence.empty()) console.note(sentence);
+      }
       split_at_jumps(frames.pictures, jumps);
       return frames;
     }
     if (!frame) return tl::unexpected(frame.error());
-    if (frame->status != FrameStatus::complete) continue;
+    if (!gate.takes(*frame)) continue;
     const auto segment = segments.of(*frame);
     if (!segment) continue;
     auto picture = picture_of(*frame, frames.kelvin);
@@ -142,7 +149,7 @@ Result<Frames> frames_of(const std::string& id) {
     if (frames.pictures.empty() && frames.kelvin)
       frames.unit_per_count = kelvin_per_count(*frame, (*source)->info().scale);
     if (frames.saturated.empty()) frames.saturated = cv::Mat1d::zeros(frame->counts.size());
-    // Frames of different sizes are refused below.
+    // Frames of different sizes are rejected below.
     if (frames.saturated.size() == frame->counts.size())
       cv::add(frames.saturated, saturated_pixels(*frame), frames.saturated, cv::noArray(), CV_64F);
     if (segments.jumped()) jumps.push_back(frames.pictures.size());
@@ -150,7 +157,7 @@ Result<Frames> frames_of(const std::string& id) {
   }
 }
 
-/// Blocks of so many frames with no correction in them, one after the other.
+/// Cuts the pictures into successive blocks of `block_frames` frames without a correction.
 std::vector<cv::Mat1f> in_blocks(const std::vector<TimedPicture>& pictures, int block_frames) {
   std::vector<cv::Mat1f> blocks;
   const auto size = static_cast<std::size_t>(block_frames);
@@ -165,7 +172,7 @@ std::vector<cv::Mat1f> in_blocks(const std::vector<TimedPicture>& pictures, int 
   return blocks;
 }
 
-/// What was found in a recording.
+/// Results of a recording.
 struct Found {
   RecordedNoise blocks;
   TemporalNoise time;
@@ -185,7 +192,7 @@ bool correlated(const TemporalNoise& noise) {
   return noise.lag1_correlation && std::abs(*noise.lag1_correlation) > white_enough;
 }
 
-/// Rounding leaves of so little noise what depends on where between two counts a pixel lies.
+/// The noise is so low that rounding makes it depend on the level between two counts.
 bool too_coarse(const Found& found) {
   return found.time.successive < least_measurable_noise_counts * found.unit_per_count;
 }
@@ -194,7 +201,7 @@ bool clipped(const Found& found) {
   return found.saturated_share > IntegrityOptions{}.max_saturated_share;
 }
 
-/// The counts hold no noise that could be stated.
+/// Whether the counts contain no noise that could be stated.
 bool no_number(const Found& found) {
   return clipped(found) || too_coarse(found);
 }
@@ -206,13 +213,14 @@ std::string_view verdict_of(const Found& found) {
   return correlated(found.time) ? "correlated" : "ok";
 }
 
-/// What the correlation does to a number that someone may take from here.
+/// States the effect of the correlation on the numbers of this report.
 std::string memory_sentence(const TemporalNoise& noise) {
-  return "the noise is correlated in time, by " + fixed(noise.lag1_correlation, 2) +
-         " in successive frames: they show the temporal noise of an instrument, but a single frame, which the observer "
-         "judges, carries " +
+  return "the noise is correlated in time: successive frames have a correlation of " +
+         fixed(noise.lag1_correlation, 2) +
+         ". The stated temporal noise comes from differences of successive frames. A single frame, which the observer "
+         "judges, has " +
          fixed(noise.whole_to_successive, 2) +
-         " times as much, and averaging frames helps less than the root of their number";
+         " times as much noise. Averaging N frames reduces the noise by less than the square root of N.";
 }
 
 Json components_json(const ThreeDNoise& c) {
@@ -268,15 +276,15 @@ Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, cons
 void print_time(Console& console, const Found& found, const std::string& unit) {
   const TemporalNoise& time = found.time;
   const auto noise = no_number(found) ? std::nullopt : std::optional(time.successive);
-  console.text("temporal noise " + fixed(noise, 4) + " " + unit + " (successive frames) over " +
-               fixed(100 * time.usable_share, 1) + " % of the pixels; correlation of successive frames " +
+  console.text("temporal noise " + fixed(noise, 4) + " " + unit + " (from differences of successive frames) over " +
+               fixed(100 * time.usable_share, 1) + " % of the pixels; lag-1 correlation " +
                fixed(time.lag1_correlation, 3));
   std::vector<TableRow> rows;
   for (std::size_t i = 0; i < time.lags.size(); ++i) {
     const int lag = time.lags[i];
     if (i == 0 || (lag & (lag - 1)) == 0) rows.push_back({std::to_string(lag), fixed(time.structure[i], 4)});
   }
-  console.table({"frames apart", "sqrt(mean d^2 / 2) [" + unit + "]"}, rows);
+  console.table({"lag [frames]", "sqrt(mean d^2 / 2) [" + unit + "]"}, rows);
   console.text("");
 }
 
@@ -285,8 +293,8 @@ void print_components(Console& console, const Found& found) {
   const auto& c = noise.components;
   const std::string unit = found.kelvin ? "K" : "counts";
   print_time(console, found, unit);
-  console.text("noise in blocks " + fixed(noise.temporal_noise, 4) + " " + unit + " over " +
-               fixed(100 * noise.usable_share, 1) + " % of the pixels; neighbours correlate by " +
+  console.text("noise within blocks " + fixed(noise.temporal_noise, 4) + " " + unit + " over " +
+               fixed(100 * noise.usable_share, 1) + " % of the pixels; correlation of adjacent pixels: " +
                fixed(noise.correlation_x, 3) + " in a row, " + fixed(noise.correlation_y, 3) + " in a column");
   console.table({"component", "sd [" + unit + "]"}, {{"pixels in time (tvh)", fixed(c.tvh, 4)},
                                                      {"rows in time (tv)", fixed(c.tv, 4)},
@@ -307,12 +315,12 @@ void print_acuities(Console& console, const std::vector<NoiseAcuity>& points) {
                    fixed(p.row_share, 3), fixed(p.column_share, 3), fixed(p.correlated_share, 3)});
   }
   console.text("");
-  console.text("75 % sizes under this noise and under white noise of the same strength");
-  console.table({"dT / noise", "S75 [pitch]", "S75 white", "acuity real / white", "95 %", "predicted from r",
-                 "whole frame / successive"},
+  console.text("S75 with this noise and with white noise of the same standard deviation");
+  console.table({"dT / noise", "S75 [pitch]", "S75 white [pitch]", "acuity real / white", "95 %", "predicted from r",
+                 "acuity single frame / successive"},
                 rows);
   console.text("");
-  console.text("what moves the decision: r^2, the variance in the templates' differences over that of white noise");
+  console.text("r^2: variance of the template differences over that with white noise, and its parts");
   console.table({"dT / noise", "r", "pixels", "rows", "columns", "correlated"}, why);
 }
 
@@ -321,16 +329,20 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
   if (!sensor) return report_error(console, sensor.error());
   auto spec = load_observer(arguments.observer);
   if (!spec) return report_error(console, spec.error());
-  const auto frames = frames_of(arguments.recording);
+  const auto frames = frames_of(arguments.recording, console);
   if (!frames) return report_error(console, frames.error());
   const auto count = static_cast<int>(frames->pictures.size());
   if (count < 2) {
-    return report_error(console, {ErrorCode::invalid_input,
-                                  arguments.recording + ": noise needs two frames that differ, with no correction of " +
-                                      "the camera at the second; the recording holds " + std::to_string(count)});
+    return report_error(console,
+                        {ErrorCode::invalid_input, arguments.recording +
+                                                       ": the noise cannot be computed: it needs at least two "
+                                                       "different frames without a correction (NUC) between them, "
+                                                       "found " +
+                                                       std::to_string(count)});
   }
   if (count < arguments.block_frames) {
-    console.note("the recording holds " + std::to_string(count) + " frames: they are one block");
+    console.note("the recording has " + std::to_string(count) +
+                 " frames, fewer than --block-frames: all of them form one block");
     arguments.block_frames = count;
   }
   auto time = temporal_noise(frames->pictures);
@@ -339,19 +351,21 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
       recorded_noise(in_blocks(frames->pictures, arguments.block_frames), arguments.block_frames, time->usable);
   if (!blocks) return report_error(console, with_context(arguments.recording, blocks.error()));
   if (const int left_out = pixels_left_out(*time); left_out > 0)
-    console.note(fmt::format("{} of {} pixels never change or see a moving scene: they are in no number", left_out,
+    console.note(fmt::format("{} of {} pixels never change or see a moving scene: all results exclude them", left_out,
                              time->usable.total()));
   const double saturated_share = cv::mean(frames->saturated, time->usable)[0] / count;
   const Found found{*std::move(blocks), *std::move(time), frames->kelvin, frames->unit_per_count, saturated_share};
   std::vector<NoiseAcuity> points;
   if (clipped(found)) {
-    console.note(fixed(100 * found.saturated_share, 1) +
-                 " % of the pixels are at an end of the counts: what is cut off there is missing in the noise");
+    console.note(
+        fixed(100 * found.saturated_share, 1) +
+        " % of the pixels are saturated (lowest or highest count): their noise is clipped, so no noise is reported");
   } else if (too_coarse(found)) {
-    console.note("the noise is less than half a count: the scale is too coarse for a number");
+    console.note("the noise is below half a count: the counts are too coarse to measure it");
   } else if (moved(found.blocks)) {
     // Components and acuity would be those of the moving scene.
-    console.note("neighbouring pixels change together: the scene or the camera moved, this is not the camera's noise");
+    console.note(
+        "adjacent pixels change together: the scene or the camera moved, so this is not the noise of the camera");
   } else {
     if (correlated(found.time)) console.note(memory_sentence(found.time));
     TemplateObserver observer(*spec, triangle_alternatives());
@@ -364,7 +378,7 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
     if (studied)
       points = *std::move(studied);
     else
-      console.note("no acuity: " + studied.error().message);
+      console.note("no acuity was computed: " + studied.error().message);
   }
   if (console.json()) {
     console.object(noise_json(found, points, arguments));
@@ -379,26 +393,34 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
 
 void add_noise_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand(
-      "noise", "noise of a recording by direction, and the observer's acuity under it beside white noise");
+      "noise",
+      "measures the noise components of a recording and the acuity with this noise, compared with white noise");
   auto a = std::make_shared<NoiseArguments>();
-  command->add_option("RECORDING", a->recording, "file.seq, or file.raw?width=W&height=H[&kelvin_per_count=K]")
+  command
+      ->add_option(
+          "RECORDING", a->recording,
+          "recording of a static scene, for example file.seq or file.raw?width=W&height=H[&kelvin_per_count=K]")
       ->required();
-  command->add_option("--sensor", a->sensor, "whose optics degrade the triangles")->capture_default_str();
-  command->add_option("--observer", a->observer, "name or file")->capture_default_str();
-  command->add_option("--block-frames", a->block_frames, "frames over which each pixel's mean is removed")
+  command->add_option("--sensor", a->sensor, "sensor whose optics blur the triangles: name or file")
+      ->capture_default_str();
+  command->add_option("--observer", a->observer, "observer: name or file")->capture_default_str();
+  command
+      ->add_option("--block-frames", a->block_frames,
+                   "frames per block; the mean of each pixel is removed within a block")
       ->check(whole_number(2, 100000))
       ->capture_default_str();
   command
       ->add_option("--contrast-over-noise", a->study.contrast_over_noise,
-                   "contrasts in units of the temporal noise, separated by commas; default 1.6,3.3,8,28")
+                   "contrasts as multiples of the temporal noise, separated by commas; default: 1.6,3.3,8,28")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(number_in(0.05, 1e6));
-  auto* components = command->add_flag("--components-only", a->components_only,
-                                       "only the seven components, of the whole recording as it is, with intervals");
+  auto* components =
+      command->add_flag("--components-only", a->components_only,
+                        "computes only the seven components of 3-D noise with intervals, from the whole recording");
   command
       ->add_flag("--across-corrections", a->across_corrections,
-                 "also of a recording in which the camera corrected itself or the scene moved")
+                 "accepts a recording in which the camera performed a correction (NUC) or the scene moved")
       ->needs(components);
   finish_command(*command, program, [a, &program](Console& console) {
     if (!a->components_only) return run_noise(console, *a, program);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench observer fit
 #include <filesystem>
 #include <memory>
@@ -39,13 +40,13 @@ Result<std::array<bool, observer_key_count>> free_keys(const std::vector<std::st
                                                 ")");
     }
     bool& free = out[static_cast<std::size_t>(found - known.begin())];
-    if (free) return fail(ErrorCode::invalid_input, "--free: '" + name + "' is there twice");
+    if (free) return fail(ErrorCode::invalid_input, "--free: '" + name + "' is listed twice");
     free = true;
   }
   return out;
 }
 
-/// The name of the observer is that of its file. What was published under a name stays.
+/// The name of the observer is that of its file. Names of built-in observers are rejected.
 Result<std::string> name_for(const ObserverFitArguments& arguments) {
   const std::filesystem::path file = arguments.out;
   const auto refuse = [&](const std::string& why) {
@@ -54,14 +55,14 @@ Result<std::string> name_for(const ObserverFitArguments& arguments) {
   if (file.extension() != ".toml") return refuse("expected a file that ends with .toml");
   std::string name = file.stem().string();
   if (name.empty() || name != one_line(name) || name != valid_text(name))
-    return refuse("that is no name of an observer");
+    return refuse("the name of the file is not a valid name of an observer");
   for (const std::string& shipped : resource_names(ResourceKind::observer)) {
-    if (name == shipped) return refuse("an observer of this name is built in");
+    if (name == shipped) return refuse("an observer of this name is built in; choose another name");
   }
   std::error_code none;
-  if (std::filesystem::is_directory(file, none)) return refuse("is a folder");
+  if (std::filesystem::is_directory(file, none)) return refuse("is a folder, expected a file");
   if (!arguments.overwrite && std::filesystem::exists(file, none))
-    return refuse("exists already (--force writes over it)");
+    return refuse("the file exists already (--force overwrites it)");
   return name;
 }
 
@@ -93,8 +94,9 @@ void print_fit(const Console& console, const PeopleFit& fit) {
     rows.push_back({std::string(to_string(all_observer_keys[k])), fixed(fit.values[k], 4), range(fit.ci95[k], 4),
                     fixed(fit.spread[k].between_sd, 3)});
   }
-  console.table({"parameter", "value", "95 %", "between people (sd of ln)"}, rows);
-  console.text("model against the answers: p " + fixed(fit.least_p, 3) + (fit.accepted ? "" : ", refused"));
+  console.table({"parameter", "value", "95 %", "between persons (sd of ln)"}, rows);
+  console.text("goodness of fit of the model: p = " + fixed(fit.least_p, 3) +
+               (fit.accepted ? "" : ", the model is rejected"));
 }
 
 Result<Json> fitted(Console& console, const ObserverFitArguments& arguments, const Program& program, PeopleFit& out) {
@@ -144,8 +146,8 @@ int run_observer_fit(Console& console, const ObserverFitArguments& arguments, co
     if (fit.usable()) console.text("observer: " + arguments.out);
   }
   if (fit.usable()) return 0;
-  console.warning(fit.accepted ? "no observer was written: " + fit.not_identified.front()
-                               : "no observer was written: these answers are not those of such an observer (p " +
+  console.warning(fit.accepted ? "no parameter file was written: " + fit.not_identified.front()
+                               : "no parameter file was written: the model does not describe the answers (p = " +
                                      fixed(fit.least_p, 3) + ")");
   return exit_code(ErrorCode::not_identifiable);
 }
@@ -153,27 +155,31 @@ int run_observer_fit(Console& console, const ObserverFitArguments& arguments, co
 }  // namespace
 
 void add_observer_command(CLI::App& app, Program& program) {
-  auto* observer = app.add_subcommand("observer", "observers fitted to the answers of people");
+  auto* observer = app.add_subcommand("observer", "fits observers to the answers of people");
   observer->require_subcommand(1);
   auto* command = observer->add_subcommand(
-      "fit", "fits the parameters of an observer to the human runs of sessions, every answer given its very patch");
+      "fit", "fits the parameters of an observer to human answers, each with the picture that the person saw");
   auto a = std::make_shared<ObserverFitArguments>();
-  command->add_option("SESSION", a->sessions, "session folders with a human run")->required();
-  command->add_option("--from", a->from, "observer to begin with, name or file")->capture_default_str();
+  command->add_option("SESSION", a->sessions, "session folders with the answers of a person")->required();
+  command->add_option("--from", a->from, "observer from which the fit starts: name or file")->capture_default_str();
   command
-      ->add_option("--free", a->free,
-                   "what is fitted, with commas: blur_sigma_samples, internal_noise, sensor_noise_factor, lapse")
+      ->add_option(
+          "--free", a->free,
+          "parameters to fit, separated by commas: blur_sigma_samples, internal_noise, sensor_noise_factor, lapse")
       ->delimiter(',')
       ->required();
-  command->add_option("--out", a->out, "parameter file to write, NAME.toml; the page stands beside it")->required();
-  command->add_flag("--one-person", a->one_person, "the same person answered in all sessions");
-  command->add_option("--replicates", a->replicates, "answers of the model itself to hold the person's against")
+  command
+      ->add_option("--out", a->out,
+                   "parameter file to write, NAME.toml; the page NAME.html is written to the same folder")
+      ->required();
+  command->add_flag("--one-person", a->one_person, "states that the same person answered in all sessions");
+  command->add_option("--replicates", a->replicates, "simulated data sets of the model for the goodness-of-fit test")
       ->check(whole_number(99, 100000))
       ->capture_default_str();
-  command->add_option("--draws", a->draws, "of the observer's own noise for the probabilities of a patch")
+  command->add_option("--draws", a->draws, "draws of the observer's own noise for the probabilities of one picture")
       ->check(whole_number(32, 100000))
       ->capture_default_str();
-  command->add_flag("--force", a->overwrite, "write over an existing file");
+  command->add_flag("--force", a->overwrite, "overwrites an existing file");
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_observer_fit(console, *a, program); });
 }

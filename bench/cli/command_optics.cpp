@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench render, todbench mtf
 #include <fmt/format.h>
 #include <cmath>
@@ -5,8 +6,8 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/picture_files/encoded_picture.h"
 #include "bench/plan/descriptions.h"
-#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
 #include "sim_devices/sensor/effect_detector.h"
 #include "sim_devices/sensor/image_chain.h"
@@ -38,7 +39,7 @@ Json rows_of(const cv::Mat1d& values) {
   return rows;
 }
 
-/// A window of the degraded triangle for an infinite plane, at a contrast of 1 K, with a bound on its numerical error.
+/// Renders a window of the degraded triangle for an infinite plane at 1 K, with a bound on its numerical error.
 ImageChain::InfinitePlane degraded(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy,
                                    const RenderArguments& a) {
   const double step = 1.0 / spec.samples_per_pitch();
@@ -46,7 +47,7 @@ ImageChain::InfinitePlane degraded(const SensorSpec& spec, const SensorPlan& pla
   const double first = -step * half_window;
   const Polygon shape = triangle(a.size_pitch, *apex_from(a.apex), {a.x_pitch, a.y_pitch});
   auto image = ImageChain(spec, plan, accuracy).infinite_plane(shape, {first, first}, step, {a.window, a.window});
-  // The band's wavelengths: what twice as many nodes change.
+  // Error of the band's wavelengths: the change for twice as many nodes.
   Accuracy finer = accuracy;
   finer.wavelengths = std::min(64, 2 * accuracy.wavelengths);
   const auto check = ImageChain(spec, plan, finer).infinite_plane(shape, {first, first}, step, {a.window, a.window});
@@ -54,8 +55,8 @@ ImageChain::InfinitePlane degraded(const SensorSpec& spec, const SensorPlan& pla
   return image;
 }
 
-/// The same window as the simulated camera shows it: noise, defects, display and counts of a camera that looks at it
-/// with a margin for what display and dead detectors take from beyond.
+/// Renders the same window as the simulated camera shows it: noise, defects, display and counts. A margin covers the
+/// reach of display and dead detectors.
 cv::Mat1d as_exposed(SensorSpec spec, const SensorPlan& plan, const Accuracy& accuracy, const RenderArguments& a,
                      std::uint64_t seed) {
   constexpr int margin = 8;  // detectors; the display reaches eight samples
@@ -77,11 +78,11 @@ cv::Mat1d as_exposed(SensorSpec spec, const SensorPlan& plan, const Accuracy& ac
   return window;
 }
 
-/// Encoded in memory, so that a file is whole or not there.
+/// Encodes in memory, so that the file is complete or absent.
 Result<void> write_tiff(const std::string& file, const cv::Mat1f& kelvin) {
   const auto folder = std::filesystem::path(file).parent_path();
   if (std::error_code problem; !folder.empty() && !std::filesystem::is_directory(folder, problem))
-    return fail(ErrorCode::invalid_input, "--tiff " + file + ": " + folder.string() + " is no folder");
+    return fail(ErrorCode::invalid_input, "--tiff " + file + ": " + folder.string() + " is not a folder");
   const auto encoded = tiff_of(kelvin);
   if (!encoded) return tl::unexpected(encoded.error());
   return write_file_atomically(file, *encoded);
@@ -118,7 +119,7 @@ int run_render(Console& console, const RenderArguments& a, std::uint64_t seed) {
     }
     console.text(line);
   }
-  console.text(fmt::format("kelvin of contrast; {:.6f} mrad between samples; numerical error below about {:.1e} K",
+  console.text(fmt::format("contrast in K; sample spacing {:.6f} mrad; numerical error at most about {:.1e} K",
                            pitch_mrad, image.max_error_estimate));
   return 0;
 }
@@ -148,7 +149,7 @@ int run_mtf(Console& console, const MtfArguments& a) {
                     {"detector", detector},
                     {"system", system}});
   } else {
-    console.table({"1/pitch", "1/mrad", "optics", "detector", "system"}, rows);
+    console.table({"f [1/pitch]", "f [1/mrad]", "MTF optics", "MTF detector", "MTF system"}, rows);
   }
   return 0;
 }
@@ -158,35 +159,46 @@ int run_mtf(Console& console, const MtfArguments& a) {
 void add_render_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("render", "renders the degraded image of one triangle, as numbers or TIFF");
   auto a = std::make_shared<RenderArguments>();
-  command->add_option("--sensor", a->sensor, "name or file")->required();
-  command->add_option("--size-pitch", a->size_pitch, "square root of area, in detector pitches")
+  command->add_option("--sensor", a->sensor, "sensor: name or file")->required();
+  command->add_option("--size-pitch", a->size_pitch, "square root of the area of the triangle, in detector pitches")
       ->check(number_in(0.01, 500))
       ->required();
-  command->add_option("--apex", a->apex, "up, right, down or left")
+  command->add_option("--apex", a->apex, "direction of the apex: up, right, down or left")
       ->check(CLI::IsMember({"up", "right", "down", "left"}))
       ->capture_default_str();
-  command->add_option("--x-pitch", a->x_pitch, "centroid from the middle sample, to the right")
+  command
+      ->add_option("--x-pitch", a->x_pitch,
+                   "position of the centroid to the right of the middle sample, in detector pitches")
       ->check(number_in(-1000, 1000));
-  command->add_option("--y-pitch", a->y_pitch, "centroid from the middle sample, downwards")
+  command->add_option("--y-pitch", a->y_pitch, "position of the centroid below the middle sample, in detector pitches")
       ->check(number_in(-1000, 1000));
-  command->add_option("--delta-t-k", a->delta_t_k, "contrast")->check(number_in(-1e6, 1e6))->capture_default_str();
-  command->add_option("--microscan", a->microscan, "samples per detector pitch and axis, in place of the sensor's")
+  command->add_option("--delta-t-k", a->delta_t_k, "contrast of the triangle in K")
+      ->check(number_in(-1e6, 1e6))
+      ->capture_default_str();
+  command->add_option("--microscan", a->microscan, "samples per detector pitch and axis; default: those of the sensor")
       ->check(whole_number(1, 4));
-  command->add_option("--window", a->window, "samples on a side")->check(whole_number(1, 1024))->capture_default_str();
-  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")
+  command->add_option("--window", a->window, "samples on each side of the rendered window")
+      ->check(whole_number(1, 1024))
+      ->capture_default_str();
+  command->add_option("--accuracy", a->accuracy, "numerical accuracy: draft, normal or reference")
       ->check(CLI::IsMember({"draft", "normal", "reference"}))
       ->capture_default_str();
-  command->add_option("--noise", a->noise, "off or on")->check(CLI::IsMember({"off", "on"}))->capture_default_str();
-  command->add_option("--tiff", a->tiff, "also write a 32-bit floating-point TIFF, in kelvin");
+  command
+      ->add_option("--noise", a->noise, "off or on; on adds noise, defective pixels, display and counts of the camera")
+      ->check(CLI::IsMember({"off", "on"}))
+      ->capture_default_str();
+  command->add_option("--tiff", a->tiff, "writes the image to this file, a 32-bit floating-point TIFF in K");
   finish_command(*command, program,
                  [a, &program](Console& console) { return run_render(console, *a, program.common.seed); });
 }
 
 void add_mtf_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("mtf", "tabulates the transfer functions of a sensor along x");
+  auto* command = app.add_subcommand("mtf", "tabulates the MTF of optics, detector and whole sensor along x");
   auto a = std::make_shared<MtfArguments>();
-  command->add_option("--sensor", a->sensor, "name or file")->required();
-  command->add_option("--frequency-per-pitch", a->frequency_per_pitch, "cycles per detector pitch, separated by commas")
+  command->add_option("--sensor", a->sensor, "sensor: name or file")->required();
+  command
+      ->add_option("--frequency-per-pitch", a->frequency_per_pitch,
+                   "spatial frequencies in cycles per detector pitch, separated by commas")
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench pattern
 #include <fmt/format.h>
 
@@ -7,10 +8,10 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/picture_files/encoded_picture.h"
+#include "bench/picture_files/npy.h"
 #include "bench/report/pattern_truth.h"
-#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
-#include "bench/text/npy.h"
 #include "tod/pattern/test_picture.h"
 
 namespace todbench {
@@ -45,17 +46,19 @@ Result<std::string> encoded(const cv::Mat1d& levels, const std::string& format) 
   return png_of(counts);
 }
 
-/// A file that is not the truth of this picture is a plan, a plate or the truth of another picture, which would lose
-/// its own.
+/// Rejects an existing file that is not the truth of this picture: it is a plan, a plate or the truth of another
+/// picture.
 Result<void> may_be_written(const std::string& truth_file, const std::string& out, const std::string& truth) {
-  if (truth_file == out) return fail(ErrorCode::invalid_input, "--out " + out + ": the truth is written to this name");
+  if (truth_file == out)
+    return fail(ErrorCode::invalid_input,
+                "--out " + out + ": the file for the true values has this name; choose another extension");
   std::error_code problem;
   if (!std::filesystem::exists(truth_file, problem)) return {};
   const auto there = read_text_file(truth_file);
   const std::string_view title = std::string_view(truth).substr(0, truth.find(':') + 1);
   if (there && there->starts_with(title)) return {};
-  return fail(ErrorCode::invalid_input, "--out " + out + ": the truth would be written to " + truth_file +
-                                            ", which is there already and not that of such a picture");
+  return fail(ErrorCode::invalid_input, "--out " + out + ": the true values would overwrite " + truth_file +
+                                            ", which is not such a file; choose another name");
 }
 
 int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed) {
@@ -68,7 +71,7 @@ int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed)
   const std::filesystem::path folder = std::filesystem::path(a.out).parent_path();
   if (std::error_code problem; !folder.empty() && !std::filesystem::is_directory(folder, problem))
     return report_error(console,
-                        {ErrorCode::invalid_input, "--out " + a.out + ": " + folder.string() + " is no folder"});
+                        {ErrorCode::invalid_input, "--out " + a.out + ": " + folder.string() + " is not a folder"});
   const std::string truth_file = std::filesystem::path(a.out).replace_extension(".toml").string();
   const std::string truth = pattern_truth(request, *picture, std::filesystem::path(a.out).filename().string());
   if (const auto may = may_be_written(truth_file, a.out, truth); !may) return report_error(console, may.error());
@@ -85,39 +88,56 @@ int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed)
                     {"bar_groups", picture->bars.size()}});
     return 0;
   }
-  console.text(a.out + ", its truth in " + truth_file);
+  console.text(a.out + "; true values: " + truth_file);
   return 0;
 }
 
 }  // namespace
 
 void add_pattern_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("pattern", "draws a test picture with its truth, for projectors and monitors");
+  auto* command =
+      app.add_subcommand("pattern", "draws a test picture for projectors and monitors, and writes its true values");
   auto a = std::make_shared<PatternArguments>();
-  command->add_option("KIND", a->kind, "tod, mrtd, edge, ramp, siemens or flat")
+  command->add_option("KIND", a->kind, "kind of picture: tod, mrtd, edge, ramp, siemens or flat")
       ->required()
       ->check(CLI::IsMember({"tod", "mrtd", "edge", "ramp", "siemens", "flat"}));
-  command->add_option("--pixels", a->pixels, "width and height")
+  command->add_option("--pixels", a->pixels, "width and height of the picture in pixels")
       ->required()
       ->expected(2)
       ->check(whole_number(1, 16384));
-  command->add_option("--format", a->format, "png16 (level 1 is 65535), tiff (32-bit floating point) or npy (64-bit)")
+  command
+      ->add_option(
+          "--format", a->format,
+          "format of the file: png16 (level 1 is 65535), tiff (32-bit floating point) or npy (64-bit floating point)")
       ->check(CLI::IsMember({"png16", "tiff", "npy"}))
       ->capture_default_str();
-  command->add_option("--out", a->out, "file of the picture; its truth is beside it, ending in .toml")->required();
-  command->add_option("--low", a->low, "level of the ground")->check(number_in(0, 1))->capture_default_str();
-  command->add_option("--high", a->high, "level of the pattern")->check(number_in(0, 1))->capture_default_str();
-  command->add_option("--size-px", a->sizes_px, "tod: sizes, a row each; default: as many as fit")
+  command
+      ->add_option("--out", a->out,
+                   "file of the picture; its true values are written beside it, to a file that ends with .toml")
+      ->required();
+  command->add_option("--low", a->low, "level of the background, 0 to 1")
+      ->check(number_in(0, 1))
+      ->capture_default_str();
+  command->add_option("--high", a->high, "level of the pattern, 0 to 1")->check(number_in(0, 1))->capture_default_str();
+  command
+      ->add_option("--size-px", a->sizes_px,
+                   "tod: sizes of the triangles in pixels, one row for each; default: as many as fit")
       ->delimiter(',')
       ->check(number_in(0.1, 16384));
-  command->add_option("--frequency-per-px", a->frequencies_per_px, "mrtd: frequencies; default 0.05 to 0.5")
+  command
+      ->add_option("--frequency-per-px", a->frequencies_per_px,
+                   "mrtd: spatial frequencies in cycles per pixel; default: 0.05 to 0.5")
       ->delimiter(',')
       ->check(number_in(1e-4, 1));
-  command->add_option("--angle-deg", a->angle_deg, "edge: from the vertical")
+  command->add_option("--angle-deg", a->angle_deg, "edge: angle of the edge from the vertical in degrees")
       ->check(number_in(-180, 180))
       ->capture_default_str();
-  command->add_option("--spokes", a->spokes, "siemens")->check(whole_number(2, 1000))->capture_default_str();
-  command->add_option("--level", a->level, "flat")->check(number_in(0, 1))->capture_default_str();
+  command->add_option("--spokes", a->spokes, "siemens: number of spokes")
+      ->check(whole_number(2, 1000))
+      ->capture_default_str();
+  command->add_option("--level", a->level, "flat: level of the picture, 0 to 1")
+      ->check(number_in(0, 1))
+      ->capture_default_str();
   finish_command(*command, program,
                  [a, &program](Console& console) { return run_pattern(console, *a, program.common.seed); });
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/command_picture.h"
 
 #include <fmt/format.h>
@@ -7,10 +8,10 @@
 
 #include "bench/cli/chain_options.h"
 #include "bench/cli/scene_files.h"
+#include "bench/picture_files/encoded_picture.h"
 #include "bench/plan/descriptions.h"
 #include "bench/report/picture_page.h"
 #include "bench/studies/scene_pictures.h"
-#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 
@@ -50,7 +51,7 @@ Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t 
 
 std::string grey_sentence(const ScenePictures& pictures) {
   return fmt::format(
-      "Black is {:.3g} K, white {:.3g} K above the background in every picture; beyond them they are cut.",
+      "In every picture black is {:.3g} K and white is {:.3g} K above the background. Values beyond are clipped.",
       pictures.grey_low_k, pictures.grey_high_k);
 }
 
@@ -61,41 +62,42 @@ Document picture_document(const ScenePicturesTask& task, const ScenePictures& pi
   };
   add("scene", task.scene.name + (task.scene.description.empty() ? "" : ": " + task.scene.description));
   const int samples = task.sensor.samples_per_pitch();
-  add("sensor", fmt::format("{}, {} {} a pitch", task.sensor.name, samples, samples == 1 ? "sample" : "samples"));
+  add("sensor", fmt::format("{}, {} {} per pitch", task.sensor.name, samples, samples == 1 ? "sample" : "samples"));
   add("range", fmt::format("{:g} m", task.view.range_m));
-  add("air", fmt::format("{}; transmittance {:.4f}", task.air.source.empty() ? task.air.name : task.air.source,
-                         pictures.transmittance));
+  add("atmosphere", fmt::format("{}; transmittance {:.4f}", task.air.source.empty() ? task.air.name : task.air.source,
+                                pictures.transmittance));
   if (pictures.signature) {
     add("target", fmt::format("{:.3g} m (square root of area), {:.3g} K mean, {:.3g} K spread, {:.3g} K dT_RSS",
                               pictures.signature->size_m(), pictures.signature->mean_dt_k, pictures.signature->sd_k,
                               pictures.signature->dt_rss_k()));
   }
-  add("contrast behind the air", fmt::format("{:.3g} K", pictures.apparent_dt_k));
+  add("apparent contrast", fmt::format("{:.3g} K", pictures.apparent_dt_k));
   if (const auto& t = pictures.turbulence) {
     add("turbulence",
-        fmt::format("Cn2 {:.3g} m^-2/3 over {:g} m: coherence diameter {:.3g} m, transfer {:.4f} at the Nyquist "
-                    "frequency over many frames; short frames dance by {:.2g} pitches per axis",
-                    t->path.cn2_m_minus_2_3, t->path.path_m, t->r0_m, t->mtf_at_nyquist, t->tilt_sd_pitch));
+        fmt::format(
+            "Cn2 {:.3g} m^-2/3 over {:g} m: coherence diameter {:.3g} m, long-exposure MTF {:.4f} at the Nyquist "
+            "frequency; in short exposures the image moves by {:.2g} pitches (standard deviation) per axis",
+            t->path.cn2_m_minus_2_3, t->path.path_m, t->r0_m, t->mtf_at_nyquist, t->tilt_sd_pitch));
   }
-  add("background as the camera shows it", fmt::format("{:.2f} K", pictures.background_k));
+  add("background temperature shown by the camera", fmt::format("{:.2f} K", pictures.background_k));
   add("grey scale", grey_sentence(pictures));
   Table effects{"", {"Effect", "Decision", "Reason"}, {}};
-  const auto word = [](Decision decision) { return plain(decision == Decision::simulate ? "simulated" : "left out"); };
+  const auto word = [](Decision decision) { return plain(decision == Decision::simulate ? "simulated" : "skipped"); };
   for (const auto& d : pictures.air)
-    effects.rows.push_back({plain("air: " + d.name), word(d.decision), plain(d.reason)});
+    effects.rows.push_back({plain("atmosphere: " + d.name), word(d.decision), plain(d.reason)});
   for (const auto& d : pictures.effects.plan.decisions) {
     if (!is_of_air(d.effect)) effects.rows.push_back({plain(to_string(d.effect)), word(d.decision), plain(d.reason)});
   }
   std::vector<Block> blocks{std::move(effects)};
   for (const auto& warning : pictures.effects.warnings) blocks.emplace_back(note(plain(warning)));
   const std::string title =
-      fmt::format("{} at {:g} m through {}", task.scene.name, task.view.range_m, task.sensor.name);
+      fmt::format("{} at {:g} m, sensor {}", task.scene.name, task.view.range_m, task.sensor.name);
   return {.title = title,
           .heading = title,
-          .subtitle = "The picture after every stage",
+          .subtitle = "Pictures after each stage",
           .page_label = title,
           .opening = {},
-          .sections = {{"What is shown", {std::move(values)}}, {"What was simulated, and why", std::move(blocks)}}};
+          .sections = {{"Scene and sensor", {std::move(values)}}, {"Simulated effects", std::move(blocks)}}};
 }
 
 Json picture_json(const ScenePicturesTask& task, const ScenePictures& pictures) {
@@ -151,7 +153,7 @@ Json picture_json(const ScenePicturesTask& task, const ScenePictures& pictures) 
       {"page", "pictures.html"}};
 }
 
-/// PNG and TIFF; the bytes of the former.
+/// Writes PNG and TIFF; returns the bytes of the PNG.
 Result<std::string> write_one(const std::filesystem::path& folder, const std::string& name, const cv::Mat1f& kelvin,
                               const ScenePictures& pictures, int least_px) {
   auto png = png_of(grey_picture(kelvin, pictures.grey_low_k, pictures.grey_high_k, least_px));
@@ -198,10 +200,11 @@ int run_picture(Console& console, const PictureArguments& a, std::uint64_t seed)
     cv::minMaxLoc(stage.kelvin, &low, &high);
     rows.push_back({stage.name, stage.title, fixed(low, 3), fixed(high, 3)});
   }
-  console.table({"file", "stage", "least [K]", "most [K]"}, rows);
+  console.table({"file", "stage", "minimum [K]", "maximum [K]"}, rows);
   console.text("");
-  console.text(fmt::format("transmittance {:.4f}; contrast behind the air {:.3g} K; background shown at {:.2f} K",
-                           pictures->transmittance, pictures->apparent_dt_k, pictures->background_k));
+  console.text(fmt::format(
+      "transmittance {:.4f}; apparent contrast {:.3g} K; background temperature shown by the camera {:.2f} K",
+      pictures->transmittance, pictures->apparent_dt_k, pictures->background_k));
   console.text(grey_sentence(*pictures));
   console.text("page: " + (std::filesystem::path(a.out) / "pictures.html").string());
   return 0;
@@ -210,27 +213,40 @@ int run_picture(Console& console, const PictureArguments& a, std::uint64_t seed)
 }  // namespace
 
 void add_picture_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("picture", "a scene through air and camera: the picture after every stage");
+  auto* command =
+      app.add_subcommand("picture", "simulates a scene through atmosphere and camera: one picture after each stage");
   auto a = std::make_shared<PictureArguments>();
-  command->add_option("SCENE.toml", a->scene, "name or file")->required();
+  command->add_option("SCENE.toml", a->scene, "scene: name or file")->required();
   a->chain.add_sensor_to(*command);
-  command->add_option("--range-m", a->range_m, "from camera to scene")->required()->check(number_in(1e-3, 1e6));
-  command->add_option("--out", a->out, "folder for pictures and page")->required();
-  a->chain.add_to(*command, "name or file, of the last stage");
-  command->add_option("--rotation-deg", a->rotation_deg, "of the scene, clockwise")->check(number_in(-360, 360));
-  command->add_option("--x-pitch", a->x_pitch, "of the scene's origin from the middle of the frame, to the right")
+  command->add_option("--range-m", a->range_m, "distance from the camera to the scene in m")
+      ->required()
+      ->check(number_in(1e-3, 1e6));
+  command->add_option("--out", a->out, "folder for the pictures and the page")->required();
+  a->chain.add_to(*command, "observer of the last stage: name or file");
+  command->add_option("--rotation-deg", a->rotation_deg, "rotation of the scene in degrees, clockwise")
+      ->check(number_in(-360, 360));
+  command
+      ->add_option("--x-pitch", a->x_pitch,
+                   "position of the scene's origin to the right of the middle of the frame, in detector pitches")
       ->check(number_in(-1e5, 1e5));
-  command->add_option("--y-pitch", a->y_pitch, "the same, downwards")->check(number_in(-1e5, 1e5));
-  command->add_option("--field-pitch", a->field_pitch, "side of what is shown; default: the target and room round it")
+  command
+      ->add_option("--y-pitch", a->y_pitch,
+                   "position of the scene's origin below the middle of the frame, in detector pitches")
+      ->check(number_in(-1e5, 1e5));
+  command
+      ->add_option("--field-pitch", a->field_pitch,
+                   "side of the shown field in detector pitches; default: the target and a margin")
       ->check(whole_number(8, 4096));
-  command->add_option("--tolerance-percent", a->tolerance_percent, "of the acuity, for effects that are left out")
+  command
+      ->add_option("--tolerance-percent", a->tolerance_percent,
+                   "largest change of the acuity in percent for which an effect is skipped")
       ->check(number_in(0.01, 50))
       ->capture_default_str();
   command
       ->add_option("--cn2", a->cn2,
-                   "structure parameter of the turbulence along the path in m^(-2/3); default: that of the sensor, 0")
+                   "structure parameter Cn2 of the turbulence along the path in m^(-2/3); default: that of the sensor")
       ->check(number_in(0, 1e-11));
-  command->add_flag("--force", a->overwrite, "overwrite what is in the folder");
+  command->add_flag("--force", a->overwrite, "overwrites the files in the folder");
   finish_command(*command, program,
                  [a, &program](Console& console) { return run_picture(console, *a, program.common.seed); });
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench plan
 #include <memory>
 
@@ -23,13 +24,13 @@ void print_plan(const Console& console, const ExperimentInputs& inputs, const Pl
   std::vector<TableRow> contrasts;
   for (const auto& c : prediction.contrasts)
     contrasts.push_back({fixed(c.delta_t_k, 3), fixed(c.s75_mrad, 3), fixed(c.uncertainty_percent, 1)});
-  console.table({"dT [K]", "expected S75 [mrad]", "95 % +- [%]"}, contrasts);
+  console.table({"dT [K]", "expected S75 [mrad]", "95 % half-width [%]"}, contrasts);
   console.text("");
   const auto& measured_s = prediction.figures.predicted_measurement_s;
   console.text((measured_s ? "trials of the simulation: " : "trials: ") + std::to_string(prediction.figures.trials) +
                "; uncertainty of S75 (95 %): " + fixed(prediction.figures.predicted_uncertainty_percent, 1) +
                " %; time to simulate on one core of this machine: " + fixed(prediction.figures.predicted_s, 1) + " s" +
-               (measured_s ? "; to measure with the camera: " + fixed(measured_s, 0) + " s" : ""));
+               (measured_s ? "; time to measure with the camera: " + fixed(measured_s, 0) + " s" : ""));
 }
 
 Json fleet_json(const FleetForecast& fleet) {
@@ -91,9 +92,9 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
   if (!prediction) return report_error(console, prediction.error());
   if (auto timed = predict_times(plan, *inputs, *prediction, program.stop->token()); !timed) {
     if (timed.error().code == ErrorCode::interrupted) return report_error(console, timed.error());
-    prediction->warnings.push_back("no predicted time: " + timed.error().message);
+    prediction->warnings.push_back("the time cannot be predicted: " + timed.error().message);
   }
-  // Where no time can be predicted a warning says so already.
+  // If no time can be predicted, a warning already says so.
   const auto frontier = precision_frontier(plan, *inputs, program.stop->token());
   if (!frontier && frontier.error().code == ErrorCode::interrupted) return report_error(console, frontier.error());
   const auto of_camera = predict_plan(as_measured(plan), *inputs);
@@ -115,7 +116,7 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
     for (const MeasureForecast& limit : *measure_limits) console.text("limit on " + in_words(limit));
   }
   for (const auto& warning : prediction->warnings) console.note(warning);
-  // Without a camera nothing will be compared.
+  // Without a camera there is no comparison.
   if (!plan.camera.id.empty()) {
     const std::string forecast = comparison_forecast(plan, *prediction).sentence;
     if (!forecast.empty()) console.note(forecast);
@@ -127,10 +128,11 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
 }  // namespace
 
 void add_plan_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand(
-      "plan", "which effects will be simulated or skipped and why, how many trials, predicted time and uncertainty");
+  auto* command = app.add_subcommand("plan",
+                                     "shows which effects are simulated or skipped and why, the number of trials, and "
+                                     "the predicted time and uncertainty");
   auto o = std::make_shared<SimulationOverrides>();
-  command->add_option("PLAN.toml", o->plan, "name or file")->required();
+  command->add_option("PLAN.toml", o->plan, "plan: name or file")->required();
   add_key_options(*command, OptionOf::simulations, o->keys);
   finish_command(*command, program, [o, &program](Console& console) { return run_plan(console, *o, program); });
 }

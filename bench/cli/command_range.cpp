@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench range
 #include <fmt/format.h>
 
@@ -26,14 +27,14 @@ struct RangeArguments {
   Opening opening{};
 };
 
-/// What the TOD model answers, and whose curve it read.
+/// Result of the TOD model and the source of its curve.
 struct TodAnswer {
   RangePrediction prediction;
   std::string observer, sensor;
   std::optional<double> twin_r75_m;
 };
 
-/// Where the TOD curve says something about the target at all.
+/// Whether the TOD curve gives a probability for the target at any range.
 bool any_probability(const RangePrediction& prediction) {
   return std::any_of(prediction.curve.begin(), prediction.curve.end(),
                      [](const RangePoint& point) { return point.probability.has_value(); });
@@ -67,7 +68,7 @@ void print_range(Console& console, const TodAnswer& tod, const RangeTask& task, 
   const RangePrediction& prediction = tod.prediction;
   console.text("identification range, TOD of " + tod.sensor + ", observer " + tod.observer);
   const std::string through =
-      task.air ? "air: " + air.source : "extinction " + number_text(task.extinction_per_km) + " per km";
+      task.air ? "atmosphere: " + air.source : "extinction " + number_text(task.extinction_per_km) + " per km";
   console.text("target " + number_text(task.size_m) + " m, " + number_text(task.delta_t_k) + " K, M75 " +
                number_text(task.m75) + ", " + through);
   std::vector<TableRow> rows;
@@ -87,7 +88,7 @@ void print_range(Console& console, const TodAnswer& tod, const RangeTask& task, 
   print_findings(console, prediction.adequacy, "the TOD curve ");
 }
 
-/// Of the thresholds; the reason why there is none where there are no thresholds.
+/// Predicts from the thresholds; without thresholds the result contains the reason.
 Result<RangePrediction> predicted(const ThresholdSelection& selection, const RangeTask& task) {
   RangePrediction prediction;
   if (!selection.thresholds.empty()) return predict_range(selection.thresholds, task);
@@ -115,11 +116,11 @@ Result<std::optional<Session>> session_of(Console& console, const RangeArguments
   auto session = opened(console, arguments.tod, arguments.opening);
   if (!session) return tl::unexpected(session.error());
   if (!session->curve && arguments.more.asks(RangeModel::tod))
-    return fail(ErrorCode::invalid_input, arguments.tod + ": the session holds no curve");
+    return fail(ErrorCode::invalid_input, arguments.tod + ": the session has no TOD curve");
   return std::optional(*std::move(session));
 }
 
-/// The contrast at the scale of the NETD and the air, in the task.
+/// Sets the contrast at the scale of the NETD and the air in the task.
 Result<Atmosphere> into_task(RangeTask& task, const RangeOptions& options, const std::optional<SensorSpec>& sensor) {
   auto air = options.air(sensor, task.extinction_per_km);
   if (!air) return air;
@@ -130,7 +131,7 @@ Result<Atmosphere> into_task(RangeTask& task, const RangeOptions& options, const
   return air;
 }
 
-/// Relative, of the rows of the budget that are about the angle of a pixel.
+/// Relative uncertainty of the rows of the budget for the angle of a pixel.
 double relative_u_of_ifov(const Plan& plan) {
   double sum = 0;
   for (const BudgetRow& row : plan.uncertainty.rows) {
@@ -141,11 +142,11 @@ double relative_u_of_ifov(const Plan& plan) {
   return sum;
 }
 
-/// The answers behind turbulence, and what was decided about it.
+/// Results behind turbulence, with the decision about it.
 struct TurbulentAnswers {
   std::vector<ModelRange> models;
   TurbulenceDecision decision;
-  std::optional<TurbulentPath> at_r75;  ///< of the first model that has a range
+  std::optional<TurbulentPath> at_r75;  ///< of the first model with a range
 };
 
 Result<TurbulentAnswers> through_turbulence(const RangeOptions& options, const RangeTask& task,
@@ -158,7 +159,7 @@ Result<TurbulentAnswers> through_turbulence(const RangeOptions& options, const R
     for (const auto& range_m : {model.r75_m, model.r50_m, model.r75_ci95_m.high})
       longest_m = std::max(longest_m, range_m.value_or(0));
   }
-  if (!sources.sensor) return fail(ErrorCode::invalid_input, "--cn2 needs a sensor: --sensor or --tod");
+  if (!sources.sensor) return fail(ErrorCode::invalid_input, "--cn2 needs a sensor: add --sensor or --tod");
   TurbulentAnswers out;
   out.decision =
       decide_turbulence(*sources.sensor, options.cn2, question, tod.prediction.r75_m, options.tolerance_percent);
@@ -186,7 +187,7 @@ Result<TurbulentAnswers> through_turbulence(const RangeOptions& options, const R
   return out;
 }
 
-/// What the page says beside the models: of the TOD curve and its adequacy, and of turbulence.
+/// Sentences of the page besides the models: about the TOD curve, its adequacy, and turbulence.
 std::vector<std::string> sentences_of(const RangePrediction& tod, const TurbulenceDecision* turbulence,
                                       const RangeOptions& options) {
   std::vector<std::string> said;
@@ -199,8 +200,9 @@ std::vector<std::string> sentences_of(const RangePrediction& tod, const Turbulen
     }
   }
   if (turbulence != nullptr) {
-    said.push_back(fmt::format("Turbulence of Cn2 {:g} m^(-2/3) along the path of every range", options.cn2) +
-                   (options.asks(RangeModel::tod) ? "; TOD: " + turbulence->reason : ""));
+    said.push_back(
+        fmt::format("Turbulence with Cn2 = {:g} m^(-2/3) acts along the whole path at every range", options.cn2) +
+        (options.asks(RangeModel::tod) ? "; TOD: " + turbulence->reason : ""));
   }
   return said;
 }
@@ -241,7 +243,7 @@ int run_range(Console& console, const RangeArguments& arguments) {
     if (!answer) return report_error(console, answer.error());
     tod = *std::move(answer);
   } else {
-    tod.prediction.reason = "there is no TOD curve";
+    tod.prediction.reason = "no TOD curve is given (--tod)";
   }
   for (const auto& sentence : tod.prediction.notes) console.note(sentence);
   RangeQuestion question = options.question(task, arguments.v50, *air);
@@ -296,22 +298,25 @@ int run_range(Console& console, const RangeArguments& arguments) {
 }  // namespace
 
 void add_range_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("range", "predicts ranges from a TOD curve, and by other models beside it");
+  auto* command = app.add_subcommand(
+      "range", "predicts identification ranges from a TOD curve, and from other models for comparison");
   auto a = std::make_shared<RangeArguments>();
-  command->add_option("--tod", a->tod, "session folder with the curve; may be left out where no model asks for it");
-  command->add_option("--size-m", a->task.size_m, "square root of the target's projected area")
+  command->add_option("--tod", a->tod, "session folder with the TOD curve; required if --models includes tod");
+  command->add_option("--size-m", a->task.size_m, "square root of the projected area of the target, in m")
       ->required()
       ->check(number_in(1e-6, 1e6));
-  command->add_option("--delta-t-k", a->task.delta_t_k, "contrast at the target")
+  command->add_option("--delta-t-k", a->task.delta_t_k, "contrast of the target in K")
       ->required()
       ->check(number_in(-5000, 5000));
-  auto* m75 = command->add_option("--m75", a->task.m75, "criterion of the TOD model; 5.1: small craft, side view")
+  auto* m75 = command
+                  ->add_option("--m75", a->task.m75,
+                               "criterion M75 of the TOD model; 5.1 is that of small craft seen from the side")
                   ->check(number_in(1e-6, 1e6))
                   ->capture_default_str();
-  command->add_option("--v50", a->v50, "criterion of NVThermIP instead: M75 = 0.6 V50")
+  command->add_option("--v50", a->v50, "criterion V50 of NVThermIP in place of --m75: M75 = 0.6 V50")
       ->check(number_in(1e-6, 1e6))
       ->excludes(m75);
-  command->add_option("--extinction-per-km", a->task.extinction_per_km, "of the apparent contrast")
+  command->add_option("--extinction-per-km", a->task.extinction_per_km, "extinction of the apparent contrast in 1/km")
       ->check(number_in(0, 1e4))
       ->capture_default_str();
   a->more.add_to(*command);

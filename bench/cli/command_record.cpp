@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench record
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string_view>
 
@@ -10,6 +12,7 @@
 #include "acquisition/recording/tiff_writer.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/verdict.h"
+#include "bench/run/camera_settings.h"
 #include "bench/run/devices.h"
 #include "bench/session/provenance.h"
 
@@ -27,7 +30,7 @@ struct RecordArguments {
   std::vector<std::string> settings;  ///< "FEATURE=VALUE"
 };
 
-/// Where frames go: a recording or a TIFF stack.
+/// Destination of the frames: a recording or a TIFF stack.
 class Sink {
  public:
   static Result<Sink> create(const std::filesystem::path& file, const std::string& format, const SourceInfo& info) {
@@ -47,14 +50,14 @@ class Sink {
     sink.stream_ = *std::move(stream);
     return sink;
   }
-  /// A TIFF holds complete frames only: there is no place in it to say that one is not.
+  /// A TIFF contains complete frames only: it cannot mark incomplete ones.
   Result<void> append(const Frame& frame) {
     if (stream_) return stream_->append(frame);
     return frame.status == FrameStatus::complete ? tiff_->append(frame.counts) : Result<void>();
   }
-  /// The frames that a reader finds in the file, once everything is on the disk.
+  /// Returns the number of frames that a reader finds in the file, after all data are on the disk.
   Result<std::uint64_t> finish() { return stream_ ? stream_->verified_frames() : tiff_->verified_pages(); }
-  /// Whether a file without a frame is one of its format.
+  /// Whether a file without frames is valid in its format.
   [[nodiscard]] bool may_be_empty() const { return stream_.has_value(); }
 
  private:
@@ -62,7 +65,7 @@ class Sink {
   std::optional<TiffWriter> tiff_;
 };
 
-/// What came of it.
+/// Outcome of a recording.
 struct Recorded {
   std::uint64_t arrived = 0;
   std::uint64_t frames = 0;  ///< in the file
@@ -72,14 +75,20 @@ struct Recorded {
   std::optional<Error> ended_by;
 };
 
-Result<void> apply_settings(FrameSource& camera, const std::vector<std::string>& settings) {
+/// Notes features that read back otherwise; fails if they scale counts.
+Result<void> apply_settings(FrameSource& camera, const std::vector<std::string>& settings, Console& console) {
+  std::map<std::string, std::string> written;
   for (const auto& setting : settings) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos || equals == 0)
       return fail(ErrorCode::invalid_input, "--set " + setting + ": expected FEATURE=VALUE");
     if (auto set = camera.set(setting.substr(0, equals), setting.substr(equals + 1)); !set)
       return fail("setting " + setting, set.error());
+    written[setting.substr(0, equals)] = setting.substr(equals + 1);
   }
+  const auto warnings = check_written_settings(camera, written);
+  if (!warnings) return tl::unexpected(warnings.error());
+  for (const std::string& warning : *warnings) console.note(warning);
   return {};
 }
 
@@ -89,18 +98,21 @@ Recorded take_frames(FrameSource& camera, Sink& sink, const RecordArguments& a, 
   IntegrityGate gate({.width = info.width, .height = info.height});
   const std::stop_callback wake(stop.token(), [&camera] { camera.stop(); });
   const auto timeout = std::chrono::milliseconds(static_cast<long>(a.timeout_s * 1000));
-  const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(a.seconds * 1e9);
+  // The time starts with the first frame: a camera may need seconds to start.
+  std::int64_t end_ns = 0;
   const auto limit = static_cast<std::uint64_t>(a.frames);
   if (auto started = camera.start(); !started) {
     recorded.ended_by = started.error();
     return recorded;
   }
-  while ((limit == 0 || recorded.arrived < limit) && (a.seconds == 0 || monotonic_ns() < end_ns)) {
+  while ((limit == 0 || recorded.arrived < limit) &&
+         (a.seconds == 0 || recorded.arrived == 0 || monotonic_ns() < end_ns)) {
     Result<Frame> frame = stop.token().stop_requested()
                               ? Result<Frame>(fail(ErrorCode::interrupted, "stopped on request"))
                               : camera.next(timeout);
     if (frame) {
       (void)gate.judge(*frame);
+      if (recorded.arrived == 0) end_ns = monotonic_ns() + static_cast<std::int64_t>(a.seconds * 1e9);
       ++recorded.arrived;
       auto written = sink.append(*frame);
       if (written) {
@@ -129,11 +141,11 @@ std::string default_file(const RecordArguments& a) {
   return name + (a.format == "tiff" ? ".tif" : ".todrec");
 }
 
-/// Looks what is on the disk. A file that holds nothing and is none of its format is taken away again.
+/// Checks the file on the disk. Removes a file without frames that is not valid in its format.
 void finish(Sink& sink, const std::filesystem::path& file, Recorded& recorded) {
   const auto kept = sink.finish();
   recorded.frames = kept.value_or(0);
-  // A disk that does not hold what was written to it is the worse of two troubles.
+  // A disk error takes precedence over other errors.
   if (!kept && (!recorded.ended_by || recorded.ended_by->code != ErrorCode::io)) recorded.ended_by = kept.error();
   if (!kept || *kept > 0 || sink.may_be_empty()) return;
   std::error_code problem;
@@ -144,8 +156,10 @@ void finish(Sink& sink, const std::filesystem::path& file, Recorded& recorded) {
       Error{ErrorCode::integrity, "none of " + std::to_string(recorded.arrived) + " frames is complete"};
 }
 
-/// Without a limit Ctrl-C is how a recording ends, and a recording that is recorded ends where it ends.
+/// Whether it has a frame and ended as requested: at its limit, by Ctrl-C without a limit, or with its source
+/// recording.
 bool as_wanted(const Recorded& recorded, const RecordArguments& a) {
+  if (recorded.frames == 0) return false;
   if (!recorded.ended_by) return true;
   const bool limited = a.frames > 0 || a.seconds > 0;
   if (recorded.ended_by->code == ErrorCode::interrupted) return !limited;
@@ -153,7 +167,7 @@ bool as_wanted(const Recorded& recorded, const RecordArguments& a) {
          a.frames == 0 && recorded.arrived > 0;
 }
 
-/// Whether the file that is about to be written is the one that the frames come out of, or one of that folder.
+/// Whether the output file is the source of the frames, or one of the files in the source folder.
 bool overwrites_its_camera(const std::filesystem::path& file, const std::string& camera) {
   const auto name = camera_name(camera, camera_scheme::file);
   if (!name) return false;
@@ -169,16 +183,18 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
   const std::filesystem::path file = a.out.empty() ? default_file(a) : a.out;
   std::error_code problem;
   if (std::filesystem::exists(file, problem) && !a.overwrite) {
-    return report_error(console, {ErrorCode::invalid_input,
-                                  file.string() + ": exists already; choose another or allow overwriting (--force)"});
+    return report_error(
+        console, {ErrorCode::invalid_input,
+                  file.string() + ": the file exists already; choose another file or overwrite it with --force"});
   }
   if (overwrites_its_camera(file, a.camera)) {
-    return report_error(console, {ErrorCode::invalid_input, file.string() + ": is where the frames come from"});
+    return report_error(console, {ErrorCode::invalid_input,
+                                  file.string() + ": the frames are read from there; choose another output file"});
   }
   auto camera =
       camera_registry(stop.token(), [&](std::string_view sentence) { console.phase(sentence); }).open(a.camera);
   if (!camera) return report_error(console, camera.error());
-  if (auto set = apply_settings(**camera, a.settings); !set) return report_error(console, set.error());
+  if (auto set = apply_settings(**camera, a.settings, console); !set) return report_error(console, set.error());
   const SourceInfo info = (*camera)->info();
   for (const auto& warning : info.warnings) console.note(warning);
   auto sink = Sink::create(file, a.format, info);
@@ -202,12 +218,14 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
   } else {
     std::string doubtful;
     for (const auto& [reason, count] : recorded.rejected) doubtful += ", " + std::to_string(count) + " " + reason;
-    console.text(file.string() + ": " + std::to_string(recorded.frames) + " frames, " + std::to_string(recorded.lost) +
-                 " lost" + doubtful);
+    console.text(file.string() + ": " + std::to_string(recorded.frames) +
+                 (recorded.frames == 1 ? " frame, " : " frames, ") + std::to_string(recorded.lost) + " lost" +
+                 doubtful);
   }
   if (as_wanted(recorded, a)) return 0;
+  if (!recorded.ended_by) recorded.ended_by = Error{ErrorCode::timeout, "no frame arrived"};
   console.error("ended early: " + recorded.ended_by->message +
-                (recorded.frames > 0 ? "; the frames so far are in " + file.string() : "; no frame was kept"));
+                (recorded.frames > 0 ? "; the frames so far are in " + file.string() : "; no frame was saved"));
   return exit_code(recorded.ended_by->code);
 }
 
@@ -216,19 +234,24 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
 void add_record_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("record", "records the frames of a camera (or of a recording) to a file");
   auto a = std::make_shared<RecordArguments>();
-  command->add_option("CAMERA", a->camera, "id as todbench devices lists it, or file:PATH")->required();
-  command->add_option("--out", a->out, "file; default: recording-TIME.todrec in the current folder");
+  command->add_option("CAMERA", a->camera, "camera: id as listed by todbench devices, or file:PATH")->required();
+  command->add_option("--out", a->out, "output file; default: recording-TIME.todrec in the current folder");
   command
-      ->add_option("--format", a->format, "recording (everything that came) or tiff (16-bit stack of complete frames)")
+      ->add_option(
+          "--format", a->format,
+          "format of the file: recording (every frame that arrives) or tiff (16-bit stack of the complete frames)")
       ->check(CLI::IsMember({"recording", "tiff"}))
       ->capture_default_str();
-  command->add_option("--frames", a->frames, "end after this many")->check(whole_number(1, 1'000'000'000));
-  command->add_option("--seconds", a->seconds, "end after this time")->check(number_in(0.001, 1e7));
-  command->add_option("--timeout-s", a->timeout_s, "a camera that is silent for so long is lost")
+  command->add_option("--frames", a->frames, "stops after this number of frames")
+      ->check(whole_number(1, 1'000'000'000));
+  command->add_option("--seconds", a->seconds, "stops this time after the first frame, in s")
+      ->check(number_in(0.001, 1e7));
+  command->add_option("--timeout-s", a->timeout_s, "time without a frame, in s, after which the camera counts as lost")
       ->check(number_in(0.001, 600))
       ->capture_default_str();
-  command->add_option("--set", a->settings, "FEATURE=VALUE, written before the first frame; may be repeated");
-  command->add_flag("--force", a->overwrite, "overwrite an existing file");
+  command->add_option("--set", a->settings,
+                      "camera setting FEATURE=VALUE, written before the first frame; may be repeated");
+  command->add_flag("--force", a->overwrite, "overwrites an existing file");
   finish_command(*command, program, [a, &program](Console& console) { return run_record(console, *a, *program.stop); });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench reference-set
 #include <filesystem>
 #include <memory>
@@ -82,7 +83,8 @@ void print_score(const Console& console, const ReferenceScore& found) {
                     fixed(one.deviation_percent, 2), one.within ? "yes" : "no",
                     one.interval_holds ? (*one.interval_holds ? "yes" : "no") : "–"});
   }
-  console.table({"case", "S75 [mrad]", "found [mrad]", "off by [%]", "within tolerance", "interval holds it"}, rows);
+  console.table({"case", "S75 [mrad]", "result [mrad]", "deviation [%]", "within tolerance", "interval contains truth"},
+                rows);
   console.text("mean deviation " + fixed(found.mean_deviation_percent, 2) + " %, root mean square " +
                fixed(found.rms_deviation_percent, 2) + " %; tolerance " + number_text(reference_tolerance_percent) +
                " %: " + (found.passed ? "pass" : "fail"));
@@ -91,7 +93,7 @@ void print_score(const Console& console, const ReferenceScore& found) {
 int run_check(Console& console, const ReferenceSetArguments& a, const Program& program) {
   const auto text = read_text_file(a.check);
   if (!text) return report_error(console, text.error());
-  console.phase("thresholds of the reference set");
+  console.phase("computing the thresholds of the reference set");
   const auto truths =
       a.against.empty() ? reference_truths(reference_cases(), program.stop->token()) : read_truths(a.against);
   console.end_progress();
@@ -113,9 +115,12 @@ void add_reference_set_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand(
       "reference-set", "writes frames of simulated cameras with known thresholds, or scores a result against them");
   auto a = std::make_shared<ReferenceSetArguments>();
-  auto* out = command->add_option("--out", a->out, "folder for the set, new or empty");
-  auto* check = command->add_option("--check", a->check, "CSV with the columns case,s75_mrad to score")->excludes(out);
-  command->add_option("--against", a->against, "a set that was written; default: the thresholds are computed anew")
+  auto* out = command->add_option("--out", a->out, "new or empty folder for the reference set");
+  auto* check = command->add_option("--check", a->check, "result to score: a CSV file with the columns case,s75_mrad")
+                    ->excludes(out);
+  command
+      ->add_option("--against", a->against,
+                   "folder of a reference set with the true thresholds; default: they are computed again")
       ->needs(check);
   finish_command(*command, program, [a, &program](Console& console) {
     if (!a->check.empty()) return run_check(console, *a, program);

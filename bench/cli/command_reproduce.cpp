@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench reproduce
 #include <cmath>
 #include <memory>
@@ -5,10 +6,10 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/scene_files.h"
 #include "bench/judgement/verdict.h"
+#include "bench/picture_files/encoded_picture.h"
 #include "bench/report/picture_page.h"
 #include "bench/studies/eo_vista.h"
 #include "bench/studies/eo_vista_craft.h"
-#include "bench/text/encoded_picture.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/text.h"
@@ -60,7 +61,7 @@ Json json_of(const Reproduction& r) {
           {"ranges", ranges},         {"assumptions", r.assumptions}, {"settings", settings}};
 }
 
-/// The pictures of Figure 12 as files; their page entries.
+/// Writes the pictures of Figure 12 to files; returns their page entries.
 Result<std::vector<PagePicture>> write_craft(const std::filesystem::path& folder,
                                              const std::vector<CraftPicture>& craft) {
   std::vector<PagePicture> entries;
@@ -86,7 +87,7 @@ Json craft_json(const std::vector<CraftPicture>& craft) {
   return pictures;
 }
 
-/// A new folder, an empty one, or one that may be overwritten.
+/// Returns a new folder, an empty one, or one that may be overwritten.
 Result<std::filesystem::path> folder_for(const ReproduceArguments& arguments) {
   const std::filesystem::path folder = arguments.out;
   std::error_code error;
@@ -141,7 +142,7 @@ int run_reproduce(Console& console, const ReproduceArguments& arguments, const P
          fixed(f.value && decimals == 0 ? std::optional(std::round(*f.value) + 0.0) : f.value, decimals) + " " + f.unit,
          range(f.ci95, decimals)});
   }
-  console.table({"quantity", "published", "here", "95 %"}, rows);
+  console.table({"quantity", "published", "reproduced", "95 %"}, rows);
   console.text("page: " + page.string());
   return 0;
 }
@@ -149,12 +150,14 @@ int run_reproduce(Console& console, const ReproduceArguments& arguments, const P
 }  // namespace
 
 void add_reproduce_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("reproduce", "repeats a published experiment: its figures beside ours, as a page");
+  auto* command = app.add_subcommand(
+      "reproduce", "repeats a published experiment and writes a page that compares published and reproduced values");
   auto a = std::make_shared<ReproduceArguments>();
-  command->add_option("EXPERIMENT", a->experiment, "eo-vista")->required();
+  command->add_option("EXPERIMENT", a->experiment, "experiment: eo-vista")->required();
   command->add_option("--out", a->out, "folder for the page")->capture_default_str();
-  command->add_option("--accuracy", a->accuracy, "draft, normal or reference")->capture_default_str();
-  command->add_flag("--force", a->overwrite, "overwrite the page in an existing folder");
+  command->add_option("--accuracy", a->accuracy, "numerical accuracy: draft, normal or reference")
+      ->capture_default_str();
+  command->add_flag("--force", a->overwrite, "overwrites the page in an existing folder");
   finish_command(*command, program, [a, &program](Console& console) { return run_reproduce(console, *a, program); });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench measure, todbench simulate, todbench replay, todbench demo
 #include <algorithm>
 #include <chrono>
@@ -8,8 +9,8 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/key_options.h"
+#include "bench/cli/run_display.h"
 #include "bench/cli/session_argument.h"
-#include "bench/cli/shown_run.h"
 #include "bench/cli/simulation_plan.h"
 #include "bench/cli/watch.h"
 #include "bench/judgement/demand_kinds.h"
@@ -37,7 +38,7 @@ struct RunArguments {
   KeyOverrides keys{};
 };
 
-/// The page to watch a run from elsewhere; without an address there is none.
+/// The page to watch a run remotely; without an address there is none.
 struct ServeArguments {
   std::string address;
   bool network = false;
@@ -106,8 +107,7 @@ void print_effects(const Console& console, const SensorPlan& effects) {
   console.table({"effect", "decision", "reason"}, rows);
 }
 
-/// A run that ended early says that in place of a verdict. A threshold that was found and has no limit stands in the
-/// table of the curve.
+/// Prints the verdict, unless the run ended early. Thresholds without a limit are in the table of the curve.
 void print_verdict(const Console& console, const ExperimentOutcome& outcome) {
   if (outcome.ended_by) return;
   const Verdict& verdict = outcome.verdict;
@@ -124,11 +124,11 @@ void print_verdict(const Console& console, const ExperimentOutcome& outcome) {
                (lines.empty() ? " (" + verdict.reason + ")" : ""));
 }
 
-/// Physical measures, where the plan asks for them.
+/// Adds physical measures, if the plan requests them.
 void add_measures(Json& json, const ExperimentOutcome& outcome) {
   if (!outcome.measures && !outcome.twin_measures) return;
   Json measures = measures_json(outcome.measures, outcome.twin_measures);
-  static_cast<void>(take_pictures(measures));  // they are in the session
+  static_cast<void>(take_pictures(measures));  // the pictures are in the session
   json["measures"] = std::move(measures);
 }
 
@@ -148,7 +148,7 @@ void print_measures(const Console& console, const ExperimentOutcome& outcome) {
   console.table({"measure", "unit", "value", "95 %", "twin"}, rows);
 }
 
-/// Statistical and expanded interval side by side, and what dominates.
+/// Prints statistical and expanded interval side by side, and the dominant row.
 void print_uncertainty(const Console& console, const ExperimentOutcome& outcome) {
   if (!outcome.uncertainty) return;
   std::vector<TableRow> rows;
@@ -163,14 +163,14 @@ void print_uncertainty(const Console& console, const ExperimentOutcome& outcome)
   }
   console.text("");
   console.table({"dT set [K]", "d ln acuity / d ln dT", "acuity, statistical 95 % [1/mrad]", "expanded 95 % [1/mrad]",
-                 "u [%]", "largest row"},
+                 "u [%]", "largest contribution"},
                 rows);
   std::string missing;
   for (const std::string& name : outcome.uncertainty->not_stated) missing += (missing.empty() ? "" : ", ") + name;
-  if (!missing.empty()) console.text("not stated: " + missing);
+  if (!missing.empty()) console.text("not stated in the budget: " + missing);
 }
 
-/// What every run says in JSON beside its numbers.
+/// Adds the verdict to the JSON of every run.
 void add_verdict(Json& json, const Verdict& verdict) {
   json["verdict"] = to_string(verdict.decision);
   json["judgement"] = verdict_json(verdict);
@@ -186,7 +186,7 @@ int finish(Console& console, const ExperimentOutcome& outcome) {
   return exit_code(outcome.verdict.decision);
 }
 
-/// The plan with what the command line says in place of it.
+/// Returns the plan with the overrides of the command line.
 Result<Plan> with_options(Plan plan, const RunArguments& arguments, const Program& program) {
   if (program.common.seed_given) plan.seed = program.common.seed;
   if (auto applied = apply(arguments.keys, plan); !applied) return tl::unexpected(applied.error());
@@ -195,7 +195,7 @@ Result<Plan> with_options(Plan plan, const RunArguments& arguments, const Progra
 
 using Measure = std::function<Result<ExperimentOutcome>(const ExperimentOptions&, const ExperimentListener&)>;
 
-/// What the operator is asked at the terminal stands on the page meanwhile.
+/// Asks the operator at the terminal and shows the request on the page too.
 AskOperator asking_on_page_too(LiveRun& live) {
   const AskOperator at_terminal = ask_at_terminal();
   return [&live, at_terminal](const OperatorRequest& request, const std::stop_token& stop) {
@@ -208,11 +208,11 @@ AskOperator asking_on_page_too(LiveRun& live) {
   };
 }
 
-/// A run that the terminal shows, and the page where one is asked for.
+/// Measures with display on the terminal, and on the page if requested.
 Result<ExperimentOutcome> measure_shown(Console& console, const Plan& plan, ExperimentOptions options,
                                         const ServeArguments& serve, const Measure& measure) {
   if (serve.address.empty()) {
-    ShownRun shown(console, plan);
+    RunDisplay shown(console, plan);
     return measure(options, shown.listener());
   }
   const auto address = serve_address(serve.address, serve.network ? Reach::network : Reach::this_computer);
@@ -220,7 +220,7 @@ Result<ExperimentOutcome> measure_shown(Console& console, const Plan& plan, Expe
   const auto server = LiveServer::start(*address);
   if (!server) return fail("--serve", server.error());
   console.warning("live page: " + (*server)->url());
-  ShownRun shown(console, plan, ShownRun::Curve::of_others_too);
+  RunDisplay shown(console, plan, RunDisplay::Curve::of_others_too);
   LiveRun live(**server, *shown.curve(), plan);
   options.host.ask_operator = asking_on_page_too(live);
   auto outcome = measure(options, live.listening(shown.listener()));
@@ -228,9 +228,9 @@ Result<ExperimentOutcome> measure_shown(Console& console, const Plan& plan, Expe
   const auto reason = whole     ? std::nullopt
                       : outcome ? std::optional(outcome->ended_by->message)
                                 : std::optional(outcome.error().message);
-  live.end(whole     ? "the run is over"
+  live.end(whole     ? "the run is finished"
            : outcome ? "the trials so far are in the session"
-                     : "there is no result",
+                     : "the run has no result",
            whole ? std::optional(std::string(to_string(outcome->verdict.decision))) : std::nullopt, reason);
   (*server)->wait_until_seen(std::chrono::seconds(3));
   return outcome;
@@ -273,7 +273,7 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   if (program.common.seed_given) arguments.overrides.seed = program.common.seed;
   const auto loaded = simulation_plan(arguments.overrides, program.stop->token());
   if (!loaded) return report_error(console, loaded.error());
-  ShownRun shown(console, loaded->plan());
+  RunDisplay shown(console, loaded->plan());
   auto outcome =
       simulate_plan(*loaded, folder_of(arguments.run, loaded->plan()), shown.listener(), program.stop->token());
   console.end_progress();
@@ -296,8 +296,8 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
 }
 
 #ifdef TODBENCH_WITH_ARAVIS
-/// Of the plan 'acceptance' the demonstration has, without `full`, what asks for hardly any frames of its own: the
-/// budget, noise, geometry and pictures.
+/// Returns the plan 'acceptance'. Without `full`, only the parts that need hardly any frames of their own: budget,
+/// noise, geometry and pictures.
 Result<Plan> demonstration_plan(bool full) {
   auto acceptance = load_plan("acceptance");
   if (full || !acceptance) return acceptance;
@@ -351,8 +351,8 @@ int run_demo(Console& console, const DemoArguments& asked, const Program& progra
   (void)asked;
   (void)program;
   return report_error(
-      console,
-      {ErrorCode::not_found, "this build has no camera libraries: the demonstration needs the emulated GigE camera"});
+      console, {ErrorCode::not_found,
+                "this build has no camera libraries; the demonstration needs them for the emulated GigE camera"});
 #endif
 }
 
@@ -367,8 +367,8 @@ void add_folder_options(CLI::App& command, RunArguments& arguments) {
 
 void add_serve_options(CLI::App& command, ServeArguments& serve) {
   command.add_option("--serve", serve.address,
-                     "HOST:PORT: a page to watch the run from a browser, at the address that is then printed");
-  command.add_flag("--serve-network", serve.network, "allows --serve an address that other computers reach");
+                     "shows the run in a browser: HOST:PORT of the page; the full address is printed");
+  command.add_flag("--serve-network", serve.network, "allows --serve to use an address that other computers can reach");
 }
 
 struct ReplayArguments {
@@ -402,11 +402,13 @@ int run_replay(Console& console, const ReplayArguments& asked, const Program& pr
     print_curve(console, outcome->run.curve);
     console.text("");
     for (const std::string& file : outcome->accepted_changes)
-      console.text("changed, removed or added after the session had ended, and accepted: " + file);
+      console.text("changed, removed or added after the session ended (accepted): " + file);
     console.text("trials: " + std::string(said(outcome->same_trials)) + "; fits: " + said(outcome->same_fits));
   }
   if (!outcome->same_trials || !outcome->same_fits.value_or(true)) {
-    console.error("the replay answers differently from the session: another version of the program, or a defect");
+    console.error(
+        "the answers of the replay differ from those of the session: it was recorded by another version of the "
+        "program, or the program has a defect");
     return exit_code(VerdictKind::fail);
   }
   return finish(console, outcome->run);
@@ -416,12 +418,13 @@ int run_replay(Console& console, const ReplayArguments& asked, const Program& pr
 
 void add_replay_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand(
-      "replay", "measures a session again from its recorded frames, into a new session: same answers bit for bit");
+      "replay",
+      "evaluates the recorded frames of a session again in a new session; the answers are identical bit for bit");
   auto a = std::make_shared<ReplayArguments>();
   command->add_option("DIR", a->session, "session folder with recorded frames")->required();
   add_folder_options(*command, a->run);
-  command->add_flag("--force", a->run.overwrite, "overwrite the session in an existing folder");
-  command->add_flag("--run-modules", a->run_modules, "start the programs that the session names in [[module]]");
+  command->add_flag("--force", a->run.overwrite, "overwrites the session in an existing folder");
+  command->add_flag("--run-modules", a->run_modules, "starts the programs that the session names in [[module]]");
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_replay(console, *a, program); });
 }
@@ -429,15 +432,15 @@ void add_replay_command(CLI::App& app, Program& program) {
 void add_measure_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("measure", "measures a TOD curve with the camera and target that the plan names");
   auto a = std::make_shared<MeasureArguments>();
-  auto* plan = command->add_option("PLAN.toml", a->run.plan, "name or file");
+  auto* plan = command->add_option("PLAN.toml", a->run.plan, "plan: name or file");
   auto watched = std::make_shared<std::string>();
   command
       ->add_option(
           "--watch", *watched,
-          "measures nothing: shows the curve of a session folder that another process is writing, until its end")
+          "shows the curve of a session that another process is measuring, until it ends; measures nothing itself")
       ->excludes(plan);
   add_folder_options(*command, a->run);
-  command->add_flag("--force", a->run.overwrite, "overwrite the session in an existing folder");
+  command->add_flag("--force", a->run.overwrite, "overwrites the session in an existing folder");
   add_serve_options(*command, a->serve);
   add_key_options(*command, OptionOf::measurements, a->run.keys);
   finish_command(*command, program, [a, plan, watched, &program](Console& console) {
@@ -449,23 +452,24 @@ void add_measure_command(CLI::App& app, Program& program) {
 }
 
 void add_simulate_command(CLI::App& app, Program& program) {
-  auto* command =
-      app.add_subcommand("simulate", "simulates a TOD curve: the same with a simulated sensor in place of the camera");
+  auto* command = app.add_subcommand(
+      "simulate", "simulates a TOD curve: the same test as measure, with a simulated sensor in place of the camera");
   auto a = std::make_shared<SimulateArguments>();
   SimulationOverrides& o = a->overrides;
-  command->add_option("PLAN.toml", o.plan,
-                      "name or file; without it the options say what to simulate, at a distance that suits the sensor");
+  command->add_option(
+      "PLAN.toml", o.plan,
+      "plan: name or file; without a plan the options define the simulation, at a distance that suits the sensor");
   add_folder_options(*command, a->run);
-  // --force is here also the word for an existing folder.
+  // --force means an existing folder here as well.
   add_key_options(*command, OptionOf::simulations, o.keys, "simulation.force");
   auto forced = std::make_shared<std::vector<std::string>>();
   auto* force = command->add_option(
       "--force", *forced,
-      "with effects: simulate them, neutral or not; alone: overwrite the session in an existing folder");
+      "with effects: simulates them even if they are neutral; alone: overwrites the session in an existing folder");
   force->expected(0, 1)->delimiter(',')->take_all()->trigger_on_parse(false);
   finish_command(*command, program, [a, force, forced, &program](Console& console) {
     SimulationOverrides& given = a->overrides;
-    // The bare flag takes the word behind it for an effect; one that names a plan is the plan.
+    // The bare flag takes the next word for an effect; a word that names a plan is the plan.
     std::erase(*forced, std::string());
     a->run.overwrite = forced->size() < force->count();
     if (given.plan.empty() && !forced->empty() && names_a_plan(forced->back())) {
@@ -479,17 +483,18 @@ void add_simulate_command(CLI::App& app, Program& program) {
 }
 
 void add_demo_command(CLI::App& app, Program& program) {
-  auto* command =
-      app.add_subcommand("demo", "does the whole job on the emulated laboratory: measure, simulate, compare, report");
+  auto* command = app.add_subcommand(
+      "demo",
+      "runs the whole test on the emulated laboratory in about 40 s: measures, simulates, compares and reports");
   auto a = std::make_shared<DemoArguments>();
   RunArguments& run = a->measure.run;
   add_folder_options(*command, run);
-  command->add_flag("--force", run.overwrite, "overwrite the session in an existing folder");
+  command->add_flag("--force", run.overwrite, "overwrites the session in an existing folder");
   add_serve_options(*command, a->measure.serve);
   add_key_options(*command, OptionOf::measurements, run.keys);
   command->add_flag(
       "--full", a->full,
-      "every physical measure, their limits and the budget, too: the plan 'acceptance'; half a minute more");
+      "runs the whole plan 'acceptance' with all physical measures and their limits; takes about 30 s longer");
   command->add_option("--camera", a->camera, "interface of the emulated camera")
       ->check(CLI::IsMember(emulated_cameras()))
       ->capture_default_str();

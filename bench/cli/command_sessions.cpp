@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench compare, todbench report, todbench verify
 #include <array>
 #include <memory>
@@ -26,7 +27,7 @@ struct CompareArguments {
   Opening opening{};
 };
 
-/// Of both sessions, with their folders in front.
+/// Accepted files of both sessions, prefixed by their folders.
 std::vector<std::string> accepted_files(const CompareArguments& arguments, const Session& a, const Session& b) {
   std::vector<std::string> files;
   for (const auto& [folder, session] : {std::pair(&arguments.a, &a), std::pair(&arguments.b, &b)}) {
@@ -49,7 +50,7 @@ void print_comparison(const Console& console, const Comparison& comparison, bool
                " %; verdict: " + std::string(to_string(comparison.verdict)));
 }
 
-/// Both curves in one figure, as a file of its own.
+/// Writes both curves in one figure to a separate file.
 Result<void> write_svg(const CompareArguments& arguments, const TodCurve& a, const TodCurve& b) {
   const auto drawing = drawn(tod_figure({session_name(arguments.a), &a}, {session_name(arguments.b), &b}, {}));
   if (!drawing) return fail("--svg", drawing.error());
@@ -85,12 +86,17 @@ int run_compare(Console& console, const CompareArguments& arguments) {
   return exit_code(decision_of(comparison->verdict));
 }
 
-/// The report of a signed session as its next revision.
-int run_revision(Console& console, const std::string& folder, const std::string& reason) {
+/// Writes the report of a signed session as its next revision.
+int run_revision(Console& console, const std::string& folder, const std::string& reason, const std::string& key,
+                 const std::stop_token& stop) {
+  if (key.empty())
+    return report_error(console,
+                        {ErrorCode::invalid_input,
+                         folder + ": a revision is signed with the key of its session: --key FILE is required"});
   const auto session = opened(console, folder, {});
   if (!session) return report_error(console, session.error());
   const auto path = std::filesystem::path(folder);
-  const auto data = revise_report(*session, path, reason, utc_now());
+  const auto data = revise_report(*session, path, reason, utc_now(), key, stop);
   if (!data) return report_error(console, data.error());
   const std::string file = (path / revision_page(*data->revision, "html")).string();
   if (console.json())
@@ -101,8 +107,8 @@ int run_revision(Console& console, const std::string& folder, const std::string&
 }
 
 int run_report(Console& console, const std::string& folder, Opening opening, const std::string& reason,
-               const std::string& letterhead_path) {
-  if (!reason.empty()) return run_revision(console, folder, reason);
+               const std::string& key, const std::string& letterhead_path, const std::stop_token& stop) {
+  if (!reason.empty()) return run_revision(console, folder, reason, key, stop);
   std::optional<Letterhead> letterhead;
   if (!letterhead_path.empty()) {
     auto loaded = load_letterhead(letterhead_path);
@@ -113,8 +119,9 @@ int run_report(Console& console, const std::string& folder, Opening opening, con
   const auto session = opened(console, folder, opening);
   if (!session) return report_error(console, session.error());
   if (letterhead && (session->cut_off || !session->accepted_changes.empty()))
-    return report_error(
-        console, {ErrorCode::invalid_input, folder + ": nothing vouches for its files, so it keeps no letterhead"});
+    return report_error(console,
+                        {ErrorCode::invalid_input,
+                         folder + ": the files of the session cannot be verified, so a letterhead cannot be added"});
   const auto path = std::filesystem::path(folder);
   const auto data = rebuild_report(*session, path, letterhead ? html_page_with(path, *letterhead) : html_page(path));
   if (!data) return report_error(console, data.error());
@@ -137,10 +144,10 @@ struct SignArguments {
   std::string folder, with, key;
 };
 
-int run_sign(Console& console, const SignArguments& arguments) {
+int run_sign(Console& console, const SignArguments& arguments, const std::stop_token& stop) {
   const SigningProgram with =
       arguments.with == to_string(SigningProgram::minisign) ? SigningProgram::minisign : SigningProgram::openssl;
-  const auto made = sign_session(arguments.folder, with, arguments.key, utc_now());
+  const auto made = sign_session(arguments.folder, with, arguments.key, utc_now(), stop);
   if (!made) return report_error(console, made.error());
   if (console.json()) {
     console.object({{"session", arguments.folder},
@@ -154,7 +161,7 @@ int run_sign(Console& console, const SignArguments& arguments) {
   return 0;
 }
 
-/// What the signature of a session says; an error where it cannot be looked at, or is asked for and not there.
+/// Checks the signature of a session; an error if it cannot be checked, or is required and absent.
 Result<std::optional<SignatureCheck>> signature_of(const std::string& folder, const std::string& public_key) {
   auto check =
       check_signature(folder, public_key.empty() ? std::nullopt : std::optional(std::filesystem::path(public_key)));
@@ -166,6 +173,7 @@ Json signature_json(const SignatureCheck& check) {
   return {{"with", to_string(check.signature.with)},
           {"signed_utc", check.signature.signed_utc},
           {"valid", check.valid},
+          {"covers", check.covers},
           {"checked_with", check.own_key ? "the key in the folder" : "the key that was given"},
           {"key_sha256", check.signature.key_sha256()},
           {"reason", check.valid ? Json() : Json(check.sentence)}};
@@ -181,7 +189,7 @@ int run_verify(Console& console, const std::string& folder, const std::string& p
   const bool intact = check->condition == SessionCondition::intact;
   const std::string reason = !check->sentence.empty() ? check->sentence
                              : intact                 ? ""
-                                                      : "files are missing or foreign that nothing is read from";
+                                                      : "files are missing or foreign; no result is read from them";
   if (console.json()) {
     Json json{{"intact", intact},
               {"changed", files.changed},
@@ -202,13 +210,18 @@ int run_verify(Console& console, const std::string& folder, const std::string& p
   if (!signature_holds)
     return report_error(console, {ErrorCode::invalid_input, folder + ": " + (*signature)->sentence});
   if (*signature) {
-    console.text("signed " + (*signature)->signature.signed_utc + " with " +
-                 std::string(to_string((*signature)->signature.with)) + ", SHA-256 of the public key " +
-                 (*signature)->signature.key_sha256() +
-                 ((*signature)->own_key ? "; checked with the key in the folder, which does not say whose it is" : ""));
+    console.text(
+        "signed " + (*signature)->signature.signed_utc + " with " +
+        std::string(to_string((*signature)->signature.with)) + ", SHA-256 of the public key " +
+        (*signature)->signature.key_sha256() +
+        ((*signature)->own_key ? "; checked with the public key in the folder, which does not prove who signed" : ""));
+    if (!(*signature)->signature.signs_time)
+      console.text(
+          "the signature was made by an earlier version: it covers the files of the manifest but not the time of "
+          "signing");
   }
   if (intact) {
-    console.text("intact: every file is what the run wrote");
+    console.text("intact: every file is as the run wrote it");
     return 0;
   }
   return report_error(console, {ErrorCode::invalid_input, folder + ": not intact: " + reason});
@@ -220,13 +233,13 @@ void add_compare_command(CLI::App& app, Program& program) {
   auto* command =
       app.add_subcommand("compare", "compares two session folders: ratio, difference, equivalence per contrast");
   auto a = std::make_shared<CompareArguments>();
-  command->add_option("A", a->a, "session folder")->required();
-  command->add_option("B", a->b, "session folder")->required();
+  command->add_option("A", a->a, "session folder of the first sensor")->required();
+  command->add_option("B", a->b, "session folder of the second sensor")->required();
   command
       ->add_option("--margin-percent", a->margin_percent,
-                   "equivalence margin; default: the smaller one of the two plans, or 10")
+                   "equivalence margin in percent; default: the smaller margin of the two plans, or 10")
       ->check(number_in(0.1, 100));
-  command->add_option("--svg", a->svg, "writes both curves as a figure to this file");
+  command->add_option("--svg", a->svg, "writes a figure of both curves to this SVG file");
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a](Console& console) { return run_compare(console, *a); });
 }
@@ -238,37 +251,42 @@ void add_report_command(CLI::App& app, Program& program) {
   auto opening = std::make_shared<Opening>();
   add_accept_changed(*command, opening->accept_changed);
   auto reason = std::make_shared<std::string>();
-  command->add_option("--reason", *reason, "why a signed report is revised: the revision is a page of its own");
+  command->add_option("--reason", *reason,
+                      "reason for the revision of a signed report; the revision is a separate page");
+  auto key = std::make_shared<std::string>();
+  command->add_option("--key", *key, "with --reason: file with the secret key that signed the session");
   auto letterhead = std::make_shared<std::string>();
   command
       ->add_option("--letterhead", *letterhead,
-                   "logo and texts of the laboratory: a TOML file, which the session keeps")
+                   "TOML file with the logo and texts of the laboratory; the session keeps a copy")
       ->excludes("--reason");
-  finish_command(*command, program, [folder, opening, reason, letterhead](Console& console) {
-    return run_report(console, *folder, *opening, *reason, *letterhead);
+  finish_command(*command, program, [&program, folder, opening, reason, key, letterhead](Console& console) {
+    return run_report(console, *folder, *opening, *reason, *key, *letterhead, program.stop->token());
   });
 }
 
 void add_verify_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand(
-      "verify", "whether the files of a session folder are those that its run wrote, by its manifest");
+      "verify", "checks by the manifest that the files of a session folder are as the run wrote them");
   auto folder = std::make_shared<std::string>();
   command->add_option("DIR", *folder, "session folder")->required();
   auto public_key = std::make_shared<std::string>();
-  command->add_option("--public-key", *public_key, "of who signed; without it the key that came with the folder");
+  command->add_option("--public-key", *public_key,
+                      "file with the public key of the signer; default: the key in the session folder");
   finish_command(*command, program,
                  [folder, public_key](Console& console) { return run_verify(console, *folder, *public_key); });
 }
 
 void add_sign_command(CLI::App& app, Program& program) {
-  auto* command = app.add_subcommand("sign", "signs a session folder: a detached signature over its manifest");
+  auto* command = app.add_subcommand("sign", "signs a session folder with a detached signature over its manifest");
   auto a = std::make_shared<SignArguments>();
   command->add_option("DIR", a->folder, "session folder")->required();
   std::vector<std::string> names;
   for (const SigningProgram with : signing_programs) names.emplace_back(to_string(with));
   command->add_option("--with", a->with, "program that signs")->required()->check(CLI::IsMember(names));
   command->add_option("--key", a->key, "file with the secret key")->required();
-  finish_command(*command, program, [a](Console& console) { return run_sign(console, *a); });
+  finish_command(*command, program,
+                 [&program, a](Console& console) { return run_sign(console, *a, program.stop->token()); });
 }
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench sweep
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "acquisition/base/process.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/sweep_engines.h"
 #include "bench/judgement/verdict.h"
@@ -24,7 +26,7 @@
 namespace todbench {
 namespace {
 
-/// The indices from `first` to `last`, both included.
+/// Indices from `first` to `last`, both included.
 struct IndexRange {
   std::size_t first = 0, last = 0;
 };
@@ -35,7 +37,7 @@ std::optional<std::size_t> index_from(const std::string& text) {
   return static_cast<std::size_t>(*value);
 }
 
-/// "3-17" or "3".
+/// Parses "3-17" or "3".
 Result<IndexRange> range_from(const std::string& text) {
   const auto dash = text.find('-');
   const auto first = index_from(text.substr(0, dash));
@@ -45,12 +47,12 @@ Result<IndexRange> range_from(const std::string& text) {
   return IndexRange{*first, *last};
 }
 
-/// Chunk number `chunk` of tasks, as far as there are any.
+/// Indices of chunk `number`; they may exceed the number of tasks.
 IndexRange chunk_of(std::size_t number, std::size_t chunk) {
   return {number * chunk, number * chunk + chunk - 1};
 }
 
-/// Numbers as numbers, as the table of the results has them.
+/// Parameters as JSON, with numbers as numbers, like the table of the results.
 Json parameters_json(const SweepTask& task) {
   Json json = Json::object();
   for (const auto& [key, value] : task.parameters) {
@@ -60,7 +62,7 @@ Json parameters_json(const SweepTask& task) {
   return json;
 }
 
-/// Tasks of 5 to 30 minutes a chunk: the sheet of what schedulers like.
+/// Returns a chunk of 15 minutes: schedulers prefer jobs of 5 to 30 minutes.
 std::size_t suggested_chunk(double task_s, std::size_t tasks) {
   constexpr double wanted_s = 900;
   return std::clamp<std::size_t>(static_cast<std::size_t>(wanted_s / std::max(task_s, 1e-3)), 1,
@@ -77,7 +79,7 @@ int run_expand(Console& console, const SweepArguments& a, const Program& program
     if (!predicted) return report_error(console, predicted.error());
     task_s = *predicted;
   }
-  // Every task is made, as it will be when it runs; names that differ are tasks that differ.
+  // Every task is expanded as it will run; different names mean different tasks.
   Json tasks = Json::array();
   for (std::size_t i = 0; i < sweep.count(); ++i) {
     const SweepTask task = sweep.task(i);
@@ -101,13 +103,13 @@ int run_expand(Console& console, const SweepArguments& a, const Program& program
     console.object(json);
     return 0;
   }
-  console.text(fmt::format("{} tasks, {} combinations refused by a condition; results in {}", sweep.count(),
+  console.text(fmt::format("{} tasks, {} combinations excluded by a condition; results in {}", sweep.count(),
                            sweep.refused(), sweep.file().results.string()));
   if (const SweepFile& file = sweep.file(); file.sample_total)
-    console.text(fmt::format("total indices: {} draws of {} parameters take {} x {} combinations", file.sample_count,
-                             file.sample.size(), file.sample_count, file.sample.size() + 2));
+    console.text(fmt::format("total-effect indices: {} draws of {} parameters need {} x {} combinations",
+                             file.sample_count, file.sample.size(), file.sample_count, file.sample.size() + 2));
   if (task_s) {
-    console.text(fmt::format("about {:.3g} s a task, {:.3g} h on one core; {} tasks a job make about 15 minutes",
+    console.text(fmt::format("about {:.3g} s per task, {:.3g} h on one core; a job of {} tasks takes about 15 minutes",
                              *task_s, *task_s * static_cast<double>(sweep.count()) / 3600, chunk));
   }
   if (a.list) {
@@ -117,7 +119,7 @@ int run_expand(Console& console, const SweepArguments& a, const Program& program
   return 0;
 }
 
-/// What came of the tasks of one process.
+/// Outcomes of the tasks of one process.
 struct Counts {
   std::size_t done = 0, already_done = 0, failed = 0, locked = 0;
   std::optional<Error> first_failure;
@@ -152,14 +154,14 @@ Counts run_range_of_tasks(Console& console, const RunnableSweep& runnable, Index
   return counts;
 }
 
-/// Of tasks that another process holds the code is that of a device that is busy: nothing failed, and not all is done.
+/// Returns the exit code; that of a busy device if another process holds tasks: none failed, but some are open.
 int code_of(const Counts& counts, std::stop_token stop) {
   if (stop.stop_requested()) return exit_code(ErrorCode::interrupted);
   if (counts.first_failure) return exit_code(counts.first_failure->code);
   return counts.locked > 0 ? exit_code(ErrorCode::not_found) : 0;
 }
 
-/// Which tasks the command line or the environment names; nothing: all.
+/// Tasks named by the command line or the environment; empty: all.
 Result<std::optional<IndexRange>> named_range(Console& console, const SweepArguments& a) {
   const std::size_t chunk = std::max<std::size_t>(a.chunk, 1);
   if (!a.range.empty()) {
@@ -172,13 +174,15 @@ Result<std::optional<IndexRange>> named_range(Console& console, const SweepArgum
   const auto found = index_from_environment();
   if (!found) {
     if (a.chunk == 0) return std::nullopt;
-    return fail(ErrorCode::invalid_input, "--chunk: says how many tasks belong to an index, and there is none");
+    return fail(
+        ErrorCode::invalid_input,
+        "--chunk is the number of tasks per index, but no index is given: add --index or set it in the environment");
   }
-  console.note(fmt::format("{} says index {}", found->variable, found->index));
+  console.note(fmt::format("{} sets the index {}", found->variable, found->index));
   return std::optional(chunk_of(found->index, chunk));
 }
 
-/// Several processes, each with the next range when it is free.
+/// Runs several processes; each takes the next range when it is free.
 Result<int> run_in_processes(Console& console, const SweepArguments& a, const Sweep& sweep, std::stop_token stop) {
   const std::size_t tasks = sweep.count();
   const ProcessPool pool{.tasks = tasks,
@@ -221,8 +225,9 @@ int run_sweep(Console& console, const SweepArguments& a, const Program& program)
   if (!range) return report_error(console, range.error());
   const auto stop = program.stop->token();
   if (*range && (*range)->first >= runnable->sweep.count()) {
-    return report_error(console, {ErrorCode::invalid_input, fmt::format("index {} is beyond the {} tasks of the sweep",
-                                                                        (*range)->first, runnable->sweep.count())});
+    return report_error(console, {ErrorCode::invalid_input,
+                                  fmt::format("index {} is too large: the sweep has {} tasks, numbered from 0",
+                                              (*range)->first, runnable->sweep.count())});
   }
   console.phase("running " + runnable->sweep.file().name);
   if (!*range && a.jobs.value_or(1) > 1) {
@@ -242,8 +247,8 @@ int run_sweep(Console& console, const SweepArguments& a, const Program& program)
                     {"locked", counts.locked},
                     {"results", runnable->sweep.file().results.string()}});
   }
-  console.text(fmt::format("{} run, {} were there already, {} failed, {} held by other processes", counts.done,
-                           counts.already_done, counts.failed, counts.locked));
+  console.text(fmt::format("tasks: {} run, {} with a result from before, {} failed, {} locked by other processes",
+                           counts.done, counts.already_done, counts.failed, counts.locked));
   return code_of(counts, stop);
 }
 
@@ -296,15 +301,15 @@ int run_collect(Console& console, const SweepArguments& a) {
     console.object(json);
     return 0;
   }
-  console.text(
-      fmt::format("{} rows of {} tasks in {} and {}", table->rows.size(), table->tasks - table->missing, csv, sqlite));
+  console.text(fmt::format("{} rows of {} tasks written to {} and {}", table->rows.size(),
+                           table->tasks - table->missing, csv, sqlite));
   for (const auto& response : effects) {
     std::vector<TableRow> rows;
     for (const auto& effect : response.parameters)
       rows.push_back({effect.key, fixed(effect.first_order, 3), range(effect.first_order_ci95, 3),
                       fixed(effect.total, 3), range(effect.total_ci95, 3)});
-    console.text(fmt::format("variance of {} at {:g} K", response.response, response.delta_t_k));
-    console.table({"parameter", "first order", "95 %", "total", "95 %"}, rows);
+    console.text(fmt::format("variance of {} at a contrast of {:g} K", response.response, response.delta_t_k));
+    console.table({"parameter", "first-order index", "95 %", "total-effect index", "95 %"}, rows);
   }
   return 0;
 }
@@ -312,61 +317,65 @@ int run_collect(Console& console, const SweepArguments& a) {
 CLI::App* add_part(CLI::App& sweep, const std::string& name, const std::string& what,
                    const std::shared_ptr<SweepArguments>& a) {
   auto* part = sweep.add_subcommand(name, what);
-  part->add_option("SWEEP.toml", a->file, "the sweep")->required();
+  part->add_option("SWEEP.toml", a->file, "sweep file")->required();
   return part;
 }
 
 void add_chunk(CLI::App& part, const std::shared_ptr<SweepArguments>& a) {
-  part.add_option("--chunk", a->chunk, "tasks that belong to one index")->check(whole_number(1, 10000000));
+  part.add_option("--chunk", a->chunk, "number of tasks per index")->check(whole_number(1, 10000000));
 }
 
 void add_run_parts(CLI::App& sweep, Program& program, const std::shared_ptr<SweepArguments>& a) {
-  auto* expand = add_part(sweep, "expand", "how many tasks there are, and which", a);
-  expand->add_flag("--list", a->list, "every task with its parameters and seed");
-  expand->add_flag("--predict", a->predict, "predicts the time of a task and the size of a chunk");
+  auto* expand = add_part(sweep, "expand", "counts the tasks of a sweep, or lists them", a);
+  expand->add_flag("--list", a->list, "lists every task with its parameters and seed");
+  expand->add_flag("--predict", a->predict, "predicts the time per task and suggests a chunk size");
   finish_command(*expand, program, [a, &program](Console& console) { return run_expand(console, *a, program); });
   auto* run = add_part(sweep, "run", "runs tasks that have no result yet", a);
-  run->add_option("--index", a->index, "of the task, from 0; with --chunk of the chunk")
+  run->add_option("--index", a->index, "index of the task, from 0; with --chunk: index of the chunk")
       ->check(whole_number(0, 1000000000));
-  run->add_option("--range", a->range, "FIRST-LAST, both included");
-  run->add_option("--jobs", a->jobs, "processes side by side")->check(whole_number(1, 1024));
+  run->add_option("--range", a->range, "runs the tasks FIRST-LAST, both included");
+  run->add_option("--jobs", a->jobs, "number of parallel processes")->check(whole_number(1, 1024));
   add_chunk(*run, a);
   finish_command(*run, program, [a, &program](Console& console) { return run_sweep(console, *a, program); });
-  auto* status = add_part(sweep, "status", "what is done, failed, running, missing", a);
+  auto* status = add_part(sweep, "status", "counts the tasks that are done, failed, running or missing", a);
   finish_command(*status, program, [a](Console& console) { return run_status(console, *a); });
 }
 
 }  // namespace
 
 void add_sweep_command(CLI::App& app, Program& program) {
-  auto* sweep = app.add_subcommand("sweep", "runs a simulation over many parameters, here or on a scheduler");
+  auto* sweep =
+      app.add_subcommand("sweep", "runs a simulation over many parameters, on this computer or on a scheduler");
   sweep->require_subcommand(1);
   auto a = std::make_shared<SweepArguments>();
   add_run_parts(*sweep, program, a);
-  auto* tasks = add_part(*sweep, "tasks", "prints the task list for a scheduler; submits nothing", a);
-  tasks->add_option("--for", a->scheduler, "parallel, slurm, gridengine, snakemake or make")
+  auto* tasks = add_part(*sweep, "tasks", "prints the task list for a scheduler without submitting it", a);
+  tasks->add_option("--for", a->scheduler, "scheduler: parallel, slurm, gridengine, snakemake or make")
       ->check(CLI::IsMember({"parallel", "slurm", "gridengine", "snakemake", "make"}))
       ->capture_default_str();
-  tasks->add_option("--program", a->program, "how the program is called there")->capture_default_str();
-  tasks->add_option("--options", a->options_file, "file with options of the site, one a line");
+  tasks->add_option("--program", a->program, "command that starts todbench on the computers of the scheduler")
+      ->capture_default_str();
+  tasks->add_option("--options", a->options_file, "file with scheduler options of the site, one per line");
   add_chunk(*tasks, a);
   finish_command(*tasks, program, [a](Console& console) { return print_tasks(console, *a); });
-  auto* submit = add_part(*sweep, "submit", "submits the tasks", a);
-  submit->add_option("--engine", a->engine, "local or slurm")
+  auto* submit = add_part(*sweep, "submit", "submits the tasks to a scheduler, or runs them on this computer", a);
+  submit->add_option("--engine", a->engine, "where the tasks run: local (on this computer) or slurm")
       ->check(CLI::IsMember({"local", "slurm"}))
       ->capture_default_str();
-  submit->add_option("--options", a->options_file, "file with options of the site for sbatch, one a line");
-  submit->add_option("--jobs", a->jobs, "local: processes side by side")->check(whole_number(1, 1024));
-  submit->add_option("--program", a->program, "how the program is called there; default: this one");
-  submit->add_flag("--dry-run", a->dry_run, "writes the script and submits nothing");
+  submit->add_option("--options", a->options_file, "file with sbatch options of the site, one per line");
+  submit->add_option("--jobs", a->jobs, "local: number of parallel processes")->check(whole_number(1, 1024));
+  submit->add_option("--program", a->program,
+                     "command that starts todbench on the computers of the scheduler; default: this program");
+  submit->add_flag("--dry-run", a->dry_run, "writes the script without submitting it");
   add_chunk(*submit, a);
   finish_command(*submit, program, [a, &program](Console& console) { return run_submit(console, *a, program); });
-  auto* collect = add_part(*sweep, "collect", "one table of all results, as CSV and SQLite", a);
-  collect->add_option("--csv", a->csv, "file of the table; default: table.csv beside the results");
-  collect->add_option("--sqlite", a->sqlite, "file of the database; default: table.sqlite beside the results");
-  collect->add_option("--page", a->page, "file of a page with tables and figures of the response; default: none");
-  collect->add_option("--response", a->response, "column whose effects are computed")->capture_default_str();
-  collect->add_flag("--partial", a->partial, "leaves tasks without a result out");
+  auto* collect = add_part(*sweep, "collect", "collects all results in one table, as CSV and SQLite", a);
+  collect->add_option("--csv", a->csv, "file for the table; default: table.csv beside the results");
+  collect->add_option("--sqlite", a->sqlite, "file for the database; default: table.sqlite beside the results");
+  collect->add_option("--page", a->page, "file for a page with tables and figures of the response; default: no page");
+  collect->add_option("--response", a->response, "column whose dependence on the parameters is computed")
+      ->capture_default_str();
+  collect->add_flag("--partial", a->partial, "skips tasks without a result; by default they are an error");
   finish_command(*collect, program, [a](Console& console) { return run_collect(console, *a); });
 }
 

@@ -1,4 +1,5 @@
-// The subcommands. Each adds itself to the parser; when chosen it sets its exit code.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The subcommands. Each adds itself to the parser and sets the action that returns its exit code.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,28 +12,28 @@
 
 namespace todbench {
 
-/// What every subcommand takes.
+/// Options of every subcommand.
 struct CommonOptions {
   ConsoleOptions console;
   std::uint64_t seed = 1;
   bool seed_given = false;
 };
 
-/// Between the parser and the commands.
+/// State shared by the parser and the commands.
 struct Program {
   CommonOptions common;
   StopSignals* stop = nullptr;  ///< outlives the run
-  std::function<int()> chosen;  ///< set by the subcommand that was named
+  std::function<int()> chosen;  ///< set by the chosen subcommand
 };
 
-/// Adds --json, --quiet and --seed, and makes `action` what runs when the subcommand is chosen.
+/// Adds --json, --quiet and --seed, and sets `action` to run when the subcommand is chosen.
 void finish_command(CLI::App& command, Program& program, std::function<int(Console&)> action);
 
-/// Checks of option values. Unlike those of the parser they refuse NaN and say what was found.
+/// Validators of option values. Unlike those of the parser they reject NaN and quote the value.
 [[nodiscard]] CLI::Validator number_in(double low, double high);
 [[nodiscard]] CLI::Validator whole_number(std::int64_t low, std::int64_t high);
 
-/// Says what went wrong and returns the exit code for it.
+/// Prints the error and returns its exit code.
 [[nodiscard]] int report_error(Console& console, const Error& error);
 
 void add_fit_command(CLI::App& app, Program& program);

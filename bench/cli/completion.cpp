@@ -1,4 +1,5 @@
-// What a shell may offer: from the commands, the table of keys and the shipped descriptions.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Candidates for completion in a shell: from the commands, the table of keys and the shipped descriptions.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -11,7 +12,7 @@
 namespace todbench {
 namespace {
 
-/// Options and arguments that name a description, whatever the command.
+/// Options and arguments that name a description, in any command.
 struct NamedResource {
   std::string_view name;
   ResourceKind kind;
@@ -32,7 +33,7 @@ bool takes_value(const CLI::Option& option) {
   return option.get_items_expected_max() > 0;
 }
 
-/// The words of an option that takes one of a few: the parser keeps them in the name of the type, "TEXT:{a,b}".
+/// Returns the choices of an option: the parser stores them in the name of the type, "TEXT:{a,b}".
 std::vector<std::string> choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const auto begin = type.find(":{");
@@ -40,7 +41,7 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
   return CLI::detail::split(type.substr(begin + 2, type.size() - begin - 3), ',');
 }
 
-/// The words of the key in whose place an option stands.
+/// Returns the choices of the key that an option replaces.
 std::vector<std::string> key_choices(std::string_view option) {
   for (const PlanSection& section : plan_sections()) {
     for (const PlanKey& key : section.keys) {
@@ -79,7 +80,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// The argument at the place of the last word: how many words before it are neither options nor their values.
+/// Returns the argument at the last word: counts the words before it that are neither options nor their values.
 const CLI::Option* argument_at_end(const CLI::App& command, const std::vector<std::string>& words) {
   std::size_t place = 0;
   for (std::size_t i = 1; i + 1 < words.size(); ++i) {

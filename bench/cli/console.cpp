@@ -1,8 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/console.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,13 +10,15 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "acquisition/base/process.h"
+#include "acquisition/base/safe_file.h"
 #include "bench/text/terminal_lines.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
 
-/// Cells of a table at most: names come from cameras and files.
+/// Maximum characters of a cell: names come from cameras and files.
 constexpr std::size_t longest_cell = 300;
 
 TableRow shown(const TableRow& row) {
@@ -25,7 +27,7 @@ TableRow shown(const TableRow& row) {
   return cells;
 }
 
-/// Letters of a line where that is a terminal that says.
+/// Returns the columns of a terminal; empty if it is none or does not report them.
 std::optional<std::size_t> columns_of_terminal(int descriptor) {
   winsize size{};
   if (isatty(descriptor) != 1 || ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col <= 1) return std::nullopt;
@@ -37,8 +39,8 @@ std::string duration(double seconds) {
   return whole < 120 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
-/// What is longer than the terminal goes through the reader's pager. False where it has to be printed: no terminal,
-/// room enough, or no such program.
+/// Shows a text longer than the terminal in the pager. Returns false if the caller has to print it: no terminal, enough
+/// room, or no pager.
 bool paged(const std::vector<std::string>& lines) {
   constexpr int not_found = 127;  // sh
   winsize size{};
@@ -46,12 +48,18 @@ bool paged(const std::vector<std::string>& lines) {
   if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || lines.size() < size.ws_row) return false;
   const char* asked = std::getenv("PAGER");
   const std::string command = asked != nullptr && *asked != '\0' ? asked : "less -FRX 2>/dev/null";
-  FILE* pager = ::popen(command.c_str(), "w");
-  if (pager == nullptr) return false;
-  // A reader who has seen enough closes it: nothing is wrong then.
-  for (const std::string& line : lines) std::fputs((line + "\n").c_str(), pager);
-  const int ended = ::pclose(pager);
-  return !(WIFEXITED(ended) && WEXITSTATUS(ended) == not_found);
+  auto pipe = make_pipe();
+  if (!pipe) return false;
+  const auto pager = start_program({"/bin/sh", "-c", command}, {.input = pipe->read.get()});
+  pipe->read.close();
+  if (!pager) return false;
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  // A reader may close the pager early; that is not an error.
+  (void)write_all(pipe->write.get(), text);
+  pipe->write.close();
+  const auto code = wait_for_program(*pager);
+  return code && *code != not_found;
 }
 
 }  // namespace
@@ -121,7 +129,7 @@ void Console::picture(const std::vector<std::string>& lines) {
   std::fflush(stderr);
   picture_lines_ = lines.size();
   bar_shown_ = false;
-  last_draw_ = {};  // the bar stood there
+  last_draw_ = {};  // the bar was there
 }
 
 Console::Audience Console::audience() const {
@@ -166,7 +174,7 @@ void Console::phase(std::string_view name) {
     std::fputs((phase_ + "\n").c_str(), stderr);
     return;
   }
-  // The first step may take seconds; the name alone says that the program is at work.
+  // The first step may take seconds; the name alone shows that the program is at work.
   std::fputs(one_line(phase_ + " ...", columns() - 1).c_str(), stderr);
   std::fflush(stderr);
   bar_shown_ = true;
@@ -181,7 +189,7 @@ void Console::progress(std::size_t done, std::size_t planned) {
   const double share = static_cast<double>(done) / static_cast<double>(planned);
   const double elapsed = std::chrono::duration<double>(now - phase_start_).count();
   const std::string left = done > 0 ? duration(elapsed / share - elapsed) + " left" : "";
-  // A line that is longer than the terminal would not be drawn over: the bar gives way, then the name.
+  // A line longer than the terminal could not be drawn over: the bar is shortened first, then the name.
   constexpr std::size_t longest_bar = 30, shortest_bar = 5;
   const std::string figures = fmt::format(" {:3.0f} %  {}", 100 * share, left);
   const std::size_t room = columns() - 1;
@@ -210,7 +218,7 @@ Result<void> finish_output() {
 
 std::string fixed(const std::optional<double>& value, int decimals) {
   if (!value || !std::isfinite(*value)) return "–";
-  // Sides of intervals may be orders of magnitude away: zeros and long figures would say less.
+  // Ends of intervals may be orders of magnitude away: neither zeros nor long figures would help.
   const bool shows = *value == 0 || (std::abs(*value) < 1e5 && std::abs(*value) * std::pow(10, decimals) >= 0.5);
   return shows ? fmt::format("{:.{}f}", *value, decimals) : fmt::format("{:.3g}", *value);
 }

@@ -1,4 +1,5 @@
-// What the program says: tables and JSON on standard output, progress and notes on standard error.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Output of the program: tables and JSON on standard output, progress and notes on standard error.
 #pragma once
 
 #include <chrono>
@@ -8,20 +9,20 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/session/json_output.h"
 
 namespace todbench {
 
 struct ConsoleOptions {
-  bool json = false;   ///< exactly one JSON object on standard output, nothing else there
+  bool json = false;   ///< standard output gets exactly one JSON object and no other text
   bool quiet = false;  ///< no progress and no notes
 };
 
-/// Columns of a table are aligned; numbers are text already.
+/// Cells of one line; table() aligns the columns, numbers are already text.
 using TableRow = std::vector<std::string>;
 
-/// Where text goes to a terminal: whatever it holds comes out as valid_text(). One thread at a time.
+/// Output to a terminal; every text is made safe by valid_text(). One thread at a time.
 class Console {
  public:
   explicit Console(ConsoleOptions options);
@@ -29,28 +30,28 @@ class Console {
   [[nodiscard]] bool json() const { return options_.json; }
   /// The one JSON object of the run.
   void object(const Json& json) const;
-  /// Text for people on standard output, broken at words where that is a terminal; nothing with --json.
+  /// Writes text for people to standard output, wrapped at words on a terminal; no output with --json.
   void text(std::string_view line) const;
-  /// A header and rows, as table_lines() lays them out for the terminal. A table longer than it goes through $PAGER
-  /// (less).
+  /// Writes a header and rows, laid out by table_lines(). A table longer than the terminal goes through $PAGER
+  /// (default: less).
   void table(const TableRow& header, const std::vector<TableRow>& rows) const;
-  /// A sentence on standard error; nothing with --quiet.
+  /// Writes a sentence to standard error; no output with --quiet.
   void note(std::string_view sentence);
-  /// A sentence on standard error, always: without it what the program says next would be taken for more than it is.
+  /// Writes a sentence to standard error, also with --quiet: without it the following output could be overrated.
   void warning(std::string_view sentence);
-  /// An error on standard error, always, on one line.
+  /// Writes an error to standard error on one line, also with --quiet.
   void error(std::string_view sentence);
-  /// Begins a phase of work; progress() then draws a bar with the time left where standard error is a terminal.
+  /// Starts a phase of work; progress() then draws a bar with the remaining time if standard error is a terminal.
   void phase(std::string_view name);
   void progress(std::size_t done, std::size_t planned);
-  /// What the run waits for: in place of the bar on a terminal, elsewhere a line now and again.
+  /// Shows the reason of a wait: in place of the bar on a terminal, otherwise as an occasional line.
   void waiting(std::string_view sentence);
-  /// Lines that are drawn over when they are shown again and nothing was said in between; terminals only.
+  /// Draws lines, over the previous ones if no other output came in between; terminals only.
   void picture(const std::vector<std::string>& lines);
-  /// Notes and progress go to somebody: a terminal, or a file or pipe.
+  /// Receiver of notes and progress: none, a terminal, or a file or pipe.
   enum class Audience { nobody, terminal, lines };
   [[nodiscard]] Audience audience() const;
-  /// Letters of a line of the terminal; 80 where it does not say.
+  /// Columns of the terminal; 80 if unknown.
   [[nodiscard]] std::size_t columns() const;
   /// Removes the bar.
   void end_progress();
@@ -60,23 +61,23 @@ class Console {
   bool terminal_ = false;
   bool colour_ = false;
   bool bar_shown_ = false;
-  std::size_t picture_lines_ = 0;  ///< just above the cursor's line
+  std::size_t picture_lines_ = 0;  ///< directly above the line of the cursor
   std::chrono::steady_clock::time_point last_waiting_;
   std::string phase_;
   std::chrono::steady_clock::time_point phase_start_;
   std::chrono::steady_clock::time_point last_draw_;
 };
 
-/// The lines of a text with their ends, for standard output or standard error: broken at words where that is a
-/// terminal, which would break them anywhere.
+/// Returns the lines of a text with line ends, for standard output or standard error; wrapped at words if that is a
+/// terminal.
 [[nodiscard]] std::string broken_for(int descriptor, std::string_view text);
 
-/// What was written to standard output reached it: `io` when it is full or closed.
+/// Flushes standard output. Errors: `io` if it is full or closed.
 [[nodiscard]] Result<void> finish_output();
 
-/// "0.480", "–" for a missing number, "1.2e-08" where the decimals would show nothing of it.
+/// "0.480", "–" for a missing number, "1.2e-08" if the decimals would be all zero.
 [[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
-/// "0.468 … 0.493", with an open side as –.
+/// "0.468 … 0.493"; an open side is –.
 [[nodiscard]] std::string range(const Interval& interval, int decimals);
 
 }  // namespace todbench

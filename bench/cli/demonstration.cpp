@@ -1,5 +1,5 @@
-// todbench-demo: the demonstration alone, for those who have just cloned the project. It needs half of what todbench
-// has to be compiled for.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// todbench-demo: the demonstration alone, for a fresh clone. It compiles half of the code of todbench.
 #include "bench/cli/program.h"
 
 int main(int argc, char** argv) {

@@ -1,4 +1,5 @@
-// What the exit codes mean, in a few words: the manual has a line for each, the footer of every help the same text.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Meaning of the exit codes in a few words, for the manual and the footer of every help text.
 #pragma once
 
 #include <array>
@@ -12,10 +13,10 @@ struct ExitCodeMeaning {
 };
 
 inline constexpr std::array exit_code_meanings{
-    ExitCodeMeaning{0, "done, every limit met"}, ExitCodeMeaning{1, "a limit is missed"},
-    ExitCodeMeaning{2, "usage or input"},        ExitCodeMeaning{3, "inconclusive"},
-    ExitCodeMeaning{4, "device absent or busy"}, ExitCodeMeaning{5, "device lost or frames unusable"},
-    ExitCodeMeaning{6, "calibration"},           ExitCodeMeaning{7, "internal error or full disk"},
+    ExitCodeMeaning{0, "all limits met"},        ExitCodeMeaning{1, "limit not met"},
+    ExitCodeMeaning{2, "wrong usage or input"},  ExitCodeMeaning{3, "inconclusive"},
+    ExitCodeMeaning{4, "device absent or busy"}, ExitCodeMeaning{5, "device lost or bad frames"},
+    ExitCodeMeaning{6, "invalid calibration"},   ExitCodeMeaning{7, "internal error or full disk"},
     ExitCodeMeaning{130, "interrupted"},
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/findings.h"
 
 #include <fmt/format.h>
@@ -27,12 +28,12 @@ void print_frontier(const Console& console, const std::vector<PrecisionChoice>& 
     rows.push_back(std::move(row));
   }
   if (rows.empty()) return;
-  TableRow header{"answers", "frames", "time [s]", "95 % +- [%]"};
+  TableRow header{"answers", "frames", "time [s]", "95 % half-width [%]"};
   for (const ContrastPrediction& contrast : choices.front().contrasts)
     header.push_back("at " + fixed(contrast.delta_t_k, 2) + " K");
   header.emplace_back("");
   console.text("");
-  console.text("what frames and graded answers buy; the half-width of S75 is the largest:");
+  console.text("precision of S75 by frames and kind of answers; the half-width is the largest of all contrasts:");
   console.table(header, rows);
 }
 
@@ -47,7 +48,7 @@ void print_paired(const Console& console, const Comparison& comparison, bool mea
   }
   if (rows.empty()) return;
   console.text("");
-  console.text("paired by presentation; these ratios decide:");
+  console.text("paired by presentation; the verdict is based on these ratios:");
   console.table({"dT [K]", "ratio", "95 %", "90 %", "p difference", "p equivalence", "verdict"}, rows);
   console.text(not_cancelled_by_pairs(measured_once));
 }

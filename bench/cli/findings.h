@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Findings of adequacy as text for people.
 #pragma once
 
@@ -11,14 +12,14 @@
 
 namespace todbench {
 
-/// One line for each finding, behind `about`; nothing where there are none. What makes a number unfit says so.
+/// Prints one line for each finding, after `about`. Lines of findings that make a number unfit say so.
 void print_findings(const Console& console, const std::optional<Adequacy>& adequacy, std::string_view about);
 
-/// Time against half-width as a table, with the number of frames that buys most.
+/// Prints time against half-width as a table, with the recommended number of frames.
 void print_frontier(const Console& console, const std::vector<PrecisionChoice>& choices);
 
-/// The ratios by common phases as a table, with what they do not cancel; nothing where there are none. `measured_once`:
-/// has_contrast_measured_once() of a camera.
+/// Prints the ratios by common phases as a table, with the errors that they do not cancel; no output if there are none.
+/// `measured_once`: has_contrast_measured_once() of a camera.
 void print_paired(const Console& console, const Comparison& comparison, bool measured_once);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/key_options.h"
 
 #include <utility>
@@ -7,7 +8,7 @@
 namespace todbench {
 namespace {
 
-/// Text in, yes or no out: what a parser can say before there is a plan.
+/// Validates a text by its type alone, because the parser has no plan yet.
 CLI::Validator check_of(const KeyType& type) {
   return {[type](const std::string& text) {
             const auto value = value_from_text(type, text);
@@ -16,7 +17,7 @@ CLI::Validator check_of(const KeyType& type) {
           ""};
 }
 
-/// The check of one word: of a list, of one of its elements.
+/// Returns the validator of one word; for a list, of one element.
 std::optional<CLI::Validator> word_check(const KeyType& type) {
   if (const auto* numbers = std::get_if<NumbersKey>(&type)) return check_of(NumberKey{numbers->range});
   if (std::holds_alternative<NumberKey>(type) || std::holds_alternative<WholeKey>(type)) return check_of(type);
@@ -28,9 +29,17 @@ bool is_list(const KeyType& type) {
          std::holds_alternative<ResourcesKey>(type);
 }
 
+/// Help texts begin with a small letter, except abbreviations such as "TOML".
+std::string with_small_start(std::string_view sentence) {
+  std::string text(sentence);
+  const auto is_capital = [&](std::size_t i) { return i < text.size() && text[i] >= 'A' && text[i] <= 'Z'; };
+  if (is_capital(0) && !is_capital(1)) text[0] = static_cast<char>(text[0] - 'A' + 'a');
+  return text;
+}
+
 std::string description_of(const PlanKey& key) {
   const std::string unit = key.unit.empty() || key.unit == "%" ? "" : " (" + std::string(key.unit) + ")";
-  return std::string(key.sentence) + unit + (is_list(key.type) ? ", separated by commas" : "") +
+  return with_small_start(key.sentence) + unit + (is_list(key.type) ? ", separated by commas" : "") +
          (std::holds_alternative<ChoiceKey>(key.type) ? ": " + expected_of(key.type) : "");
 }
 

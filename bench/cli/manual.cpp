@@ -1,4 +1,5 @@
-// The manual, from what the commands say about themselves.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Builds the manual from the descriptions of the commands.
 #include <fmt/format.h>
 
 #include "bench/cli/command_line.h"
@@ -51,7 +52,7 @@ std::string page_name(const CLI::App& app, const CLI::App& command) {
   return app.get_name() + "-" + command.get_name();
 }
 
-/// How a command is called: "todbench sweep run [OPTIONS] SWEEP.toml".
+/// Usage of a command: "todbench sweep run [OPTIONS] SWEEP.toml".
 std::string usage_of(const std::string& called, const CLI::App& command) {
   std::string usage = called + " " + command.get_name();
   usage += visible_commands(command).empty() ? " [OPTIONS]" : " COMMAND [OPTIONS]";
@@ -100,15 +101,17 @@ ManualPage main_page(const CLI::App& app) {
                   .synopsis = {app.get_name() + " [OPTIONS] COMMAND [ARGUMENTS]"},
                   .sections = {},
                   .see_also = {}};
-  ManualSection commands{.title = "Commands", .text = "", .terms = {}};
   for (const CLI::App* command : visible_commands(app)) {
-    commands.terms.push_back({command->get_name(), command->get_description()});
+    const std::string title = "Commands: " + command->get_group();
+    if (page.sections.empty() || page.sections.back().title != title)
+      page.sections.push_back({.title = title, .text = "", .terms = {}});
+    page.sections.back().terms.push_back({command->get_name(), command->get_description()});
     page.see_also.push_back(page_name(app, *command));
   }
-  page.sections.push_back(std::move(commands));
   page.sections.push_back({.title = "Options", .text = "", .terms = terms_of(app, false)});
   page.sections.push_back({.title = "Shipped descriptions",
-                           .text = "Known by these names; a reference with a slash or ending in .toml is a file.",
+                           .text = "These descriptions are known by name. "
+                                   "A reference that contains a slash or ends with .toml is a file.",
                            .terms = {{"plans", listed(ResourceKind::plan)},
                                      {"plates", listed(ResourceKind::plate)},
                                      {"sensors", listed(ResourceKind::sensor)},
@@ -118,7 +121,7 @@ ManualPage main_page(const CLI::App& app) {
                                      {"sets of targets", listed(ResourceKind::target_set)}}});
   page.sections.push_back(exit_status());
   page.sections.push_back(
-      {.title = "Environment", .text = "", .terms = {{"NO_COLOR", "set: no colours on a terminal"}}});
+      {.title = "Environment", .text = "", .terms = {{"NO_COLOR", "if set, no colors on a terminal"}}});
   return page;
 }
 

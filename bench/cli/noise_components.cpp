@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/noise_components.h"
 
 #include <chrono>
@@ -6,24 +7,25 @@
 #include "acquisition/core/camera_id.h"
 #include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/input_gate.h"
 #include "bench/judgement/verdict.h"
 #include "tod/measures/three_d_noise.h"
 
 namespace todbench {
 namespace {
 
-/// Below this correlation the variance of tvh is off by less than a quarter of a frame's share.
+/// Below this correlation the error of the variance of tvh is less than a quarter of a frame's share.
 constexpr double components_white_enough = 0.1;
 
 struct WholeRecording {
   NoiseTable table;
   bool kelvin = false;
-  int left_out = 0;   ///< frames that are not complete
-  int repeated = 0;   ///< frames that are bit-identical to the one before
-  double memory = 0;  ///< correlation of the pixels' noise in successive frames, where it is there
+  int left_out = 0;   ///< incomplete or damaged frames
+  int repeated = 0;   ///< frames identical to the one before, bit for bit
+  double memory = 0;  ///< correlation of the pixels' noise in successive frames, if known
 };
 
-/// The camera says that it corrected itself between this frame and the last one.
+/// Detects that the camera reports a correction between this frame and the last one.
 class StatedCorrection {
  public:
   [[nodiscard]] bool before(const Frame& frame) {
@@ -44,16 +46,20 @@ Result<void> add(NoiseCube& cube, const Frame& frame, bool kelvin) {
 }
 
 tl::unexpected<Error> corrected(int frame) {
-  return fail(ErrorCode::invalid_input, "a correction of the camera lies before frame " + std::to_string(frame + 1) +
-                                            ", or the scene moved there: such a cube does not hold the camera's noise");
+  return fail(ErrorCode::invalid_input, "the camera performed a correction (NUC) before frame " +
+                                            std::to_string(frame + 1) +
+                                            ", or the scene moved there; the components would not be those of the "
+                                            "camera's noise. Record again, or accept this with --across-corrections");
 }
 
-Result<WholeRecording> whole_recording(const std::string& id, AcrossCorrections across) {
+Result<WholeRecording> whole_recording(Console& console, const std::string& id, AcrossCorrections across) {
   auto source =
       recording_backend()->open(has_scheme(id, camera_scheme::file) ? id : camera_id(camera_scheme::file, id));
-  // Here a recording is an input file and no device.
+  // A recording is an input file here, not a device.
   if (!source) return fail(ErrorCode::invalid_input, source.error().message);
   if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());
+  for (const auto& warning : (*source)->info().warnings) console.note(warning);
+  InputGate gate;
   WholeRecording whole;
   whole.kelvin = (*source)->info().scale.calibrated();
   NoiseCube cube;
@@ -63,17 +69,21 @@ Result<WholeRecording> whole_recording(const std::string& id, AcrossCorrections 
     auto frame = (*source)->next(std::chrono::seconds(1));
     if (!frame && frame.error().code == ErrorCode::disconnected) break;
     if (!frame) return fail(id, frame.error());
-    if (frame->status != FrameStatus::complete) {
+    if (!gate.takes(*frame)) {
       ++whole.left_out;
       continue;
     }
     if (stated.before(*frame) && across == AcrossCorrections::refuse) return corrected(cube.frames());
-    if (!last.empty() && last.size() == frame->counts.size() && cv::norm(last, frame->counts, cv::NORM_INF) == 0)
+    if (!last.empty() && last.size() == frame->counts.size() && cv::norm(last, frame->counts, cv::NORM_INF) == 0) {
       ++whole.repeated;
+      continue;
+    }
     last = frame->counts;
     if (auto added = add(cube, *frame, whole.kelvin); !added)
       return fail(ErrorCode::invalid_input, added.error().message);
   }
+  if (auto sound = gate.verdict(); !sound) return fail(id, sound.error());
+  if (const auto sentence = gate.cadence(); !sentence.empty()) console.note(sentence);
   const auto table = cube.table();
   if (!table) return tl::unexpected(table.error());
   whole.table = *table;
@@ -127,20 +137,19 @@ void print_components(Console& console, const WholeRecording& whole) {
 }  // namespace
 
 int run_noise_components(Console& console, const std::string& recording, AcrossCorrections across) {
-  const auto whole = whole_recording(recording, across);
+  const auto whole = whole_recording(console, recording, across);
   if (!whole) {
     const bool named = whole.error().message.find(recording) != std::string::npos;
     return report_error(console, named ? whole.error() : with_context(recording, whole.error()));
   }
-  if (whole->left_out > 0) console.note(std::to_string(whole->left_out) + " frames are not complete and were left out");
+  if (whole->left_out > 0)
+    console.note("incomplete or damaged frames, which were skipped: " + std::to_string(whole->left_out));
   if (whole->repeated > 0) {
-    console.note(std::to_string(whole->repeated) +
-                 " frames repeat the one before them: they are no exposures of their own, and the temporal components "
-                 "are too small");
+    console.note("frames that repeat the frame before them and were skipped: " + std::to_string(whole->repeated));
   }
   if (std::abs(whole->memory) > components_white_enough) {
-    console.note("the noise is correlated in time, by " + fixed(whole->memory, 2) +
-                 " in successive frames: the components take frames as independent, so tvh is too " +
+    console.note("the noise is correlated in time: successive frames have a correlation of " + fixed(whole->memory, 2) +
+                 ". The components assume independent frames, so tvh is too " +
                  (whole->memory > 0 ? "small and vh too large" : "large and vh too small"));
   }
   if (console.json())

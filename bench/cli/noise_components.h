@@ -1,4 +1,5 @@
-// The seven noise components of a whole recording as it is.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The seven noise components of a complete recording, without corrections.
 #pragma once
 
 #include <string>
@@ -7,10 +8,10 @@
 
 namespace todbench {
 
-/// What to do with a recording in which the camera corrected itself, or the scene moved.
+/// Treatment of a recording with a correction of the camera or a moving scene.
 enum class AcrossCorrections { refuse, take };
 
-/// `todbench noise RECORDING --components-only`: prints or writes them; the exit code.
+/// `todbench noise RECORDING --components-only`: prints or writes the components; returns the exit code.
 [[nodiscard]] int run_noise_components(Console& console, const std::string& recording, AcrossCorrections across);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/program.h"
 
 #include <signal.h>
@@ -13,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "acquisition/base/number_range.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/exit_codes.h"
@@ -23,9 +25,10 @@
 namespace todbench {
 
 void finish_command(CLI::App& command, Program& program, std::function<int(Console&)> action) {
-  command.add_flag("--json", program.common.console.json, "one JSON object on standard output, nothing else there");
-  command.add_flag("--quiet,-q", program.common.console.quiet, "no progress and no notes on standard error");
-  command.add_option("--seed", program.common.seed, "fixes all randomness")
+  command.add_flag("--json", program.common.console.json,
+                   "writes one JSON object, and nothing else, to standard output");
+  command.add_flag("--quiet,-q", program.common.console.quiet, "writes no progress and no notes to standard error");
+  command.add_option("--seed", program.common.seed, "seed of all random numbers")
       ->check(whole_number(0, std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str()
       ->each([&program](const std::string&) { program.common.seed_given = true; });
@@ -57,7 +60,8 @@ CLI::Validator number_that(std::function<bool(double)> fits, std::string expecte
 }  // namespace
 
 CLI::Validator number_in(double low, double high) {
-  return number_that([=](double value) { return value >= low && value <= high; },
+  const NumberRange range = NumberRange::between(low, high);
+  return number_that([range](double value) { return range.contains(value); },
                      "from " + number_text(low) + " to " + number_text(high));
 }
 
@@ -76,7 +80,7 @@ CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
 
 namespace {
 
-/// A list with an item that is nothing, such as "1,,2", as a sentence: the parser would leave the item out silently.
+/// Returns an error sentence for a list with an empty item, for example "1,,2": the parser would ignore the item.
 std::optional<std::string> list_with_a_hole(const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App* command = &app;
   const CLI::Option* list = nullptr;
@@ -94,7 +98,7 @@ std::optional<std::string> list_with_a_hole(const CLI::App& app, const std::vect
     }
     const bool hole = value.starts_with(',') || value.ends_with(',') || value.find(",,") != std::string::npos;
     if (list != nullptr && list->get_delimiter() == ',' && hole) {
-      return command->get_name() + ": " + list->get_name() + ": expected values with one comma between two, found '" +
+      return command->get_name() + ": " + list->get_name() + ": expected values separated by single commas, found '" +
              one_line(value) + "'";
     }
     list = nullptr;
@@ -102,7 +106,7 @@ std::optional<std::string> list_with_a_hole(const CLI::App& app, const std::vect
   return std::nullopt;
 }
 
-/// What is wrong with a command line, in one sentence that names the nearest thing that would have been right.
+/// Describes the error of a command line in one sentence that suggests the nearest valid word.
 std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
   std::vector<std::string> commands;
   for (const CLI::App* command : visible_commands(app)) commands.push_back(command->get_name());
@@ -111,11 +115,11 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
   const bool known =
       std::any_of(all.begin(), all.end(), [&](const CLI::App* command) { return command->get_name() == asked; });
   if (words.empty()) {
-    return "no command was given. Three things to try:\n"
-           "  todbench demo             the whole job on an emulated laboratory, without hardware\n"
-           "  todbench devices          the cameras that are connected\n"
-           "  todbench simulate demo    a curve of the simulated sensor of the demonstration plan\n"
-           "todbench --help lists the commands, todbench COMMAND --help the options of one";
+    return "no command was given. Three commands to try:\n"
+           "  todbench demo             runs the whole test on an emulated laboratory in about 40 s, without hardware\n"
+           "  todbench devices          lists the connected cameras\n"
+           "  todbench simulate demo    simulates the TOD curve of the sensor in the demonstration plan\n"
+           "todbench --help lists the commands, todbench COMMAND --help lists the options of a command";
   }
   if (asked.empty()) return one_line(error.what()) + " (todbench --help lists the commands)";
   if (!known) {
@@ -145,7 +149,7 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error, co
   return asked + ": " + one_line(error.what()) + " (todbench " + asked + " --help lists the options)";
 }
 
-/// Two lines of at most 110 letters.
+/// Returns two lines of at most 110 characters.
 std::string exit_code_footer() {
   std::string text = "Exit codes:";
   std::size_t line = text.size();
@@ -161,7 +165,7 @@ std::string exit_code_footer() {
   return text;
 }
 
-/// A disk limit or a reader that went away is an error of that write, not the end of a measurement.
+/// A disk limit or a closed pipe becomes an error of that write instead of ending a measurement.
 void write_errors_instead_of_signals() {
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);
@@ -171,7 +175,7 @@ int run(int argc, char** argv, void (*add_commands)(CLI::App&, Program&)) {
   StopSignals stop;
   Program program;
   program.stop = &stop;
-  CLI::App app("Measures the TOD of thermal cameras with a model observer, and of their simulated twins.", "todbench");
+  CLI::App app("Measures the TOD of thermal cameras and of their simulated twins with a model observer.", "todbench");
   app.require_subcommand(1);
   app.footer(exit_code_footer());
   const BuildInfo info = build_info();
@@ -210,7 +214,7 @@ int run(int argc, char** argv, void (*add_commands)(CLI::App&, Program&)) {
 }  // namespace
 
 int run_program(int argc, char** argv, void (*add_commands)(CLI::App&, Program&)) {
-  // Nothing of the project throws across its interfaces; what third-party code throws is a defect, not a crash.
+  // Interfaces of this project do not throw; an exception of third-party code is reported as a defect.
   write_errors_instead_of_signals();
   try {
     return run(argc, argv, add_commands);

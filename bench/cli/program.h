@@ -1,7 +1,8 @@
-// What the programs of the command line have in common.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Common part of the command-line programs.
 #pragma once
 
-// Without the parser, which costs more to compile than a program that only calls these.
+// Forward declaration, because the header of the parser is slow to compile.
 namespace CLI {
 class App;
 }
@@ -10,8 +11,8 @@ namespace todbench {
 
 struct Program;
 
-/// Reads the words of the command line, runs the command that they name of those that `add_commands` adds, and returns
-/// the exit code of the process. What is wrong is said in one line on standard error.
+/// Parses the command line with the commands of `add_commands`, runs the chosen one and returns the exit code of the
+/// process. Prints errors in one line on standard error.
 [[nodiscard]] int run_program(int argc, char** argv, void (*add_commands)(CLI::App&, Program&));
 
 /// The same with the demonstration as the only command.

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/range_options.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "bench/cli/commands.h"
@@ -14,12 +16,13 @@
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "bench/text/unit_hint.h"
 #include "sim_devices/atmosphere/radiative_path.h"
 
 namespace todbench {
 namespace {
 
-/// "tod,ttp" or "all".
+/// Parses "tod,ttp" or "all".
 Result<std::vector<RangeModel>> models_from(const std::string& text) {
   if (text == "all") return std::vector<RangeModel>(all_range_models.begin(), all_range_models.end());
   std::vector<std::string> known{"all"};
@@ -41,8 +44,10 @@ Result<std::vector<RangeModel>> models_from(const std::string& text) {
   return models;
 }
 
-/// A curve over frequency_per_mrad from a CSV file.
+/// Reads a curve over frequency_per_mrad from a CSV file.
 Result<LogLinearCurve> curve_from(const std::string& file, const std::string& column) {
+  // Covers cameras from microscopes to telescopes; a threshold is in kelvin or a contrast.
+  constexpr NumberRange frequency_range = NumberRange::between(0, 1e5), value_range = NumberRange::between(1e-9, 1e6);
   const auto text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
   const auto table = parse_csv(*text, file);
@@ -60,6 +65,12 @@ Result<LogLinearCurve> curve_from(const std::string& file, const std::string& co
   for (const auto& row : table->rows) {
     const auto f = parse_number(row.fields[frequency]), y = parse_number(row.fields[value]);
     if (!f || !y) return table->wrong(row.line, "expected two numbers");
+    for (const auto& [number, allowed, name] :
+         {std::tuple(*f, frequency_range, std::string("frequency_per_mrad")), std::tuple(*y, value_range, column)}) {
+      if (!allowed.contains(number))
+        return table->wrong(row.line, "column " + name + ": expected " + allowed.describe() + ", found " +
+                                          number_text(number) + unit_hint(name, number, allowed));
+    }
     points.push_back({*f, *y});
   }
   auto curve = LogLinearCurve::of(points, column);
@@ -79,11 +90,11 @@ Json criterion_json(const ModelRange& model) {
   return {{"name", model.criterion}, {"value", model.criterion_value}, {"probability_form", model.probability_form}};
 }
 
-/// Ranges of the TTP model by both forms of P.
+/// Returns the ranges of the TTP model by both forms of P.
 Json forms_json(const RangeSources& sources, const RangeQuestion& question, const ModelRange& ttp) {
   Json forms = Json::object();
   if (!ttp.r50_m) return forms;
-  // V is that of the answer: only the x for a probability differs.
+  // V is that of the result: the forms differ only in x for a probability.
   for (const ProbabilityForm form : {ProbabilityForm::ttp_2004, ProbabilityForm::fixed_1_5}) {
     const auto ranges = ttp_ranges(sources, question, form);
     forms[std::string(to_string(form))] = {{"r50_m", json_number(ranges.r50_m)}, {"r75_m", json_number(ranges.r75_m)}};
@@ -105,13 +116,13 @@ Json nominal_json(const NominalRanges& nominal) {
 
 void RangeOptions::add_to(CLI::App& command) {
   command.add_option("--atmosphere", atmosphere,
-                     "clear, beer-lambert (with --extinction-per-km), us-standard, midlatitude-summer, "
-                     "midlatitude-winter, subarctic-winter, tropical; or FILE.csv, or a MODTRAN tape7");
+                     "atmosphere: clear, beer-lambert (with --extinction-per-km), us-standard, midlatitude-summer, "
+                     "midlatitude-winter, subarctic-winter, tropical, FILE.csv or a MODTRAN tape7 file");
   command
       .add_option("--haze", haze,
-                  "aerosol of the shipped tables: none, rural-23km, rural-5km, maritime-23km, fog-0.5km")
+                  "aerosol of the built-in atmospheres: none, rural-23km, rural-5km, maritime-23km or fog-0.5km")
       ->capture_default_str();
-  command.add_option("--band", band, "LOW-HIGH in um of the air's table; default: that of the sensor");
+  command.add_option("--band", band, "spectral band LOW-HIGH of the atmosphere in um; default: the band of the sensor");
   command
       .add_option_function<std::string>(
           "--models",
@@ -120,75 +131,93 @@ void RangeOptions::add_to(CLI::App& command) {
             if (!found) throw CLI::ValidationError("--models", found.error().message);
             models = *std::move(found);
           },
-          "tod, acquire, ttp, mtdp, several with commas, or all")
+          "range models: tod, acquire, ttp, mtdp, several separated by commas, or all")
       ->default_str("tod");
-  command.add_option("--sensor", sensor, "name or file, for the formula models; default: that of the session");
+  command.add_option("--sensor", sensor,
+                     "sensor of the formula models: name or file; default: the sensor of the session");
   const auto kelvin = number_in(-1e6, 1e6);
   command
       .add_option("--background-k", background_k,
-                  "temperature behind the target: the contrast is then carried as radiance")
+                  "temperature of the background in K; the contrast is then computed as radiance")
       ->check(kelvin);
-  command.add_option("--emissivity", emissivity, "of target and background")
+  command.add_option("--emissivity", emissivity, "emissivity of target and background")
       ->check(number_in(1e-6, 1))
       ->capture_default_str();
-  command.add_option("--surround-k", surround_k, "radiation temperature that is reflected; default: the background")
-      ->check(kelvin);
-  command.add_option("--air-k", air_k, "temperature of the air; default: that of the model atmosphere")->check(kelvin);
-  const auto positive = number_in(1e-6, 1e6);
-  command.add_option("--n50", n50, "cycles of ACQUIRE (2-D) for 50 %: detection 0.75, recognition 3, identification 6")
-      ->check(positive)
-      ->capture_default_str();
-  command.add_option("--mtdp-n50", mtdp_n50, "cycles of the MTDP-like model for 50 %: 1, 3, 6")
-      ->check(positive)
-      ->capture_default_str();
-  command.add_option("--mrtd", mrtd_file, "CSV with frequency_per_mrad and mrtd_k in place of the formula");
-  command.add_option("--mtdp", mtdp_file, "CSV with frequency_per_mrad and mtdp_k in place of the formula");
-  command.add_option("--ctf", ctf_file, "CSV with frequency_per_mrad and ctf in place of the eye's and sensor's");
   command
-      .add_option("--target-contrast", target_contrast, "of luminances, for TTP; default: |dT| / (2 scene contrast)")
+      .add_option("--surround-k", surround_k,
+                  "radiation temperature of the reflected surroundings in K; default: that of the background")
+      ->check(kelvin);
+  command.add_option("--air-k", air_k, "temperature of the air in K; default: that of the model atmosphere")
+      ->check(kelvin);
+  const auto positive = number_in(1e-6, 1e6);
+  command
+      .add_option("--n50", n50,
+                  "N50 of ACQUIRE (2-D), in cycles: 0.75 for detection, 3 for recognition, 6 for identification")
+      ->check(positive)
+      ->capture_default_str();
+  command
+      .add_option("--mtdp-n50", mtdp_n50,
+                  "N50 of the MTDP-like model, in cycles: 1 for detection, 3 for recognition, 6 for identification")
+      ->check(positive)
+      ->capture_default_str();
+  command.add_option("--mrtd", mrtd_file, "CSV file with frequency_per_mrad and mrtd_k that replaces the MRTD formula");
+  command.add_option("--mtdp", mtdp_file, "CSV file with frequency_per_mrad and mtdp_k that replaces the MTDP formula");
+  command.add_option("--ctf", ctf_file,
+                     "CSV file with frequency_per_mrad and ctf that replaces the CTF of eye and sensor");
+  command
+      .add_option("--target-contrast", target_contrast,
+                  "luminance contrast of the target for TTP; default: |dT| / (2 scene contrast)")
       ->check(number_in(1e-9, 1));
-  command.add_option("--scene-contrast-k", formula.scene_contrast_k, "kelvin that give the display its mean luminance")
+  command
+      .add_option("--scene-contrast-k", formula.scene_contrast_k,
+                  "scene contrast in K that corresponds to the mean luminance of the display")
       ->check(positive)
       ->capture_default_str();
-  command.add_option("--snr-threshold", formula.snr_threshold, "of the MRTD formula")
+  command
+      .add_option("--snr-threshold", formula.snr_threshold, "signal-to-noise ratio at threshold in the MRTD formula")
       ->check(positive)
       ->capture_default_str();
-  command.add_option("--eye-integration-s", formula.eye_integration_s, "of the MRTD formula")
+  command
+      .add_option("--eye-integration-s", formula.eye_integration_s,
+                  "integration time of the eye in the MRTD formula, in s")
       ->check(number_in(1e-4, 10))
       ->capture_default_str();
   command
       .add_option("--extinction-u-percent", extinction_u_percent,
-                  "relative standard uncertainty of the extinction: joins the intervals")
+                  "relative standard uncertainty of the extinction in percent; it widens the intervals")
       ->check(number_in(0, 50))
       ->capture_default_str();
   command
-      .add_option("--curve-u-percent", curve_u_percent,
-                  "relative standard uncertainty of the thresholds of MRTD, MTDP-like curve and CTF")
+      .add_option(
+          "--curve-u-percent", curve_u_percent,
+          "relative standard uncertainty of the MRTD, MTDP-like and CTF thresholds in percent; it widens the intervals")
       ->check(number_in(0, 50))
       ->capture_default_str();
   auto* turbulence =
-      command.add_option("--cn2", cn2, "structure parameter of the turbulence along the path in m^(-2/3)")
+      command.add_option("--cn2", cn2, "structure parameter Cn2 of the turbulence along the path in m^(-2/3)")
           ->check(number_in(0, 1e-11));
   command
       .add_option("--tolerance-percent", tolerance_percent,
-                  "of the acuity: below it turbulence is left out of the TOD model")
+                  "change of the acuity in percent below which the TOD model skips turbulence")
       ->check(number_in(0.01, 50))
       ->capture_default_str();
-  auto* sizes = command.add_option("--grid-sizes-m", grid.sizes_m, "sizes of a grid of targets, separated by commas")
+  auto* sizes = command.add_option("--grid-sizes-m", grid.sizes_m, "target sizes of a grid in m, separated by commas")
                     ->delimiter(',')
                     ->check(number_in(1e-6, 1e6));
-  auto* contrasts = command.add_option("--grid-contrasts-k", grid.contrasts_k, "contrasts of the grid")
-                        ->delimiter(',')
-                        ->check(number_in(-5000, 5000))
-                        ->needs(sizes);
+  auto* contrasts =
+      command
+          .add_option("--grid-contrasts-k", grid.contrasts_k, "target contrasts of the grid in K, separated by commas")
+          ->delimiter(',')
+          ->check(number_in(-5000, 5000))
+          ->needs(sizes);
   sizes->needs(contrasts);
   sizes->excludes(turbulence);
-  command.add_option("--grid-ranges-m", grid.ranges_m, "ranges at which the grid has P")
+  command.add_option("--grid-ranges-m", grid.ranges_m, "ranges in m for which the grid gives P, separated by commas")
       ->delimiter(',')
       ->check(number_in(1e-3, 1e8))
       ->needs(sizes);
-  command.add_option("--svg", svg, "writes the figure of P against range to this file");
-  command.add_option("--page", page, "writes figure, table and assumptions to this HTML file");
+  command.add_option("--svg", svg, "writes the figure of P over range to this SVG file");
+  command.add_option("--page", page, "writes figure, tables and assumptions to this HTML file");
 }
 
 bool RangeOptions::asks(RangeModel model) const {
@@ -218,7 +247,7 @@ Result<SpectralBand> RangeOptions::band_of(const std::optional<SensorSpec>& spec
   const auto high = dash == std::string::npos ? std::nullopt : parse_number(band.substr(dash + 1));
   if (!low || !high)
     return fail(ErrorCode::invalid_input,
-                "--band: expected LOW-HIGH in um as in 7.5-13, found '" + one_line(band) + "'");
+                "--band: expected LOW-HIGH in um, for example 7.5-13, found '" + one_line(band) + "'");
   const SpectralBand found{*low, *high};
   if (auto valid = validate(found); !valid) return fail("--band", valid.error());
   return found;
@@ -247,7 +276,7 @@ RadiativeScene RangeOptions::scene(double delta_t_k, const Atmosphere& found) co
 
 Result<double> RangeOptions::equivalent_contrast_k(double delta_t_k, const std::optional<SensorSpec>& spec,
                                                    const Atmosphere& found) const {
-  // Each is looked at even where it is not needed: a temperature that cannot be is a slip.
+  // All temperatures are checked, even unused ones, to detect typing errors.
   if (auto valid = validate(scene(background_k ? delta_t_k : 0, found)); !valid) return tl::unexpected(valid.error());
   if (!background_k) return delta_t_k;
   const auto wavelengths = band_of(spec);
@@ -281,7 +310,7 @@ Result<RangeSources> RangeOptions::sources(std::vector<TodThreshold> thresholds,
 
 namespace {
 
-/// The figures of a grid as grid_json() has it.
+/// Returns the figures of a grid of grid_json().
 std::vector<GridFigure> figures_of(const Json& grids) {
   std::vector<GridFigure> figures;
   for (const auto& [name, found] : grids["models"].items()) {
@@ -317,7 +346,7 @@ Result<void> RangeOptions::write(const std::vector<ModelRange>& answers, const R
 
 namespace {
 
-/// Values as nested lists, the last dimension innermost.
+/// Returns values as nested lists, the last dimension innermost.
 Json nested(const std::vector<std::optional<double>>& values, std::size_t outer, std::size_t inner) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < outer; ++i) {
@@ -372,7 +401,7 @@ Json atmosphere_json(const Atmosphere& air, const RangeTask& task, std::optional
   const auto band = options.band_of(sensor);
   if (!r75_m || !options.background_k || !band) return json;
   const auto tau = air.air.at(*r75_m);
-  // The target with its own contrast: task has the one at the scale of the NETD.
+  // Uses the target's own contrast: that of the task is at the scale of the NETD.
   const double target_contrast_k = options.asked_delta_t_k;
   const auto shown = tau ? apparent_temperatures(*band, options.scene(target_contrast_k, air), *tau) : std::nullopt;
   if (!shown) return json;
@@ -445,7 +474,7 @@ void print_models(Console& console, const std::vector<ModelRange>& models) {
   console.text("");
   console.table({"model", "criterion", "form of P", "R50 [m]", "R75 [m]", "95 %", "limited by"}, rows);
   for (const auto& model : models) {
-    console.text(model.title + " reads " + model.reads);
+    console.text(model.title + " uses " + model.reads);
     if (!model.reason.empty()) console.text(model.title + ": " + model.reason);
     for (const auto& sentence : model.notes) console.note(model.title + ": " + sentence);
   }

@@ -1,4 +1,5 @@
-// What `todbench range` takes beside the TOD curve: the air, other models, their curves, figures.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options of `todbench range` besides the TOD curve: air, other models, their curves, figures.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,45 +22,45 @@ struct RangeOptions {
   double asked_delta_t_k = 0;  ///< as on the command line
   double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0, curve_u_percent = 0;
   double cn2 = 0, tolerance_percent = 1;
-  RangeGridAxes grid{};  ///< no sizes: none is asked for
+  RangeGridAxes grid{};  ///< no sizes: no grid is requested
   FormulaConditions formula{};
 
   /// Adds the options; `this` outlives the parser.
   void add_to(CLI::App& command);
 
   [[nodiscard]] bool asks(RangeModel model) const;
-  /// Air that is more than one coefficient.
+  /// Whether the air is more than one coefficient.
   [[nodiscard]] bool has_table() const;
-  /// --sensor, or that of the session with its microscan.
+  /// Returns the sensor of --sensor, or that of the session with its microscan.
   [[nodiscard]] Result<std::optional<SensorSpec>> sensor_of(const std::optional<Session>& session) const;
   [[nodiscard]] Result<Atmosphere> air(const std::optional<SensorSpec>& sensor, double extinction_per_km) const;
-  /// The target with its background as radiance, made kelvin once at the scale of the NETD; the contrast itself where
-  /// no background is named.
+  /// Returns the contrast of the target in kelvin at the scale of the NETD, converted once from the radiance of target
+  /// and background; `delta_t_k` itself if no background is given.
   [[nodiscard]] Result<double> equivalent_contrast_k(double delta_t_k, const std::optional<SensorSpec>& sensor,
                                                      const Atmosphere& air) const;
   [[nodiscard]] RangeQuestion question(const RangeTask& task, std::optional<double> v50, const Atmosphere& air) const;
   [[nodiscard]] Result<RangeSources> sources(std::vector<TodThreshold> thresholds,
                                              const std::optional<SensorSpec>& sensor) const;
-  /// The figure and the page that were asked for; `said`: sentences about the answers, for the page.
+  /// Writes the requested figure and page; `said`: sentences about the results, for the page.
   [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question,
                                    const std::vector<std::string>& said, const Json& grids) const;
 
-  /// The grid that was asked for, as JSON; null where none was.
+  /// Returns the requested grid as JSON; null if none is requested.
   [[nodiscard]] Result<Json> grid_json(const RangeSources& sources, const RangeQuestion& question,
                                        const std::optional<SensorSpec>& sensor) const;
 
   [[nodiscard]] Result<SpectralBand> band_of(const std::optional<SensorSpec>& sensor) const;
-  /// Precondition: a background is named.
+  /// Precondition: a background is given.
   [[nodiscard]] RadiativeScene scene(double delta_t_k, const Atmosphere& air) const;
 };
 
-/// "atmosphere": name, source, and what it does at the 75 % range of the TOD model.
+/// "atmosphere": name, source, and effect at the 75 % range of the TOD model.
 [[nodiscard]] Json atmosphere_json(const Atmosphere& air, const RangeTask& task, std::optional<double> r75_m,
                                    const RangeOptions& options, const std::optional<SensorSpec>& sensor);
-/// "models": the answers by name.
+/// "models": the results by name.
 [[nodiscard]] Json models_json(const std::vector<ModelRange>& models, const RangeSources& sources,
                                const RangeQuestion& question, std::optional<double> twin_r75_m);
-/// A table of R75 for every model of a grid.
+/// Prints a table of R75 for every model of a grid.
 void print_grid(Console& console, const Json& grid);
 void print_models(Console& console, const std::vector<ModelRange>& models);
 

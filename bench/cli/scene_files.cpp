@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/scene_files.h"
 
 #include "acquisition/recording/picture_file.h"
@@ -19,7 +20,7 @@ Result<void> check_result_folder(const std::filesystem::path& folder, ExistingRe
   if (!std::filesystem::is_directory(folder, error))
     return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
   if (existing == ExistingResults::refused && !std::filesystem::is_empty(folder, error))
-    return fail(ErrorCode::invalid_input, folder.string() + ": is not empty (--force overwrites what is in it)");
+    return fail(ErrorCode::invalid_input, folder.string() + ": is not empty (--force overwrites its files)");
   return {};
 }
 

@@ -1,4 +1,5 @@
-// The plan of a command that takes it as it is, but for --seed.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plan with the seed of --seed.
 #pragma once
 
 #include "bench/cli/commands.h"
@@ -6,7 +7,7 @@
 
 namespace todbench {
 
-/// The plan with the seed of the command line, where that has one. Errors: those of `plan` and of LoadedPlan::with().
+/// Returns the plan with the seed of the command line, if given. Errors: those of `plan` and of LoadedPlan::with().
 [[nodiscard]] Result<LoadedPlan> with_seed(Result<LoadedPlan> plan, const CommonOptions& common);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/session_argument.h"
 
 #include <fmt/format.h>
@@ -6,20 +7,21 @@ namespace todbench {
 
 void add_accept_changed(CLI::App& command, bool& accepted) {
   command.add_flag("--accept-changed", accepted,
-                   "read the session although its files are not those that the run wrote, and say so");
+                   "reads a session whose files are not those that the run wrote, and lists these files");
 }
 
 Result<Session> opened(Console& console, const std::string& folder, const Opening& opening) {
   auto session = open_session(folder, opening);
   if (!session) return session;
   if (const std::string sentence = accepted_sentence(folder, *session); !sentence.empty()) console.warning(sentence);
-  if (session->cut_off) console.warning(folder + ": the run was cut off; nothing vouches for its files");
+  if (session->cut_off)
+    console.warning(folder + ": the run was cut off, so the files of the session cannot be verified");
   return session;
 }
 
 std::string accepted_sentence(const std::string& folder, const Session& session) {
   if (session.accepted_changes.empty()) return "";
-  return fmt::format("{}: changed, removed or added after the session ended, and accepted: {}", folder,
+  return fmt::format("{}: changed, removed or added after the session ended (accepted): {}", folder,
                      fmt::join(session.accepted_changes, ", "));
 }
 

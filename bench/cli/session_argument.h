@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A session folder on the command line.
 #pragma once
 
@@ -14,11 +15,11 @@ namespace todbench {
 /// Adds --accept-changed. `accepted` outlives the parser.
 void add_accept_changed(CLI::App& command, bool& accepted);
 
-/// open_session(); what was accepted is said on standard error, whatever --quiet says.
+/// Calls open_session(); reports accepted changes on standard error, also with --quiet.
 [[nodiscard]] Result<Session> opened(Console& console, const std::string& folder, const Opening& opening);
-/// "s: changed, removed or added after the session ended: fits.json"; empty when nothing was.
+/// "s: changed, removed or added after the session ended: fits.json"; empty if no change was accepted.
 [[nodiscard]] std::string accepted_sentence(const std::string& folder, const Session& session);
-/// Adds "accepted_changes" to what a command says in JSON, where changes were to be accepted.
+/// Adds "accepted_changes" to the JSON output of a command, if changes may be accepted.
 void add_accepted_changes(Json& json, const Opening& opening, const std::vector<std::string>& files);
 
 }  // namespace todbench

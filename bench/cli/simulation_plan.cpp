@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/simulation_plan.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-/// The effects of the command line behind those of the plan.
+/// Appends the effects of the command line to those of the plan.
 void add_effects(std::vector<Effect>& list, const std::vector<Effect>& before) {
   std::vector<Effect> all = before;
   for (const Effect effect : list) {
@@ -26,7 +27,7 @@ Result<LoadedPlan> simulation_plan(const SimulationOverrides& overrides, std::st
   Plan plan = before;
   if (overrides.seed) plan.seed = *overrides.seed;
   if (auto applied = apply(overrides.keys, plan); !applied) return tl::unexpected(applied.error());
-  // A tolerance is all that needs to be said.
+  // A tolerance alone selects the automatic accuracy.
   if (overrides.keys.has("simulation.tolerance_percent") && !overrides.keys.has("simulation.accuracy"))
     plan.simulation.accuracy = "auto";
   add_effects(plan.simulation.skip, before.simulation.skip);

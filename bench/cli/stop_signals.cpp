@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/stop_signals.h"
 
 #include <pthread.h>
@@ -10,7 +11,7 @@
 namespace todbench {
 namespace {
 
-/// Wakes the waiter at the end; nobody else sends it.
+/// Wakes the waiting thread at the end; no other code sends it.
 constexpr int own_signal = SIGUSR1;
 
 sigset_t stopping_signals() {
@@ -36,7 +37,7 @@ StopSignals::StopSignals() {
       sigwait(&set, &signal);
       if (leaving_) return;
       if (signal == own_signal) continue;
-      // Whoever asks twice does not want to wait for the end of the session; what is on disk stays readable.
+      // A second signal skips the orderly end of the session; files on disk stay readable.
       if (stop_.stop_requested()) ::_exit(130);
       stop_.request_stop();
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ctrl-C as a stop request.
 #pragma once
 
@@ -7,9 +8,9 @@
 
 namespace todbench {
 
-/// Turns SIGINT, SIGTERM and SIGHUP into a stop request; those that whoever started the program wants ignored (nohup,
-/// background jobs) stay ignored. A second signal ends the process at once with exit code 130. To be created before any
-/// other thread, which inherit the blocked signals.
+/// Turns SIGINT, SIGTERM and SIGHUP into a stop request, except signals that the parent process set to be ignored
+/// (nohup, background jobs). A second signal ends the process at once with exit code 130. Create before any other
+/// thread starts: threads inherit the blocked signals.
 class StopSignals {
  public:
   StopSignals();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/sweep_engines.h"
 
 #include <fmt/format.h>
@@ -7,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "acquisition/base/process.h"
 #include "bench/cli/commands.h"
-#include "bench/sweep/processes.h"
 #include "bench/sweep/schedulers.h"
 #include "bench/sweep/task_plan.h"
 #include "bench/text/files.h"
@@ -33,24 +34,24 @@ Result<std::string> text_for(const SweepArguments& a, Scheduler scheduler, std::
   return job_text(scheduler, jobs, *options);
 }
 
-/// An array that most sites refuse is said before it is submitted.
+/// Warns before submission of an array that most sites reject.
 void note_long_array(Console& console, const SweepArguments& a, std::size_t tasks) {
-  constexpr std::size_t usual_limit = 1000;  // MaxArraySize is 1001 where nobody set it
+  constexpr std::size_t usual_limit = 1000;  // MaxArraySize is 1001 by default
   const std::size_t chunk = std::max<std::size_t>(a.chunk, 1), jobs = (tasks + chunk - 1) / chunk;
   if (jobs <= usual_limit) return;
-  console.note(
-      fmt::format("an array of {} elements; Slurm takes {} where the site set no other MaxArraySize: --chunk {} "
-                  "makes as many",
-                  jobs, usual_limit, (tasks + usual_limit - 1) / usual_limit));
+  console.note(fmt::format(
+      "the job array has {} elements; by default Slurm accepts at most {} (MaxArraySize). --chunk {} keeps this limit",
+      jobs, usual_limit, (tasks + usual_limit - 1) / usual_limit));
 }
 
-/// Runs sbatch on a script; its exit code, or why it cannot be started.
-Result<int> submitted(const std::string& script, ChildOutput output) {
-  const auto process = spawned({"sbatch", script}, output);
-  auto code = process ? ended(*process) : Result<int>(tl::unexpected(process.error()));
+/// Runs sbatch on a script. Returns its exit code; an error if it cannot be started.
+Result<int> submitted(const std::string& script, bool shown) {
+  const Descriptor discarded = shown ? Descriptor() : null_device();
+  const auto process = start_program({"sbatch", script}, {.output = discarded.get()});
+  const auto code = process ? wait_for_program(*process) : Result<int>(tl::unexpected(process.error()));
   constexpr int not_there = 127;
   if (code && *code != not_there) return code;
-  return fail(ErrorCode::not_found, "sbatch cannot be started; the script is " + script);
+  return fail(ErrorCode::not_found, "sbatch cannot be started; the script is in " + script);
 }
 
 }  // namespace
@@ -89,7 +90,7 @@ int submit_to_slurm(Console& console, SweepArguments a) {
   if (auto made = make_folder(script.parent_path()); !made) return report_error(console, made.error());
   if (auto written = write_file_atomically(script, *text); !written) return report_error(console, written.error());
   if (!a.dry_run) {
-    const auto code = submitted(script.string(), console.json() ? ChildOutput::nowhere : ChildOutput::ours);
+    const auto code = submitted(script.string(), !console.json());
     if (!code) return report_error(console, code.error());
     if (*code != 0)
       return report_error(console, {ErrorCode::not_found, fmt::format("sbatch ended with exit code {}", *code)});

@@ -1,4 +1,5 @@
-// `todbench sweep tasks` and `submit`: the task list for what a laboratory schedules with.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `todbench sweep tasks` and `submit`: the task list for the scheduler of a laboratory.
 #pragma once
 
 #include <cstddef>
@@ -9,20 +10,20 @@
 
 namespace todbench {
 
-/// What the parts of `todbench sweep` take.
+/// Arguments of the parts of `todbench sweep`.
 struct SweepArguments {
   std::string file, scheduler = "parallel", engine = "local", options_file, csv, sqlite, page,
                     response = "acuity_per_mrad";
   std::optional<std::size_t> index, jobs;
   std::string range;
-  std::size_t chunk = 0;  ///< 0: not said
+  std::size_t chunk = 0;  ///< 0: not given
   std::string program = "todbench";
   bool list = false, predict = false, partial = false, dry_run = false;
 };
 
-/// Prints the list or script; submits nothing. The exit code.
+/// Prints the list or script without submitting it; returns the exit code.
 [[nodiscard]] int print_tasks(Console& console, const SweepArguments& a);
-/// Writes the script beside the results and calls sbatch, unless it is a dry run. The exit code.
+/// Writes the script next to the results and, unless it is a dry run, calls sbatch; returns the exit code.
 [[nodiscard]] int submit_to_slurm(Console& console, SweepArguments a);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/watch.h"
 
 #include <chrono>
@@ -26,7 +27,7 @@ Result<Json> read_json(const std::filesystem::path& file) {
   const auto text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
   Json json = Json::parse(*text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not JSON");
+  if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
   return json;
 }
 
@@ -44,7 +45,7 @@ std::uintmax_t size_of(const std::filesystem::path& file) {
   return none ? 0 : bytes;
 }
 
-/// Of the trials so far. The last line of a file that is being written may not be whole: then there is none this time.
+/// Fits the trials so far. The last line of a growing file may be incomplete: then there is no curve this time.
 std::optional<TodCurve> curve_of(const std::filesystem::path& trials, RunningFit& fit, const std::stop_token& stop) {
   std::error_code none;
   if (!std::filesystem::exists(trials, none)) return std::nullopt;
@@ -88,7 +89,7 @@ int watch_session(Console& console, const std::filesystem::path& folder, const s
   std::condition_variable_any wake;
   std::uintmax_t shown_bytes = 0;
   for (;;) {
-    // The state first: what is read after it is at least as new.
+    // Read the state first: data read later are at least as new.
     const auto state = state_of(folder);
     if (!state) return report_error(console, state.error());
     const auto bytes = size_of(folder / "trials.csv") + size_of(folder / "trials_simulated.csv");
@@ -99,7 +100,7 @@ int watch_session(Console& console, const std::filesystem::path& folder, const s
         measured = session->curve;
         twin = session->twin;
       }
-      // While it runs, and where it left no fits.
+      // While it runs, and if it left no fits.
       if (!measured) measured = curve_of(folder / "trials.csv", fit, stop);
       if (!twin) twin = curve_of(folder / "trials_simulated.csv", fit, stop);
       show(console, {.delta_t_k = plan->target.delta_t_k,

@@ -1,4 +1,5 @@
-// A session that another process writes, as it grows.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shows a growing session that another process writes.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Shows the curve of a session folder until the session has ended or `stop` is requested; changes nothing in it.
+/// Shows the curve of a session folder until the session has ended or `stop` is requested; only reads the folder.
 /// Returns the exit code: that of the session's verdict, or of the error.
 [[nodiscard]] int watch_session(Console& console, const std::filesystem::path& folder, const std::stop_token& stop);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/doctor/doctor.h"
 
 #include <fmt/format.h>
@@ -13,10 +14,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t mebibyte = 1 << 20;
-/// Aravis 0.8.26 loses frames below this (emulated cameras that send a frame in one burst).
+/// Aravis 0.8.26 loses frames below this size (emulated cameras that send a frame in one burst).
 constexpr std::int64_t least_socket_buffer = 4 * mebibyte;
 constexpr std::int64_t frames_in_flight = 8;
-/// Share of a gigabit link that packets of 1500 bytes reach without much work for the processor.
+/// Rate on a gigabit link up to which packets of 1500 bytes cause little processor load.
 constexpr double comfortable_bits_per_s = 400e6;
 
 std::string number(double value, int digits) {
@@ -50,9 +51,10 @@ std::string_view to_string(Finding finding) {
 DoctorCheck check_socket_buffer(const fs::path& root, const DoctorDemand& demand) {
   DoctorCheck check{.name = "socket_buffer"};
   const std::int64_t wanted = std::max(least_socket_buffer, frames_in_flight * demand.frame_bytes);
-  check.explanation = "GigE Vision cameras send a frame in bursts; a socket buffer below " +
+  check.explanation = "GigE Vision cameras send frames in bursts. A socket buffer below " +
                       mib(static_cast<double>(wanted)) +
-                      " (4 MiB, or 8 frames) overflows and loses packets. The system grants at most net.core.rmem_max.";
+                      " (4 MiB or 8 frames, whichever is larger) overflows and loses packets. The system grants at "
+                      "most net.core.rmem_max.";
   const auto granted = file_number(root / "proc/sys/net/core/rmem_max");
   if (!granted) {
     check.found = "net.core.rmem_max cannot be read";
@@ -68,8 +70,8 @@ DoctorCheck check_socket_buffer(const fs::path& root, const DoctorDemand& demand
 DoctorCheck check_mtu(const fs::path& root, const DoctorDemand& demand) {
   DoctorCheck check{.name = "mtu"};
   check.explanation =
-      "A GigE Vision packet that is larger than the interface takes never arrives; small ones cost a lot of interrupts "
-      "at high rates.";
+      "A GigE Vision packet that is larger than the MTU of the interface never arrives. Small packets cause many "
+      "interrupts at high data rates.";
   const auto interfaces = network_interfaces(root);
   if (interfaces.empty()) {
     check.found = "no network interface is up";
@@ -96,8 +98,9 @@ DoctorCheck check_mtu(const fs::path& root, const DoctorDemand& demand) {
 DoctorCheck check_interfaces(const fs::path& root) {
   DoctorCheck check{.name = "interfaces"};
   check.explanation =
-      "With several interfaces up, a camera may answer on the wrong one: control works and no frame arrives. Give the "
-      "camera's address in the plan then (id = \"gige:ADDRESS\"). Wireless and slow links lose frames.";
+      "If several interfaces are up, a camera may answer on the wrong one: control works, but no frame arrives. In "
+      "this case give the address of the camera in the plan (id = \"gige:ADDRESS\"). Wireless and slow links lose "
+      "frames.";
   const auto interfaces = network_interfaces(root);
   check.finding = Finding::ok;
   std::string slow;
@@ -108,7 +111,8 @@ DoctorCheck check_interfaces(const fs::path& root) {
     const bool poor = one.wireless || (one.speed_mbit > 0 && one.speed_mbit < 1000);
     if (poor && slow.empty()) slow = one.name;
   }
-  if (interfaces.empty()) check.found = "only the loopback is up: no GigE Vision camera but an emulated one can answer";
+  if (interfaces.empty())
+    check.found = "only the loopback interface is up: only an emulated GigE Vision camera can answer";
   if (interfaces.size() > 1 || !slow.empty()) check.finding = Finding::warning;
   if (interfaces.size() > 1 && !slow.empty()) check.command = "sudo ip link set " + slow + " down";
   return check;
@@ -118,8 +122,8 @@ DoctorCheck check_usb_memory(const fs::path& root, const DoctorDemand& demand) {
   DoctorCheck check{.name = "usb_memory"};
   const std::int64_t wanted_mb = (frames_in_flight * demand.frame_bytes + mebibyte - 1) / mebibyte;
   check.explanation =
-      "The kernel lends at most usbfs_memory_mb to all USB transfers together; 8 frames in flight need " +
-      std::to_string(wanted_mb) + " MiB, and a USB3 Vision camera refuses to stream when it is used up.";
+      "The kernel grants at most usbfs_memory_mb to all USB transfers together. 8 frames in flight need " +
+      std::to_string(wanted_mb) + " MiB. If this memory is used up, a USB3 Vision camera does not stream.";
   const auto granted = file_number(root / "sys/module/usbcore/parameters/usbfs_memory_mb");
   if (!granted) {
     check.found = "no USB in this kernel, or its parameters cannot be read";
@@ -140,11 +144,11 @@ DoctorCheck check_disk(const SystemFacts& facts, const DoctorDemand& demand) {
   const double bytes_per_s = static_cast<double>(demand.frame_bytes) * demand.frame_rate_hz;
   const double wanted = bytes_per_s * 60 * demand.recording_minutes;
   check.explanation = "Recording " + number(demand.recording_minutes, 0) + " minutes needs " + mib(wanted) + " at " +
-                      mib(bytes_per_s) + "/s; twice the speed keeps frames from queueing up.";
+                      mib(bytes_per_s) + "/s. The disk should write twice as fast, so that frames do not queue up.";
   if (!facts.disk_free_bytes) {
-    check.found = "the folder cannot be written";
+    check.found = "the folder is not writable";
     check.finding = Finding::problem;
-    check.explanation += " A session has to be written where you may create folders: look at its owner and its mode.";
+    check.explanation += " A session needs a folder in which you may create folders: check its owner and permissions.";
     check.command = "todbench measure PLAN.toml --out FOLDER_OF_YOUR_OWN";
     return check;
   }
@@ -161,8 +165,8 @@ DoctorCheck check_disk(const SystemFacts& facts, const DoctorDemand& demand) {
 DoctorCheck check_clock(const fs::path& root, const SystemFacts& facts) {
   DoctorCheck check{.name = "clock"};
   check.explanation =
-      "Sessions are dated by the wall clock and frames are ordered by the monotonic one: an unsynchronised clock dates "
-      "reports wrongly, a slow clock source costs time in every reading.";
+      "The wall clock dates sessions, and the monotonic clock orders frames. An unsynchronised wall clock gives "
+      "reports a wrong date. A slow clock source delays every reading of the time.";
   const auto source = file_text(root / "sys/devices/system/clocksource/clocksource0/current_clocksource");
   std::error_code error;
   const bool by_daemon = fs::exists(root / "run/systemd/timesync/synchronized", error);

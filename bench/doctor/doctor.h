@@ -1,6 +1,7 @@
-// What usually goes wrong with a bench before a run: each check says what it found, why it matters, and the command
-// that mends it. The system's files are read under a root of choice, and what cannot be read from files is an argument,
-// so that every check is a function from values to values.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks for common problems of a bench before a run. Each check states its finding, its importance, and a command that
+// fixes it. System files are read under a selectable root; other facts are arguments, so every check is a function of
+// values.
 #pragma once
 
 #include <cstdint>
@@ -15,60 +16,61 @@ namespace todbench {
 
 enum class Finding {
   ok,
-  warning,  ///< may hurt; a run is possible
+  warning,  ///< may cause errors; a run is possible
   problem,  ///< a run will lose frames, or cannot start
-  unknown,  ///< could not be found out
+  unknown,  ///< could not be determined
 };
 [[nodiscard]] std::string_view to_string(Finding finding);
 
 struct DoctorCheck {
-  std::string name{};  ///< "socket_buffer", "mtu", ...: stable, for programs
+  std::string name{};  ///< "socket_buffer", "mtu" ...: stable, for programs
   Finding finding = Finding::unknown;
-  std::string found{};        ///< what there is, with units
-  std::string explanation{};  ///< why it matters
-  std::string command{};      ///< mends it; empty: nothing to mend, or no command can
+  std::string found{};        ///< current state, with units
+  std::string explanation{};  ///< reason why it matters
+  std::string command{};      ///< command that fixes it; empty: not necessary or none exists
 };
 
-/// What is going to be asked of the system.
+/// Requirements of the planned measurement.
 struct DoctorDemand {
   std::int64_t frame_bytes = 640 * 480 * 2;
   double frame_rate_hz = 50;
-  int packet_bytes = 1500;        ///< GigE Vision packet, IP and UDP headers included
-  double recording_minutes = 30;  ///< of frames on disk
+  int packet_bytes = 1500;        ///< GigE Vision packet, including IP and UDP headers
+  double recording_minutes = 30;  ///< duration of recorded frames
 };
 
-/// What is not in a file.
+/// Facts that are not in a file.
 struct SystemFacts {
   unsigned user_id = 0;
   std::set<unsigned> group_ids{};
-  std::optional<std::string> firewall_rules;    ///< as `nft list ruleset` and `iptables-save` print them
-  std::optional<bool> clock_synchronised;       ///< as the kernel says
-  std::optional<double> clock_step_s;           ///< how far wall clock and monotonic clock drifted apart while watched
-  std::optional<std::int64_t> disk_free_bytes;  ///< where sessions are written
-  std::optional<double> disk_bytes_per_s;       ///< written and flushed
+  std::optional<std::string> firewall_rules;    ///< output of `nft list ruleset` and `iptables-save`
+  std::optional<bool> clock_synchronised;       ///< according to the kernel
+  std::optional<double> clock_step_s;           ///< drift between wall clock and monotonic clock during the check
+  std::optional<std::int64_t> disk_free_bytes;  ///< on the disk of the sessions
+  std::optional<double> disk_bytes_per_s;       ///< write speed including flush
 };
 
-/// Asks this system; takes about half a second, most of it to write 32 MiB into `folder` and delete them again.
+/// Determines the facts of this system. Takes about half a second, mostly to write 32 MiB into `folder` and delete
+/// them.
 [[nodiscard]] SystemFacts live_facts(const std::filesystem::path& folder);
 
-/// Granted socket buffer: net.core.rmem_max against max(4 MiB, 8 frames).
+/// Checks the socket buffer: net.core.rmem_max against max(4 MiB, 8 frames).
 [[nodiscard]] DoctorCheck check_socket_buffer(const std::filesystem::path& root, const DoctorDemand& demand);
-/// The largest packet of the interfaces that are up against the packets of the camera.
+/// Checks the largest packet (MTU) of the active interfaces against the packets of the camera.
 [[nodiscard]] DoctorCheck check_mtu(const std::filesystem::path& root, const DoctorDemand& demand);
-/// Rules that drop UDP.
+/// Checks for firewall rules that drop UDP.
 [[nodiscard]] DoctorCheck check_firewall(const std::filesystem::path& root, const SystemFacts& facts);
-/// Whether it is clear which interface a camera is on: several, wireless, slow.
+/// Checks whether the interface of a camera is unambiguous and suitable: several, wireless, slow.
 [[nodiscard]] DoctorCheck check_interfaces(const std::filesystem::path& root);
-/// usbfs_memory_mb against 8 frames in flight.
+/// Checks usbfs_memory_mb against 8 frames in flight.
 [[nodiscard]] DoctorCheck check_usb_memory(const std::filesystem::path& root, const DoctorDemand& demand);
-/// Whether the nodes of cameras that are plugged in may be read and written, and the udev rules that allow it.
+/// Checks read and write permission for the device nodes of connected cameras, and the udev rules that grant it.
 [[nodiscard]] DoctorCheck check_permissions(const std::filesystem::path& root, const SystemFacts& facts);
-/// Room and speed for recorded frames.
+/// Checks disk space and speed for recorded frames.
 [[nodiscard]] DoctorCheck check_disk(const SystemFacts& facts, const DoctorDemand& demand);
-/// Clock source and synchronisation.
+/// Checks clock source and synchronisation.
 [[nodiscard]] DoctorCheck check_clock(const std::filesystem::path& root, const SystemFacts& facts);
 
-/// All of them, in this order.
+/// Runs all checks in this order.
 [[nodiscard]] std::vector<DoctorCheck> examine(const std::filesystem::path& root, const SystemFacts& facts,
                                                const DoctorDemand& demand);
 

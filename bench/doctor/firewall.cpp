@@ -1,4 +1,5 @@
-// Which rules keep a camera's packets out. A hint: rules are read, not evaluated.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Check for firewall rules that block the packets of a camera. Only a hint: the rules are read, not evaluated.
 #include <sstream>
 
 #include "bench/doctor/doctor.h"
@@ -14,7 +15,7 @@ bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
-/// The first line that drops or rejects UDP that comes in; empty: none.
+/// Returns the first line that drops or rejects incoming UDP; empty: none.
 std::string dropping_line(const std::string& rules) {
   std::istringstream lines(rules);
   bool incoming = false;
@@ -22,7 +23,7 @@ std::string dropping_line(const std::string& rules) {
     const auto begin = line.find_first_not_of(" \t");
     if (begin == std::string::npos || line[begin] == '#') continue;
     const std::string text = line.substr(begin);
-    // nftables: "type filter hook input priority filter; policy drop;", rules until the closing brace.
+    // nftables: "type filter hook input priority filter; policy drop;", then rules until the closing brace.
     if (contains(text, "hook input")) incoming = true;
     if (text.starts_with("}")) incoming = false;
     const bool drops = contains(text, "drop") || contains(text, "reject");
@@ -41,8 +42,8 @@ std::string dropping_line(const std::string& rules) {
 DoctorCheck check_firewall(const fs::path& root, const SystemFacts& facts) {
   DoctorCheck check{.name = "firewall"};
   check.explanation =
-      "Frames of a GigE Vision camera are UDP packets that nobody asked for packet by packet: a firewall that drops "
-      "incoming UDP lets discovery and control work and no frame through.";
+      "A GigE Vision camera sends its frames as UDP packets that are not answers to requests. A firewall that drops "
+      "incoming UDP blocks every frame, although discovery and control work.";
   std::string rules = facts.firewall_rules.value_or("");
   if (!facts.firewall_rules) {
     for (const char* file : {"etc/nftables.conf", "etc/iptables/rules.v4"}) {

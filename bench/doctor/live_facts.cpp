@@ -1,4 +1,5 @@
-// What only the running system can tell.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Facts of the running system.
 #include <fcntl.h>
 #include <sys/statvfs.h>
 #include <sys/timex.h>
@@ -10,22 +11,17 @@
 #include <memory>
 #include <vector>
 
+#include "acquisition/base/process.h"
 #include "bench/doctor/doctor.h"
 
 namespace todbench {
 
 namespace {
 
-/// Output of a command without input; nothing when it fails.
+/// Returns the output of a command without input; empty if it fails.
 std::optional<std::string> output_of(const std::string& command) {
-  std::FILE* pipe = ::popen((command + " 2>/dev/null").c_str(), "re");
-  if (pipe == nullptr) return std::nullopt;
-  std::string text;
-  std::array<char, 4096> buffer{};
-  for (std::size_t size = 0; (size = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-    text.append(buffer.data(), size);
-  }
-  return ::pclose(pipe) == 0 ? std::optional(text) : std::nullopt;
+  auto run = run_program({"/bin/sh", "-c", command}, ProgramOutput::kept_but_errors);
+  return run && run->exit_code == 0 ? std::optional(std::move(run->output)) : std::nullopt;
 }
 
 std::optional<std::string> firewall_rules() {
@@ -35,7 +31,7 @@ std::optional<std::string> firewall_rules() {
   return nft.value_or("") + "\n" + tables.value_or("");
 }
 
-/// Bytes per second to a file that is flushed and deleted; nothing when it cannot be written.
+/// Returns the speed in bytes per second to a file that is flushed and deleted; empty if it cannot be written.
 std::optional<double> write_speed(const std::filesystem::path& folder) {
   constexpr std::size_t block = 1 << 20;
   constexpr int blocks = 32;
@@ -54,7 +50,7 @@ std::optional<double> write_speed(const std::filesystem::path& folder) {
   return static_cast<double>(block) * blocks / taken.count();
 }
 
-/// Wall clock less monotonic clock.
+/// Returns wall clock minus monotonic clock.
 double clock_difference_s() {
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
   const auto steady = std::chrono::steady_clock::now().time_since_epoch();

@@ -1,4 +1,5 @@
-// Who may open the nodes of cameras.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Check of the permissions for the device nodes of cameras.
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -23,10 +24,10 @@ bool may_read_and_write(const fs::path& node, const SystemFacts& facts) {
 
 struct CameraNode {
   std::string node;  ///< "dev/video0"
-  std::string rule;  ///< of udev, that lets whoever sits at the machine use it
+  std::string rule;  ///< udev rule that allows access for the local user
 };
 
-/// A Seek, or a device of the class of USB3 Vision (EF/02/01 with an interface EF/05).
+/// Returns whether the device is a Seek camera or of the class of USB3 Vision (EF/02/01 with an interface EF/05).
 bool is_usb_camera(const fs::path& device) {
   if (file_text(device / "idVendor") == std::string(seek_vendor)) return true;
   if (file_text(device / "bDeviceClass") != "ef") return false;
@@ -67,8 +68,8 @@ bool has_rule_for(const fs::path& root, std::string_view word) {
 DoctorCheck check_permissions(const fs::path& root, const SystemFacts& facts) {
   DoctorCheck check{.name = "permissions"};
   check.explanation =
-      "A camera on USB is a file that has to be readable and writable; a udev rule gives it to whoever sits at the "
-      "machine, and keeps doing so when the camera is plugged in again.";
+      "A USB camera is a device file that must be readable and writable. A udev rule gives this permission to the "
+      "local user, and again each time the camera is plugged in.";
   check.finding = Finding::ok;
   const auto nodes = camera_nodes(root);
   for (const auto& camera : nodes) {
@@ -86,7 +87,7 @@ DoctorCheck check_permissions(const fs::path& root, const SystemFacts& facts) {
   if (nodes.empty()) check.found = "no USB camera is plugged in";
   const bool rule = has_rule_for(root, seek_vendor) || has_rule_for(root, "aravis");
   check.found += rule ? "; a udev rule for cameras is installed" : "; no udev rule for cameras is installed";
-  // Without a rule, what works for the administrator fails for the operator.
+  // Without a rule, access works for the administrator and fails for the operator.
   if (!rule && check.finding == Finding::ok && !nodes.empty() && facts.user_id == 0) check.finding = Finding::warning;
   if (check.finding == Finding::warning) {
     check.command = "echo '" + nodes.front().rule + "' | sudo tee -a /etc/udev/rules.d/60-todbench.rules";

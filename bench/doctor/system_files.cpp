@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/doctor/system_files.h"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ std::vector<NetworkInterface> network_interfaces(const fs::path& root) {
     NetworkInterface one;
     one.name = folder.filename();
     const auto state = file_text(folder / "operstate").value_or("");
-    // "unknown" is what tunnels and some virtual interfaces say while they work.
+    // Tunnels and some virtual interfaces report "unknown" while they work.
     if (one.name == "lo" || (state != "up" && state != "unknown")) continue;
     one.mtu = file_number(folder / "mtu").value_or(0);
     one.speed_mbit = std::max<std::int64_t>(0, file_number(folder / "speed").value_or(0));

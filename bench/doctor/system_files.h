@@ -1,4 +1,5 @@
-// Small files of /proc, /sys and /etc under a root of choice.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small files of /proc, /sys and /etc under a selectable root.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +10,17 @@
 
 namespace todbench {
 
-/// The text without white space at its end; nothing when it cannot be read.
+/// Returns the text without trailing white space; empty if it cannot be read.
 [[nodiscard]] std::optional<std::string> file_text(const std::filesystem::path& file);
 [[nodiscard]] std::optional<std::int64_t> file_number(const std::filesystem::path& file);
-/// Entries of a folder by name, sorted; none when there is no such folder.
+/// Returns the entries of a folder sorted by name; empty if the folder does not exist.
 [[nodiscard]] std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
-/// A network interface that is up and is not the loopback.
+/// Active network interface other than the loopback.
 struct NetworkInterface {
   std::string name;
   std::int64_t mtu = 0;
-  std::int64_t speed_mbit = 0;  ///< 0: not known
+  std::int64_t speed_mbit = 0;  ///< 0: unknown
   bool wireless = false;
 };
 [[nodiscard]] std::vector<NetworkInterface> network_interfaces(const std::filesystem::path& root);

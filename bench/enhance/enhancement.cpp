@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/enhance/enhancement.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,8 @@
 #include <stop_token>
 #include <utility>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
+#include "bench/enhance/decidable.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/module_chain.h"
@@ -18,16 +20,17 @@
 #include "bench/run/recorded_bench.h"
 #include "bench/run/simulated_responses.h"
 #include "bench/run/simulated_set_up.h"
+#include "tod/adequacy/adequacy.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {
 
 constexpr std::size_t most_error_lines = 100;
-/// Within the frames that are averaged for the registration, when slow filters have settled.
+/// Within the frames averaged for the registration, after slow filters have settled.
 constexpr std::size_t picture_frame = 30;
 
-/// Everything is simulated: what may be left out for the sensor alone may matter behind a filter.
+/// Simulates every effect: one that is negligible for the sensor alone may matter behind a filter.
 Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded) {
   const Plan& plan = loaded.plan();
   auto accuracy = accuracy_of(plan);
@@ -61,12 +64,11 @@ void keep_line(PackageResult& result, std::string_view line) {
   if (result.error_lines.size() < most_error_lines) result.error_lines.emplace_back(line);
 }
 
-/// One way through the chain behind a bench: into `result`, its error included.
+/// Runs one chain on a bench and stores the outcome, including its error, in `result`.
 void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& inputs,
              const std::vector<ModulePlan>& modules, const EnhancementPackage* package,
              const EnhancementOptions& options, PackageResult& result, std::stop_token stop) {
-  // Where the plate is and which contrast it has is found in the pictures of the camera itself: a package may have a
-  // scale of its own.
+  // Plate and contrast are located in the pictures of the camera itself, because a package may change the scale.
   const auto record = std::make_shared<ProcessingRecord>();
   const auto on_error_line = [&result](std::string_view line) { keep_line(result, line); };
   auto stages = module_stages(modules, on_error_line);
@@ -78,7 +80,7 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
   MeasurementListener listener;
   listener.on_progress = options.on_progress;
   listener.on_trial = [&, simulated = set_up.bench.simulated](Trial trial) {
-    // A simulated exposure happens at no time of the host.
+    // A simulated exposure has no host time.
     if (simulated) trial.host_time_ns = trial.device_time_ns;
     trial.probability_correct.reset();
     trial.frames = 1;
@@ -90,6 +92,7 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
     result.error = measured.error();
   else
     result.error = measured->ended_by;
+  if (measured) result.judged = measured->judged_contrasts;
   result.frame_ms = median_of(record->frame_ms);
   result.frames = record->frame_ms.size();
   result.clipped_pixels = record->clipped;
@@ -97,8 +100,10 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
   if (result.trials.empty()) return;
   if (auto curve = tod_curve(result.trials, fit_options(plan))) {
     result.curve = std::move(*curve);
+    examine(result.curve, fit_options(plan));
     result.curve.sensor = inputs.sensor.name;
     result.curve.observer = observer_name(plan, inputs);
+    if (measured) keep_noise(*measured, result.curve);
     for (TodPoint& point : result.curve.points) {
       point.estimator_reason =
           plan.fit.estimator == EstimatorChoice::automatic ? EstimatorReason::package : EstimatorReason::plan;
@@ -106,6 +111,7 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
           AnswerKind::binary, 1,
           plan.schedule.answers == AnswersChoice::automatic ? AnswersReason::package : AnswersReason::plan};
     }
+    examine(result.curve, fit_options(plan));
   } else if (!result.error) {
     result.error = curve.error();
   }
@@ -130,15 +136,15 @@ void run_simulated_one(const LoadedPlan& loaded, const ExperimentInputs& inputs,
   run_one(*std::move(set_up), loaded.plan(), inputs, inputs.sensor.modules, package, options, result, stop);
 }
 
-/// The same with the recorded bench of a session: the questions of the measurement have to be those of then.
+/// The same with the recorded bench of a session: the measurement has to ask the recorded questions.
 void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& loaded, const ExperimentInputs& inputs,
                       const EnhancementPackage* package, const EnhancementOptions& options, PackageResult& result,
                       const std::stop_token& stop) {
   const Plan& plan = loaded.plan();
   if (plan.camera.contrast == ContrastUnit::grey_levels) {
     result.error = Error{ErrorCode::invalid_input,
-                         "frames in grey levels are not shown to packages: their contrast is "
-                         "that of the camera's own gain control"};
+                         "packages cannot process frames in grey levels, because the gain control "
+                         "of the camera sets their contrast"};
     return;
   }
   auto recording = open_recorded_bench(session, nullptr);
@@ -147,7 +153,7 @@ void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& lo
     return;
   }
   MeasurementOptions measuring = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
-  take_answers(measuring, plan, inputs);  // as many frames as then; of the answers those to the first one count
+  take_answers(measuring, plan, inputs);  // the recorded number of frames; only answers to the first frame count
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   auto response = simulated_responses(model, plan, inputs.plates, measuring, stop);
   if (!response) {
@@ -163,7 +169,7 @@ void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& lo
   if (auto agreed = recording->answers->agreed(); !agreed && !result.error) result.error = agreed.error();
 }
 
-/// Counts by size of the trials at one contrast, but for one group of presentations.
+/// Returns ln S75 of the trials at one contrast, without one group of presentations.
 std::optional<double> ln_threshold(std::span<const Trial> trials, double set_delta_t_k,
                                    const std::function<bool(std::int64_t presentation)>& included, FitOptions options) {
   std::map<double, Level> levels;
@@ -183,7 +189,7 @@ std::optional<double> ln_threshold(std::span<const Trial> trials, double set_del
   return std::log(*fit->threshold);
 }
 
-/// Of the presentations at one contrast that both runs have: which group each belongs to, in turn.
+/// Assigns the presentations at one contrast that both runs contain to groups in turn.
 std::map<std::int64_t, std::size_t> groups_of(std::span<const Trial> with, std::span<const Trial> without,
                                               double set_delta_t_k) {
   constexpr std::size_t most_groups = 20;
@@ -207,7 +213,7 @@ PairedRatio ratio_at(std::span<const Trial> with, std::span<const Trial> without
   const auto groups = groups_of(with, without, set_delta_t_k);
   std::size_t count = 0;
   for (const auto& [presentation, group] : groups) count = std::max(count, group + 1);
-  // ln of S75 without over S75 with; `left_out` beyond the last group leaves none out.
+  // ln of S75 without over S75 with the package; `left_out` beyond the last group leaves none out.
   const auto ln_ratio = [&](std::size_t left_out) -> std::optional<double> {
     const auto included = [&](std::int64_t presentation) {
       const auto found = groups.find(presentation);
@@ -265,11 +271,12 @@ int memory_frames(const SensorSpec& sensor, const EnhancementPackage& package) {
 Result<void> check_paired_plan(const Plan& plan) {
   if (plan.schedule.kind == ScheduleKind::adaptive)
     return fail(ErrorCode::invalid_input,
-                "an adaptive schedule shows each package other frames: [schedule] kind must be 'constant'");
+                "an adaptive schedule would show each package different frames: [schedule] kind must be 'constant'");
   if (plan.fit.estimator == EstimatorChoice::twin_shape || plan.schedule.answers == AnswersChoice::graded)
-    return fail(ErrorCode::invalid_input,
-                "the functions of the sensor are not those behind a package: [fit] estimator must be 'weibull' or "
-                "'automatic', [schedule] answers 'binary'");
+    return fail(
+        ErrorCode::invalid_input,
+        "the psychometric functions of the sensor do not include a package: [fit] estimator must be 'weibull' or "
+        "'automatic', [schedule] answers must be 'binary'");
   return {};
 }
 
@@ -289,7 +296,7 @@ std::vector<PairedRatio> paired_ratios(std::span<const Trial> with, std::span<co
 
 namespace {
 
-/// A scan whose places are not those of the sensor would make a finer picture of nothing.
+/// Rejects packages whose scan differs from the dither of the sensor: super-resolution would combine wrong places.
 Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither) {
   for (const EnhancementPackage& package : packages) {
     for (const StagePlan& stage : package.stages) {
@@ -298,14 +305,14 @@ Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int di
           finer.factor == dither)
         continue;
       return fail(ErrorCode::invalid_input,
-                  fmt::format("package {}: its scan is that of a sensor that is dithered over {} x {} places",
+                  fmt::format("package {}: its scan needs a sensor that is dithered over {} x {} positions (--dither)",
                               package.name, finer.factor, finer.factor));
     }
   }
   return {};
 }
 
-/// None first, then every package, with the ratios to none.
+/// Runs without a package first, then every package, with the ratios to the first.
 Result<Enhancement> through_all(
     const Plan& plan, const std::vector<EnhancementPackage>& packages, const EnhancementOptions& options,
     const std::stop_token& stop,
@@ -320,6 +327,8 @@ Result<Enhancement> through_all(
     if (package == nullptr && result.error) return tl::unexpected(*result.error);
     if (package != nullptr)
       result.ratios = paired_ratios(result.trials, enhancement.results.front().trials, fit_options(plan));
+    if (package != nullptr) withhold_undecided(result.ratios, result, enhancement.results.front());
+    if (auto note = why_not_linear(result); !note.empty()) enhancement.warnings.push_back(std::move(note));
     enhancement.results.push_back(std::move(result));
   }
   if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
@@ -334,10 +343,10 @@ Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector
   if (auto paired = check_paired_plan(plan); !paired) return tl::unexpected(paired.error());
   if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
   if (auto same = check_scans(packages, options.dither); !same) return tl::unexpected(same.error());
-  // The noise of a pixel is known from successive frames, whose edges are elsewhere.
+  // The noise of a pixel comes from successive frames, whose edges are at other places with dither.
   if (options.dither > 1 && loaded.observer().sensor_noise_factor != 1)
     return fail(ErrorCode::invalid_input,
-                "an observer whose noise is in proportion to that of the sensor does not judge dithered frames");
+                "an observer whose noise is proportional to the sensor noise cannot judge dithered frames");
   const auto inputs = full_inputs(loaded);
   if (!inputs) return tl::unexpected(inputs.error());
   if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
@@ -376,8 +385,8 @@ Result<Enhancement> compare_packages_recorded(const std::filesystem::path& sessi
     const int memory = memory_frames({}, package);
     if (memory <= plan.measurement.frames_after_change) continue;
     enhancement->warnings.push_back(
-        fmt::format("{} remembers {} frames, and the recorded run left out {} after a change: its first frames hold "
-                    "what was shown before",
+        fmt::format("{} has a memory of {} frames, but the recorded run discarded only {} after each change. Its first "
+                    "frames still contain the previous scene",
                     package.name, memory, plan.measurement.frames_after_change));
   }
   return enhancement;

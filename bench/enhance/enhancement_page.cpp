@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/enhance/enhancement_page.h"
 
 #include <fmt/format.h>
@@ -6,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "bench/enhance/decidable.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
@@ -16,8 +18,8 @@ namespace todbench {
 namespace {
 
 Section ratios_section(const Enhancement& enhancement) {
-  Table table{.caption = "Acuity with the package over acuity without, paired 95 % intervals",
-              .header = {"Package", "Contrast set (K)", "Acuity (1/mrad), 95 %", "Ratio, 95 %"},
+  Table table{.caption = "Acuity with each package and its ratio to the acuity without package, paired 95 % intervals",
+              .header = {"Package", "Set contrast (K)", "Acuity (1/mrad), 95 %", "Ratio, 95 %"},
               .rows = {}};
   for (const auto& result : enhancement.results) {
     for (const auto& point : result.curve.points) {
@@ -27,9 +29,12 @@ Section ratios_section(const Enhancement& enhancement) {
       const bool any = ratio != result.ratios.end() && ratio->ratio;
       table.rows.push_back(
           {plain(result.name), plain(stated(point.set_delta_t_k)),
-           interval_or_missing(acuity_per_mrad(point.fit), acuity_interval(point.fit.ci95), "no threshold"),
+           interval_or_missing(identified_acuity_per_mrad(point), acuity_interval(point.fit.ci95), "no threshold"),
            any ? interval_or_missing(ratio->ratio, ratio->ci95, "no threshold")
-               : (result.ratios.empty() ? missing("the reference") : missing("a threshold is missing"))});
+               : (result.ratios.empty()
+                      ? missing("reference")
+                      : missing(ratio != result.ratios.end() && !ratio->withheld.empty() ? ratio->withheld
+                                                                                         : "a threshold is missing"))});
     }
   }
   return {"Acuity and ratio", {std::move(table)}};
@@ -50,46 +55,56 @@ Section curves_section(const Enhancement& enhancement) {
 }
 
 Section cost_section(const Enhancement& enhancement, double frame_rate_hz) {
-  Table table{.caption = "What the packages cost",
-              .header = {"Package", "Frames", "Bench time at the camera's rate (s)", "Stages, median (ms a frame)",
-                         "Pixels cut off", "Ended by"},
+  Table table{.caption = "Time cost of the packages",
+              .header = {"Package", "Frames", "Bench time at the camera's rate (s)", "Stages, median (ms per frame)",
+                         "Clipped pixels", "Ended by"},
               .rows = {}};
   for (const auto& result : enhancement.results) {
     table.rows.push_back({plain(result.name), plain(std::to_string(result.frames)),
                           frame_rate_hz > 0 ? plain(significant(static_cast<double>(result.frames) / frame_rate_hz, 3))
                                             : missing("no frame rate"),
                           plain(significant(result.frame_ms, 3)), plain(std::to_string(result.clipped_pixels)),
-                          result.error ? badge(result.error->message, Mood::bad) : plain("its end")});
+                          result.error ? badge(result.error->message, Mood::bad) : plain("end of the run")});
   }
   return {"Time", {std::move(table)}};
 }
 
 Section record_section(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
                        const Enhancement& enhancement) {
-  ValueTable values{.caption = "Where the numbers come from", .values = {}};
+  ValueTable values{.caption = "Origin of the numbers", .values = {}};
   values.values = {{"Program", plain("todbench " + std::string(build_info().version) + " (" +
                                      std::string(build_info().commit) + ")")},
                    {"Plan", plain(loaded.plan().name)},
                    {"Camera", plain(enhancement.camera)},
                    {"Observer", plain(loaded.observer().name)},
                    {"Seed", plain(std::to_string(loaded.plan().seed))},
-                   {"Exposures left out after a change", plain(std::to_string(enhancement.settle_frames))}};
+                   {"Exposures discarded after a change", plain(std::to_string(enhancement.settle_frames))}};
   for (const auto& package : packages) {
     values.values.push_back({package.name, plain((package.description.empty() ? "" : package.description + "; ") +
                                                  "file SHA-256 " + package.sha256)});
     for (const auto& record : package.provenance) values.values.push_back({package.name, plain(record)});
   }
   for (const PackageResult& result : enhancement.results) {
+    for (const TodPoint& point : result.curve.points) {
+      if (const auto judged = judged_point(result, point.set_delta_t_k))
+        values.values.push_back(
+            {result.name,
+             plain(fmt::format(
+                 "{:g} K: the package multiplies the contrast by {:.4g}; the noise given to the observer is "
+                 "{:.4f} K at the input of the package",
+                 point.set_delta_t_k, judged->gain, judged->noise_k))});
+    }
     if (result.samples_per_pixel > 1)
       values.values.push_back(
-          {result.name, plain(fmt::format("judged at {0} x {0} samples a pixel", result.samples_per_pixel))});
+          {result.name, plain(fmt::format("judged with {0} x {0} samples per pixel", result.samples_per_pixel))});
   }
   if (enhancement.dither > 1)
-    values.values.push_back({"Dither", plain(fmt::format("{0} x {0} places of a pixel in turn", enhancement.dither))});
+    values.values.push_back(
+        {"Dither", plain(fmt::format("{0} x {0} positions within a pixel in turn", enhancement.dither))});
   return {"Record", {std::move(values)}};
 }
 
-/// Value below which this share of the pixels lies.
+/// Returns the value below which this share of the pixels lies.
 double quantile(const cv::Mat1w& picture, double share) {
   std::vector<std::uint16_t> values(picture.begin(), picture.end());
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -103,15 +118,15 @@ Document enhancement_page(const LoadedPlan& loaded, const std::vector<Enhancemen
                           const Enhancement& enhancement) {
   Document document{.title = "Enhancement " + loaded.plan().name,
                     .heading = "Enhancement under test",
-                    .subtitle = fmt::format("{} packages behind {}, judged by {}", packages.size(), enhancement.camera,
+                    .subtitle = fmt::format("{} packages after {}, judged by {}", packages.size(), enhancement.camera,
                                             loaded.observer().name),
                     .page_label = loaded.plan().name,
                     .opening = {},
                     .sections = {}};
   document.opening.emplace_back(Paragraph{
-      plain("Every package had the same frames. Their pictures are in pictures.png, in the "
-            "order of the tables. The place of the plate and its contrast were found in the pictures of the camera "
-            "itself.")});
+      plain("Every package received the same frames. One picture of each is in pictures.png, in the order of the "
+            "tables. The position of the plate and its contrast were measured in the pictures of the camera, before "
+            "the packages.")});
   if (!enhancement.warnings.empty()) document.opening.emplace_back(list_of(enhancement.warnings));
   document.sections = {ratios_section(enhancement), curves_section(enhancement),
                        cost_section(enhancement, enhancement.frame_rate_hz),
@@ -129,7 +144,7 @@ cv::Mat1b side_by_side(const Enhancement& enhancement) {
   const int rows = pictures.front().rows, columns = pictures.front().cols, count = static_cast<int>(pictures.size());
   cv::Mat1b strip(rows, count * columns + (count - 1) * gap, std::uint8_t{255});
   for (int i = 0; i < count; ++i) {
-    // A finer picture is shown in the size of the others.
+    // Finer pictures are shown in the size of the others.
     cv::Mat1w picture = pictures[static_cast<std::size_t>(i)];
     if (picture.size() != pictures.front().size())
       cv::resize(picture.clone(), picture, pictures.front().size(), 0, 0, cv::INTER_AREA);

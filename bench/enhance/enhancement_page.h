@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The comparison of packages as a page and as a picture.
 #pragma once
 
@@ -10,13 +11,13 @@
 
 namespace todbench {
 
-/// Curves beside that of none, ratios with paired intervals, times, what failed, where the packages come from. No times
-/// of day, no hosts.
+/// Returns a page with the curves compared to the one without a package, ratios with paired intervals, times, failures,
+/// sources of the packages. Contains no times of day and no hosts.
 [[nodiscard]] Document enhancement_page(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
                                         const Enhancement& enhancement);
 
-/// The pictures from left to right in the order of the results, eight white columns between them, each from its 0.1 %
-/// darkest to its 0.1 % brightest value as 8 bits. Empty where there is no picture.
+/// Returns the pictures from left to right in the order of the results, separated by eight white columns. Each is
+/// scaled to 8 bits between its 0.1 % and 99.9 % quantiles. Empty if there is no picture.
 [[nodiscard]] cv::Mat1b side_by_side(const Enhancement& enhancement);
 
 }  // namespace todbench

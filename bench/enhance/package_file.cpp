@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/enhance/package_file.h"
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ StagePlan read_stage(TomlReader& table, std::vector<ModulePlan>& modules) {
       if (values.size() == stage.kernel.size())
         std::copy(values.begin(), values.end(), stage.kernel.begin());
       else
-        table.reject("values", "expected nine numbers, rows first");
+        table.reject("values", "expected nine numbers, row by row");
       break;
     }
     case StagePlan::Kind::super_resolution: {
@@ -59,7 +60,7 @@ StagePlan read_stage(TomlReader& table, std::vector<ModulePlan>& modules) {
       finer.factor = static_cast<int>(table.whole("factor", 2, 4, finer.factor));
       finer.frames = static_cast<int>(table.whole("frames", 4, 64, finer.factor * finer.factor));
       if (finer.frames < finer.factor * finer.factor)
-        table.reject("frames", "are fewer than the cells of a pixel, the square of factor");
+        table.reject("frames", "must be at least the square of factor, the number of cells of a pixel");
       const std::vector<std::string> shifts{"measured", "scan"};
       if (table.choice("shifts", shifts, shifts.front()) == "scan") finer.shifts = FrameShifts::scan;
       break;
@@ -87,8 +88,8 @@ Result<EnhancementPackage> read_package(const std::filesystem::path& file) {
   auto tables = reader->sections("stage");
   for (TomlReader& table : tables) package.stages.push_back(read_stage(table, modules));
   if (auto fine = reader->finish(); !fine) return tl::unexpected(fine.error());
-  if (package.stages.empty()) return fail(ErrorCode::invalid_input, file.string() + ": has no [[stage]]");
-  // Nothing is started before the whole file is known to be right.
+  if (package.stages.empty()) return fail(ErrorCode::invalid_input, file.string() + ": the package has no [[stage]]");
+  // Programs start only after the whole file is checked.
   for (const auto& module : modules) package.provenance.push_back(text_of(module_record(module)));
   return package;
 }
@@ -96,9 +97,10 @@ Result<EnhancementPackage> read_package(const std::filesystem::path& file) {
 Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what) {
   for (const StagePlan& stage : package.stages) {
     if (stage.kind == StagePlan::Kind::super_resolution)
-      return fail(ErrorCode::invalid_input,
-                  fmt::format("package {}: super-resolution is for 'enhance': {} works with the camera's own pixels",
-                              one_line(package.name), what));
+      return fail(
+          ErrorCode::invalid_input,
+          fmt::format("package {}: super-resolution can only be used with 'enhance': {} needs the camera's own pixels",
+                      one_line(package.name), what));
   }
   return {};
 }

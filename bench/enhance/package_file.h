@@ -1,4 +1,5 @@
-// An enhancement package: stages behind the camera, one after the other, as a file states them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An enhancement package: a sequence of stages behind the camera, read from a file.
 #pragma once
 
 #include <array>
@@ -9,13 +10,13 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/module/picture_stage.h"
 #include "sim_devices/sensor/super_resolution_stage.h"
 
 namespace todbench {
 
-/// What a stage does. The numbers are those of its kind alone.
+/// One stage. Each number belongs to the kind in its comment.
 struct StagePlan {
   enum class Kind {
     recursive,
@@ -43,19 +44,19 @@ struct EnhancementPackage {
   std::string name, description;
   std::vector<StagePlan> stages;
   std::string text, sha256;             ///< of the file
-  std::vector<std::string> provenance;  ///< of its modules: command, version, hash of the files that it names
+  std::vector<std::string> provenance;  ///< of its modules: command, version, hashes of the files they name
 };
 
-/// name, description, [[stage]] kind and its numbers; kind "module" with command, version, parameters, limit_ms,
-/// memory_mib, restart_frames, network, settle_frames. Commands run in the folder of the caller. `invalid_input`
-/// "FILE:LINE: ..." in one sentence.
+/// Reads name, description, and [[stage]] with kind and its numbers; kind "module" has command, version, parameters,
+/// limit_ms, memory_mib, restart_frames, network, settle_frames. Commands run in the current folder of the caller.
+/// Errors: `invalid_input` "FILE:LINE: ..." in one sentence.
 [[nodiscard]] Result<EnhancementPackage> read_package(const std::filesystem::path& file);
 
-/// `invalid_input` in one sentence for a package with super-resolution, where `what` works with the camera's own
-/// pixels.
+/// Returns `invalid_input` in one sentence for a package with super-resolution. `what`: the user of the package, which
+/// needs the camera's own pixels.
 [[nodiscard]] Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what);
 
-/// The stages, ready for the first picture.
+/// Creates the stages, ready for the first picture.
 [[nodiscard]] std::vector<std::unique_ptr<ChainStage>> made_stages(
     const EnhancementPackage& package, const std::function<void(std::string_view line)>& on_error_line);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench-gui
 #include <QApplication>
 #include <QCommandLineParser>
@@ -10,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/safe_text.h"
 #include "bench/gui/pattern_screen.h"
 #include "bench/gui/presenters/session_presenter.h"
 #include "bench/gui/screenshots.h"
@@ -23,8 +24,8 @@
 
 namespace {
 
-/// Report of a session as page and PDF, without a window. 0, or the error's exit code with its sentence on standard
-/// error.
+/// Writes the report of a session as page and PDF, without a window. Returns 0, or the error's exit code with its
+/// sentence on standard error.
 int write_reports(const QString& session) {
   const auto opened = todbench::read_opened_session(session.toStdString());
   const auto written = opened ? todbench::export_reports(*opened) : tl::unexpected(opened.error());
@@ -36,17 +37,17 @@ int write_reports(const QString& session) {
   return 0;
 }
 
-/// A page for man(1) from what the options say about themselves, written to `file`. 0, or 7 with a sentence.
+/// Writes a page for man(1) from the descriptions of the options to `file`. Returns 0, or 7 with a sentence.
 int write_manual(const QList<QCommandLineOption>& options, const QString& file) {
   todbench::ManualPage page{
       .name = "todbench-gui",
-      .sentence = "the bench of todbench as a window",
+      .sentence = "the todbench lab bench with a graphical interface",
       .date = qgetenv("TODBENCH_RELEASE_DATE").toStdString(),
       .version = "todbench " + std::string(todbench::build_info().version),
       .synopsis = {"todbench-gui [OPTIONS] [SESSION]"},
       .sections = {{.title = "Arguments",
                     .text = "",
-                    .terms = {{"SESSION", "folder of a session, or its session.toml: shown at once"}}},
+                    .terms = {{"SESSION", "Folder of a session or its session.toml. The window opens the session."}}},
                    {.title = "Options", .text = "", .terms = {}}},
       .see_also = {"todbench"}};
   for (const QCommandLineOption& option : options) {
@@ -61,7 +62,7 @@ int write_manual(const QList<QCommandLineOption>& options, const QString& file) 
   return todbench::exit_code(written.error().code);
 }
 
-/// The folder of a session that is named by itself or by its session.toml.
+/// Returns the folder of a session, given as the folder or its session.toml.
 std::filesystem::path session_folder(const QString& argument) {
   const std::filesystem::path path = std::filesystem::absolute(argument.toStdString()).lexically_normal();
   if (path.filename() == "session.toml" || path.filename().empty()) return path.parent_path();
@@ -69,27 +70,28 @@ std::filesystem::path session_folder(const QString& argument) {
 }
 
 QList<QCommandLineOption> known_options() {
-  QCommandLineOption manual("manual", "Writes the page for man(1) and ends.", "FILE");
+  QCommandLineOption manual("manual", "Writes the page for man(1) and exits.", "FILE");
   manual.setFlags(QCommandLineOption::HiddenFromHelp);
   return {
       {"sessions",
-       "Where sessions are listed and written, made where it is not there; default: the current folder, or that of "
-       "SESSION.",
+       "Folder in which sessions are listed and written. It is created if it does not exist. By default the current "
+       "folder, or the folder that contains SESSION.",
        "FOLDER"},
-      {"theme", "light or dark; default: as last time.", "NAME"},
+      {"theme", "Colours of the window: light or dark. By default those of the last start.", "NAME"},
       {"size", "Size of the window in pixels.", "WIDTHxHEIGHT"},
-      {"screenshots", "Writes a picture of every view and ends; with SESSION of those that need no camera.", "FOLDER"},
-      {"report", "Writes report.html and report.pdf of a session and ends; needs no screen.", "SESSION"},
+      {"screenshots",
+       "Writes a picture of every view and exits. With SESSION, writes only the views that need no camera.", "FOLDER"},
+      {"report", "Writes report.html and report.pdf of a session and exits. Needs no screen.", "SESSION"},
       {"pattern",
-       "Test pictures on the whole screen, stepped by the arrow keys until escape: kinds of 'todbench pattern', "
-       "separated by commas; flat:0.25 for a level.",
+       "Shows test pictures on the whole screen. The arrow keys show the next or the previous picture, Escape ends. "
+       "KINDS are kinds of 'todbench pattern', separated by commas; flat:0.25 sets a level.",
        "KINDS"},
-      {"truth", "Folder for the truth of every test picture.", "FOLDER"},
+      {"truth", "Folder for the truth file of every test picture of --pattern.", "FOLDER"},
       {"pictures",
-       "Shows the pictures that come on standard input and answers with what is on the screen: the display of a "
-       "bench."},
-      {"copy", "File for what is on the screen after every picture of --pictures, in the .npy format.", "FILE"},
-      {"screen", "Number of the monitor for test pictures, from 0.", "NUMBER"},
+       "Shows the pictures from standard input and answers with the pictures that are then on the screen. A target of "
+       "kind display runs it."},
+      {"copy", "File (.npy) for the picture on the screen after every picture of --pictures.", "FILE"},
+      {"screen", "Number of the monitor for --pattern and --pictures, from 0. By default 0.", "NUMBER"},
       manual};
 }
 
@@ -98,19 +100,19 @@ int refused(const std::string& sentence) {
   return todbench::exit_code(todbench::ErrorCode::invalid_input);
 }
 
-/// What a parser of Qt does not look at: the values. Empty when they can be taken.
+/// Checks the values of the options, which Qt's parser does not. Returns an empty text if they are valid.
 std::string wrong_value(const QCommandLineParser& options) {
   const QString theme = options.value("theme"), size = options.value("size");
   if (options.isSet("theme") && theme != "light" && theme != "dark")
     return "--theme " + theme.toStdString() + ": expected light or dark";
   static const QRegularExpression width_by_height("^([1-9][0-9]{0,4})x([1-9][0-9]{0,4})$");
   if (options.isSet("size") && !width_by_height.match(size).hasMatch())
-    return "--size " + size.toStdString() + ": expected WIDTHxHEIGHT in pixels, for instance 1366x768";
-  if (options.positionalArguments().size() > 1) return "one session at most";
+    return "--size " + size.toStdString() + ": expected WIDTHxHEIGHT in pixels, for example 1366x768";
+  if (options.positionalArguments().size() > 1) return "expected at most one session";
   return {};
 }
 
-/// The window, until it is closed, or its pictures.
+/// Runs the window until it is closed, or takes its pictures.
 int run_window(const QCommandLineParser& options) {
   const QStringList arguments = options.positionalArguments();
   const auto shown = arguments.isEmpty() ? std::filesystem::path() : session_folder(arguments.constFirst());
@@ -122,7 +124,7 @@ int run_window(const QCommandLineParser& options) {
   const QString beside = arguments.isEmpty() ? "." : QString::fromStdString(shown.parent_path().string());
   const QString sessions = options.isSet("sessions") ? options.value("sessions") : beside;
   if (!QDir().mkpath(sessions)) {
-    std::fprintf(stderr, "%s: no folder, and none can be made there\n", qPrintable(sessions));
+    std::fprintf(stderr, "%s: is not a folder and cannot be created\n", qPrintable(sessions));
     return 2;
   }
   const bool pictures = options.isSet("screenshots");
@@ -145,15 +147,15 @@ int run_window(const QCommandLineParser& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Writing a report needs fonts and no screen; so does the manual. Without a screen the options are read all the same,
-  // so that help and mistakes are told anywhere.
+  // Reports and the manual need fonts but no screen. Without a screen the options are still parsed, so that help and
+  // errors are always reported.
   const auto needs_no_screen = [](const char* argument) {
     return std::string_view(argument).starts_with("--report") || std::string_view(argument).starts_with("--manual");
   };
   const bool screen = todbench::has_screen();
   if (!screen || (std::any_of(argv + 1, argv + argc, needs_no_screen) && !qEnvironmentVariableIsSet("QT_QPA_PLATFORM")))
     qputenv("QT_QPA_PLATFORM", "offscreen");
-  // A program behind the camera or on a display that has ended is an error in words.
+  // A write to a program that has ended (module, display) becomes an error message instead of a signal.
   std::signal(SIGPIPE, SIG_IGN);
   const QApplication application(argc, argv);
   todbench::use_plain_numbers();
@@ -161,11 +163,12 @@ int main(int argc, char** argv) {
   const auto version = todbench::build_info().version;
   QApplication::setApplicationVersion(QString::fromUtf8(version.data(), static_cast<qsizetype>(version.size())));
   QCommandLineParser options;
-  options.setApplicationDescription("The bench of todbench as a window");
+  options.setApplicationDescription("The todbench lab bench with a graphical interface.");
   const QCommandLineOption help = options.addHelpOption(), of_version = options.addVersionOption();
   const QList<QCommandLineOption> known = known_options();
   options.addOptions(known);
-  options.addPositionalArgument("SESSION", "Folder of a session, or its session.toml: shown at once.", "[SESSION]");
+  options.addPositionalArgument("SESSION", "Folder of a session or its session.toml. The window opens the session.",
+                                "[SESSION]");
   if (!options.parse(QApplication::arguments())) return refused(options.errorText().toStdString());
   if (options.isSet(of_version)) options.showVersion();
   if (options.isSet(help) || options.isSet("help-all")) options.showHelp();
@@ -174,7 +177,7 @@ int main(int argc, char** argv) {
   if (options.isSet("report")) return write_reports(options.value("report"));
 
   if (!screen && !options.isSet("screenshots")) {
-    std::fprintf(stderr, "todbench-gui: there is no screen: neither DISPLAY nor WAYLAND_DISPLAY is set\n");
+    std::fprintf(stderr, "todbench-gui: there is no screen, because neither DISPLAY nor WAYLAND_DISPLAY is set\n");
     return todbench::exit_code(todbench::ErrorCode::not_found);
   }
   if (options.isSet("pattern"))

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/pattern_screen.h"
 
 #include <unistd.h>
@@ -15,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/safe_text.h"
 #include "bench/gui/views/pattern_window.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/pattern_truth.h"
@@ -54,7 +55,7 @@ bool write_all(std::string_view bytes) {
   return true;
 }
 
-/// Pictures from standard input, on a thread of its own; ends the application with the input or with an error.
+/// Reads pictures from standard input on its own thread; ends the application at the end of input or on an error.
 void serve(PatternWindow& window, const std::string& copy) {
   const auto end = [](int code) {
     QMetaObject::invokeMethod(
@@ -76,12 +77,12 @@ void serve(PatternWindow& window, const std::string& copy) {
     if (message.shape.size() != 2) continue;  // the header
     cv::Mat1d levels(static_cast<int>(message.shape[0]), static_cast<int>(message.shape[1]));
     std::copy(message.values.begin(), message.values.end(), levels.begin());
-    Result<cv::Mat1f> shown = fail(ErrorCode::internal, "nothing was shown");
+    Result<cv::Mat1f> shown = fail(ErrorCode::internal, "no picture was shown");
     QMetaObject::invokeMethod(
         &window,
         [&] {
           const auto fits = window.show_levels(levels);
-          // What the window system still has to do is done before the screen is read.
+          // Let the window system finish before the screen is read.
           QCoreApplication::processEvents();
           shown = fits ? window.on_screen() : tl::unexpected(fits.error());
         },
@@ -131,11 +132,11 @@ int show_pictures_of_input(const QString& screen, const QString& copy) {
   const auto where = screen_of(screen);
   if (!where) return refused(where.error());
   PatternWindow window(**where);
-  // Escape would end a measurement: the bench that began it ends it.
+  // Escape would end a measurement; the bench that started the display ends it.
   window.fill_screen();
   std::thread reader([&window, file = copy.toStdString()] { serve(window, file); });
   const int code = QApplication::exec();
-  // Where the application was ended by the window system the reader still waits for input that nobody needs.
+  // If the window system ended the application, the reader still waits for input that is no longer needed.
   ::close(STDIN_FILENO);
   reader.detach();
   std::fflush(nullptr);

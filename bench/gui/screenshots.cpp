@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/screenshots.h"
 
 #include <QApplication>
@@ -16,7 +17,7 @@
 namespace todbench {
 namespace {
 
-/// Runs the event loop until something is so; false after two minutes.
+/// Runs the event loop until the condition holds; false after two minutes.
 bool wait_until(const std::function<bool()>& so) {
   QElapsedTimer waited;
   waited.start();
@@ -29,7 +30,7 @@ bool wait_until(const std::function<bool()>& so) {
   return so();
 }
 
-/// False with a sentence on standard error for every fault of the page.
+/// Saves a page. Returns false, with a sentence on standard error for every fault of the page.
 bool save(MainWindow& window, const std::filesystem::path& folder, const char* name) {
   QApplication::processEvents();
   QApplication::processEvents();
@@ -41,7 +42,7 @@ bool save(MainWindow& window, const std::filesystem::path& folder, const char* n
   return saved && faults.isEmpty();
 }
 
-/// Half of the answers of a contrast, so that curves have something to show.
+/// Half of the answers per contrast, enough to draw curves.
 Plan short_plan(Plan plan) {
   plan.target.phases = 4;
   plan.simulation.phases = 4;
@@ -49,7 +50,7 @@ Plan short_plan(Plan plan) {
   return plan;
 }
 
-/// A person who answers as the model did, patch by patch, with a picture after the fortieth.
+/// Simulates a person who gives the model's answers, with a picture after the fortieth.
 bool answer_as_a_person(MainWindow& window, const std::filesystem::path& folder) {
   HumanPresenter& human = window.human();
   const auto patches = patches_for_a_person(window.measure().trials(), {});
@@ -63,7 +64,7 @@ bool answer_as_a_person(MainWindow& window, const std::filesystem::path& folder)
   return good;
 }
 
-/// A person before targets and before bars, with a picture of each in the middle of it.
+/// Simulates a person for targets and for bars, with a picture halfway through each.
 bool ask_of_targets_and_bars(MainWindow& window, const std::filesystem::path& folder) {
   bool good = true;
   window.show_view(View::human);
@@ -85,7 +86,7 @@ bool ask_of_targets_and_bars(MainWindow& window, const std::filesystem::path& fo
 }
 
 int said(bool good) {
-  if (!good) std::fprintf(stderr, "todbench-gui: not every page is as it has to be\n");
+  if (!good) std::fprintf(stderr, "todbench-gui: at least one page has a fault or was not written\n");
   return good ? 0 : 7;
 }
 

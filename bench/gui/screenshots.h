@@ -1,4 +1,5 @@
-// Pictures of every view, as they are after a run on the emulated laboratory.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures of every view after a run in the emulated laboratory.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +11,7 @@ namespace todbench {
 /// Drives the window through its views and writes one PNG per view into `folder`. Returns the exit code of the program.
 [[nodiscard]] int take_screenshots(MainWindow& window, const std::filesystem::path& folder);
 
-/// The pages that need no camera: the first one, the plan, and the report of a session. The same result.
+/// Takes the pages without a camera: the start page, the plan, and the report of a session. Returns the same.
 [[nodiscard]] int take_session_screenshots(MainWindow& window, const std::filesystem::path& folder,
                                            const std::filesystem::path& session);
 

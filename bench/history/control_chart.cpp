@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/history/control_chart.h"
 
 #include <Eigen/Dense>
@@ -5,8 +6,8 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
-#include "acquisition/core/normal.h"
+#include "acquisition/base/distributions.h"
+#include "acquisition/base/normal.h"
 
 namespace todbench {
 namespace {
@@ -21,7 +22,7 @@ double density(double z) {
   return pdf(distribution::Normal(), z);
 }
 
-/// Abscissas and weights over [low, high].
+/// Abscissas and weights of a quadrature over [low, high].
 struct Nodes {
   std::vector<double> at, weight;
 };
@@ -38,8 +39,8 @@ Nodes nodes_between(double low, double high) {
   return nodes;
 }
 
-/// Run length of a one-sided chart from 0: L(x) = 1 + L(0) P(k - x - shift) +
-/// integral of L(y) p(y - x + k - shift).
+/// Returns the run length of a one-sided chart from 0: L(x) = 1 + L(0) P(k - x - shift) + integral of L(y) p(y - x + k
+/// - shift).
 double one_sided_cusum(double k, double h, double shift) {
   const Nodes nodes = nodes_between(0, h);
   const auto n = static_cast<Eigen::Index>(nodes.at.size());
@@ -112,7 +113,7 @@ std::optional<ControlChart> control_chart(const std::vector<ChartValue>& values,
       ewma = design.lambda * point.z + (1 - design.lambda) * ewma;
       up = std::max(0.0, up + point.z - design.cusum_k);
       down = std::max(0.0, down - point.z - design.cusum_k);
-      // The error of the reference shifts every later point by as much.
+      // The error of the reference shifts all later points equally.
       const double left = std::pow(1 - design.lambda, step);
       const double common = chart.reference_u / sd * (1 - left);
       point.ewma_limit =
@@ -149,7 +150,7 @@ double cusum_run_length(double k, double h, double shift) {
   return 1 / (1 / one_sided_cusum(k, h, shift) + 1 / one_sided_cusum(k, h, -shift));
 }
 
-std::optional<Crossing> crossing(const std::vector<ChartValue>& values, double scatter, double limit) {
+std::optional<LimitCrossing> crossing(const std::vector<ChartValue>& values, double scatter, double limit) {
   if (values.size() < 3) return std::nullopt;
   double w = 0, t_mean = 0, x_mean = 0;
   for (const ChartValue& value : values) {
@@ -169,14 +170,14 @@ std::optional<Crossing> crossing(const std::vector<ChartValue>& values, double s
   }
   if (!(stt > 0)) return std::nullopt;
   const double b = stx / stt, var_b = 1 / stt, d = x_mean - limit, now = values.back().days;
-  Crossing out{.slope_per_year = b * days_per_year, .slope_u_per_year = std::sqrt(var_b) * days_per_year};
+  LimitCrossing out{.slope_per_year = b * days_per_year, .slope_u_per_year = std::sqrt(var_b) * days_per_year};
   const double best = t_mean - d / b;
   if (b != 0 && best > now) out.best_days = best;
   // A s^2 + 2 B s + C <= 0 with s = t - t_mean.
   const double a2 = b * b - normal_z95 * normal_z95 * var_b, b2 = d * b, c2 = d * d - normal_z95 * normal_z95 / w;
   const double discriminant = b2 * b2 - a2 * c2;
   if (a2 > 0) {
-    // Significant: between the roots.
+    // Significant slope: between the roots.
     if (discriminant < 0) return out;
     const double low = t_mean + (-b2 - std::sqrt(discriminant)) / a2,
                  high = t_mean + (-b2 + std::sqrt(discriminant)) / a2;
@@ -186,7 +187,7 @@ std::optional<Crossing> crossing(const std::vector<ChartValue>& values, double s
     out.latest_days = high;
     return out;
   }
-  // Not significant: everything, or everything outside the roots.
+  // Slope not significant: all times, or all outside the roots.
   out.kind = CrossingKind::not_before;
   if (a2 == 0 || discriminant < 0) {
     out.earliest_days = now;

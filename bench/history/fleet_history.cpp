@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/history/fleet_history.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ bool is_of(const HistoryUnit& unit, const FleetKind& kind) {
          (kind.without_serial.empty() || unit.serial != kind.without_serial);
 }
 
-/// 2 of "dT=2K".
+/// Returns 2 for "dT=2K".
 std::optional<double> contrast_of(const std::string& condition) {
   constexpr std::string_view before = "dT=";
   if (!condition.starts_with(before) || !condition.ends_with('K')) return std::nullopt;
@@ -32,7 +33,7 @@ bool can_be_limited(const HistoryValue& value) {
                      [&](LimitedMeasure measure) { return to_string(measure) == value.measure; });
 }
 
-/// The last value of every unit.
+/// Last value of every unit.
 struct LastValues {
   std::map<std::string, UnitValue> by_serial;
   std::string unit_text, scale, first_utc, last_utc;
@@ -58,7 +59,7 @@ FleetFound found_of(const std::string& measure, const std::string& condition, co
   found.row.u = prior->u;
   found.row.source = one_line(kind.model) + ", " + std::to_string(found.row.units) + " units, " + last.first_utc +
                      " to " + last.last_utc;
-  if (!(found.row.mean > 0)) found.refused = "a mean of 0 or less cannot be stated";
+  if (!(found.row.mean > 0)) found.refused = "the mean is not above 0, so a plan cannot state it";
   return found;
 }
 
@@ -70,14 +71,14 @@ Result<std::vector<FleetFound>> fleets_of(const HistoryIndex& index, const Fleet
   std::map<std::pair<std::string, std::string>, LastValues> last;
   std::set<std::string> vendors, lenses;
   for (const HistorySession& session : *sessions) {
-    // A simulated session has no serial number: it is no unit of a fleet.
+    // Simulated sessions have no serial number and are no units of a fleet.
     if (!is_of(session.unit, kind) || session.state != "complete" || session.unit.serial.empty()) continue;
     vendors.insert(session.unit.vendor);
     lenses.insert(session.unit.lens);
     for (const HistoryValue& value : session.values) {
       if (!can_be_limited(value)) continue;
       LastValues& of = last[{value.measure, value.condition}];
-      of.by_serial[session.unit.serial] = {value.value, value.u};  // sessions of a unit come in the order of time
+      of.by_serial[session.unit.serial] = {value.value, value.u};  // sessions of a unit are in the order of time
       of.unit_text = value.unit;
       of.scale = value.scale;
       if (of.first_utc.empty() || session.started_utc < of.first_utc) of.first_utc = session.started_utc;
@@ -85,10 +86,13 @@ Result<std::vector<FleetFound>> fleets_of(const HistoryIndex& index, const Fleet
     }
   }
   if (last.empty())
-    return fail(ErrorCode::not_found, one_line(kind.model) + ": no complete session of such a unit in the history");
-  if (vendors.size() > 1) return fail(ErrorCode::invalid_input, one_line(kind.model) + ": several vendors, name one");
+    return fail(ErrorCode::not_found, one_line(kind.model) + ": the history has no complete session of such a unit");
+  if (vendors.size() > 1)
+    return fail(ErrorCode::invalid_input,
+                one_line(kind.model) + ": the history has units of several vendors, state one with --vendor");
   if (lenses.size() > 1)
-    return fail(ErrorCode::invalid_input, one_line(kind.model) + ": units with several lenses, name one");
+    return fail(ErrorCode::invalid_input,
+                one_line(kind.model) + ": the history has units with several lenses, state one with --lens");
   std::vector<FleetFound> fleets;
   for (const auto& [name, values] : last) fleets.push_back(found_of(name.first, name.second, values, kind));
   return fleets;

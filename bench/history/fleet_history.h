@@ -1,35 +1,36 @@
-// What the units of one kind in the history say of the next one.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fleet prior from the units of one kind in the history.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/history/history_index.h"
 #include "bench/judgement/fleet_prior.h"
 
 namespace todbench {
 
-/// Units of which. Empty: any, but then all of them have to be of one vendor and lens.
+/// Selection of units. Empty members match all, but the selected units must share vendor and lens.
 struct FleetKind {
   std::string vendor{}, model{}, lens{};
-  std::string without_serial{};  ///< the unit that is to be judged says nothing of itself
+  std::string without_serial{};  ///< unit to be judged; its own sessions are left out
 };
 
-/// A row of a plan, or the sentence why there is none.
+/// Row of a plan, or the reason for its absence.
 struct FleetFound {
   FleetRow row;
   std::string unit_text;
   std::string first_utc, last_utc;  ///< of its sessions
-  std::string refused;              ///< empty: the row can be used
+  std::string refused;              ///< reason for rejection, a sentence; empty: usable
 };
 
-/// One for every measure that can be limited and for the acuity at every contrast. Each unit counts once, with its last
-/// complete session. `not_found`: no such unit; `invalid_input`: units of several vendors or lenses; errors of the
-/// index.
+/// Returns one row for every measure that can have a limit and for the acuity at every contrast. Each unit counts once,
+/// with its last complete session. Errors: `not_found` (no such unit), `invalid_input` (units of several vendors or
+/// lenses), and those of the index.
 [[nodiscard]] Result<std::vector<FleetFound>> fleets_of(const HistoryIndex& index, const FleetKind& kind);
 
-/// Rows of [[limits.fleet]]; those that were refused as comments.
+/// Returns rows of [[limits.fleet]]; rejected rows as comments.
 [[nodiscard]] std::string fleets_toml(const std::vector<FleetFound>& fleets);
 
 }  // namespace todbench

@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/history/history_index.h"
 
 #include <sqlite3.h>
 #include <sys/vfs.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -19,7 +21,8 @@ namespace todbench {
 namespace {
 
 constexpr int version = 1;
-constexpr int busy_ms = 2000;
+/// Adding a session takes some milliseconds; on a busy disk a dozen programs wait for each other.
+constexpr int busy_ms = 20000;
 constexpr const char* schema = R"(
 CREATE TABLE unit(id INTEGER PRIMARY KEY, vendor TEXT NOT NULL, model TEXT NOT NULL, serial TEXT NOT NULL,
   lens TEXT NOT NULL, UNIQUE(vendor, model, serial, lens)) STRICT;
@@ -49,15 +52,16 @@ bool on_network_disk(const std::filesystem::path& folder) {
 tl::unexpected<Error> refused(sqlite3* database, const std::filesystem::path& file) {
   const int code = sqlite3_extended_errcode(database) & 0xFF;
   if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
-    return fail(ErrorCode::io, file.string() + ": another program is writing to this history; try again");
+    return fail(ErrorCode::io, file.string() + ": another program is writing to this history. Try again");
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
-    return fail(ErrorCode::invalid_input,
-                file.string() + ": no history, or a damaged one; move it away and add the session folders again");
+    return fail(
+        ErrorCode::invalid_input,
+        file.string() + ": is not a history or is damaged. Move the file away and add the session folders again");
   }
   return fail(ErrorCode::io, file.string() + ": " + one_line(sqlite3_errmsg(database)));
 }
 
-/// A statement that is finalised in the end.
+/// Statement that is finalised at destruction.
 class Statement {
  public:
   Statement(sqlite3* database, const char* text) {
@@ -80,13 +84,13 @@ class Statement {
     good_ = good_ && sqlite3_bind_int64(statement_, ++bound_, number) == SQLITE_OK;
     return *this;
   }
-  /// For the next values of its parameters.
+  /// Resets the statement for the next parameter values.
   Statement& again() {
     good_ = good_ && sqlite3_reset(statement_) == SQLITE_OK;
     bound_ = 0;
     return *this;
   }
-  /// SQLITE_ROW, SQLITE_DONE, or what went wrong.
+  /// Returns SQLITE_ROW, SQLITE_DONE or an error code.
   int step() { return good_ ? sqlite3_step(statement_) : SQLITE_ERROR; }
   [[nodiscard]] std::string text(int column) const {
     const auto* found = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
@@ -119,7 +123,7 @@ bool insert_event(sqlite3* database, const HistoryEvent& event) {
              .step() == SQLITE_DONE;
 }
 
-/// Those that an index which was lost knew.
+/// Reads the events that a lost index contained.
 Result<std::vector<HistoryEvent>> kept_events(const std::filesystem::path& file) {
   std::vector<HistoryEvent> events;
   if (!is_there(events_file(file))) return events;
@@ -134,7 +138,7 @@ Result<std::vector<HistoryEvent>> kept_events(const std::filesystem::path& file)
   return events;
 }
 
-/// Within a transaction that is taken back unless it is committed.
+/// Transaction that is rolled back unless it is committed.
 class Transaction {
  public:
   explicit Transaction(sqlite3* database) : database_(database), open_(run(database, "BEGIN IMMEDIATE")) {}
@@ -155,27 +159,47 @@ class Transaction {
   bool open_;
 };
 
+/// Switches to a write-ahead log. SQLite does not wait if two programs switch a new file at once, because they could
+/// deadlock.
+bool keeps_a_log(sqlite3* database) {
+  constexpr int pause_ms = 20;
+  for (int waited_ms = 0;; waited_ms += pause_ms) {
+    if (run(database, "PRAGMA journal_mode = WAL")) return true;
+    const int code = sqlite3_errcode(database) & 0xFF;
+    if ((code != SQLITE_BUSY && code != SQLITE_LOCKED) || waited_ms >= busy_ms) return false;
+    sqlite3_sleep(pause_ms);
+  }
+}
+
+enum class IndexState { made, empty };
+/// Returns whether the tables exist. Errors: `invalid_input` (tables of another program).
+Result<IndexState> state_of(sqlite3* database, const std::filesystem::path& file) {
+  Statement asked(database, "PRAGMA user_version");
+  if (asked.step() != SQLITE_ROW) return refused(database, file);
+  const sqlite3_int64 found = asked.whole(0);
+  if (found == version) return IndexState::made;
+  Statement counted(database, "SELECT count(*) FROM sqlite_schema");
+  if (counted.step() != SQLITE_ROW) return refused(database, file);
+  if (found == 0 && counted.whole(0) == 0) return IndexState::empty;
+  return fail(ErrorCode::invalid_input, file.string() + ": is not a history of this version of todbench");
+}
+
 Result<void> prepare(sqlite3* database, const std::filesystem::path& file) {
   sqlite3_busy_timeout(database, busy_ms);
-  if (!run(database, "PRAGMA foreign_keys = ON; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;"))
+  const auto before = state_of(database, file);
+  if (!before) return tl::unexpected(before.error());
+  if (!keeps_a_log(database) || !run(database, "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL;"))
     return refused(database, file);
-  sqlite3_int64 found = 0;
-  sqlite3_int64 tables = 0;
-  {
-    Statement asked(database, "PRAGMA user_version");
-    if (asked.step() != SQLITE_ROW) return refused(database, file);
-    found = asked.whole(0);
-    Statement counted(database, "SELECT count(*) FROM sqlite_schema");
-    if (counted.step() != SQLITE_ROW) return refused(database, file);
-    tables = counted.whole(0);
-  }
-  if (found == version) return {};
-  if (found != 0 || tables != 0)
-    return fail(ErrorCode::invalid_input, file.string() + ": not a history of this version of the program");
+  if (*before == IndexState::made) return {};
   const auto events = kept_events(file);
   if (!events) return tl::unexpected(events.error());
   Transaction transaction(database);
-  if (!transaction.open() || !run(database, schema)) return refused(database, file);
+  if (!transaction.open()) return refused(database, file);
+  // Another program may have created the tables meanwhile.
+  const auto now = state_of(database, file);
+  if (!now) return tl::unexpected(now.error());
+  if (*now == IndexState::made) return {};
+  if (!run(database, schema)) return refused(database, file);
   for (const HistoryEvent& event : *events) {
     if (!insert_event(database, event)) return refused(database, file);
   }
@@ -197,20 +221,47 @@ HistoryIndex::~HistoryIndex() = default;
 
 Result<HistoryIndex> HistoryIndex::open(const std::filesystem::path& file) {
   if (std::error_code problem; std::filesystem::is_directory(file, problem))
-    return fail(ErrorCode::invalid_input, file.string() + ": is a folder, expected the file of a history");
+    return fail(ErrorCode::invalid_input, file.string() + ": is a folder, expected a history file");
+  if (is_there(file) && ::access(file.c_str(), W_OK) != 0) return open_read_only(file);
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
   if (on_network_disk(folder)) {
     return fail(ErrorCode::invalid_input,
                 file.string() +
-                    ": lies on a network disk, where two programs can spoil it; take a local file, which "
-                    "todbench history add fills from the session folders");
+                    ": is on a network disk, and two programs can damage it there. Use a local file and fill it from "
+                    "the session folders with todbench history add");
   }
   sqlite3* opened = nullptr;
   const int code = sqlite3_open_v2(file.c_str(), &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   std::unique_ptr<sqlite3, Close> database(opened);
   if (code != SQLITE_OK) return refused(opened, file);
   if (auto prepared = prepare(opened, file); !prepared) return tl::unexpected(prepared.error());
+  return HistoryIndex(file, std::move(database));
+}
+
+Result<HistoryIndex> HistoryIndex::open_read_only(const std::filesystem::path& file) {
+  std::error_code problem;
+  const auto log = std::filesystem::file_size(file.string() + "-wal", problem);
+  if (!problem && log > 0) {
+    return fail(ErrorCode::io, file.string() +
+                                   ": is read-only, and the file with the extension -wal has changes that are not yet "
+                                   "merged. Copy both files to a folder that you can write to");
+  }
+  // The file is immutable here, so it needs no lock and no auxiliary file. Characters with a meaning in a URI are
+  // escaped.
+  std::string address = "file:";
+  for (const char c : std::filesystem::absolute(file, problem).string()) {
+    address += c == '%' ? "%25" : c == '?' ? "%3f" : c == '#' ? "%23" : std::string(1, c);
+  }
+  sqlite3* opened = nullptr;
+  const int code =
+      sqlite3_open_v2((address + "?immutable=1").c_str(), &opened, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  std::unique_ptr<sqlite3, Close> database(opened);
+  if (code != SQLITE_OK) return refused(opened, file);
+  const auto state = state_of(opened, file);
+  if (!state) return tl::unexpected(state.error());
+  if (*state == IndexState::empty)
+    return fail(ErrorCode::invalid_input, file.string() + ": is empty, expected a history");
   return HistoryIndex(file, std::move(database));
 }
 
@@ -223,7 +274,7 @@ Result<Adding> HistoryIndex::add(const HistorySession& session) {
     const int found = known.bind(session.manifest_sha256).step();
     if (found != SQLITE_ROW && found != SQLITE_DONE) return refused(database, file_);
     if (found == SQLITE_ROW && known.text(0) == session.path) return Adding::known;
-    // A copy: the session is still where it was.
+    // A copy: the old place still has the session.
     if (found == SQLITE_ROW && manifest_digest(known.text(0)) == session.manifest_sha256) return Adding::known;
     if (found == SQLITE_ROW) {
       if (Statement(database, "UPDATE session SET path = ? WHERE manifest_sha256 = ?")
@@ -233,7 +284,7 @@ Result<Adding> HistoryIndex::add(const HistorySession& session) {
         return refused(database, file_);
     }
     if (found == SQLITE_ROW) {
-      // The statement that still stands on its row would keep the transaction open.
+      // A statement that is still on its row would keep the transaction open.
       while (known.step() == SQLITE_ROW) {
       }
       if (!transaction.commit()) return refused(database, file_);
@@ -281,13 +332,15 @@ Result<Adding> HistoryIndex::add(const HistorySession& session) {
 
 Result<void> HistoryIndex::add_event(const HistoryEvent& event) {
   const auto file = events_file(file_);
+  Transaction transaction(database_.get());
+  if (!transaction.open()) return refused(database_.get(), file_);
   const bool begun = is_there(file);
   auto csv = AppendFile::open(file, AppendFile::Start::at_end);
   if (!csv) return tl::unexpected(csv.error());
   const std::string row = csv_field(event.serial) + "," + csv_field(event.utc) + "," + csv_field(event.kind) + "," +
                           csv_field(one_line(event.text)) + "\n";
   if (auto written = csv->append((begun ? "" : "serial,utc,kind,text\n") + row); !written) return written;
-  if (!insert_event(database_.get(), event)) return refused(database_.get(), file_);
+  if (!insert_event(database_.get(), event) || !transaction.commit()) return refused(database_.get(), file_);
   return {};
 }
 

@@ -1,4 +1,5 @@
-// An SQLite index of sessions by unit: never the truth itself, for it can be made again from the session folders.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// SQLite index of sessions by unit. The session folders are the master; the index can be rebuilt from them.
 #pragma once
 
 #include <filesystem>
@@ -7,30 +8,31 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/history/history_session.h"
 
 struct sqlite3;
 
 namespace todbench {
 
-/// Something that happened to a unit: its charts begin anew after it.
+/// Event of a unit (repair, recalibration, transport, firmware); its charts restart after it.
 struct HistoryEvent {
   std::string serial, utc, kind, text;
 };
 
 enum class Adding {
   added,
-  known,  ///< the same manifest at the same place, or a copy of the session that is still there
-  moved,  ///< the same manifest at another place, and no longer where it was
+  known,  ///< same manifest at the same place, or a copy of a session that still exists
+  moved,  ///< same manifest at another place; the old place no longer has it
 };
 
-/// Events are kept in FILE.events.csv beside the index, which no session folder holds; an index that is made again
-/// reads them. One writer at a time; one thread.
+/// Index of sessions. Events exist only here, so they are also kept in FILE.events.csv next to the index, and a rebuilt
+/// index reads them. One writer at a time; one thread.
 class HistoryIndex {
  public:
-  /// Opens the index, or makes it with its folder. `invalid_input`: no index, of a later version, damaged, or on a
-  /// network disk, where locks are not kept. `io`: locked by another program, or refused by the disk.
+  /// Opens the index, or creates it and its folder. A write-protected index is opened for reading. Errors:
+  /// `invalid_input` (not an index, later version, damaged, or on a network disk, where locks are unreliable), `io`
+  /// (locked by another program, or refused by the disk).
   [[nodiscard]] static Result<HistoryIndex> open(const std::filesystem::path& file);
   HistoryIndex(HistoryIndex&&) noexcept;
   HistoryIndex& operator=(HistoryIndex&&) noexcept;
@@ -38,8 +40,7 @@ class HistoryIndex {
 
   [[nodiscard]] Result<Adding> add(const HistorySession& session);
   [[nodiscard]] Result<void> add_event(const HistoryEvent& event);
-  /// Of every unit, or of those with this serial number, in the order of time. Without values where they are not asked
-  /// for.
+  /// Returns the sessions of all units, or of those with this serial number, ordered by unit and time.
   [[nodiscard]] Result<std::vector<HistorySession>> sessions(const std::optional<std::string>& serial) const;
   [[nodiscard]] Result<std::vector<HistoryEvent>> events(const std::string& serial) const;
 
@@ -48,11 +49,12 @@ class HistoryIndex {
     void operator()(sqlite3* database) const;
   };
   HistoryIndex(std::filesystem::path file, std::unique_ptr<sqlite3, Close> database);
+  [[nodiscard]] static Result<HistoryIndex> open_read_only(const std::filesystem::path& file);
   std::filesystem::path file_;
   std::unique_ptr<sqlite3, Close> database_;
 };
 
-/// $XDG_DATA_HOME/todbench/history.sqlite, or below ~/.local/share.
+/// Returns $XDG_DATA_HOME/todbench/history.sqlite, or the same below ~/.local/share.
 [[nodiscard]] std::filesystem::path default_history_file();
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/history/history_series.h"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ struct Break {
   std::string kind;
 };
 
-/// By time.
+/// Returns the breaks in the order of time.
 std::vector<Break> breaks_of(const std::vector<HistoryEvent>& events) {
   std::vector<Break> breaks;
   for (const HistoryEvent& event : events) {
@@ -38,7 +39,7 @@ Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, con
   std::vector<HistorySeries> all;
   std::map<std::string, std::vector<Break>> breaks;
   std::string firmware;
-  // Sessions come by unit and time: the series of the unit in hand are the last ones.
+  // Sessions are ordered by unit and time: the series of the current unit are the last ones.
   std::optional<HistoryUnit> in_hand;
   std::size_t first = 0, passed = 0;  // breaks of the unit
   for (const HistorySession& session : *sessions) {
@@ -74,7 +75,7 @@ Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, con
       found->started_utc.push_back(session.started_utc);
     }
   }
-  // An event behind the last session ends what the session said.
+  // An event after the last session ends its series.
   for (HistorySeries& series : all) {
     for (const Break& one : breaks[series.unit.serial])
       if (!series.values.empty() && series.values.back().days < one.days) end_values(series, one.kind);

@@ -1,17 +1,18 @@
-// The values of one measure of one unit, in the order of time: what a control chart is made of.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values of one measure of one unit in the order of time: input of a control chart.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/history/control_chart.h"
 #include "bench/history/history_index.h"
 
 namespace todbench {
 
-/// A value from before the last event or change of firmware, in no chart.
+/// Value from before the last event or change of firmware; not part of a chart.
 struct EarlierValue {
   std::string started_utc;
   ChartValue value;      ///< on the scale of the chart
@@ -27,15 +28,15 @@ struct HistorySeries {
   std::vector<EarlierValue> earlier{};
 };
 
-/// Whether measures that have earlier values alone are listed, too.
+/// Whether to list measures that have only earlier values.
 enum class WithoutChart { left_out, listed };
 
-/// Of a serial number or of all units, of a measure or of all; empty: all. Errors of the index.
+/// Returns the series of a serial number and a measure; empty text: all. Errors: those of the index.
 [[nodiscard]] Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, const std::string& serial,
                                                                 const std::string& measure,
                                                                 WithoutChart without = WithoutChart::left_out);
 
-/// A value of the chart as people know it.
+/// Returns a value of the chart in the unit of the measure.
 [[nodiscard]] double shown_value(const HistorySeries& series, double value);
 
 }  // namespace todbench

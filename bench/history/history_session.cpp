@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/history/history_session.h"
 
 #include <algorithm>
@@ -7,7 +8,9 @@
 #include <map>
 #include <system_error>
 
-#include "acquisition/core/normal.h"
+#include "acquisition/base/normal.h"
+#include "acquisition/core/serial_number.h"
+#include "bench/plan/strict_toml.h"
 #include "bench/session/manifest.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
@@ -17,15 +20,16 @@
 namespace todbench {
 namespace {
 
-/// A file of a session that the manifest vouches for.
+/// Reads a session file that the manifest confirms.
 Result<std::string> vouched_text(const std::filesystem::path& folder, const std::string& name) {
   if (!is_there(folder / name)) {
     return fail(ErrorCode::invalid_input,
-                folder.string() + ": has no " + name + "; a run that ended early has no result");
+                folder.string() + ": has no " + name + "; a run that ended early has no results");
   }
   const auto listed = is_listed(folder, name);
   if (!listed) return tl::unexpected(listed.error());
-  if (!*listed) return fail(ErrorCode::invalid_input, (folder / name).string() + ": changed after the session ended");
+  if (!*listed)
+    return fail(ErrorCode::invalid_input, (folder / name).string() + ": was changed after the session ended");
   return read_text_file(folder / name);
 }
 
@@ -33,7 +37,7 @@ Result<Json> vouched_json(const std::filesystem::path& folder, const std::string
   const auto text = vouched_text(folder, name);
   if (!text) return tl::unexpected(text.error());
   Json json = Json::parse(*text, nullptr, false);
-  if (!json.is_object()) return fail(ErrorCode::invalid_input, (folder / name).string() + ": not valid JSON");
+  if (!json.is_object()) return fail(ErrorCode::invalid_input, (folder / name).string() + ": is not valid JSON");
   return json;
 }
 
@@ -46,7 +50,7 @@ std::optional<double> number_at(const Json& json, const char* key) {
   return json[key].get<double>();
 }
 
-/// A setting of the camera that names its lens.
+/// Returns the camera setting that names the lens.
 std::string lens_of(const Json& camera) {
   if (!camera.contains("settings") || !camera["settings"].is_object()) return "";
   for (const auto& [name, value] : camera["settings"].items()) {
@@ -57,10 +61,10 @@ std::string lens_of(const Json& camera) {
   return "";
 }
 
-/// A session without a curve, as `todbench scene-dependence` leaves it.
+/// File of a session without a curve (`todbench scene-dependence`).
 constexpr const char* curveless = "scene-dependence.json";
 
-/// Standard uncertainties of ln acuity from the rows that are not common to a series, by contrast.
+/// Returns the standard uncertainty of ln acuity by contrast, from the rows that are not common to a series.
 Result<std::map<double, double>> stated_uncertainties(const std::filesystem::path& folder) {
   std::map<double, double> stated;
   if (!is_there(folder / "uncertainty.json")) return stated;
@@ -74,6 +78,22 @@ Result<std::map<double, double>> stated_uncertainties(const std::filesystem::pat
   return stated;
 }
 
+/// Returns the contrasts whose threshold is unfit for a decision; they are not used in the history either.
+Result<std::vector<double>> unfit_contrasts(const std::filesystem::path& folder) {
+  std::vector<double> unfit;
+  if (!is_there(folder / "fits.json")) return unfit;
+  const auto fits = vouched_json(folder, "fits.json");
+  if (!fits) return tl::unexpected(fits.error());
+  if (!fits->contains("main") || !(*fits)["main"].contains("points")) return unfit;
+  for (const Json& point : (*fits)["main"]["points"]) {
+    const auto contrast_k = number_at(point, "set_delta_t_k");
+    const bool adequate =
+        !point.contains("adequacy") || !point["adequacy"].is_object() || point["adequacy"].value("adequate", true);
+    if (contrast_k && !adequate) unfit.push_back(*contrast_k);
+  }
+  return unfit;
+}
+
 Result<void> add_acuities(HistorySession& session, const std::filesystem::path& folder, const std::string& side) {
   if (is_there(folder / curveless)) return {};
   const auto text = vouched_text(folder, "curve.csv");
@@ -82,6 +102,8 @@ Result<void> add_acuities(HistorySession& session, const std::filesystem::path& 
   if (!table) return tl::unexpected(table.error());
   const auto stated = stated_uncertainties(folder);
   if (!stated) return tl::unexpected(stated.error());
+  const auto unfit = unfit_contrasts(folder);
+  if (!unfit) return tl::unexpected(unfit.error());
   const auto column = [&](const char* name) {
     return static_cast<std::size_t>(std::find(table->header.begin(), table->header.end(), name) -
                                     table->header.begin());
@@ -90,17 +112,21 @@ Result<void> add_acuities(HistorySession& session, const std::filesystem::path& 
                     low = column("acuity_ci95_low_per_mrad"), high = column("acuity_ci95_high_per_mrad"),
                     verdict = column("verdict");
   for (const std::size_t index : {of_side, contrast, acuity, low, high, verdict}) {
-    if (index >= table->header.size()) return table->wrong(1, "a column of curve.csv is missing");
+    if (index >= table->header.size())
+      return table->wrong(1,
+                          "a column of curve.csv is missing, expected side, set_delta_t_k, acuity_per_mrad, "
+                          "acuity_ci95_low_per_mrad, acuity_ci95_high_per_mrad and verdict");
   }
   for (const CsvRow& row : table->rows) {
     if (row.fields[of_side] != side) continue;
-    // A point of a ridge, or of a slope at its bound, is no value.
+    // A ridge, or a slope at its bound, gives no value.
     const std::string& found = row.fields[verdict];
     if (found == "underdetermined" || found == "flat_or_decreasing") continue;
     const auto contrast_k = parse_number(row.fields[contrast]), value = parse_number(row.fields[acuity]),
                from = parse_number(row.fields[low]), to = parse_number(row.fields[high]);
-    // No uncertainty, no row.
+    // Values without uncertainty are not kept.
     if (!contrast_k || !value || !from || !to || !(*value > 0) || !(*from > 0) || !(*to > *from)) continue;
+    if (std::ranges::find(*unfit, *contrast_k) != unfit->end()) continue;
     const auto more = stated->find(*contrast_k);
     session.values.push_back(
         {"acuity", "dT=" + number_text(*contrast_k) + "K", "1/mrad", "ln", std::log(*value),
@@ -117,7 +143,7 @@ Result<void> add_measures(HistorySession& session, const std::filesystem::path& 
   for (const Json& line : (*json)["main"]["quantities"]) {
     const auto value = number_at(line, "value");
     if (!value || !line.contains("ci95") || !line["ci95"].is_array() || line["ci95"].size() != 2) continue;
-    // What the bench adds is measured anew each time, such as the distance of an IFOV.
+    // Uncertainties of the bench are new for each measurement, for example the distance of an IFOV.
     const bool expanded = line.contains("expanded_ci95") && line["expanded_ci95"].is_array() &&
                           line["expanded_ci95"].size() == line["ci95"].size();
     const Json& interval = expanded ? line["expanded_ci95"] : line["ci95"];
@@ -128,7 +154,8 @@ Result<void> add_measures(HistorySession& session, const std::filesystem::path& 
   return {};
 }
 
-/// Whose curve it is: the name of the camera when it ended. Of a session without a curve the name of the camera.
+/// Returns the name of the measured camera, as stated at the end of the run; for a session without a curve the name in
+/// its own file.
 Result<std::string> sensor_of(const std::filesystem::path& folder) {
   if (is_there(folder / curveless)) {
     const auto json = vouched_json(folder, curveless);
@@ -141,6 +168,19 @@ Result<std::string> sensor_of(const std::filesystem::path& folder) {
   const std::size_t at = fits->find(key);
   const std::size_t from = at == std::string::npos ? fits->size() : at + key.size();
   return fits->substr(from, fits->find('"', from) - from);
+}
+
+/// Returns the unit in the words of the plan, if many units share the serial number.
+Result<std::string> unit_without_serial(const std::filesystem::path& folder, const std::string& serial) {
+  const auto text = vouched_text(folder, "session.toml");
+  if (!text) return tl::unexpected(text.error());
+  auto plan = TomlReader::parse(*text, "session.toml");
+  if (!plan) return tl::unexpected(plan.error());
+  const std::string unit = plan->text("unit", "");
+  if (!unit.empty()) return "unit:" + unit;
+  return fail(ErrorCode::invalid_input,
+              folder.string() + ": the camera's serial number " + one_line(serial) +
+                  " is a placeholder that many units share, and the plan of the session does not state 'unit'");
 }
 
 Result<void> set_unit(HistorySession& session, const std::filesystem::path& folder, const Json& provenance) {
@@ -158,8 +198,13 @@ Result<void> set_unit(HistorySession& session, const std::filesystem::path& fold
     return fail(ErrorCode::invalid_input, folder.string() + ": the camera has no serial number");
   if (!sensor.ends_with(session.unit.serial)) {
     return fail(ErrorCode::invalid_input, folder.string() + ": the session began with serial number " +
-                                              one_line(session.unit.serial) + " and its curve is of '" +
+                                              one_line(session.unit.serial) + ", but its curve belongs to '" +
                                               one_line(sensor) + "'");
+  }
+  if (is_placeholder_serial(session.unit.serial)) {
+    auto unit = unit_without_serial(folder, session.unit.serial);
+    if (!unit) return tl::unexpected(unit.error());
+    session.unit.serial = *std::move(unit);
   }
   return {};
 }
@@ -180,7 +225,8 @@ Result<HistorySession> read_history_session(const std::filesystem::path& folder)
   session.program = text_at(*provenance, "program_version");
   session.state = text_at(*provenance, "state");
   if (!days_of_utc(session.started_utc))
-    return fail(ErrorCode::invalid_input, (folder / "provenance.json").string() + ": no time of the start");
+    return fail(ErrorCode::invalid_input,
+                (folder / "provenance.json").string() + ": started_utc is missing or is not a time in UTC");
   if (auto set = set_unit(session, folder, *provenance); !set) return tl::unexpected(set.error());
   if (auto added = add_acuities(session, folder, text_at(*provenance, "side")); !added)
     return tl::unexpected(added.error());

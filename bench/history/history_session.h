@@ -1,4 +1,5 @@
-// What the history keeps of a session: its unit and its values, read from the folder, which stays the truth.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// History record of a session: unit and values, read from the session folder.
 #pragma once
 
 #include <filesystem>
@@ -6,24 +7,24 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// Of whom. A lens of its own, or another one, makes another unit.
+/// Unit under test. Another lens makes another unit.
 struct HistoryUnit {
   std::string vendor, model, serial, lens;
   bool operator==(const HistoryUnit&) const = default;
 };
 
-/// A value with its uncertainty; there is none without.
+/// Value with its uncertainty; values without one are not kept.
 struct HistoryValue {
   std::string measure;    ///< "acuity", or a name of measures.json
   std::string condition;  ///< "dT=2K"; empty: none
-  std::string unit;       ///< of the value, or of what it is the logarithm of
+  std::string unit;       ///< of the value; for a logarithm, of the quantity itself
   std::string scale;      ///< "ln" or "linear"
   double value = 0;
-  double u = 0;  ///< standard, without what is common to a series
+  double u = 0;  ///< standard uncertainty, without the part common to a series
 };
 
 struct HistorySession {
@@ -32,17 +33,17 @@ struct HistorySession {
   std::vector<HistoryValue> values;
 };
 
-/// Reads only small files, each of which the manifest has to vouch for. A simulation is a unit of vendor "simulation"
-/// without serial number. `invalid_input`: no session, one without manifest, with changed files, without a camera's
-/// serial number, or with two. `io` with the path.
+/// Reads the record from small files that the manifest confirms. A simulation has the vendor "simulation" and no serial
+/// number. Errors: `invalid_input` (not a session, no manifest, changed files, no camera serial number, or two), `io`
+/// with the path.
 [[nodiscard]] Result<HistorySession> read_history_session(const std::filesystem::path& folder);
 
-/// Session folders at or below a folder, sorted. `not_found`, `io` with the path.
+/// Returns the session folders at or below a folder, sorted. Errors: `not_found`, `io` with the path.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> session_folders_below(const std::filesystem::path& folder);
 
-/// Days since 1970 of "2026-11-22T10:50:12Z"; nothing for other texts.
+/// Returns the days since 1970 of "2026-11-22T10:50:12Z"; empty for other texts.
 [[nodiscard]] std::optional<double> days_of_utc(const std::string& utc);
-/// "2026-11-22"
+/// Returns the date as "2026-11-22".
 [[nodiscard]] std::string date_of_days(double days);
 
 }  // namespace todbench

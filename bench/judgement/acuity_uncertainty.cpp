@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/acuity_uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "bench/plan/bench_air.h"
 #include "bench/plan/joined_uncertainty.h"
 #include "tod/psychometric/contrast_slope.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double upper_tail = 0.025;
 
-/// Smallest interval that contains both; an open side stays open.
+/// Returns the smallest interval that contains both; an open end stays open.
 Interval hull_of(const Interval& a, const Interval& b) {
   Interval both;
   if (a.low && b.low) both.low = std::min(*a.low, *b.low);
@@ -21,7 +22,8 @@ Interval hull_of(const Interval& a, const Interval& b) {
   return both;
 }
 
-/// Mean of what the camera saw less what the air leaves of what the target said, at a set contrast.
+/// Returns the mean of effective contrast minus target read-back times air transmittance at a set contrast; empty
+/// without data.
 std::optional<double> read_back_deviation_k(std::span<const Presentation> presentations, double set_delta_t_k) {
   double sum = 0;
   int count = 0;
@@ -35,12 +37,12 @@ std::optional<double> read_back_deviation_k(std::span<const Presentation> presen
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// Of the bench, the same at every presentation of a run; nothing where it is not stated.
+/// Returns the air transmittance of the bench, equal for all presentations of a run; empty if not stated.
 std::optional<double> air_of(std::span<const Presentation> presentations) {
   return presentations.empty() ? std::nullopt : presentations.front().air_transmittance;
 }
 
-/// What is left uncertain of what the air takes, unless the plan says it.
+/// Returns a row for the uncertainty of the air transmittance, unless the plan has one.
 std::optional<BudgetRow> row_of_air(const UncertaintyPlan& plan, std::span<const Presentation> presentations) {
   const auto transmittance = air_of(presentations);
   const bool stated = std::any_of(plan.rows.begin(), plan.rows.end(),
@@ -50,11 +52,11 @@ std::optional<BudgetRow> row_of_air(const UncertaintyPlan& plan, std::span<const
                    .value = bench_air_relative_half_width * (1 - *transmittance),
                    .distribution = BudgetDistribution::rectangular,
                    .unit = "1",
-                   .source = "half of what the shipped tables say the air takes",
+                   .source = "half of the attenuation by air in the shipped tables",
                    .enters = BudgetInput::air_path};
 }
 
-/// What a point's rows are converted with.
+/// Values for the conversion of the rows at a point.
 struct Conversion {
   double distance_m = 0;
   double size_m = 0;  ///< of the triangle at the threshold, on the plate
@@ -62,7 +64,7 @@ struct Conversion {
   double slope = 0;
 };
 
-/// Of ln acuity to the value in the unit of the row.
+/// Returns d ln acuity / d value in the unit of the row.
 double sensitivity_of(const BudgetRow& row, const Conversion& at) {
   if (row.sensitivity) return *row.sensitivity;
   const BudgetInput input = input_of(row);
@@ -73,7 +75,7 @@ double sensitivity_of(const BudgetRow& row, const Conversion& at) {
   return unit.factor / (input == BudgetInput::cut_outs ? at.size_m : at.distance_m);
 }
 
-/// The rows of the plan and of the run, with their sensitivities.
+/// Returns the rows of plan and run with their sensitivities.
 std::vector<BudgetRow> rows_at(const UncertaintyPlan& plan, const TodPoint& point, const Conversion& at,
                                const std::optional<double>& deviation_k, const std::optional<BudgetRow>& air) {
   std::vector<BudgetRow> rows = plan.rows;
@@ -83,7 +85,7 @@ std::vector<BudgetRow> rows_at(const UncertaintyPlan& plan, const TodPoint& poin
                     .value = point.delta_t_se_k,
                     .degrees_of_freedom = freedom_of_contrast(point),
                     .unit = "K",
-                    .source = "standard error over the measurements of it and their triangles",
+                    .source = "standard error over the measurements of the contrast and their triangles",
                     .enters = BudgetInput::contrast});
   }
   if (deviation_k) {
@@ -91,12 +93,13 @@ std::vector<BudgetRow> rows_at(const UncertaintyPlan& plan, const TodPoint& poin
                     .value = std::abs(*deviation_k),
                     .distribution = BudgetDistribution::rectangular,
                     .unit = "K",
-                    .source = "mean over the presentations, not corrected",
+                    .source = "mean deviation over the presentations, not corrected",
                     .enters = BudgetInput::contrast});
   }
   for (BudgetRow& row : rows) {
     row.enters = input_of(row);
-    row.sensitivity = sensitivity_of(row, at);
+    row.sensitivity = row.name == seen_contrast_row && point.fit.contrast_u > 0 ? point.fit.contrast_u / row.value
+                                                                                : sensitivity_of(row, at);
   }
   return rows;
 }
@@ -105,9 +108,13 @@ std::optional<double> freedom_of(const PsychometricFit& fit) {
   return fit.clusters > 1 ? std::optional(std::max(1.0, fit.clusters - 1)) : std::nullopt;
 }
 
-/// A half-width of ln S75 as the row of the finite trials.
-BudgetRow trials_row(double half, const PsychometricFit& fit) {
+/// Returns the row of the finite trials from a half-width of ln S75, without the scatter of the effective contrast,
+/// which has its own row.
+BudgetRow trials_row(double half, const TodPoint& point) {
+  const PsychometricFit& fit = point.fit;
   const auto freedom = freedom_of(fit);
+  const double contrast = fit.contrast_u * distribution::quantile_above(upper_tail, freedom_of_contrast(point));
+  half = std::sqrt(std::max(0.0, half * half - contrast * contrast));
   return {.name = std::string(finite_trials_row),
           .value = half / distribution::quantile_above(upper_tail, freedom),
           .degrees_of_freedom = freedom,
@@ -117,13 +124,13 @@ BudgetRow trials_row(double half, const PsychometricFit& fit) {
           .enters = BudgetInput::acuity};
 }
 
-/// The scatter of the contrast is in a ratio to the twin by the ratio's own interval.
+/// Returns whether a row cancels. The interval of the ratio to the twin already contains the scatter of the contrast.
 bool cancels_in(const BudgetRow& row, BudgetCommon common) {
   if (common == BudgetCommon::twin && row.name == seen_contrast_row) return true;
   return std::find(row.common.begin(), row.common.end(), common) != row.common.end();
 }
 
-/// Of the stated rows, without those that are shared with `cancelled`.
+/// Combines the stated rows except those shared with `cancelled`.
 JoinedUncertainty stated_of(const std::vector<AppliedRow>& rows, const std::optional<BudgetCommon>& cancelled) {
   JoinedUncertainty sum;
   for (const AppliedRow& applied : rows) {
@@ -133,7 +140,7 @@ JoinedUncertainty stated_of(const std::vector<AppliedRow>& rows, const std::opti
   return sum;
 }
 
-/// Nothing uncertain is no error here.
+/// Combines the rows; empty (no error) if the total uncertainty is 0.
 Result<std::optional<CombinedUncertainty>> combined_rows(const std::vector<BudgetRow>& rows, std::uint64_t seed,
                                                          int draws) {
   if (std::none_of(rows.begin(), rows.end(),
@@ -144,17 +151,17 @@ Result<std::optional<CombinedUncertainty>> combined_rows(const std::vector<Budge
   return *std::move(found);
 }
 
-/// The expanded half-width of ln S75 on a side whose statistical one is `half`: that of the GUM, times what the draws
-/// of the mean of both sides exceed it by.
-Result<double> expanded_half(double half, std::vector<BudgetRow> rows, const PsychometricFit& fit, double excess) {
+/// Returns the expanded half-width of ln S75 on a side with the statistical half-width `half`: the GUM value times
+/// `excess`, the ratio of Monte Carlo to GUM for the mean of both sides.
+Result<double> expanded_half(double half, std::vector<BudgetRow> rows, const TodPoint& point, double excess) {
   constexpr int no_draws = 0;
-  rows.insert(rows.begin(), trials_row(half, fit));
+  rows.insert(rows.begin(), trials_row(half, point));
   const auto found = combined_rows(rows, 0, no_draws);
   if (!found) return tl::unexpected(found.error());
   return *found ? std::max(half, excess * (*found)->expanded_gum) : half;
 }
 
-/// A limit without a threshold moves by all of what is stated.
+/// Moves a limit without a threshold outwards by the complete stated half-width.
 double moved_out(double limit_mrad, const JoinedUncertainty& stated, double direction) {
   return limit_mrad * std::exp(direction * stated.half_width(upper_tail));
 }
@@ -173,7 +180,7 @@ std::vector<AppliedRow> applied(const std::vector<BudgetRow>& rows, const std::v
   return out;
 }
 
-/// Joins a side of a ratio's interval and the half-width of what is stated.
+/// Joins a side of the interval of a ratio with the stated half-width.
 std::optional<double> joined(const std::optional<double>& ratio, const std::optional<double>& side, double stated) {
   if (!ratio || !side || !(*ratio > 0) || !(*side > 0)) return std::nullopt;
   const double half = std::log(*side / *ratio);
@@ -198,7 +205,7 @@ Result<void> expand(PointUncertainty& out, const TodPoint& point, const std::vec
   const auto& threshold = point.fit.threshold;
   std::vector<BudgetRow> all = rows;
   const bool both = threshold && low && high && *threshold > 0;
-  if (both) all.insert(all.begin(), trials_row(0.5 * std::log(*high / *low), point.fit));
+  if (both) all.insert(all.begin(), trials_row(0.5 * std::log(*high / *low), point));
   auto found = combined_rows(all, seed, session_budget_draws);
   if (!found) return tl::unexpected(found.error());
   if (*found) {
@@ -219,10 +226,10 @@ Result<void> expand(PointUncertainty& out, const TodPoint& point, const std::vec
     if (!side || !(*side > 0)) {
       expanded = side;
     } else if (threshold && *threshold > 0) {
-      const auto half = expanded_half(std::abs(std::log(*side / *threshold)), rows, point.fit, excess);
+      const auto half = expanded_half(std::abs(std::log(*side / *threshold)), rows, point, excess);
       if (!half) return tl::unexpected(half.error());
       expanded = *threshold * std::exp(direction * *half);
-      // Never inside the statistical one by rounding, nor where the threshold lies outside it.
+      // Never inside the statistical interval, because of rounding or a threshold outside it.
       expanded = direction < 0 ? std::min(*expanded, *side) : std::max(*expanded, *side);
     } else {
       expanded = moved_out(*side, all_stated, direction);
@@ -269,7 +276,7 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
     PointUncertainty found{.set_delta_t_k = point.set_delta_t_k, .contrast_slope = slopes[i], .rows = {}};
     const Interval interval = deciding_interval(point);
     found.statistical_mrad = interval;
-    // Without a threshold the size in question is that of the limit which the data give.
+    // Without a threshold, the known end of its interval is the size.
     const double size_mrad = point.fit.threshold.value_or(interval.low.value_or(interval.high.value_or(1)));
     const double distance_m = plan.target.distance_m;
     const auto deviation_k = read_back_deviation_k(presentations, point.set_delta_t_k);

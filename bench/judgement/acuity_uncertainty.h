@@ -1,4 +1,5 @@
-// The budget of a plan applied to a measured curve: intervals that hold more than the finite number of trials.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Budget of a plan applied to a measured curve: intervals that include more than the finite number of trials.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/judgement/uncertainty_budget.h"
 #include "bench/plan/plan.h"
 #include "tod/comparison/comparison.h"
@@ -17,53 +18,56 @@
 
 namespace todbench {
 
-/// A row of the budget at one contrast; its sensitivity is that of ln acuity to the value as it is stated.
+/// Row of the budget at one contrast. Its sensitivity is d ln acuity / d value, with the value as stated.
 struct AppliedRow {
   BudgetRow row;
   BudgetInput input = BudgetInput::acuity;
-  double standard_uncertainty = 0;  ///< in the row's unit
+  double standard_uncertainty = 0;  ///< in the unit of the row
   double contribution = 0;          ///< to ln acuity
   double share_percent = 0;         ///< of the variance
-  bool from_run = false;            ///< stated by the run, not by the plan
+  bool from_run = false;            ///< added by the run, not stated in the plan
 };
 
-/// A ratio of acuities, measured over twin: rows common to both cancel.
+/// Ratio of acuities, measured over twin; rows common to both cancel.
 struct ExpandedRatio {
   Interval ci95, ci90;
 };
 
-/// One contrast. u is of ln acuity, which is that of ln S75.
+/// Uncertainty at one contrast. u is that of ln acuity, equal to that of ln S75.
 struct PointUncertainty {
   double set_delta_t_k = 0;
   double contrast_slope = 1;  ///< d ln acuity / d ln contrast
   std::vector<AppliedRow> rows;
-  Interval statistical_mrad{};  ///< 95 % of S75, of the finite number of trials
-  Interval expanded_mrad{};     ///< 95 % of S75, of all rows; each side the largest of GUM, Monte Carlo and statistical
-  /// Of both sides' mean; nothing where the threshold or a side of its interval is missing.
+  Interval statistical_mrad{};  ///< 95 % interval of S75 from the finite number of trials
+  /// 95 % interval of S75 from all rows; on each side the widest of GUM, Monte Carlo and statistical.
+  Interval expanded_mrad{};
+  /// For the mean of both half-widths; empty if the threshold or an end of its interval is missing.
   std::optional<CombinedUncertainty> combined{};
-  double u_stated = 0;      ///< of the rows but the finite trials
-  double u_not_twin = 0;    ///< of those that do not cancel in a ratio to the twin
-  double u_not_series = 0;  ///< in a trend over a series
+  double u_stated = 0;      ///< of all rows except the finite trials
+  double u_not_twin = 0;    ///< of those that do not cancel in the ratio to the twin
+  double u_not_series = 0;  ///< of those that do not cancel in a trend over a series
   double u_not_contrasts = 0;
-  std::optional<ExpandedRatio> ratio{};  ///< to the twin, where there is a comparison
+  std::optional<ExpandedRatio> ratio{};  ///< to the twin; empty without a comparison
 };
 
 struct CurveUncertainty {
   std::vector<PointUncertainty> points;   ///< in the order of the curve
-  std::vector<std::string> not_stated{};  ///< rows that a complete budget has
-  double u_scale = 0;         ///< relative, of the temperature scale and what is divided by it (relative_u_of_scale())
-  double u_camera_scale = 0;  ///< relative, of kelvin of the camera's scale
+  std::vector<std::string> not_stated{};  ///< rows that a complete budget would have
+  double u_scale = 0;  ///< relative, of the temperature scale and quantities divided by it (relative_u_of_scale())
+  double u_camera_scale = 0;  ///< relative, of kelvin on the camera's scale
   double u_distance = 0;      ///< relative, of an angle per pixel (relative_u_of_distance())
 };
 
-/// The point at this set contrast; null where there is none.
+/// Returns the point at this set contrast; null if absent.
 [[nodiscard]] const PointUncertainty* point_at(const CurveUncertainty& uncertainty, double set_delta_t_k);
 
-/// The interval of S75 in mrad that decides: of a point with a lapse warning both fits have to agree. A slope at its
-/// lower bound makes any threshold number meaningless, and a ridge has no point: no interval then.
+/// Returns the interval of S75 in mrad that decides. For a point with a lapse warning it is the hull of both fits. It
+/// is empty if the slope is at its lower bound, which makes a threshold meaningless, or if the likelihood has a ridge
+/// instead of a maximum.
 [[nodiscard]] Interval deciding_interval(const TodPoint& point);
 
-/// Nothing where the plan states no budget. The seed makes the draws of the Monte Carlo check. Errors: combined().
+/// Returns the expanded intervals; empty if the plan has no budget. `plan.seed` seeds the Monte Carlo check. Errors:
+/// combined().
 [[nodiscard]] Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, const TodCurve& curve,
                                                                         std::span<const Presentation> presentations,
                                                                         const std::optional<Comparison>& comparison);

@@ -1,4 +1,5 @@
-// The file of `todbench budget`.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reader of the file of `todbench budget`.
 #include <utility>
 
 #include "bench/judgement/uncertainty_budget.h"
@@ -9,7 +10,7 @@
 namespace todbench {
 namespace {
 
-/// The rows of a plan's budget: same keys, same words.
+/// Returns the section of budget rows: same keys and words as in a plan.
 const PlanSection& row_section() {
   return *plan_key("uncertainty.component.name").section;
 }

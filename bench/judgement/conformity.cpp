@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/conformity.h"
 
 #include <algorithm>
@@ -7,14 +8,14 @@
 #include <numbers>
 #include <vector>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Shares of a distribution below and above a stretch, and within it. Each small one keeps its digits.
+/// Probabilities below, above and within an interval. Small ones keep their relative precision.
 struct Shares {
   double below = 0, within = 0, above = 0;
 };
@@ -44,13 +45,13 @@ Shares shares_of(const MeasuredValue& measured, const ToleranceLimits& limits) {
   return shares_of(distribution::Normal(), low, high);
 }
 
-/// By how much the value lies inside the nearer limit; negative outside.
+/// Returns the distance of the value to the nearer limit, positive inside.
 double margin_of(double value, const ToleranceLimits& limits) {
   return std::min(limits.at_least ? value - *limits.at_least : infinite,
                   limits.at_most ? *limits.at_most - value : infinite);
 }
 
-/// What sums and differences of these numbers are wrong by: 0.94 lies on the limit 0.9 + 0.04.
+/// Returns the rounding error of sums and differences of these numbers: 0.94 lies on the limit 0.9 + 0.04.
 double rounding_of(double value, const ToleranceLimits& limits, double guard_band) {
   const double largest = std::max(
       {std::abs(value), std::abs(limits.at_least.value_or(0)), std::abs(limits.at_most.value_or(0)), guard_band});
@@ -77,11 +78,12 @@ ConformityDecision decision_of(double margin, double band, double rounding, Conf
 }
 
 Result<void> check(const ToleranceLimits& limits) {
-  if (!limits.at_least && !limits.at_most) return fail(ErrorCode::invalid_input, "there is no limit to judge by");
+  if (!limits.at_least && !limits.at_most)
+    return fail(ErrorCode::invalid_input, "there is no limit: state a lower limit, an upper limit or both");
   if (!std::isfinite(limits.at_least.value_or(0)) || !std::isfinite(limits.at_most.value_or(0)))
-    return fail(ErrorCode::invalid_input, "a limit is no number");
+    return fail(ErrorCode::invalid_input, "a limit is not a finite number");
   if (limits.at_least && limits.at_most && *limits.at_least >= *limits.at_most)
-    return fail(ErrorCode::invalid_input, "the lower limit is not below the upper one");
+    return fail(ErrorCode::invalid_input, "the lower limit must be below the upper limit");
   return {};
 }
 
@@ -110,12 +112,12 @@ std::string_view to_string(ConformityDecision decision) {
 Result<Conformity> conformity(const MeasuredValue& measured, const ToleranceLimits& tolerance, ConformityRule rule,
                               double guard_band) {
   if (auto checked = check(tolerance); !checked) return tl::unexpected(checked.error());
-  if (!std::isfinite(measured.value)) return fail(ErrorCode::invalid_input, "the value is no number");
-  if (!positive(measured.u)) return fail(ErrorCode::invalid_input, "the standard uncertainty has to be above 0");
+  if (!std::isfinite(measured.value)) return fail(ErrorCode::invalid_input, "the value is not a finite number");
+  if (!positive(measured.u)) return fail(ErrorCode::invalid_input, "the standard uncertainty must be greater than 0");
   if (measured.degrees_of_freedom && !positive(*measured.degrees_of_freedom))
-    return fail(ErrorCode::invalid_input, "the degrees of freedom have to be above 0");
+    return fail(ErrorCode::invalid_input, "the degrees of freedom must be greater than 0");
   if (!std::isfinite(guard_band) || guard_band < 0)
-    return fail(ErrorCode::invalid_input, "the guard band has to be 0 or more");
+    return fail(ErrorCode::invalid_input, "the guard band must be at least 0");
   Conformity found;
   found.guard_band = rule == ConformityRule::simple ? 0 : guard_band;
   if (tolerance.at_least) found.acceptance.at_least = *tolerance.at_least + found.guard_band;
@@ -135,19 +137,24 @@ double guard_band_for_risk(double risk, const MeasuredValue& measured) {
   return measured.u * distribution::quantile_above(risk, measured.degrees_of_freedom);
 }
 
-Result<GlobalRisks> global_risks(const Fleet& fleet, double u, const ToleranceLimits& tolerance,
+Result<GlobalRisks> global_risks(const Fleet& fleet, const MeasurementError& error, const ToleranceLimits& tolerance,
                                  const ToleranceLimits& acceptance) {
+  const double u = error.u;
   if (auto checked = check(tolerance); !checked) return tl::unexpected(checked.error());
   if (!std::isfinite(fleet.mean) || !positive(fleet.sd) || !positive(u))
-    return fail(ErrorCode::invalid_input, "the fleet's standard deviation and the uncertainty have to be above 0");
-  // Between these points the integrand is smooth: the limits, and where acceptance rises and falls.
+    return fail(ErrorCode::invalid_input,
+                "the standard deviation of the fleet and the uncertainty must be greater than 0");
+  if (error.degrees_of_freedom && !positive(*error.degrees_of_freedom))
+    return fail(ErrorCode::invalid_input, "the degrees of freedom must be greater than 0");
+  // The integrand is smooth between these points: the limits and the flanks of the acceptance probability.
   constexpr double reach_sd = 10;
   std::vector<double> points{fleet.mean - reach_sd * fleet.sd, fleet.mean, fleet.mean + reach_sd * fleet.sd};
   for (const auto& limit : {tolerance.at_least, tolerance.at_most}) {
     if (limit) points.push_back(*limit);
   }
   for (const auto& limit : {acceptance.at_least, acceptance.at_most}) {
-    for (const double step : {-8.0, -3.0, 0.0, 3.0, 8.0}) {
+    // The outer steps cover the slow tails for few degrees of freedom.
+    for (const double step : {-1000.0, -100.0, -25.0, -8.0, -3.0, 0.0, 3.0, 8.0, 25.0, 100.0, 1000.0}) {
       if (limit) points.push_back(*limit + step * u);
     }
   }
@@ -161,7 +168,7 @@ Result<GlobalRisks> global_risks(const Fleet& fleet, double u, const ToleranceLi
     const auto share = [&](bool accepted) {
       const auto density = [&](double x) {
         const double z = (x - fleet.mean) / fleet.sd;
-        const Shares shares = shares_of({x, u, {}}, acceptance);
+        const Shares shares = shares_of({x, u, error.degrees_of_freedom}, acceptance);
         const double p = accepted ? shares.within : std::min(1.0, shares.below + shares.above);
         return std::exp(-0.5 * z * z) / (fleet.sd * std::sqrt(2 * std::numbers::pi)) * p;
       };

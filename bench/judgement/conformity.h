@@ -1,16 +1,17 @@
-// A measured value with its uncertainty against tolerance limits: decision rules by name, and the risks they carry.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Conformity of a measured value with tolerance limits: named decision rules and their risks.
 #pragma once
 
 #include <optional>
 #include <string_view>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/plan/conformity_rule.h"
 
 namespace todbench {
 
 enum class ConformityDecision { pass, conditional_pass, inconclusive, conditional_fail, fail };
-/// "conditional pass"
+/// Returns the words, for example "conditional pass".
 [[nodiscard]] std::string_view to_string(ConformityDecision decision);
 
 /// One or two limits.
@@ -18,49 +19,56 @@ struct ToleranceLimits {
   std::optional<double> at_least{}, at_most{};
 };
 
-/// Value and limits in one unit. A ratio scale, such as acuity, is judged by its logarithm.
+/// Measured value in the unit of the limits. For ratio scales (acuity) use the logarithm.
 struct MeasuredValue {
   double value = 0;
   double u = 0;                                ///< standard uncertainty
-  std::optional<double> degrees_of_freedom{};  ///< of u; nothing: very many
+  std::optional<double> degrees_of_freedom{};  ///< of u; empty: infinite
 };
 
 struct Conformity {
   ConformityDecision decision = ConformityDecision::inconclusive;
-  double guard_band = 0;  ///< 0 under the simple rule
-  /// The tolerance, narrower by the guard band on each side. A value on a limit is inside.
+  double guard_band = 0;  ///< 0 for the simple rule
+  /// Tolerance reduced by the guard band on each side. A value on a limit is inside.
   ToleranceLimits acceptance{};
-  bool acceptance_zone_is_empty = false;  ///< nothing can pass
-  /// Probability that the true value lies inside the tolerance, with little prior knowledge (JCGM 106:2012, 7): of a
-  /// wrong rejection where the decision is to fail.
+  bool acceptance_zone_is_empty = false;  ///< no value can pass
+  /// Probability that the true value lies inside the tolerance, with little prior knowledge (JCGM 106:2012, 7). For a
+  /// fail it is the risk of a wrong rejection.
   double p_conformity = 0;
-  double p_nonconformity = 0;  ///< the rest; of a wrong acceptance where the decision is to pass
+  double p_nonconformity = 0;  ///< 1 - p_conformity; for a pass, the risk of a wrong acceptance
 };
 
-/// `invalid_input`: no limit, limits in the wrong order, a number that is not finite, u or degrees of freedom not above
-/// 0, a negative guard band.
+/// Decides by `rule`. Errors: `invalid_input` (no limit, limits in the wrong order, a non-finite number, u or degrees
+/// of freedom of 0 or less, negative guard band).
 [[nodiscard]] Result<Conformity> conformity(const MeasuredValue& measured, const ToleranceLimits& tolerance,
                                             ConformityRule rule, double guard_band);
 
-/// The guard band that leaves this risk of a wrong acceptance at the acceptance limit of one tolerance limit: z(1 - r)
-/// u, with t instead of z for few degrees of freedom. Precondition: 0 < risk <= 0.5, u > 0.
+/// Returns the guard band z(1 - r) u, which leaves the risk r of a wrong acceptance for a value at the acceptance
+/// limit; t instead of z for finite degrees of freedom. Precondition: 0 < risk <= 0.5, u > 0.
 [[nodiscard]] double guard_band_for_risk(double risk, const MeasuredValue& measured);
 
-/// True values over a fleet, taken as normal.
+/// Normal distribution of true values over a fleet.
 struct Fleet {
   double mean = 0, sd = 0;
 };
 
-/// Of a unit drawn from the fleet and measured with a normal error (JCGM 106:2012, 9).
+/// Risks for a unit drawn from the fleet and measured with a normal error (JCGM 106:2012, 9). With finite degrees of
+/// freedom, the error over u follows Student's t.
 struct GlobalRisks {
   double p_conforming = 0, p_accepted = 0;
   double consumer_risk = 0;                ///< accepted and outside the tolerance
-  double producer_risk = 0;                ///< rejected and inside
-  double p_nonconforming_if_accepted = 0;  ///< 0 where nothing is accepted
+  double producer_risk = 0;                ///< rejected and inside the tolerance
+  double p_nonconforming_if_accepted = 0;  ///< 0 if no unit is accepted
 };
 
-/// `invalid_input`: sd or u not above 0, or no limit.
-[[nodiscard]] Result<GlobalRisks> global_risks(const Fleet& fleet, double u, const ToleranceLimits& tolerance,
-                                               const ToleranceLimits& acceptance);
+/// Measurement error of a unit of the fleet.
+struct MeasurementError {
+  double u = 0;                                ///< standard uncertainty
+  std::optional<double> degrees_of_freedom{};  ///< of u; empty: infinite
+};
+
+/// Computes the risks. Errors: `invalid_input` (sd, u or degrees of freedom of 0 or less, or no limit).
+[[nodiscard]] Result<GlobalRisks> global_risks(const Fleet& fleet, const MeasurementError& error,
+                                               const ToleranceLimits& tolerance, const ToleranceLimits& acceptance);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/demand_kinds.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace todbench {
 
 namespace {
 
-/// For sentences: four significant digits are finer than any interval here.
+/// For sentences; four significant digits are finer than any interval here.
 std::string rounded(double value) {
   if (value == 0) return "0";
   if (!std::isfinite(value)) return "(no number)";
@@ -36,14 +37,14 @@ std::string words_of(const Interval& acuity_per_mrad) {
   return "no interval";
 }
 
-/// The decision of a rule, conditional ones as inconclusive.
+/// Sets the decision of a rule; conditional ones become inconclusive.
 void settle(Demand& demand, const LimitAnswer& answer) {
   demand.conformity = answer.decision;
   demand.p_conformity = answer.p_conformity;
   demand.decision = kind_of(answer.decision);
 }
 
-/// A demand on a number that is not fit for a decision stays open, whatever its interval says.
+/// Sets a demand on a number that is unfit for a decision to inconclusive, whatever its interval.
 void withhold(Demand& demand, const std::optional<Adequacy>& adequacy) {
   if (!adequacy || adequacy->adequate()) return;
   demand.decision = VerdictKind::inconclusive;
@@ -55,7 +56,7 @@ void withhold(Demand& demand, const std::optional<Adequacy>& adequacy) {
 
 // acuity
 
-/// The interval of S75 that decides: with a budget the expanded one.
+/// Interval of S75 that decides: the expanded one if the plan has a budget.
 struct Deciding {
   Interval s75_mrad;
   std::optional<Interval> statistical_mrad{};
@@ -67,17 +68,17 @@ Deciding deciding_of(const TodPoint& point, const CurveUncertainty* uncertainty)
   return {found->expanded_mrad, found->statistical_mrad};
 }
 
-/// Of the interval that decides; nothing: very many.
+/// Returns the degrees of freedom of the deciding interval; empty: infinite.
 std::optional<double> freedom_of(const TodPoint& point, const CurveUncertainty* uncertainty) {
   const PointUncertainty* found = uncertainty == nullptr ? nullptr : point_at(*uncertainty, point.set_delta_t_k);
   if (found != nullptr && found->combined) return found->combined->nu_eff;
   return point.fit.clusters > 1 ? std::optional(std::max(1.0, point.fit.clusters - 1)) : std::nullopt;
 }
 
-/// By the default rule: passes when the whole 95 % interval is at or above the limit (exactly on it passes), fails when
-/// the whole interval is below it; a one-sided limit of the fit decides in its direction. Where a free lapse explains
-/// the data significantly better, both fits have to agree: the union of their intervals counts.
-Demand judged_acuity(const AcuityLimit& limit, const Evidence& evidence) {
+/// Judges an acuity limit. Default rule: pass if the whole 95 % interval is at or above the limit, fail if it is below;
+/// a one-sided interval decides in its direction. If a free lapse rate fits the data significantly better, the union of
+/// the intervals of both fits counts.
+Demand judged_acuity(const AcuityLimit& limit, const JudgementInput& evidence) {
   const TodCurve& curve = evidence.curve;
   const CurveUncertainty* const uncertainty = evidence.uncertainty;
   Demand demand{.kind = DemandKind::acuity, .delta_t_k = limit.delta_t_k, .limit = limit.least_acuity_per_mrad};
@@ -92,14 +93,15 @@ Demand judged_acuity(const AcuityLimit& limit, const Evidence& evidence) {
   demand.result = acuity_per_mrad(point->fit);
   demand.interval = acuity_interval(s75_mrad);
   if (deciding.statistical_mrad) demand.statistical = acuity_interval(*deciding.statistical_mrad);
-  // Compared as sizes, the quantity that was estimated: one rounding instead of two, so that "exactly on the limit"
-  // exists.
+  demand.degrees_of_freedom = freedom_of(*point, uncertainty);
+  // Compared as sizes, the estimated quantity: one rounding instead of two, so that a value can lie exactly on the
+  // limit.
   const LimitAnswer answer = decide({.value = point->fit.threshold,
                                      .interval = s75_mrad,
                                      .limit = largest_mrad,
                                      .at_least = false,
                                      .scale = LimitScale::logarithmic,
-                                     .degrees_of_freedom = freedom_of(*point, uncertainty)},
+                                     .degrees_of_freedom = demand.degrees_of_freedom},
                                     evidence.limits.rule, evidence.limits.guard_band_risk);
   settle(demand, answer);
   if (s75_mrad.high && *s75_mrad.high <= largest_mrad) {
@@ -107,17 +109,18 @@ Demand judged_acuity(const AcuityLimit& limit, const Evidence& evidence) {
   } else if (s75_mrad.low && *s75_mrad.low > largest_mrad) {
     demand.reason = words_of(demand.interval) + ": below the limit";
   } else if (s75_mrad.low && s75_mrad.high) {
-    demand.reason = words_of(demand.interval) + ": the limit lies within";
+    demand.reason = words_of(demand.interval) + ": the limit lies within the interval";
   } else {
     demand.reason = "the threshold cannot be identified from the data (" + std::string(to_string(point->fit.verdict)) +
                     ", " + words_of(demand.interval) + ")";
   }
-  if (point->lapse_warning) demand.reason += "; a free lapse rate explains the data better, both fits have to agree";
+  if (point->lapse_warning)
+    demand.reason += "; a free lapse rate fits the data better, so the intervals of both fits count";
   withhold(demand, point->adequacy);
   return demand;
 }
 
-std::vector<Demand> judge_acuity(const Evidence& evidence) {
+std::vector<Demand> judge_acuity(const JudgementInput& evidence) {
   std::vector<Demand> demands;
   for (const AcuityLimit& limit : evidence.limits.acuity) demands.push_back(judged_acuity(limit, evidence));
   return demands;
@@ -148,7 +151,7 @@ Demand judged_identified(const TodPoint& point, const CurveUncertainty* uncertai
   return demand;
 }
 
-std::vector<Demand> judge_identified(const Evidence& evidence) {
+std::vector<Demand> judge_identified(const JudgementInput& evidence) {
   std::vector<Demand> demands;
   for (const TodPoint& point : evidence.curve.points) {
     const auto& limits = evidence.limits.acuity;
@@ -161,17 +164,17 @@ std::vector<Demand> judge_identified(const Evidence& evidence) {
 }
 
 std::string identified_in_words(const Demand& demand) {
-  return "a threshold at " + rounded(demand.delta_t_k) + " K";
+  return "identified threshold at " + rounded(demand.delta_t_k) + " K";
 }
 
 // equivalence
 
-/// How far a ratio is from 1, in the direction that the margin is defined for.
+/// Returns the deviation of a ratio from 1 in the direction in which the margin is defined.
 double deviation_percent(double ratio) {
   return 100 * (std::max(ratio, 1 / ratio) - 1);
 }
 
-/// The largest deviation of a ratio from 1.
+/// Returns the largest deviation of a ratio from 1.
 std::optional<double> largest_deviation_percent(const Comparison& comparison) {
   std::optional<double> largest;
   for (const ComparisonPoint& point : comparison.points) {
@@ -181,8 +184,8 @@ std::optional<double> largest_deviation_percent(const Comparison& comparison) {
   return largest;
 }
 
-/// The interval of the largest deviation, from the 90 % intervals of the ratios: two one-sided tests at 5 % show
-/// equivalence where its upper end is within the margin. A side that a ratio leaves open is open.
+/// Returns the interval of the largest deviation from the 90 % intervals of the ratios. Two one-sided tests at 5 %
+/// prove equivalence if its upper end is within the margin. An open end of a ratio leaves that end open.
 Interval deviation_interval_percent(const std::vector<Interval>& ratios_90) {
   double low = 0, high = 0;
   for (const auto& [ratio_low, ratio_high] : ratios_90) {
@@ -196,7 +199,7 @@ Interval deviation_interval_percent(const std::vector<Interval>& ratios_90) {
   return {low, high};
 }
 
-/// "; ratios with their 90 % intervals between 0.951 and 1.063", or nothing where a side is open.
+/// Returns "; ratios with their 90 % intervals between 0.951 and 1.063"; empty if an end is open.
 std::string span_of_ratios(const std::vector<Interval>& ratios_90) {
   std::optional<double> low, high;
   for (const Interval& ratio : ratios_90) {
@@ -214,14 +217,14 @@ std::string reason_of(ComparisonVerdict verdict, const std::vector<Interval>& ra
     case ComparisonVerdict::equivalent:
       return "equivalent at every contrast (two one-sided tests at 5 %)" + span;
     case ComparisonVerdict::different:
-      return "different at one contrast or more" + span;
+      return "different at one or more contrasts" + span;
     case ComparisonVerdict::inconclusive:
-      return "neither equivalence nor a difference is shown by these data (two one-sided tests at 5 %)" + span;
+      return "these data show neither equivalence nor a difference (two one-sided tests at 5 %)" + span;
   }
   return "";
 }
 
-/// Of each contrast the 90 % interval that decides.
+/// Returns the deciding 90 % interval of each contrast.
 std::vector<Interval> ratios_90(const Comparison& comparison, const CurveUncertainty* uncertainty) {
   std::vector<Interval> ratios;
   for (const ComparisonPoint& point : comparison.points) {
@@ -231,7 +234,7 @@ std::vector<Interval> ratios_90(const Comparison& comparison, const CurveUncerta
   return ratios;
 }
 
-/// What is left of a contrast's verdict with the expanded intervals.
+/// Returns the verdict of a contrast with the expanded intervals.
 ComparisonVerdict expanded_verdict(const ComparisonPoint& point, const ExpandedRatio& ratio) {
   const double margin = 1 + 0.01 * point.margin_percent;
   const auto& [low, high] = ratio.ci90;
@@ -242,7 +245,7 @@ ComparisonVerdict expanded_verdict(const ComparisonPoint& point, const ExpandedR
                                                                 : ComparisonVerdict::inconclusive;
 }
 
-/// The verdict of the comparison, with the uncertainty that does not cancel between camera and twin.
+/// Returns the verdict of the comparison with the uncertainty that does not cancel between camera and twin.
 ComparisonVerdict comparison_verdict(const Comparison& comparison, const CurveUncertainty* uncertainty) {
   if (uncertainty == nullptr) return comparison.verdict;
   ComparisonVerdict all = ComparisonVerdict::equivalent;
@@ -253,11 +256,11 @@ ComparisonVerdict comparison_verdict(const Comparison& comparison, const CurveUn
     if (one == ComparisonVerdict::different) return one;
     if (one == ComparisonVerdict::inconclusive) all = one;
   }
-  // What made the comparison undecided as a whole still does.
+  // A comparison that is inconclusive as a whole remains so.
   return comparison.verdict == ComparisonVerdict::inconclusive ? comparison.verdict : all;
 }
 
-/// By the rule of the plan: the two one-sided tests at 5 % are the guard band.
+/// Decides by the rule of the plan; the two one-sided tests at 5 % are the guard band.
 ConformityDecision equivalence_decision(ComparisonVerdict verdict, const Comparison& comparison,
                                         const std::vector<Interval>& ratios, ConformityRule rule) {
   if (rule == ConformityRule::guarded_acceptance_and_rejection || comparison.points.empty() ||
@@ -277,8 +280,8 @@ ConformityDecision equivalence_decision(ComparisonVerdict verdict, const Compari
   return meets ? ConformityDecision::conditional_pass : ConformityDecision::conditional_fail;
 }
 
-/// Probability that a ratio lies within the margin, from its 90 % interval; the smallest over the contrasts, which is
-/// the most that all of them together can have.
+/// Returns the probability that a ratio lies within the margin, from its 90 % interval; the smallest over the
+/// contrasts, an upper bound for all of them together.
 std::optional<double> p_equivalence(const Comparison& comparison, const std::vector<Interval>& ratios) {
   std::optional<double> least;
   for (std::size_t i = 0; i < ratios.size(); ++i) {
@@ -295,8 +298,12 @@ std::optional<double> p_equivalence(const Comparison& comparison, const std::vec
   return least;
 }
 
-/// Passes, fails or stays open as the comparison says, where it was made with the margin that is demanded.
-std::vector<Demand> judge_equivalence(const Evidence& evidence) {
+bool proven_different(const ComparisonPoint& point) {
+  return !point.withheld && point.verdict == ComparisonVerdict::different;
+}
+
+/// Decides as the comparison does, if it used the demanded margin.
+std::vector<Demand> judge_equivalence(const JudgementInput& evidence) {
   if (!evidence.limits.equivalence_margin_percent) return {};
   const double margin_percent = *evidence.limits.equivalence_margin_percent;
   Demand demand{.kind = DemandKind::equivalence, .limit = margin_percent, .interval_percent = 90};
@@ -306,7 +313,7 @@ std::vector<Demand> judge_equivalence(const Evidence& evidence) {
   }
   for (const ComparisonPoint& point : evidence.comparison->points) {
     if (point.margin_percent == margin_percent) continue;
-    demand.reason = "the comparison was made with another margin, " + rounded(point.margin_percent) + " %";
+    demand.reason = "the comparison used another margin, " + rounded(point.margin_percent) + " %";
     return {demand};
   }
   const Comparison decided = as_decided(*evidence.comparison);
@@ -320,8 +327,13 @@ std::vector<Demand> judge_equivalence(const Evidence& evidence) {
                   .p_conformity = p_equivalence(decided, ratios)});
   demand.reason = reason_of(verdict, ratios);
   if (demand.ratio == RatioKind::paired) demand.reason += "; ratios paired by presentation";
-  if (const auto& found = evidence.comparison->adequacy; found && !found->adequate())
-    demand.reason += "; not fit for a decision: " + reasons_unfit(*found);
+  // A proven difference at another contrast with fit thresholds still fails the demand.
+  if (std::ranges::any_of(decided.points, proven_different)) {
+    if (decided.adequacy && !decided.adequacy->adequate())
+      demand.reason += "; other contrasts are not fit for a decision: " + reasons_unfit(*decided.adequacy);
+  } else {
+    withhold(demand, decided.adequacy);
+  }
   return {demand};
 }
 
@@ -364,9 +376,9 @@ const auto& table() {
       measure_row(DemandKind::drift_rate),
       measure_row(DemandKind::drift_pattern_rate),
       measure_row(DemandKind::response_time),
-      // Made by its own session (bench/enhance/scene_dependence_session.h), of no plan's limits.
+      // Made by its own session (bench/scene_dependence/scene_dependence_session.h), not from the limits of a plan.
       DemandKindRow{DemandKind::scene_dependence, "scene_dependence", "%", LimitSide::at_most,
-                    [](const Evidence&) { return std::vector<Demand>(); }, scene_dependence_in_words},
+                    [](const JudgementInput&) { return std::vector<Demand>(); }, scene_dependence_in_words},
       zone_row(DemandKind::zone_bad_pixels),
       zone_row(DemandKind::zone_substituted_pixels),
       zone_row(DemandKind::zone_clusters),
@@ -392,7 +404,7 @@ std::string_view to_string(DemandKind kind) {
   return row_of(kind).name;
 }
 
-const MeasuredQuantity* quantity_of(const Evidence& evidence, std::string_view measure) {
+const MeasuredQuantity* quantity_of(const JudgementInput& evidence, std::string_view measure) {
   if (!evidence.measures) return nullptr;
   const auto found = std::find_if(evidence.measures->begin(), evidence.measures->end(),
                                   [&](const MeasuredQuantity& one) { return one.measure == measure; });

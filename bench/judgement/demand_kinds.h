@@ -1,4 +1,5 @@
-// The table of what can be demanded: one row for each DemandKind says its name, how it is judged and how it is shown.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Table of demand kinds: one row for each DemandKind with its name, its rule of judgement and its words.
 #pragma once
 
 #include <span>
@@ -10,33 +11,33 @@
 
 namespace todbench {
 
-/// On which side of its limit a result has to be.
+/// Side of the limit on which a result conforms.
 enum class LimitSide {
   at_least,
   at_most,
-  none,  ///< the demand is no number
+  none,  ///< the demand has no number
 };
 
 struct DemandKindRow {
   DemandKind kind;
-  std::string_view name;  ///< in verdict.json
+  std::string_view name;  ///< as in verdict.json
   std::string_view unit;  ///< of limit, result and interval
   LimitSide side;
-  std::vector<Demand> (*judge)(const Evidence& evidence);  ///< every demand of this kind; none where none is made
+  std::vector<Demand> (*judge)(const JudgementInput& evidence);  ///< all demands of this kind; empty if there are none
   std::string (*in_words)(const Demand& demand);
 };
 
-/// Every kind, in the order in which demands are judged and shown.
+/// Returns all kinds in the order of judgement and presentation.
 [[nodiscard]] std::span<const DemandKindRow> demand_kinds();
 [[nodiscard]] const DemandKindRow& row_of(DemandKind kind);
 [[nodiscard]] std::string_view to_string(DemandKind kind);
 
-/// What was measured of this name (measures.json); null: nothing was. Lives as long as the evidence.
-[[nodiscard]] const MeasuredQuantity* quantity_of(const Evidence& evidence, std::string_view measure);
+/// Returns the measured quantity with this name (measures.json); null if not measured. Lives as long as the evidence.
+[[nodiscard]] const MeasuredQuantity* quantity_of(const JudgementInput& evidence, std::string_view measure);
 
-/// "acuity at 16.9 K at least 0.4 1/mrad"
+/// Returns the demand in words, "acuity at 16.9 K at least 0.4 1/mrad".
 [[nodiscard]] std::string in_words(const Demand& demand);
-/// The same as the first words of a line: "Acuity at 16.9 K at least 0.4 1/mrad".
+/// Returns the same at the start of a line: "Acuity at 16.9 K at least 0.4 1/mrad".
 [[nodiscard]] std::string title(const Demand& demand);
 
 }  // namespace todbench

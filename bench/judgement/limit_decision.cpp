@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/limit_decision.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 namespace {
@@ -17,7 +18,7 @@ double below(double z, const std::optional<double>& degrees_of_freedom) {
   return cdf(distribution::Normal(), z);
 }
 
-/// The end of an interval with its distance from the value times `factor`; exactly the end where that is 1.
+/// Returns the end of an interval with its distance to the value multiplied by `factor`; exactly the end for factor 1.
 std::optional<double> scaled(const std::optional<double>& end, const LimitQuestion& asked, double factor) {
   if (!end || factor == 1) return end;
   if (!asked.value) return end;
@@ -28,7 +29,7 @@ std::optional<double> scaled(const std::optional<double>& end, const LimitQuesti
 std::optional<double> p_conformity(const LimitQuestion& asked) {
   if (!asked.value) return std::nullopt;
   const bool meets = asked.at_least ? *asked.value >= asked.limit : *asked.value <= asked.limit;
-  // From the value the limit lies on this side.
+  // This side of the interval faces the limit.
   const auto& side = meets == asked.at_least ? asked.interval.low : asked.interval.high;
   if (!side) return std::nullopt;
   double half = *side - *asked.value, distance = asked.limit - *asked.value;

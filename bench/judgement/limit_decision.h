@@ -1,4 +1,5 @@
-// One limit, one value with its interval: the decision by a named rule, and the probability that it is wrong.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Decision for one limit and one value with its interval by a named rule, and its probability of error.
 #pragma once
 
 #include <optional>
@@ -10,29 +11,29 @@ namespace todbench {
 
 enum class LimitScale {
   linear,
-  logarithmic,  ///< of a ratio, such as S75: the interval is symmetric in the logarithm
+  logarithmic,  ///< for ratio scales (S75): the interval is symmetric in the logarithm
 };
 
-/// What is asked. The interval is of 95 %.
+/// Input of a decision. The interval has 95 % confidence.
 struct LimitQuestion {
   std::optional<double> value{};
   Interval interval{};
   double limit = 0;
   bool at_least = true;  ///< false: at most
   LimitScale scale = LimitScale::linear;
-  std::optional<double> degrees_of_freedom{};  ///< of the interval; nothing: very many
+  std::optional<double> degrees_of_freedom{};  ///< of the interval; empty: infinite
 };
 
 struct LimitAnswer {
   ConformityDecision decision = ConformityDecision::inconclusive;
-  /// Probability that the true value meets the limit, with little prior knowledge (JCGM 106:2012, 7): normal, or
-  /// Student's t, with the half-width of the interval on the side of the limit. Nothing without a value or that side.
+  /// Probability that the true value meets the limit, with little prior knowledge (JCGM 106:2012, 7): normal or
+  /// Student's t, with the half-width towards the limit. Empty without a value or that end of the interval.
   std::optional<double> p_conformity{};
 };
 
-/// The guard band on each side is that side's half-width; with `guard_band_risk` that which leaves this risk of a wrong
-/// acceptance at the acceptance limit. A value on the limit meets it. What the interval leaves open is inconclusive
-/// under every rule. Precondition: 0 < guard_band_risk <= 0.5.
+/// Decides by `rule`. The guard band on each side is the half-width of that side, or with `guard_band_risk` the width
+/// that leaves this risk of a wrong acceptance at the acceptance limit. A value on the limit meets it. An open interval
+/// that does not decide is inconclusive under every rule. Precondition: 0 < guard_band_risk <= 0.5.
 [[nodiscard]] LimitAnswer decide(const LimitQuestion& question, ConformityRule rule,
                                  const std::optional<double>& guard_band_risk);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/measure_demands.h"
 
 #include <fmt/format.h>
@@ -7,14 +8,14 @@
 #include <cassert>
 #include <cmath>
 
-#include "acquisition/core/normal.h"
+#include "acquisition/base/normal.h"
 #include "bench/judgement/limit_decision.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
 
-/// A demand on a measure.
+/// Demand on a measure.
 struct MeasureDemand {
   DemandKind kind;
   LimitedMeasure measure;
@@ -40,9 +41,9 @@ constexpr std::array measure_demands{
     MeasureDemand{DemandKind::noise_tvh, LimitedMeasure::noise_tvh, LimitSide::at_most, "noise_tvh", "K",
                   "3-D noise tvh at most "},
     MeasureDemand{DemandKind::temperature_scale_at_least, LimitedMeasure::transfer_slope, LimitSide::at_least,
-                  "temperature_scale_at_least", "K/K", "contrast seen over contrast shown at least "},
+                  "temperature_scale_at_least", "K/K", "observed contrast over shown contrast at least "},
     MeasureDemand{DemandKind::temperature_scale_at_most, LimitedMeasure::transfer_slope, LimitSide::at_most,
-                  "temperature_scale_at_most", "K/K", "contrast seen over contrast shown at most "},
+                  "temperature_scale_at_most", "K/K", "observed contrast over shown contrast at most "},
     MeasureDemand{DemandKind::mtf_x, LimitedMeasure::mtf_x, LimitSide::at_least, "mtf_x", "1",
                   "MTF along x at the frequency of the plan at least "},
     MeasureDemand{DemandKind::mtf_y, LimitedMeasure::mtf_y, LimitSide::at_least, "mtf_y", "1",
@@ -76,10 +77,10 @@ const MeasureDemand& demand_of(DemandKind kind) {
   return *found;
 }
 
-/// Relative standard uncertainty of a measure from the budget.
+/// Returns the relative standard uncertainty of a measure from the budget.
 double stated_u(LimitedMeasure measure, const CurveUncertainty* uncertainty) {
   if (uncertainty == nullptr) return 0;
-  // A ratio of contrasts in one picture: what is common to both cancels.
+  // A ratio of contrasts in one picture: common errors cancel.
   if (is_modulation(measure) || measure == LimitedMeasure::distortion) return 0;
   if (measure == LimitedMeasure::response_time) return 0;
   if (is_ifov(measure)) return uncertainty->u_distance;
@@ -87,40 +88,43 @@ double stated_u(LimitedMeasure measure, const CurveUncertainty* uncertainty) {
   return of_scale ? uncertainty->u_scale : uncertainty->u_camera_scale;
 }
 
-/// Each side joined with what is stated, as the root of the sum of squares.
+/// Joins each side with the stated uncertainty (root sum of squares).
 Interval expanded(double value, const Interval& statistical, double relative_u) {
   const double stated = normal_z95 * relative_u * std::abs(value);
   Interval out;
   if (statistical.low) out.low = value - std::hypot(value - *statistical.low, stated);
-  // A size that cannot be negative, such as a noise, is not by its scale either.
+  // A quantity that cannot be negative, for example a noise, keeps its lower end at 0 or above.
   if (out.low && *statistical.low >= 0) out.low = std::max(0.0, *out.low);
   if (statistical.high) out.high = value + std::hypot(*statistical.high - value, stated);
   return out;
 }
 
-/// The interval of a size whose sign does not count: from 0 where both signs are possible.
+/// Returns the interval of an absolute value: from 0 if both signs are possible.
 Interval of_either_sign(const Interval& interval) {
   if (!interval.low || !interval.high) return {.low = 0, .high = {}};
   const double low = std::abs(*interval.low), high = std::abs(*interval.high);
   return {.low = *interval.low * *interval.high <= 0 ? 0 : std::min(low, high), .high = std::max(low, high)};
 }
 
-/// Behind a number; a ratio has none.
+/// Returns the unit to follow a number; empty for a ratio.
 std::string unit_words(std::string_view unit) {
   return unit == "1" ? std::string() : " " + std::string(unit);
 }
 
 std::string words_of(const Interval& interval, std::string_view unit) {
-  const auto side = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "open"; };
-  return fmt::format("95 % interval {} to {}{}", side(interval.low), side(interval.high), unit_words(unit));
+  const auto& [low, high] = interval;
+  if (low && high) return fmt::format("95 % interval {:.4g} to {:.4g}{}", *low, *high, unit_words(unit));
+  if (low) return fmt::format("one-sided 95 % limit: above {:.4g}{}", *low, unit_words(unit));
+  if (high) return fmt::format("one-sided 95 % limit: below {:.4g}{}", *high, unit_words(unit));
+  return "no interval";
 }
 
-Demand judged(const MeasureDemand& asked, double limit, const Evidence& evidence) {
+Demand judged(const MeasureDemand& asked, double limit, const JudgementInput& evidence) {
   Demand demand{.kind = asked.kind, .limit = limit};
   demand.conformity = ConformityDecision::inconclusive;
   const MeasuredQuantity* measured = quantity_of(evidence, to_string(asked.measure));
   if (measured == nullptr || !measured->value) {
-    demand.reason = "this was not measured";
+    demand.reason = "this quantity was not measured";
     return demand;
   }
   demand.result = measured->value;
@@ -146,7 +150,7 @@ Demand judged(const MeasureDemand& asked, double limit, const Evidence& evidence
 }
 
 template <DemandKind kind>
-std::vector<Demand> judge_measure(const Evidence& evidence) {
+std::vector<Demand> judge_measure(const JudgementInput& evidence) {
   const MeasureDemand& asked = demand_of(kind);
   std::vector<Demand> demands;
   for (const MeasureLimit& limits : evidence.limits.measures) {

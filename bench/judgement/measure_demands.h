@@ -1,4 +1,5 @@
-// Demands on physical measures: their rows in the table of demands.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Demands on physical measures: rows of the table of demand kinds.
 #pragma once
 
 #include <optional>
@@ -7,9 +8,9 @@
 
 namespace todbench {
 
-/// Precondition: a kind of a physical measure.
+/// Returns the row. Precondition: `kind` is a physical measure.
 [[nodiscard]] DemandKindRow measure_row(DemandKind kind);
-/// Of a demand on a physical measure; nothing of another.
+/// Returns the measure of a demand kind; empty if it is not about a physical measure.
 [[nodiscard]] std::optional<LimitedMeasure> limited_measure_of(DemandKind kind);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/uncertainty_budget.h"
 
 #include <fmt/format.h>
@@ -6,8 +7,8 @@
 #include <numbers>
 #include <set>
 
-#include "acquisition/core/distributions.h"
-#include "acquisition/core/rng.h"
+#include "acquisition/base/distributions.h"
+#include "acquisition/base/rng.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -21,20 +22,22 @@ tl::unexpected<Error> wrong(const BudgetRow& row, const std::string& sentence) {
   return fail(ErrorCode::invalid_input, "row '" + one_line(row.name) + "': " + sentence);
 }
 
-/// The unit of a row that needs no conversion has to be the result's.
+/// Requires that a row without a conversion has the unit of the result.
 Result<void> check_units(const UncertaintyBudget& budget) {
   const BudgetRow* first = nullptr;
   for (const BudgetRow& row : budget.rows) {
     if (row.sensitivity) continue;
     if (!budget.unit.empty() && !row.unit.empty() && row.unit != budget.unit) {
-      return wrong(row, "is in '" + one_line(row.unit) + "' and the result in '" + one_line(budget.unit) +
-                            "', expected a sensitivity that converts it");
+      return wrong(row, "has the unit '" + one_line(row.unit) + "', but the result has '" + one_line(budget.unit) +
+                            "': add a sensitivity that converts the unit");
     }
     if (!first) first = &row;
     if (row.unit == first->unit) continue;
-    const auto said = [](const std::string& unit) { return unit.empty() ? "no unit" : "'" + one_line(unit) + "'"; };
-    return wrong(row, "has " + said(row.unit) + " and row '" + one_line(first->name) + "' " + said(first->unit) +
-                          ": units cannot be mixed without a sensitivity");
+    const auto said = [](const std::string& unit) {
+      return unit.empty() ? "no unit" : "the unit '" + one_line(unit) + "'";
+    };
+    return wrong(row, "has " + said(row.unit) + ", but row '" + one_line(first->name) + "' has " + said(first->unit) +
+                          ": rows with different units need a sensitivity");
   }
   return {};
 }
@@ -43,21 +46,22 @@ Result<void> check(const UncertaintyBudget& budget) {
   if (budget.rows.empty()) return fail(ErrorCode::invalid_input, "the budget has no rows");
   std::set<std::string> names;
   for (const BudgetRow& row : budget.rows) {
-    if (!names.insert(row.name).second) return wrong(row, "is there twice");
+    if (!names.insert(row.name).second) return wrong(row, "occurs twice");
     if (!std::isfinite(row.value) || row.value < 0)
-      return wrong(row, "an uncertainty is a number of 0 or more, found " + fmt::format("{}", row.value));
+      return wrong(row, "the uncertainty must be a number of at least 0, found " + fmt::format("{}", row.value));
     if (!(std::isfinite(row.coverage_factor) && row.coverage_factor > 0))
-      return wrong(row, "the coverage factor has to be above 0");
+      return wrong(row, "the coverage factor must be greater than 0");
     if (row.coverage_factor != 1 && row.distribution != BudgetDistribution::normal)
-      return wrong(row, "only a normal value has a coverage factor");
+      return wrong(row, "only a normal distribution has a coverage factor");
     if (row.degrees_of_freedom && !(*row.degrees_of_freedom >= 1))
-      return wrong(row, "expected one degree of freedom or more");
-    if (row.sensitivity && !std::isfinite(*row.sensitivity)) return wrong(row, "the sensitivity is no number");
+      return wrong(row, "expected at least one degree of freedom");
+    if (row.sensitivity && !std::isfinite(*row.sensitivity))
+      return wrong(row, "the sensitivity is not a finite number");
   }
   return check_units(budget);
 }
 
-/// One draw of a row with standard deviation 1, or scaled Student's t for a normal one of few degrees of freedom.
+/// Draws of a row: standard deviation 1, or scaled Student's t for a normal row with finite degrees of freedom.
 class RowDraws {
  public:
   RowDraws(const BudgetRow& row, RandomStream random) : row_(row), random_(random) {}
@@ -73,8 +77,8 @@ class RowDraws {
       case BudgetDistribution::normal:
         break;
     }
-    // Student's t of any degrees of freedom from two uniform numbers (Bailey 1994); its limit is that of Box and
-    // Muller.
+    // Student's t with any degrees of freedom from two uniform numbers (Bailey 1994); its limit is the method of Box
+    // and Muller.
     const double angle = std::cos(2 * std::numbers::pi * random_.uniform(2 * index + 1));
     const double nu = row_.degrees_of_freedom.value_or(0);
     const double square = row_.degrees_of_freedom ? nu * std::expm1(-2 / nu * std::log(first)) : -2 * std::log(first);
@@ -86,7 +90,7 @@ class RowDraws {
   RandomStream random_;
 };
 
-/// 95 % of |sum| lie below it; every row is symmetric.
+/// Returns the bound below which 95 % of |sum| lie; every row is symmetric.
 double monte_carlo_half_width(const UncertaintyBudget& budget, const std::vector<BudgetShare>& shares,
                               std::uint64_t seed, int draws) {
   std::vector<double> sums(static_cast<std::size_t>(draws), 0.0);
@@ -112,9 +116,11 @@ Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint6
     out.shares.push_back({standard, std::abs(sensitivity_of(row)) * standard, 0});
     largest = std::max(largest, out.shares.back().contribution);
   }
-  if (!(largest > 0)) return fail(ErrorCode::invalid_input, "nothing in the budget is uncertain");
-  if (!std::isfinite(largest)) return fail(ErrorCode::invalid_input, "a row is too large for a number");
-  // In units of the largest row no square overflows.
+  if (!(largest > 0)) return fail(ErrorCode::invalid_input, "all contributions to the budget are 0");
+  if (!std::isfinite(largest))
+    return fail(ErrorCode::invalid_input,
+                "a contribution is too large: check the values and sensitivities of the rows");
+  // In units of the largest row, squares cannot overflow.
   double variance = 0, fourth = 0;
   for (std::size_t r = 0; r < out.shares.size(); ++r) {
     const double square = std::pow(out.shares[r].contribution / largest, 2);
@@ -129,7 +135,9 @@ Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint6
   out.expanded_gum = out.k * out.u;
   if (draws > 0) out.expanded_monte_carlo = monte_carlo_half_width(budget, out.shares, seed, draws);
   out.expanded = std::max(out.expanded_gum, out.expanded_monte_carlo);
-  if (!std::isfinite(out.expanded)) return fail(ErrorCode::invalid_input, "a row is too large for a number");
+  if (!std::isfinite(out.expanded))
+    return fail(ErrorCode::invalid_input,
+                "a contribution is too large: check the values and sensitivities of the rows");
   return out;
 }
 

@@ -1,4 +1,5 @@
-// An uncertainty budget: rows, their combination by the GUM, and its check by Monte Carlo.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Uncertainty budget: rows, their combination by the GUM (JCGM 100:2008), and a Monte Carlo check.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/plan/budget_row.h"
 
 namespace todbench {
@@ -20,35 +21,35 @@ struct UncertaintyBudget {
   std::vector<BudgetRow> rows;
 };
 
-/// A row's part.
+/// Contribution of a row.
 struct BudgetShare {
-  double standard_uncertainty = 0;  ///< in the row's unit
-  double contribution = 0;          ///< |sensitivity| times that, in the result's unit
+  double standard_uncertainty = 0;  ///< in the unit of the row
+  double contribution = 0;          ///< |sensitivity| times that, in the unit of the result
   double share_percent = 0;         ///< of the variance
 };
 
 struct CombinedUncertainty {
-  double u = 0;                     ///< standard
-  std::optional<double> nu_eff{};   ///< Welch-Satterthwaite; nothing: very many
-  double k = 0;                     ///< Student's t for 95 %, of nu_eff as it is
+  double u = 0;                     ///< standard uncertainty
+  std::optional<double> nu_eff{};   ///< Welch-Satterthwaite; empty: infinite
+  double k = 0;                     ///< Student's t for 95 % and nu_eff, not truncated
   double expanded_gum = 0;          ///< k u
   double expanded_monte_carlo = 0;  ///< half-width of the 95 % interval (JCGM 101:2008)
   double expanded = 0;              ///< the larger of both
-  std::vector<BudgetShare> shares;  ///< of each row
+  std::vector<BudgetShare> shares;  ///< one per row
 };
 
-/// Draws of the Monte Carlo check: the half-width is known to 0.15 % (one standard error) or better.
+/// Draws of the Monte Carlo check: the half-width has a standard error of at most 0.15 %.
 inline constexpr int budget_draws = 1000000;
-/// The same in a session, for every contrast: 0.35 %.
+/// Draws for each contrast of a session: 0.35 %.
 inline constexpr int session_budget_draws = 200000;
 
-/// `invalid_input` in one sentence that names the row: no rows, two of one name, a negative value or one that is no
-/// number, degrees of freedom below 1, rows in different units without a sensitivity that converts them, or nothing
-/// uncertain at all. The seed makes the draws; with none of them `expanded` is that of the GUM.
+/// Combines the rows. `seed` seeds the draws; without draws `expanded` is that of the GUM. Errors: `invalid_input`, one
+/// sentence that names the row (no rows, duplicate name, negative or non-finite value, degrees of freedom below 1,
+/// different units without a sensitivity, total uncertainty of 0).
 [[nodiscard]] Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint64_t seed,
                                                    int draws = budget_draws);
 
-/// Reads the file of `todbench budget` (docs/conformity.md). `invalid_input` with file and line.
+/// Reads the file of `todbench budget` (docs/method/conformity.md). Errors: `invalid_input` with file and line.
 [[nodiscard]] Result<UncertaintyBudget> read_budget(const std::filesystem::path& file);
 [[nodiscard]] Result<UncertaintyBudget> parse_budget(std::string_view text, const std::string& name);
 

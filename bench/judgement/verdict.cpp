@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/verdict.h"
 
 #include <algorithm>
@@ -23,19 +24,19 @@ struct Decided {
 Decided decided(const Verdict& verdict, const TodCurve& curve) {
   if (any(verdict, VerdictKind::fail)) return {VerdictKind::fail, "at least one demand is not met"};
   if (verdict.ended_early) return {VerdictKind::inconclusive, "the run ended early: " + *verdict.ended_early};
-  if (curve.points.empty()) return {VerdictKind::inconclusive, "nothing was measured"};
+  if (curve.points.empty()) return {VerdictKind::inconclusive, "no contrast was measured"};
   if (any(verdict, VerdictKind::inconclusive))
-    return {VerdictKind::inconclusive, "no demand is violated, but at least one is not decided by these data"};
-  if (!limits_asked(verdict)) return {VerdictKind::pass, "no limits were asked for, every threshold was found"};
+    return {VerdictKind::inconclusive, "no demand is violated, but these data do not decide at least one demand"};
+  if (!limits_asked(verdict)) return {VerdictKind::pass, "the plan has no limits, and every threshold was identified"};
   return {VerdictKind::pass, "every demand is met"};
 }
 
-/// "; without the uncertainty of distance, form", or nothing.
+/// Returns "; the intervals do not include the uncertainty of distance, form", or an empty text.
 std::string without(const Verdict& verdict) {
   if (!verdict.not_stated || verdict.not_stated->empty()) return {};
   std::string names;
   for (const std::string& name : *verdict.not_stated) names += (names.empty() ? "" : ", ") + name;
-  return "; without the uncertainty of " + names;
+  return "; the intervals do not include the uncertainty of " + names;
 }
 
 }  // namespace
@@ -60,19 +61,24 @@ std::string in_words(ConformityRule rule, const std::optional<double>& guard_ban
     case ConformityRule::guarded_acceptance_and_rejection:
       if (guard_band_risk)
         return "Guarded acceptance and guarded rejection with " + band +
-               " (after ILAC-G8:09/2019): inconclusive between, or when the threshold cannot be identified.";
+               " (after ILAC-G8:09/2019): pass if the result meets the limit by at least the guard band, fail if it "
+               "misses the limit by more than the guard band, otherwise inconclusive. The result is also inconclusive "
+               "if the threshold cannot be identified.";
       return "Guarded acceptance and guarded rejection with the 95 % confidence interval as guard band (after "
-             "ILAC-G8:09/2019): pass when the whole interval meets the limit, fail when the whole interval misses it, "
-             "inconclusive when the limit lies within the interval or the threshold cannot be identified.";
+             "ILAC-G8:09/2019): pass if the whole interval meets the limit, fail if the whole interval misses it, "
+             "inconclusive if the limit lies within the interval or the threshold cannot be identified.";
     case ConformityRule::simple:
-      return "Simple acceptance (ILAC-G8:09/2019, 4.2.1): pass when the result meets the limit, else fail; a result at "
-             "the limit is wrongly accepted or rejected with a probability of up to 50 %.";
+      return "Simple acceptance (ILAC-G8:09/2019, 4.2.1): pass if the result meets the limit, otherwise fail. A result "
+             "at the limit is wrongly accepted or rejected with a probability of up to 50 %.";
     case ConformityRule::guarded:
-      return "Guarded acceptance with " + band + " (ILAC-G8:09/2019, 4.2.2): pass inside by the guard band, else fail.";
+      return "Guarded acceptance with " + band +
+             " (ILAC-G8:09/2019, 4.2.2): pass if the result meets the limit by at least the guard band, otherwise "
+             "fail.";
     case ConformityRule::non_binary:
       return "Non-binary with " + band +
-             " (ILAC-G8:09/2019, 4.2.3): pass inside by the guard band, fail outside by it, between a conditional pass "
-             "or a conditional fail, which the verdict counts as inconclusive.";
+             " (ILAC-G8:09/2019, 4.2.3): pass if the result meets the limit by at least the guard band, fail if it "
+             "misses the limit by more than the guard band. Between them the result is a conditional pass or a "
+             "conditional fail, which the verdict counts as inconclusive.";
   }
   return "";
 }
@@ -92,7 +98,7 @@ std::string_view remark_on(JudgedWhen when) {
     case JudgedWhen::at_end_of_run:
       return "";
     case JudgedWhen::afterwards:
-      return "The run of this session stored no verdict; it was judged afterwards, by the limits of its plan.";
+      return "The run of this session stored no verdict. The session was judged afterwards, by the limits of its plan.";
   }
   return "";
 }
@@ -115,7 +121,7 @@ bool limits_asked(const Verdict& verdict) {
                      [](const Demand& demand) { return demand.kind != DemandKind::identified; });
 }
 
-Verdict judge(const Evidence& evidence) {
+Verdict judge(const JudgementInput& evidence) {
   const LimitsPlan& limits = evidence.limits;
   Verdict verdict{.rule = limits.rule,
                   .rule_in_words = in_words(limits.rule, limits.guard_band_risk),

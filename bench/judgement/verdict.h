@@ -1,5 +1,6 @@
-// Pass, fail or inconclusive: the limits of a plan against what was measured, as a value that is stored with the
-// session, and the exit code of the program.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Verdict of a session (pass, fail or inconclusive) from the limits of the plan and the results, and the exit code of
+// the program.
 #pragma once
 
 #include <array>
@@ -19,119 +20,121 @@ namespace todbench {
 enum class VerdictKind { pass, fail, inconclusive };
 [[nodiscard]] std::string_view to_string(VerdictKind kind);
 
-/// How an interval and a limit make a decision: as the plan agreed.
+/// Returns the decision rule of the plan in words.
 [[nodiscard]] std::string in_words(ConformityRule rule, const std::optional<double>& guard_band_risk = {});
 
-/// When a verdict was made.
+/// Time at which a verdict was made.
 enum class JudgedWhen {
   at_end_of_run,
-  afterwards,  ///< the run stored none: an older program, or a run that was cut off
+  afterwards,  ///< the run stored none: older program or run that was cut off
 };
 [[nodiscard]] std::string_view to_string(JudgedWhen when);
-/// A sentence for a verdict that its run did not make; empty for one that it made.
+/// Returns a sentence for a verdict that was made afterwards; otherwise empty.
 [[nodiscard]] std::string_view remark_on(JudgedWhen when);
 
-/// Of which ratio of camera and twin an equivalence is demanded.
+/// Ratio of camera and twin that an equivalence demand uses.
 enum class RatioKind {
-  unpaired,  ///< of two thresholds
-  paired,    ///< by the phases that both saw (tod/comparison/paired_ratio.h)
+  unpaired,  ///< ratio of the two thresholds
+  paired,    ///< from the phases that both observed (tod/comparison/paired_ratio.h)
 };
 inline constexpr std::array all_ratio_kinds{RatioKind::unpaired, RatioKind::paired};
 [[nodiscard]] constexpr std::string_view to_string(RatioKind kind) {
   return kind == RatioKind::paired ? "paired" : "unpaired";
 }
 
-/// What the fleet of the plan says of a demand (fleet_prior.h).
+/// Risks of a demand given the fleet of the plan (fleet_prior.h).
 struct DemandFleet {
-  int units = 0;                                          ///< that the fleet is known from
+  int units = 0;                                          ///< number of units of the fleet prior
   double p_conformity = 0;                                ///< given the result and the fleet
-  double consumer_risk = 0, producer_risk = 0;            ///< global: of this rule over the fleet
-  double consumer_risk_most = 0, producer_risk_most = 0;  ///< as far as so many units tell, 95 %
+  double consumer_risk = 0, producer_risk = 0;            ///< global risks of this rule over the fleet
+  double consumer_risk_most = 0, producer_risk_most = 0;  ///< upper bounds for a fleet known from so few units, 95 %
 };
 
-/// One demand with what was found. Its unit and its words follow from the kind (demand_kinds.h).
+/// Demand with its result. Unit and words follow from the kind (demand_kinds.h).
 struct Demand {
   DemandKind kind = DemandKind::identified;
-  std::optional<double> delta_t_k{};  ///< set contrast; nothing where the demand is not about one contrast
-  std::optional<double> limit{};      ///< nothing: the demand is no number
+  std::optional<double> delta_t_k{};  ///< set contrast; empty if the demand is not about one contrast
+  std::optional<double> limit{};      ///< empty: the demand has no number
   std::optional<double> result{};
-  Interval interval{};        ///< that decides
+  Interval interval{};        ///< interval that decides
   int interval_percent = 95;  ///< confidence of the interval
-  /// Of the finite number of trials alone, where a budget expands the interval that decides.
+  /// Interval of the finite number of trials alone, if the budget expands the one that decides.
   std::optional<Interval> statistical{};
   VerdictKind decision = VerdictKind::inconclusive;
   std::string reason{};  ///< a sentence
-  /// The decision in the words of the rule: a conditional one is inconclusive above. Nothing: no number is demanded.
+  /// Decision in the terms of the rule; `decision` shows conditional ones as inconclusive. Empty: the demand has no
+  /// number.
   std::optional<ConformityDecision> conformity{};
-  /// Probability that the demand is met, given the result (decide()). Nothing: not known.
+  /// Probability that the demand is met, given the result (decide()). Empty: unknown.
   std::optional<double> p_conformity{};
 
-  std::optional<DemandFleet> fleet{};  ///< where the plan states one
+  std::optional<double> degrees_of_freedom{};  ///< of the interval; empty: infinite
 
-  std::optional<std::string> zone{};  ///< of the frame; nothing where the demand is not about one
-  std::optional<RatioKind> ratio{};   ///< of a demanded equivalence that could be judged
+  std::optional<DemandFleet> fleet{};  ///< if the plan states one
 
-  /// Specific risks of this decision: of a wrong acceptance where it is to pass, of a wrong rejection where to fail.
+  std::optional<std::string> zone{};  ///< of the frame; empty if the demand is not about a zone
+  std::optional<RatioKind> ratio{};   ///< of an equivalence demand that could be judged
+
+  /// Specific risks of this decision: of a wrong acceptance for a pass, of a wrong rejection for a fail.
   [[nodiscard]] std::optional<double> consumer_risk() const;
   [[nodiscard]] std::optional<double> producer_risk() const;
 };
 
-/// verdict.json of a session. Made once, by judge(); everything else shows it.
+/// Content of verdict.json. Made once by judge(); other code only presents it.
 struct Verdict {
   VerdictKind decision = VerdictKind::inconclusive;
-  std::string reason{};  ///< of the decision, a sentence
+  std::string reason{};  ///< reason of the decision, a sentence
   ConformityRule rule = ConformityRule::guarded_acceptance_and_rejection;
   std::string rule_in_words{};
   std::vector<Demand> demands{};
-  std::optional<std::string> ended_early{};  ///< why the run did
+  std::optional<std::string> ended_early{};  ///< reason of an early end of the run
   JudgedWhen judged = JudgedWhen::at_end_of_run;
-  /// Rows that the budget of the plan leaves out; nothing: the plan has no budget.
+  /// Rows missing from the budget of the plan; empty: the plan has no budget.
   std::optional<std::vector<std::string>> not_stated{};
 };
 
-/// A physical measure of the session, in its unit.
+/// Physical measure of the session, in its unit.
 struct MeasuredQuantity {
   std::string measure;  ///< as in measures.json
   std::optional<double> value{};
   Interval ci95{};
 };
 
-/// What is judged. Borrows for the call.
-struct Evidence {
+/// Input of judge(). Borrows for the call.
+struct JudgementInput {
   const LimitsPlan& limits;
-  const TodCurve& curve;  ///< without points where the run ended before there was one
+  const TodCurve& curve;  ///< without points if the run ended before the first one
   const std::optional<Comparison>& comparison;
   std::optional<std::string> ended_early{};
   JudgedWhen judged = JudgedWhen::at_end_of_run;
   const CurveUncertainty* uncertainty = nullptr;  ///< of the curve; null: the plan has no budget
-  /// Of the camera, or of the simulated sensor alone; nothing: none was measured.
+  /// Measures of the camera, or of the simulated sensor alone; empty: none measured.
   std::optional<std::vector<MeasuredQuantity>> measures{};
 };
 
-/// Judges every kind of demand. The whole fails if one demand fails, is inconclusive if one is, if nothing was measured
-/// or if the run ended early (what is missing could have changed it), and passes otherwise. The only place that
-/// decides.
-[[nodiscard]] Verdict judge(const Evidence& evidence);
+/// Judges all demands. The verdict is fail if one demand fails; inconclusive if one demand is, if there are no results,
+/// or if the run ended early (missing data could change it); otherwise pass. The only code that decides.
+[[nodiscard]] Verdict judge(const JudgementInput& evidence);
 
-/// The plan has limits. Without any a verdict says only whether every threshold was found.
+/// Returns whether the plan has limits. Without limits a verdict states only whether every threshold was found.
 [[nodiscard]] bool limits_asked(const Verdict& verdict);
 
-/// A fit says where the threshold is: it has a point and both sides of its interval, and its slope is not at the lower
-/// bound, nor the point one of a ridge (fewer sizes than parameters).
+/// Returns whether a fit identifies the threshold: it has a value and both ends of its interval, the slope is not at
+/// its lower bound, and the likelihood has no ridge (fewer sizes than parameters).
 [[nodiscard]] bool threshold_identified(const PsychometricFit& fit);
 
-/// Conditional decisions are inconclusive.
+/// Converts decisions; conditional ones become inconclusive.
 [[nodiscard]] VerdictKind kind_of(ConformityDecision decision);
 [[nodiscard]] ConformityDecision conformity_of(VerdictKind kind);
-/// A comparison as the answer to a demanded equivalence.
+/// Returns the decision on an equivalence demand.
 [[nodiscard]] VerdictKind decision_of(ComparisonVerdict verdict);
 
-/// Exit codes: 0 pass, 1 fail, 3 inconclusive.
+/// Returns the exit code: 0 pass, 1 fail, 3 inconclusive.
 [[nodiscard]] int exit_code(VerdictKind kind);
-/// 0 where the threshold is identified and fit for a decision, else 3.
+/// Returns 0 if the threshold is identified and fit for a decision, otherwise 3.
 [[nodiscard]] int exit_code(const PsychometricFit& fit, const Adequacy& adequacy = {});
-/// 2 invalid_input, 4 not_found, 5 disconnected, integrity, timeout, 6 calibration, 7 io (a full disk) and internal,
-/// 130 interrupted.
+/// Returns 2 for invalid_input, 4 not_found, 5 disconnected, integrity, timeout, 6 calibration, 7 io (a full disk) and
+/// internal, 130 interrupted.
 [[nodiscard]] int exit_code(ErrorCode code);
 
 }  // namespace todbench

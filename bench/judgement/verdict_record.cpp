@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/verdict_record.h"
 
 #include <array>
@@ -41,6 +42,7 @@ Json demand_json(const Demand& demand) {
                           {"p_conformity", json_number(demand.p_conformity)},
                           {"consumer_risk", json_number(demand.consumer_risk())},
                           {"producer_risk", json_number(demand.producer_risk())}};
+    if (demand.degrees_of_freedom) json["conformity"]["degrees_of_freedom"] = json_number(demand.degrees_of_freedom);
   }
   if (const auto& fleet = demand.fleet) {
     json["fleet"] = {{"units", fleet->units},
@@ -72,6 +74,8 @@ Demand demand_from(const JsonReader& reader) {
   if (const JsonReader conformity = reader.at_if_there("conformity"); !conformity.is_null()) {
     demand.conformity = conformity.at("decision").named(conformity_decisions);
     demand.p_conformity = conformity.at("p_conformity").optional_number();
+    if (const JsonReader freedom = conformity.at_if_there("degrees_of_freedom"); !freedom.is_null())
+      demand.degrees_of_freedom = freedom.number();
   }
   if (const JsonReader fleet = reader.at_if_there("fleet"); !fleet.is_null()) {
     demand.fleet = DemandFleet{.units = static_cast<int>(fleet.at("units").whole()),

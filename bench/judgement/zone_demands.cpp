@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/zone_demands.h"
 
 #include <algorithm>
@@ -32,18 +33,18 @@ const ZoneDemand& zone_demand_of(DemandKind kind) {
   return *found;
 }
 
-Demand judged_zone(const ZoneDemand& asked, const ZoneLimit& zone, double limit, const Evidence& evidence) {
+Demand judged_zone(const ZoneDemand& asked, const ZoneLimit& zone, double limit, const JudgementInput& evidence) {
   Demand demand{.kind = asked.kind, .limit = limit, .zone = zone.name};
   demand.conformity = ConformityDecision::inconclusive;
   const std::string name = std::string(asked.measure) + (zone.name == whole_frame_zone ? "" : " (" + zone.name + ")");
   const MeasuredQuantity* measured = quantity_of(evidence, name);
   if (measured == nullptr || !measured->value) {
-    demand.reason = "this was not measured";
+    demand.reason = "this quantity was not measured";
     return demand;
   }
   demand.result = measured->value;
   demand.interval = measured->ci95;
-  // A count is what it is; where a part of the zone was not seen there may be more.
+  // Counts are exact. If part of the zone was not observed, the count is a lower bound.
   const LimitAnswer answer =
       decide({.value = demand.result, .interval = demand.interval, .limit = limit, .at_least = false},
              evidence.limits.rule, evidence.limits.guard_band_risk);
@@ -51,12 +52,12 @@ Demand judged_zone(const ZoneDemand& asked, const ZoneLimit& zone, double limit,
   demand.p_conformity = answer.p_conformity;
   demand.decision = kind_of(answer.decision);
   demand.reason = "found " + number_text(*measured->value);
-  if (!measured->ci95.high) demand.reason += " in the part of the zone that was seen";
+  if (!measured->ci95.high) demand.reason += " in the observed part of the zone";
   return demand;
 }
 
 template <DemandKind kind>
-std::vector<Demand> judge_zones(const Evidence& evidence) {
+std::vector<Demand> judge_zones(const JudgementInput& evidence) {
   const ZoneDemand& asked = zone_demand_of(kind);
   std::vector<Demand> demands;
   for (const ZoneLimit& zone : evidence.limits.zones)

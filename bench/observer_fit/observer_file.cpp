@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/observer_fit/observer_file.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ std::string toml_text(std::string_view text) {
   return out + "\"";
 }
 
-/// With a point or an exponent, so that it is a float of TOML.
+/// With a point or an exponent, so that TOML reads a float.
 std::string decimal(double value) {
   const std::string text = number_text(value);
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
@@ -30,7 +31,7 @@ std::string parameter(const PeopleFit& fit, std::size_t k) {
   if (fit.ci95[k].low) text += "ci95_low = " + decimal(*fit.ci95[k].low) + "\n";
   if (fit.ci95[k].high) text += "ci95_high = " + decimal(*fit.ci95[k].high) + "\n";
   if (fit.spread[k].between_sd) {
-    text += "between_sd = " + decimal(*fit.spread[k].between_sd) + "  # between people, of " +
+    text += "between_sd = " + decimal(*fit.spread[k].between_sd) + "  # standard deviation between people, of " +
             (all_observer_keys[k] == ObserverKey::lapse ? "the value" : "its logarithm") + "\n";
   }
   return text;
@@ -60,11 +61,10 @@ std::string observer_file(const PeopleFit& fit) {
     if (fit.options.free[k]) free += (free.empty() ? "" : ", ") + toml_text(to_string(all_observer_keys[k]));
   }
   std::string text = fmt::format(
-      "# Template observer fitted to {} answers of {} by todbench observer fit: the model whose parameters suit these\n"
-      "# people best under these conditions, not a model of people in general.\n"
-      "name = {}\n\n"
-      "blur_sigma_samples = {}\ninternal_noise = {}\nsensor_noise_factor = {}\nsearch_range_samples = {}\n"
-      "search_step_samples = {}\nwindow_size_factor = {}\nwindow_margin_pitch = {}\n",
+      "# Template observer fitted to {} answers of {} by todbench observer fit. Its parameters suit these people "
+      "best\n# under these conditions. It is not a model of people in general.\nname = {}\n\nblur_sigma_samples = "
+      "{}\ninternal_noise = {}\nsensor_noise_factor = {}\nsearch_range_samples = {}\nsearch_step_samples = "
+      "{}\nwindow_size_factor = {}\nwindow_margin_pitch = {}\n",
       answers, fit.people.size() == 1 ? "one person" : fmt::format("{} people", fit.people.size()),
       toml_text(spec.name), decimal(spec.blur_sigma_samples), decimal(spec.internal_noise),
       decimal(spec.sensor_noise_factor), decimal(spec.search_range_samples), decimal(spec.search_step_samples),

@@ -1,4 +1,5 @@
-// The parameter file of an observer that was fitted to people.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parameter file of an observer fitted to people.
 #pragma once
 
 #include <string>
@@ -7,9 +8,9 @@
 
 namespace todbench {
 
-/// A description of an observer as plans name it, with a table [fit] that says where it comes from: program, parameters
-/// with intervals, correlations, and the hashes of the sessions. The lapse stands there only: the template observer has
-/// none.
+/// Returns an observer description as plans name it, with a table [fit] of its origin: program, parameters with
+/// intervals, correlations, and hashes of the sessions. The lapse rate stands only there, because the template observer
+/// has none.
 [[nodiscard]] std::string observer_file(const PeopleFit& fit);
 
 }  // namespace todbench

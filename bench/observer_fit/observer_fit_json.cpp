@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/observer_fit/observer_fit_json.h"
 
 #include <string>

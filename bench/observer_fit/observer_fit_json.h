@@ -1,4 +1,5 @@
-// What `observer fit --json` says.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Output of `observer fit --json`.
 #pragma once
 
 #include "bench/observer_fit/people_fit.h"

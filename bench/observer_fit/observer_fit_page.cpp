@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/observer_fit/observer_fit_page.h"
 
 #include <fmt/format.h>
@@ -22,11 +23,12 @@ RichText estimate(const std::optional<double>& value, const Interval& interval) 
 VerdictBox verdict(const PeopleFit& fit) {
   VerdictBox box;
   box.mood = fit.usable() ? Mood::good : fit.accepted ? Mood::open : Mood::bad;
-  box.word = fit.usable() ? "✓ MODEL FITS" : fit.accepted ? "? NOT IDENTIFIED" : "✗ MODEL REFUSED";
-  box.paragraphs.push_back(plain(fmt::format(
-      "Smallest probability over the people that the fitted model answers as unusually as the person did: {}. It is "
-      "refused at {} shared by the people or less.",
-      probability(fit.least_p), probability(fit.options.least_p))));
+  box.word = fit.usable() ? "✓ MODEL FITS" : fit.accepted ? "? NOT IDENTIFIED" : "✗ MODEL REJECTED";
+  box.paragraphs.push_back(
+      plain(fmt::format("The test asks how often the fitted model itself gives answers at least as unusual as those of "
+                        "the person. The smallest probability over the people is {}. The model is rejected if it is at "
+                        "most {} divided by the number of people.",
+                        probability(fit.least_p), probability(fit.options.least_p))));
   for (const std::string& sentence : fit.not_identified) box.paragraphs.push_back(plain(sentence));
   return box;
 }
@@ -35,7 +37,7 @@ Section parameters(const PeopleFit& fit) {
   Table table;
   table.header = {"Parameter", "Before", fit.people.size() == 1 ? "Fitted, 95 %" : "Mean over people, 95 %"};
   const bool several = fit.people.size() > 1;
-  if (several) table.header.insert(table.header.end(), {"Between people, 95 %", "All the same: p"});
+  if (several) table.header.insert(table.header.end(), {"Between people, 95 %", "Heterogeneity: p"});
   const ObserverValues before{fit.options.from.blur_sigma_samples, fit.options.from.internal_noise,
                               fit.options.from.sensor_noise_factor, 0};
   for (std::size_t k = 0; k < observer_key_count; ++k) {
@@ -50,17 +52,18 @@ Section parameters(const PeopleFit& fit) {
   }
   Section out{"Parameters", {std::move(table)}};
   if (several)
-    out.blocks.emplace_back(note(plain("Between people: standard deviation of the logarithm; of the lapse itself.")));
+    out.blocks.emplace_back(
+        note(plain("Between people: standard deviation of the logarithm of the parameter; for the lapse rate, of the "
+                   "rate itself.")));
   return out;
 }
 
 Section worth() {
-  return {
-      "What it is worth",
-      {Paragraph{plain("These are the parameters with which the template observer gives answers most like these, to "
-                       "these patches, in this presentation, for the people named here. A model that is not refused "
-                       "is not proven: it only was not told apart from these people by so many answers. Blur and "
-                       "internal noise stand for whatever acts like them, the display and its distance included.")}}};
+  return {"Validity of the model",
+          {Paragraph{plain("With these parameters the template observer answers most like the people named here, for "
+                           "these patches and this presentation. A model that is not rejected is not proven: this "
+                           "number of answers does not distinguish it from these people. Blur and internal noise "
+                           "include every effect that acts like them, such as the display and its distance.")}}};
 }
 
 PlotSeries curve_series(const FittedPerson& person, double contrast, PlotTone tone, bool model) {
@@ -86,7 +89,7 @@ Plot psychometric_plot(const FittedPerson& person, const std::string& id) {
   plot.id = id;
   plot.title = "Proportion correct against size";
   plot.description =
-      "Share of right answers of the person with Wilson intervals and of the fitted observer, by contrast.";
+      "Proportion correct of the person, with Wilson intervals, and of the fitted observer, by contrast.";
   double low = person.cells.front().size_mrad, high = low;
   std::set<double> contrasts;
   for (const ShownSize& shown : person.cells) {
@@ -111,7 +114,9 @@ Plot psychometric_plot(const FittedPerson& person, const std::string& id) {
 Plot residual_plot(const FittedPerson& person, const std::string& id) {
   Plot plot = psychometric_plot(person, id);
   plot.title = "Residuals against size";
-  plot.description = "Number correct less what the fitted observer expects, over its standard deviation.";
+  plot.description =
+      "Number of correct answers minus the number expected from the fitted observer, divided by its standard "
+      "deviation.";
   double most = 3;
   for (PlotSeries& series : plot.series) series.points.clear();
   std::erase_if(plot.series, [](const PlotSeries& series) { return series.marker == PlotMarker::none; });
@@ -135,7 +140,7 @@ Plot residual_plot(const FittedPerson& person, const std::string& id) {
 
 Table confusion(const Goodness& goodness) {
   Table table;
-  table.caption = "Answers by the direction of the triangle: given, and in brackets what the fitted observer expects";
+  table.caption = "Answers by direction of the triangle; in brackets: expected from the fitted observer";
   table.header = {"Triangle"};
   for (const Apex apex : all_apexes) table.header.push_back("Answer " + std::string(to_string(apex)));
   for (std::size_t t = 0; t < 4; ++t) {
@@ -151,16 +156,15 @@ Table confusion(const Goodness& goodness) {
 
 Table tests(const Goodness& goodness) {
   Table table;
-  table.caption =
-      fmt::format("What the answers were held against; {} answers of the model itself", goodness.replicates);
-  table.header = {"Looked at", "Statistic", "Expected", "p"};
+  table.caption = fmt::format("Goodness-of-fit tests, from {} simulated replicates of the model", goodness.replicates);
+  table.header = {"Test", "Statistic", "Expected", "p"};
   for (std::size_t k = 0; k < all_misfit_kinds.size(); ++k) {
     const MisfitTest& test = goodness.tests[k];
     table.rows.push_back({plain(words(to_string(all_misfit_kinds[k]))), plain(shown(test.statistic, 1)),
                           plain(shown(test.expected, 1)), plain(probability(test.p))});
   }
-  table.rows.push_back({plain("all together"), missing("the smallest of them"), missing("the smallest of them"),
-                        plain(probability(goodness.p))});
+  table.rows.push_back({plain("joint test"), missing("the joint test uses the smallest p of the tests"),
+                        missing("the joint test uses the smallest p of the tests"), plain(probability(goodness.p))});
   return table;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The page of an observer fitted to people.
 #pragma once
 
@@ -6,7 +7,7 @@
 
 namespace todbench {
 
-/// Parameters with intervals, what they are worth, and for each person residuals, figures and the confusion matrix.
+/// Parameters with intervals and adequacy, and for each person residuals, figures and the confusion matrix.
 [[nodiscard]] Document people_fit_document(const PeopleFit& fit);
 
 }  // namespace todbench

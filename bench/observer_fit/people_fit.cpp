@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/observer_fit/people_fit.h"
 
 #include <fmt/format.h>
@@ -75,16 +76,15 @@ Result<FittedPerson> fitted_person(const std::vector<AnsweredSession>& sessions,
   return FittedPerson{std::move(own), *std::move(fit), *std::move(goodness), std::move(question.cells)};
 }
 
-/// What the answers of one person leave open of a parameter.
+/// Returns a sentence if the answers of one person do not determine a parameter.
 std::optional<std::string> left_open(const PersonFit& fit, std::size_t k) {
   if (!fit.free[k]) return std::nullopt;
   const std::string name(to_string(all_observer_keys[k]));
-  if (!fit.ci95[k].low && !fit.ci95[k].high) return "the answers say nothing of " + name;
+  if (!fit.ci95[k].low && !fit.ci95[k].high) return "the answers do not determine " + name;
   const bool harmless = fit.values[k] <= least_values[k] * 1.0001 && fit.ci95[k].high &&
                         all_observer_keys[k] != ObserverKey::blur_sigma_samples;
-  if (fit.at_limit[k] && !harmless)
-    return name + " runs to the end of what is looked for, " + number_text(fit.values[k]);
-  if (!fit.ci95[k].high) return name + " has no upper limit";
+  if (fit.at_limit[k] && !harmless) return name + " lies at the end of its search range, " + number_text(fit.values[k]);
+  if (!fit.ci95[k].high) return "the interval of " + name + " has no upper limit";
   return std::nullopt;
 }
 
@@ -95,10 +95,10 @@ void find_left_open(PeopleFit& out) {
       if (const auto open = left_open(person.fit, k)) out.not_identified.push_back(who + *open);
     }
     const auto free = static_cast<std::size_t>(std::count(person.fit.free.begin(), person.fit.free.end(), true));
-    if (!person.fit.covariance) out.not_identified.push_back(who + "the answers do not tell the parameters apart");
+    if (!person.fit.covariance) out.not_identified.push_back(who + "the answers do not separate the parameters");
     if (person.fit.answers < 10 * free) {
-      out.not_identified.push_back(
-          who + fmt::format("{} answers are too few for {} parameters (ten each)", person.fit.answers, free));
+      out.not_identified.push_back(who + fmt::format("{} answers are too few for {} {}: each needs at least ten",
+                                                     person.fit.answers, free, free == 1 ? "parameter" : "parameters"));
     }
   }
 }
@@ -133,8 +133,8 @@ Result<AnsweredSession> answered_session(const std::filesystem::path& folder, co
   const auto refuse = [&](const std::string& why) {
     return fail(ErrorCode::invalid_input, folder.string() + ": " + why);
   };
-  if (!*human || (*human)->trials.empty()) return refuse("nobody has answered in this session");
-  if ((*human)->shown.empty()) return refuse("what was shown was not kept (there is no shown_human.csv)");
+  if (!*human || (*human)->trials.empty()) return refuse("this session has no answers of a person");
+  if ((*human)->shown.empty()) return refuse("the shown pictures were not kept: there is no shown_human.csv");
   auto sum = sha256_of_file(folder / "shown_human.csv");
   if (!sum) return tl::unexpected(sum.error());
   SensorSpec sensor = session.parts.sensor;
@@ -157,7 +157,7 @@ Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const People
   for (const AnsweredSession& session : out.sessions) {
     const auto [first, added] = seen.try_emplace(session.shown_sha256, session.folder);
     if (!added)
-      return fail(ErrorCode::invalid_input, session.folder + " and " + first->second + " hold the same answers");
+      return fail(ErrorCode::invalid_input, session.folder + " and " + first->second + " contain the same answers");
   }
   std::vector<std::vector<std::size_t>> people;
   for (std::size_t s = 0; s < out.sessions.size(); ++s) {

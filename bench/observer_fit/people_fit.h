@@ -1,4 +1,5 @@
-// From the human runs of sessions to an observer fitted to the people.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fits an observer to people, from the human runs of sessions.
 #pragma once
 
 #include <cstdint>
@@ -19,36 +20,36 @@ namespace todbench {
 
 /// The answers of one session.
 struct AnsweredSession {
-  std::string folder;           ///< its name, without the folders above it
-  std::string manifest_sha256;  ///< empty where nothing vouches for it
+  std::string folder;           ///< its name without the parent folders
+  std::string manifest_sha256;  ///< empty: no manifest
   std::string shown_sha256;     ///< of shown_human.csv
   int samples_per_pitch = 1;
-  double noise_k = 0;  ///< temporal noise of the run, for answers that do not tell theirs
+  double noise_k = 0;  ///< temporal noise of the run, for answers that do not state theirs
   HumanRecord human;
 };
-/// Of a session that open_session() took. `invalid_input`: nobody has answered in it, or what was shown was not kept.
+/// Reads the answers of an opened session. `invalid_input`: it has no answers, or the shown pictures were not stored.
 [[nodiscard]] Result<AnsweredSession> answered_session(const std::filesystem::path& folder, const Session& session);
 
 enum class PersonsAre {
   sessions,  ///< every session is a person
-  one,       ///< one person answered in all of them
+  one,       ///< one person answered in all sessions
 };
 
 struct PeopleFitOptions {
   TemplateObserverSpec from;
-  std::string from_sha256;  ///< of the text that `from` was read from
-  std::string name;         ///< of the fitted observer
-  std::array<bool, observer_key_count> free{};
+  std::string from_sha256;                      ///< of the text of `from`
+  std::string name;                             ///< of the fitted observer
+  std::array<bool, observer_key_count> free{};  ///< parameters to fit; the others stay as in `from`
   PersonsAre persons = PersonsAre::sessions;
-  int replicates = 299;
-  int draws = 384;
+  int replicates = 299;  ///< of the bootstrap of the goodness of fit, at least 19
+  int draws = 384;       ///< noise vectors per answer probability, an even number
   std::uint64_t seed = 1;
-  /// The model is refused where its p is not above this, shared by the people (Bonferroni).
+  /// The model is rejected if its p is at most this, divided by the number of people (Bonferroni).
   double least_p = 0.01;
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
 };
 
-/// A contrast and a size, in the order of the cells.
+/// Contrast and size of a cell, in the order of the cells.
 struct ShownSize {
   double set_delta_t_k = 0, size_mrad = 0;
   auto operator<=>(const ShownSize&) const = default;
@@ -65,21 +66,21 @@ struct PeopleFit {
   PeopleFitOptions options;
   std::vector<AnsweredSession> sessions;
   std::vector<FittedPerson> people;
-  std::array<PeopleSpread, observer_key_count> spread{};  ///< of the free ones; empty for one person
+  std::array<PeopleSpread, observer_key_count> spread{};  ///< of the free parameters; empty for one person
   ObserverValues values{};                                ///< of the person, or the means over people
   std::array<Interval, observer_key_count> ci95{};
   double least_p = 1;                       ///< smallest p of the model over people
-  bool accepted = false;                    ///< it is above least_p of the options for everyone
-  std::vector<std::string> not_identified;  ///< sentences: what the answers do not tell
+  bool accepted = false;                    ///< p exceeds least_p of the options for every person
+  std::vector<std::string> not_identified;  ///< sentences: parameters that the answers do not determine
   [[nodiscard]] bool usable() const { return accepted && not_identified.empty(); }
 };
 
-/// `invalid_input`: answers that the observer cannot judge, the same answers twice, a parameter out of what can be
-/// fitted. `interrupted`.
+/// Fits the observer. Errors: `invalid_input` (answers that the observer cannot judge, the same answers twice, a
+/// parameter outside the range of the fit), `interrupted`.
 [[nodiscard]] Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const PeopleFitOptions& options,
                                            std::stop_token stop);
 
-/// The fitted observer.
+/// Returns the fitted observer.
 [[nodiscard]] TemplateObserverSpec fitted_observer(const PeopleFit& fit);
 
 }  // namespace todbench

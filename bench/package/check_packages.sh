@@ -1,6 +1,7 @@
 #!/bin/sh
-# check_packages.sh BUILD_FOLDER [PACKAGE...]: what Debian and the desktop say of the packages and of what they bring. A check whose tool is missing is
-# left out and says so.
+# SPDX-License-Identifier: GPL-3.0-or-later
+# check_packages.sh BUILD_FOLDER [PACKAGE...]: checks packages, desktop files and manual pages with the tools of Debian and the desktop. A check whose
+# tool is missing is skipped with a message.
 set -u
 build=$1
 shift
@@ -11,7 +12,7 @@ check() {
   tool=$1
   shift
   if ! command -v "$tool" >/dev/null; then
-    echo "left out: $tool is not installed"
+    echo "skipped: $tool is not installed"
   elif said=$("$tool" "$@" 2>&1); then
     echo "passed: $tool"
   else
@@ -32,6 +33,6 @@ if command -v mandoc >/dev/null; then
   done
   check mandoc -Tlint -Wwarning "$unpacked"/todbench*.1
 else
-  echo "left out: mandoc is not installed"
+  echo "skipped: mandoc is not installed"
 fi
 exit $failed

@@ -1,4 +1,5 @@
-# The Debian packages: names, what they need, what they say of themselves.
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Debian packages: names, dependencies and descriptions.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME todbench)
 set(CPACK_PACKAGE_VENDOR todbench)
@@ -27,24 +28,24 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS bash-completion)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "todbench-gui, todbench-doc, python3-numpy, openssl, minisign")
-set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "test bench for thermal cameras, judged by a model observer
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "test bench for thermal cameras with a model observer
 Measures how well a thermal camera lets an observer see: the TOD
-(triangle orientation discrimination) curve, the 75 % acuity over
-thermal contrast, with intervals. It does the same with a simulated
-sensor, compares the two and writes the acceptance report. GigE Vision,
-USB3 Vision, V4L2 and Seek cameras, recordings, and an emulated
-laboratory that needs no hardware.")
+(triangle orientation discrimination) curve, that is the 75 % acuity
+over thermal contrast, with 95 % intervals. The program takes the same
+test with a simulated sensor, compares both curves and writes an
+acceptance report. It supports GigE Vision, USB3 Vision, V4L2 and Seek
+cameras, recordings, and an emulated laboratory without hardware.")
 
 set(CPACK_DEBIAN_WINDOW_PACKAGE_NAME todbench-gui)
 set(CPACK_DEBIAN_WINDOW_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_WINDOW_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_WINDOW_PACKAGE_DEPENDS "todbench ${same_version}")
 set(CPACK_DEBIAN_WINDOW_PACKAGE_RECOMMENDS fonts-dejavu-core)
-set(CPACK_DEBIAN_WINDOW_DESCRIPTION "test bench for thermal cameras, as a window
-The bench of todbench as a window: the camera's live picture, alignment
-of the plate, the plan as a form, curves that grow while a camera is
-measured, a human observer beside the model, and the report of every
-session.")
+set(CPACK_DEBIAN_WINDOW_DESCRIPTION "test bench for thermal cameras, graphical interface
+The graphical interface of todbench. It shows the live picture of the
+camera, guides the alignment of the plate, edits the plan as a form,
+draws the curves during the measurement, runs the test with a human
+observer, and shows the report of each session.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtodbench-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
@@ -53,17 +54,17 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cmake, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS todbench-doc)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "observer, TOD and simulated sensors of todbench as libraries
-Headers and static libraries of todbench below the bench: frame sources,
-the model observer, plates, registration, psychometric fits, TOD curves,
-comparison, and simulated sensors. With a package for CMake and one for
-pkg-config. Needs neither Qt nor a library of cameras.")
+Headers and static libraries of todbench: frame sources, model observer,
+plates, registration, psychometric fits, TOD curves, comparison, and
+simulated sensors. Files for CMake and pkg-config are included. The
+libraries need neither Qt nor a camera library.")
 
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME todbench-doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOCUMENTATION_DESCRIPTION "method, formats and examples of todbench
-The pages of todbench: how it measures, its models of observer and
-sensor, its uncertainties, the files of a session, cameras and
-troubleshooting; programs and plans as examples.")
+Documents of todbench: method of measurement, models of observer and
+sensor, uncertainties, files of a session, cameras and troubleshooting.
+Example programs and example plans are included.")
 
 include(CPack)

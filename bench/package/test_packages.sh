@@ -1,6 +1,7 @@
 #!/bin/sh
-# test_packages.sh PACKAGE_FOLDER: the packages in a fresh Debian of their own: install, demonstration, upgrade, removal. The Debian is made
-# by mmdebstrap from the archive that this machine uses. Exit code 77, with the reason, where that cannot be.
+# SPDX-License-Identifier: GPL-3.0-or-later
+# test_packages.sh PACKAGE_FOLDER: tests the packages in a new Debian system: install, demonstration, upgrade, removal. mmdebstrap creates the system
+# from the archive that this machine uses. Exit code 77, with the reason, if the system cannot be created.
 set -eu
 packages=$(cd "$1" && pwd)
 
@@ -9,18 +10,18 @@ skip() {
   exit 77
 }
 command -v mmdebstrap >/dev/null || skip "mmdebstrap is not installed"
-[ "$(id -u)" -eq 0 ] || skip "needs root"
+[ "$(id -u)" -eq 0 ] || skip "this test needs root"
 set -- "$packages"/todbench_*.deb "$packages"/todbench-gui_*.deb "$packages"/libtodbench-dev_*.deb "$packages"/todbench-doc_*.deb
-for file in "$@"; do [ -e "$file" ] || skip "no packages in $packages; ./run package makes them"; done
+for file in "$@"; do [ -e "$file" ] || skip "no packages in $packages: make them with ./run package"; done
 
 root=$(mktemp -d /tmp/todbench-debian.XXXXXX)
 trap 'rm -rf "$root"' EXIT
 begin=$(date +%s)
 stage() { echo "$(($(date +%s) - begin)) s: $*"; }
 
-stage "a fresh Debian"
+stage "create a new Debian system"
 mmdebstrap --quiet --variant=apt --mode="${TODBENCH_MMDEBSTRAP_MODE:-auto}" "${TODBENCH_DEBIAN:-bookworm}" "$root" \
-  >"$root.log" 2>&1 || { tail -n 3 "$root.log"; rm -f "$root.log"; skip "no Debian could be made here"; }
+  >"$root.log" 2>&1 || { tail -n 3 "$root.log"; rm -f "$root.log"; skip "the Debian system could not be created"; }
 rm -f "$root.log"
 mkdir "$root/debs" "$root/earlier"
 cp "$@" "$root/debs"
@@ -37,11 +38,11 @@ inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root L
 apt() { inside sh -c "apt-get -qq -y --no-install-recommends $* </dev/null" >"$root/apt.log" 2>&1 || { tail -n 20 "$root/apt.log"; exit 1; }; }
 version() { inside dpkg-query -W -f '${Version}' todbench; }
 
-stage "the program alone"
+stage "install the program alone"
 apt update
 apt install /earlier/todbench_*.deb
 [ "$(version)" = 0.0.1-1 ]
-stage "upgrade, and the other packages"
+stage "upgrade and install the other packages"
 apt install /debs/*.deb
 [ "$(version)" = "$(dpkg-deb -f "$packages"/todbench_*.deb Version)" ]
 
@@ -62,5 +63,5 @@ inside test -e /usr/share/man/man1/todbench-measure.1.gz -o -e /etc/dpkg/dpkg.cf
 stage "removal"
 apt purge todbench todbench-gui libtodbench-dev todbench-doc
 left=$(inside find /usr /etc /var/lib -path /usr/share/mime -prune -o -name '*todbench*' -print | grep -v '^/var/lib/apt\|^/var/lib/dpkg' || true)
-[ -z "$left" ] || { printf 'left behind:\n%s\n' "$left"; exit 1; }
+[ -z "$left" ] || { printf 'files left after the removal:\n%s\n' "$left"; exit 1; }
 stage "passed"

@@ -1,4 +1,4 @@
-# Completion of todbench for bash: the program says what may stand there.
+# Bash completion of todbench: the program itself lists the candidates.
 _todbench() {
   local cur words cword
   _get_comp_words_by_ref -n := cur words cword
@@ -11,7 +11,7 @@ _todbench() {
   COMPREPLY=()
   local word
   for word in "${offered[@]}"; do
-    # A camera calls itself what it likes, and what is offered becomes part of a command.
+    # Camera names are untrusted and become part of a command: skip candidates with unsafe characters.
     [[ "$word" == *[!A-Za-z0-9:._/-]* ]] && continue
     [[ "$word" == "$cur"* ]] && COMPREPLY+=("$word")
   done

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/atmospheres.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ namespace todbench {
 namespace {
 
 constexpr double band_reach_um = 0.6;
-constexpr double longest_um = 1000;  // of a spectrum: beyond any thermal camera
+constexpr double longest_um = 1000;  // longest wavelength of a spectrum, beyond any thermal camera
 
 struct ShippedRow {
   std::string model, haze;
@@ -27,7 +28,7 @@ struct ShippedRow {
   std::vector<TransmittancePoint> points;
 };
 
-/// "US standard 1976" -> "us-standard", "rural 23 km" -> "rural-23km".
+/// Converts names: "US standard 1976" -> "us-standard", "rural 23 km" -> "rural-23km".
 std::string short_name(std::string_view text) {
   std::string name;
   for (const char c : text) name += c == ' ' ? '-' : static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
@@ -41,7 +42,7 @@ SpectralBand band_from(const std::string& text) {
   return {parse_number(text.substr(0, dash)).value_or(0), parse_number(text.substr(dash + 1)).value_or(0)};
 }
 
-/// The compiled-in table; what it is was tested when it was compiled in.
+/// Compiled-in table. The build has checked its contents.
 std::vector<ShippedRow> shipped_rows() {
   const auto resource = find_resource(ResourceKind::atmosphere, "lowtran7_band_tables");
   if (!resource) return {};
@@ -92,11 +93,10 @@ Result<Atmosphere> shipped(std::string_view name, const AtmosphereRequest& reque
   if (!best) return fail(ErrorCode::internal, "the shipped table of transmittances has no " + std::string(name));
   const double mismatch = mismatch_um(best->band, request.band);
   if (mismatch > band_reach_um) {
-    return fail(
-        ErrorCode::invalid_input,
-        fmt::format("the shipped tables of transmittance have no band near {}: give --band 7.5-13, 8-12, 8-14 or "
-                    "3-5 if one of these is meant, or a table of your own",
-                    band_text(request.band)));
+    return fail(ErrorCode::invalid_input,
+                fmt::format("the shipped tables of transmittance have no band near {}: state --band 7.5-13, 8-12, 8-14 "
+                            "or 3-5 if one of them applies, or use a table of your own",
+                            band_text(request.band)));
   }
   auto air = Transmittance::of_table(best->points);
   if (!air) return tl::unexpected(air.error());
@@ -109,13 +109,14 @@ Result<Atmosphere> shipped(std::string_view name, const AtmosphereRequest& reque
       .air_k = best->air_k,
       .table_band = best->band};
   if (mismatch > 0) {
-    found.notes.push_back(fmt::format("the camera's band is {}: the air is that of the nearest table, {}",
-                                      band_text(request.band), band_text(best->band)));
+    found.notes.push_back(
+        fmt::format("the band of the camera is {}; the transmittance is that of the nearest table, {}",
+                    band_text(request.band), band_text(best->band)));
   }
   return found;
 }
 
-/// The number of column `column`, or an error with the line.
+/// Returns the number in column `column`, or an error with the line.
 Result<double> number_at(const CsvTable& table, const CsvRow& row, std::size_t column) {
   const auto value = parse_number(row.fields[column]);
   if (value) return *value;
@@ -129,7 +130,7 @@ std::optional<std::size_t> column_of(const CsvTable& table, std::string_view nam
   return static_cast<std::size_t>(found - table.header.begin());
 }
 
-/// The rows of two columns.
+/// Returns the rows of two columns.
 Result<std::vector<std::pair<double, double>>> pairs_of(const CsvTable& table, std::size_t a, std::size_t b) {
   std::vector<std::pair<double, double>> pairs;
   for (const auto& row : table.rows) {
@@ -141,14 +142,16 @@ Result<std::vector<std::pair<double, double>>> pairs_of(const CsvTable& table, s
   return pairs;
 }
 
-/// What to say of a spectrum that is not that of the camera's band: all of it is averaged.
+/// Returns a note if a spectrum does not match the camera's band: all of it is averaged.
 std::optional<std::string> spectrum_note(const std::vector<SpectralExtinction>& spectrum, const SpectralBand& band) {
   if (spectrum.empty() || !(band.high_um > band.low_um)) return std::nullopt;
   const SpectralBand own{spectrum.front().wavelength_um, spectrum.back().wavelength_um};
   if (own.low_um >= band.low_um - band_reach_um && own.high_um <= band.high_um + band_reach_um) return std::nullopt;
   const bool apart = own.high_um <= band.low_um || own.low_um >= band.high_um;
-  return fmt::format("the spectrum of the air, {}, {} the camera's band, {}: the air is that of the whole spectrum",
-                     band_text(own), apart ? "has nothing of" : "reaches beyond", band_text(band));
+  return fmt::format(
+      "the spectrum of the air, {}, {} the band of the camera, {}; the transmittance is averaged over the whole "
+      "spectrum",
+      band_text(own), apart ? "does not overlap" : "extends beyond", band_text(band));
 }
 
 Result<Transmittance> air_of_csv(const CsvTable& table, const AtmosphereRequest& request,
@@ -170,7 +173,7 @@ Result<Transmittance> air_of_csv(const CsvTable& table, const AtmosphereRequest&
     for (std::size_t i = 0; i < pairs->size(); ++i) {
       const auto& [at, per_km] = (*pairs)[i];
       if (at > longest_um)
-        return table.wrong(table.rows[i].line, fmt::format("a wavelength of {:g} um; is it in nm?", at));
+        return table.wrong(table.rows[i].line, fmt::format("a wavelength of {:g} um is too long; is it in nm?", at));
       spectrum.push_back({at, per_km});
     }
     if (auto note = spectrum_note(spectrum, request.band)) notes.push_back(*std::move(note));
@@ -182,7 +185,7 @@ Result<Transmittance> air_of_csv(const CsvTable& table, const AtmosphereRequest&
                          quoted_list(table.header));
 }
 
-/// Lines that begin with # are remarks; they stay as empty lines, so that the others keep their numbers.
+/// Blanks comment lines (#); empty lines keep the line numbers correct.
 std::string without_remarks(std::string_view text) {
   std::string rest;
   while (!text.empty()) {
@@ -218,7 +221,8 @@ Result<Atmosphere> parse_atmosphere(std::string_view text, const std::string& fi
                                band_text(request.band), request.weight_temperature_k);
     if (runs->size() == 1)
       found.notes.emplace_back(
-          "one run of tape7: shorter ranges follow from its spectrum as if every line were resolved");
+          "tape7 has one run; transmittances at shorter ranges are computed from its spectrum as if every line were "
+          "resolved");
   }
   if (!air) {
     if (air.error().message.starts_with(file)) return tl::unexpected(air.error());
@@ -242,7 +246,7 @@ Result<Atmosphere> load_atmosphere(std::string_view reference, const AtmosphereR
   if (auto valid = validate(request.band); !valid) return tl::unexpected(valid.error());
   if (request.extinction_per_km > 0 && reference != "beer-lambert") {
     return fail(ErrorCode::invalid_input,
-                one_line(reference) + ": has its own extinction, --extinction-per-km may not stand beside it");
+                one_line(reference) + ": this atmosphere has its own extinction; leave out --extinction-per-km");
   }
   if (reference == "clear") return Atmosphere{.name = "clear", .source = "no air"};
   if (reference == "beer-lambert") {

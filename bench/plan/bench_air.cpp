@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/bench_air.h"
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@
 namespace todbench {
 namespace {
 
-/// Water vapour at the ground of the model atmospheres of the shipped table (Anderson et al. 1986, AFGL-TR-86-0110).
+/// Water vapour at the ground in the model atmospheres of the shipped table (Anderson et al. 1986, AFGL-TR-86-0110).
 struct ModelHumidity {
   std::string_view name;
   double g_m3;
@@ -34,19 +35,22 @@ double absolute_humidity_g_m3(const BenchAir& air) {
 Result<double> bench_transmittance(const BenchAir& air, double length_m, const SpectralBand& band) {
   const double water = absolute_humidity_g_m3(air);
   if (!(water >= 0 && water <= most_g_m3)) {
-    return fail(ErrorCode::invalid_input,
-                fmt::format("{:g} °C at {:g} % humidity hold {:.3g} g/m3 of water: the tables end at {:g}",
-                            air.temperature_c, air.humidity_percent, water, most_g_m3));
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format("air of {:g} °C and {:g} % humidity contains {:.3g} g/m3 of water, but the tables end at {:g} g/m3",
+                    air.temperature_c, air.humidity_percent, water, most_g_m3));
   }
-  if (!(std::isfinite(length_m) && length_m > 0)) return fail(ErrorCode::invalid_input, "a path of air is above 0 m");
+  if (!(std::isfinite(length_m) && length_m > 0))
+    return fail(ErrorCode::invalid_input, "the path of air must be longer than 0 m");
   std::vector<double> depths;
   for (const ModelHumidity& model : model_humidities) {
     const auto found = load_atmosphere(model.name, {.band = band, .haze = "none"});
     if (!found) return tl::unexpected(found.error());
     const auto depth = found->air.optical_depth(length_m);
     if (!depth) {
-      return fail(ErrorCode::invalid_input, fmt::format("the tables of transmittance end at {:g} m, before {:g} m",
-                                                        found->air.end_m(), length_m));
+      return fail(ErrorCode::invalid_input,
+                  fmt::format("the tables of transmittance end at {:g} m, but the path of air is {:g} m long",
+                              found->air.end_m(), length_m));
     }
     depths.push_back(*depth);
   }
@@ -54,7 +58,7 @@ Result<double> bench_transmittance(const BenchAir& air, double length_m, const S
   while (above + 1 < depths.size() && model_humidities[above].g_m3 < water) ++above;
   const auto &low = model_humidities[above - 1], &high = model_humidities[above];
   const double share = (water - low.g_m3) / (high.g_m3 - low.g_m3);
-  // Dry air keeps what is not water's: no less than nothing.
+  // Extrapolation to dry air leaves the absorption of the other gases: the optical depth is at least 0.
   return std::exp(-std::max(0.0, depths[above - 1] + share * (depths[above] - depths[above - 1])));
 }
 

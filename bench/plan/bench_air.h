@@ -1,28 +1,30 @@
-// The air between target and camera on the bench: what its humidity leaves of a contrast.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Air path on the bench: transmittance by humidity.
 #pragma once
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/atmosphere/band_radiance.h"
 
 namespace todbench {
 
-/// The room, as an instrument on the wall says.
+/// State of the room.
 struct BenchAir {
   double temperature_c = 20;
   double humidity_percent = 50;  ///< relative, over water
 };
 
-/// Grams of water vapour in a cubic metre: saturation pressure after Magnus (WMO 2008, annex 4.B), ideal gas.
+/// Returns the density of water vapour in g/m3: saturation pressure by the Magnus formula (WMO 2008, annex 4.B), ideal
+/// gas.
 [[nodiscard]] double absolute_humidity_g_m3(const BenchAir& air);
 
-/// Of a contrast over `length_m`, by the shipped tables without aerosol: the optical depth of the model atmospheres at
-/// this length is taken as linear in their absolute humidity between them and beyond the most humid, up to 30 g/m3.
-/// Band models at metres are extrapolated: half of what is lost is uncertain (bench_air_relative_half_width).
-/// `invalid_input`: no band of the tables is near, more water than 30 g/m3, a length that is not above 0 or beyond the
-/// tables.
+/// Returns the transmittance for a contrast over `length_m`, from the shipped tables without aerosol. The optical depth
+/// of the model atmospheres at this length is interpolated linearly in their absolute humidity, and extrapolated beyond
+/// the most humid one up to 30 g/m3. The band models are extrapolated to a few metres, so half of the loss is uncertain
+/// (bench_air_relative_half_width). Errors: `invalid_input` (no table band is near, more than 30 g/m3 of water, a
+/// length of 0 or less or beyond the tables).
 [[nodiscard]] Result<double> bench_transmittance(const BenchAir& air, double length_m, const SpectralBand& band);
 
-/// Of 1 - transmittance.
+/// Relative half-width of 1 - transmittance.
 inline constexpr double bench_air_relative_half_width = 0.5;
 
 }  // namespace todbench

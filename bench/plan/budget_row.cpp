@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/budget_row.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-/// Other names of inputs than their own.
+/// Alternative names of inputs.
 struct InputName {
   std::string_view name;
   BudgetInput input;
@@ -30,7 +31,7 @@ constexpr std::array other_input_names{
     InputName{"psychometric form", BudgetInput::form},
 };
 
-/// "Air_path" as "air path".
+/// "Air_path" becomes "air path".
 std::string plain_name(std::string_view name) {
   std::string plain;
   for (const char c : name) {

@@ -1,4 +1,5 @@
-// A row of an uncertainty budget, as a plan and a file of `todbench budget` state it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Row of an uncertainty budget, as stated in a plan or in a file of `todbench budget`.
 #pragma once
 
 #include <array>
@@ -9,38 +10,38 @@
 
 namespace todbench {
 
-/// What a row's value means.
+/// Meaning of the value of a row.
 enum class BudgetDistribution {
-  normal,       ///< a standard uncertainty, or an expanded one with its coverage factor
-  rectangular,  ///< the half-width of a rectangle
-  triangular,   ///< the half-width of a triangle
-  u_shaped,     ///< the amplitude of something that swings like a sine
+  normal,       ///< standard uncertainty, or expanded uncertainty with its coverage factor
+  rectangular,  ///< half-width of a rectangular distribution
+  triangular,   ///< half-width of a triangular distribution
+  u_shaped,     ///< amplitude of a sinusoidal variation
 };
 inline constexpr std::array budget_distributions{BudgetDistribution::normal, BudgetDistribution::rectangular,
                                                  BudgetDistribution::triangular, BudgetDistribution::u_shaped};
 [[nodiscard]] std::string_view to_string(BudgetDistribution distribution);
 
-/// With what a row is shared: it cancels in a ratio to it, or in a trend.
+/// Quantities that share a row: it cancels in a ratio to the twin, in a trend, or between contrasts.
 enum class BudgetCommon { twin, series, contrasts };
 inline constexpr std::array budget_commons{BudgetCommon::twin, BudgetCommon::series, BudgetCommon::contrasts};
 [[nodiscard]] std::string_view to_string(BudgetCommon common);
 
-/// Through what a row reaches the acuity.
+/// Input through which a row affects the acuity.
 enum class BudgetInput {
-  by_name,  ///< what its name says: "distance", "entrance pupil", ...; any other name: the acuity itself
+  by_name,  ///< input given by the name of the row: "distance", "entrance pupil" ...; others: acuity
   distance,
-  entrance_pupil,  ///< its position, of which the distance is counted
-  cut_outs,        ///< the size of the triangles of the plate
+  entrance_pupil,  ///< its position; the distance is counted from it
+  cut_outs,        ///< size of the triangles of the plate
   ifov,
   black_body_calibration,
   black_body_emissivity,
-  black_body_ambient,  ///< what the black body reflects
+  black_body_ambient,  ///< radiation reflected by the black body
   black_body_uniformity,
   black_body_stability,
   air_path,
   camera_scale,
-  contrast,  ///< any other part of it
-  form,      ///< of the psychometric function
+  contrast,  ///< any other contribution to the contrast
+  form,      ///< shape of the psychometric function
   acuity,
 };
 inline constexpr std::array budget_inputs{BudgetInput::by_name,
@@ -58,10 +59,10 @@ inline constexpr std::array budget_inputs{BudgetInput::by_name,
                                           BudgetInput::contrast,
                                           BudgetInput::form,
                                           BudgetInput::acuity};
-/// "entrance-pupil"
+/// Returns the name in a plan, for example "entrance-pupil".
 [[nodiscard]] std::string_view to_string(BudgetInput input);
 
-/// What a complete budget of an acuity states, in the order in which it is printed.
+/// Inputs that a complete budget of an acuity states, in the order of the printed table.
 inline constexpr std::array expected_inputs{BudgetInput::distance,
                                             BudgetInput::entrance_pupil,
                                             BudgetInput::cut_outs,
@@ -79,53 +80,55 @@ struct BudgetRow {
   std::string name{};
   double value = 0;  ///< 0 or more, in `unit`
   BudgetDistribution distribution = BudgetDistribution::normal;
-  double coverage_factor = 1;                  ///< of a normal value: value / coverage_factor is standard
-  std::optional<double> degrees_of_freedom{};  ///< nothing: very many
-  std::optional<double> sensitivity{};  ///< of the result to this row; nothing: 1, the row is in the result's unit
+  double coverage_factor = 1;  ///< normal distribution only: value / coverage_factor is the standard uncertainty
+  std::optional<double> degrees_of_freedom{};  ///< empty: infinite
+  /// Change of the result for a change of 1 in `unit`; empty: 1, so the row is in the unit of the result.
+  std::optional<double> sensitivity{};
   std::string unit{};
-  std::string source{};       ///< what the value rests on
-  std::string certificate{};  ///< its number
+  std::string source{};       ///< origin of the value
+  std::string certificate{};  ///< number of the certificate
   std::vector<BudgetCommon> common{};
-  BudgetInput enters = BudgetInput::by_name;  ///< in a plan only
+  BudgetInput enters = BudgetInput::by_name;  ///< plans only
   bool operator==(const BudgetRow&) const = default;
 };
 
-/// Standard uncertainty in the row's unit.
+/// Returns the standard uncertainty in the unit of the row.
 [[nodiscard]] double standard_of(const BudgetRow& row);
 
-/// Through what the row reaches the acuity: `enters`, or what its name says; never by_name.
+/// Returns the input through which the row affects the acuity: `enters`, or the input that its name states; never
+/// by_name.
 [[nodiscard]] BudgetInput input_of(const BudgetRow& row);
-/// Kinds of input: how their relative error moves the acuity.
+/// Effect of a relative error of an input on the acuity.
 enum class InputKind {
-  geometry,  ///< by as much
-  contrast,  ///< by as much times the slope of the curve
-  direct,    ///< it is an error of the acuity
+  geometry,  ///< the same relative error
+  contrast,  ///< the same relative error times the slope of the curve
+  direct,    ///< an error of the acuity itself
 };
 [[nodiscard]] InputKind kind_of(BudgetInput input);
-/// A value of 1 in this unit: in metres (geometry), kelvin (contrast) or relative.
+/// Value of 1 in a unit, converted to metres (geometry), to kelvin (contrast) or to a relative value.
 struct BudgetUnit {
   double factor = 1;
   bool relative = true;
 };
-/// Nothing for a unit that such an input does not have.
+/// Returns the conversion of `unit`; empty if an input of this kind does not have the unit.
 [[nodiscard]] std::optional<BudgetUnit> budget_unit(InputKind kind, std::string_view unit);
 
-/// [uncertainty]
+/// Section [uncertainty].
 struct UncertaintyPlan {
-  bool require = false;         ///< a budget that leaves out an expected row refuses the plan
+  bool require = false;         ///< reject a plan whose budget lacks an expected row
   std::vector<BudgetRow> rows;  ///< [[uncertainty.component]]
-  /// The plan states a budget.
+  /// Returns whether the plan has a budget.
   [[nodiscard]] bool stated() const { return !rows.empty(); }
   bool operator==(const UncertaintyPlan&) const = default;
 };
 
-/// The expected inputs without a row.
+/// Returns the expected inputs without a row.
 [[nodiscard]] std::vector<BudgetInput> not_stated(const UncertaintyPlan& plan);
 
-/// Names of the rows that a run states itself.
+/// Names of the rows that the program adds to the budget of a run.
 inline constexpr std::string_view finite_trials_row = "finite trials";
 inline constexpr std::string_view seen_contrast_row = "contrast as the camera saw it";
-/// Where the air of the bench is stated and the plan has no row of its own for its path.
+/// Added if the plan states the air of the bench and has no row for the air path.
 inline constexpr std::string_view air_path_row = "air path";
 inline constexpr std::string_view read_back_row = "target read-back against contrast seen";
 

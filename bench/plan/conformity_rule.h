@@ -1,4 +1,5 @@
-// Decision rules by name, which a plan agrees on before the measurement.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Decision rules by name. The plan states one before the measurement.
 #pragma once
 
 #include <array>
@@ -6,12 +7,12 @@
 
 namespace todbench {
 
-/// ILAC-G8:09/2019, 4.2. To be agreed before the measurement (ISO/IEC 17025, 7.1.3).
+/// Decision rules of ILAC-G8:09/2019, 4.2. Agree on the rule before the measurement (ISO/IEC 17025, 7.1.3).
 enum class ConformityRule {
-  guarded_acceptance_and_rejection,  ///< pass inside by the guard band, fail outside by it, else inconclusive
-  simple,                            ///< 4.2.1: pass inside the tolerance, else fail; up to 50 % risk at the limit
-  guarded,                           ///< 4.2.2: pass inside by the guard band, else fail
-  non_binary,                        ///< 4.2.3: the stretches between are a conditional pass and a conditional fail
+  guarded_acceptance_and_rejection,  ///< pass if inside by the guard band, fail if outside by it, else inconclusive
+  simple,                            ///< 4.2.1: pass inside the tolerance, else fail; risk up to 50 % at the limit
+  guarded,                           ///< 4.2.2: pass if inside by the guard band, else fail
+  non_binary,                        ///< 4.2.3: within the guard band: conditional pass or conditional fail
 };
 inline constexpr std::array conformity_rules{ConformityRule::guarded_acceptance_and_rejection, ConformityRule::simple,
                                              ConformityRule::guarded, ConformityRule::non_binary};

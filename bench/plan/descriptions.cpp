@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/descriptions.h"
 
 #include <cstdint>
@@ -12,7 +13,11 @@ namespace todbench {
 
 namespace {
 
-/// A description passes when its file was read without mistakes and the whole makes sense to the part that uses it.
+/// Ranges of plate dimensions, in mm.
+const NumberRange length_range = NumberRange::between(0.001, 1e5);
+const NumberRange place_range = NumberRange::between(-1e5, 1e5);
+
+/// Returns the description if its file had no mistakes and the component that uses it accepts the whole.
 template <typename T>
 Result<T> checked(const TomlReader& reader, const Resource& resource, T value) {
   if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
@@ -26,14 +31,14 @@ void read_row(TomlReader& row, std::size_t number, TargetPlate& plate) {
     for (const Apex apex : all_apexes) names.emplace_back(to_string(apex));
     return names;
   }();
-  const double size_mm = row.number("size_mm", NumberRange::positive(), std::nullopt);
-  const double y_mm = row.number("y_mm", NumberRange::any(), std::nullopt);
-  const std::vector<double> x_mm = row.numbers("x_mm", NumberRange::any(), std::nullopt);
+  const double size_mm = row.number("size_mm", length_range, std::nullopt);
+  const double y_mm = row.number("y_mm", place_range, std::nullopt);
+  const std::vector<double> x_mm = row.numbers("x_mm", place_range, std::nullopt);
   const std::vector<std::string> apexes = row.choices("apex", apex_names, std::nullopt);
   const std::vector<std::string> names = row.texts("names", std::vector<std::string>());
   const auto one_each = [&](const char* key, std::size_t count) {
     if (count == x_mm.size()) return true;
-    row.reject(key, "expected as many as in x_mm, " + std::to_string(x_mm.size()) + ", found " + std::to_string(count));
+    row.reject(key, "expected " + std::to_string(x_mm.size()) + " values as in x_mm, found " + std::to_string(count));
     return false;
   };
   if (!one_each("apex", apexes.size()) || (row.has("names") && !one_each("names", names.size()))) return;
@@ -51,10 +56,10 @@ void read_row(TomlReader& row, std::size_t number, TargetPlate& plate) {
 PlateRectangle read_rectangle(TomlReader& table, std::size_t number) {
   PlateRectangle rectangle;
   rectangle.name = table.text("name", "rectangle " + std::to_string(number));
-  rectangle.position_mm.x = table.number("x_mm", NumberRange::any(), std::nullopt);
-  rectangle.position_mm.y = table.number("y_mm", NumberRange::any(), std::nullopt);
-  rectangle.size_mm.width = table.number("width_mm", NumberRange::positive(), std::nullopt);
-  rectangle.size_mm.height = table.number("height_mm", NumberRange::positive(), std::nullopt);
+  rectangle.position_mm.x = table.number("x_mm", place_range, std::nullopt);
+  rectangle.position_mm.y = table.number("y_mm", place_range, std::nullopt);
+  rectangle.size_mm.width = table.number("width_mm", length_range, std::nullopt);
+  rectangle.size_mm.height = table.number("height_mm", length_range, std::nullopt);
   rectangle.angle_deg = table.number("angle_deg", NumberRange::between(-90, 90), 0.0);
   return rectangle;
 }
@@ -62,16 +67,16 @@ PlateRectangle read_rectangle(TomlReader& table, std::size_t number) {
 PlateBars read_bars(TomlReader& table, std::size_t number) {
   PlateBars bars;
   bars.name = table.text("name", "bars " + std::to_string(number));
-  bars.position_mm.x = table.number("x_mm", NumberRange::any(), std::nullopt);
-  bars.position_mm.y = table.number("y_mm", NumberRange::any(), std::nullopt);
-  bars.bar_mm = table.number("bar_mm", NumberRange::positive(), std::nullopt);
-  bars.length_mm = table.number("length_mm", NumberRange::positive(), std::nullopt);
+  bars.position_mm.x = table.number("x_mm", place_range, std::nullopt);
+  bars.position_mm.y = table.number("y_mm", place_range, std::nullopt);
+  bars.bar_mm = table.number("bar_mm", length_range, std::nullopt);
+  bars.length_mm = table.number("length_mm", length_range, std::nullopt);
   const std::string axis = table.choice("axis", std::vector<std::string>{"x", "y"}, std::nullopt);
   bars.angle_deg = table.number("angle_deg", NumberRange::between(-45, 45), 0.0) + (axis == "y" ? 90 : 0);
   return bars;
 }
 
-/// The fallback of a key that may be missing is what the parameter is without it.
+/// Optional keys fall back to the default of the struct.
 void read_key(TomlReader& reader, const SensorKey& key, SensorSpec& spec) {
   const bool required = key.presence == KeyPresence::required;
   if (const auto* number = std::get_if<double SensorSpec::*>(&key.member)) {
@@ -92,11 +97,11 @@ void read_key(TomlReader& reader, const SensorKey& key, SensorSpec& spec) {
   }
 }
 
-/// Where an observer was fitted to people: what `todbench observer fit` says of it. Nothing of it makes the observer,
-/// but a file that is not what the program writes is not taken for one.
+/// Checks the record of `todbench observer fit`. Nothing in it affects the observer, but a record that the program did
+/// not write is rejected.
 void read_fit(TomlReader fit) {
   if (!fit.present()) return;
-  const NumberRange any = NumberRange::any(), share = NumberRange::between(0, 1);
+  const NumberRange any = NumberRange::between(-1e9, 1e9), share = NumberRange::between(0, 1);
   (void)fit.choice("schema", std::vector<std::string>{"todbench-observer-fit-1"}, std::nullopt);
   for (const char* key : {"program", "from", "from_sha256"}) (void)fit.text(key, std::nullopt);
   (void)fit.texts("free", std::nullopt);
@@ -135,7 +140,8 @@ ModulePlan read_module(TomlReader& table) {
   };
   ModulePlan module;
   module.command = table.text("command", std::nullopt);
-  if (table.has("command") && module.command.empty()) table.reject("command", "is empty");
+  if (table.has("command") && module.command.empty())
+    table.reject("command", "expected a command, found an empty text");
   module.version = table.text("version", "");
   module.parameters = table.free_table("parameters");
   module.limit_ms = whole("limit_ms", 1, module_ranges.limit_ms, module.limit_ms);
@@ -159,7 +165,8 @@ Result<SensorSpec> parse_sensor(const Resource& resource) {
     const std::vector<std::string> places{std::string(to_string(ModulePlace::picture)),
                                           std::string(to_string(ModulePlace::sensor))};
     const bool sensor = table.choice("place", places, places.front()) == places.back();
-    if (sensor && !spec.modules.empty()) table.reject("place", "the sensor itself is the first module of its file");
+    if (sensor && !spec.modules.empty())
+      table.reject("place", "a module with place = \"sensor\" must be the first one of its file");
     spec.modules.push_back(read_module(table));
     if (sensor) spec.modules.back().place = ModulePlace::sensor;
   }
@@ -170,15 +177,15 @@ Result<DescribedObserver> parse_observer_with_module(const Resource& resource) {
   Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
   if (!reader) return tl::unexpected(reader.error());
   TemplateObserverSpec spec;
-  const NumberRange positive = NumberRange::positive();
-  const NumberRange not_negative = NumberRange::not_negative();
   spec.name = reader->text("name", std::nullopt);
   spec.blur_sigma_samples = reader->number("blur_sigma_samples", NumberRange::between(0.1, 10), std::nullopt);
   spec.internal_noise = reader->number("internal_noise", NumberRange::between(0, 10), std::nullopt);
   spec.sensor_noise_factor =
       reader->number("sensor_noise_factor", NumberRange::between(1, 100), spec.sensor_noise_factor);
-  spec.search_range_samples = reader->number("search_range_samples", not_negative, spec.search_range_samples);
-  spec.search_step_samples = reader->number("search_step_samples", positive, spec.search_step_samples);
+  spec.search_range_samples =
+      reader->number("search_range_samples", NumberRange::between(0, 100), spec.search_range_samples);
+  spec.search_step_samples =
+      reader->number("search_step_samples", NumberRange::between(0.01, 100), spec.search_step_samples);
   spec.window_size_factor =
       reader->number("window_size_factor", NumberRange::between(0.9, 10), spec.window_size_factor);
   spec.window_margin_pitch =
@@ -189,7 +196,7 @@ Result<DescribedObserver> parse_observer_with_module(const Resource& resource) {
   for (TomlReader& table : modules) {
     const std::vector<std::string> places{std::string(to_string(ModulePlace::observer))};
     (void)table.choice("place", places, places.front());
-    if (described.module) table.reject("command", "one observer is one program");
+    if (described.module) table.reject("command", "an observer can have only one module");
     described.module = read_module(table);
     described.module->place = ModulePlace::observer;
   }
@@ -204,7 +211,8 @@ Result<TemplateObserverSpec> parse_observer(const Resource& resource) {
   if (!described) return tl::unexpected(described.error());
   if (described->module) {
     return fail_at(ErrorCode::invalid_input, resource.origin,
-                   "its [[module]] is run by compare-models; a plan has one of its own with place = \"observer\"");
+                   "the observer has a [[module]], which only compare-models runs; for a plan, state a [[module]] with "
+                   "place = \"observer\" in the plan");
   }
   return std::move(described->spec);
 }
@@ -215,8 +223,8 @@ Result<TargetPlate> parse_plate(const Resource& resource) {
   TargetPlate plate;
   plate.name = reader->text("name", std::nullopt);
   plate.description = reader->text("description", "");
-  plate.width_mm = reader->number("width_mm", NumberRange::positive(), std::nullopt);
-  plate.height_mm = reader->number("height_mm", NumberRange::positive(), std::nullopt);
+  plate.width_mm = reader->number("width_mm", length_range, std::nullopt);
+  plate.height_mm = reader->number("height_mm", length_range, std::nullopt);
   std::size_t number = 0;
   for (TomlReader& row : reader->sections("row")) read_row(row, ++number, plate);
   number = 0;
@@ -230,7 +238,8 @@ Result<SensorSpec> load_sensor(std::string_view reference) {
   auto spec = load(ResourceKind::sensor, reference, parse_sensor);
   if (spec && !spec->modules.empty()) {
     return fail_at(ErrorCode::invalid_input, std::string(reference),
-                   "its [[module]] is run where a plan is simulated or measured, not here");
+                   "the sensor has a [[module]], which runs only if a plan is simulated or measured; use a sensor "
+                   "without modules here");
   }
   return spec;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/instrument_description.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ using Texts = std::vector<std::string>;
 
 constexpr std::size_t longest_command = 256;
 
-/// The reader of one file; what is said about a command is checked where it is read.
+/// Reader of one file. Each command is checked where it is read.
 class InstrumentReader {
  public:
   explicit InstrumentReader(TomlReader file) : file_(std::move(file)) {}
@@ -46,21 +47,22 @@ class InstrumentReader {
   }
   static void check_words(TomlReader& at, std::string_view key, const std::string& text) {
     if (!is_printable(text) || text.size() > longest_command)
-      at.reject(key, "expected at most 256 printable characters of ASCII");
+      at.reject(key, "expected at most 256 printable ASCII characters");
   }
-  /// A text that goes over the line; empty where it may be left out.
+  /// Text that can be sent; empty if optional and absent.
   static std::string words(TomlReader& at, std::string_view key, const std::optional<std::string>& fallback) {
     const std::string text = at.text(key, fallback);
     check_words(at, key, text);
     if (at.has(key) && text.empty() && !(fallback && !fallback->empty())) at.reject(key, "expected a text in quotes");
     return text;
   }
-  /// A text with `places` times "{}".
+  /// Text with `places` placeholders "{}".
   static std::string form(TomlReader& at, std::string_view key, std::size_t places,
                           const std::optional<std::string>& fallback) {
     const std::string text = words(at, key, fallback);
     if (!text.empty() && places_in(text) != places)
-      at.reject(key, "expected " + std::to_string(places) + " times {}, found " + std::to_string(places_in(text)));
+      at.reject(key, "expected the placeholder {} " + std::to_string(places) + " times, found it " +
+                         std::to_string(places_in(text)) + " times");
     return text;
   }
   static Texts list(TomlReader& at, std::string_view key, const std::optional<Texts>& fallback) {
@@ -68,7 +70,7 @@ class InstrumentReader {
     if (at.has(key) && texts.empty()) at.reject(key, "expected at least one text");
     for (std::size_t i = 0; i < texts.size(); ++i) {
       if (texts[i].empty() || texts[i].size() > longest_command || !is_printable(texts[i]))
-        at.reject(key, i, "expected 1 to 256 printable characters of ASCII");
+        at.reject(key, i, "expected 1 to 256 printable ASCII characters");
     }
     return texts;
   }
@@ -84,7 +86,7 @@ class InstrumentReader {
     NumberQuestion asked{list(at, key, fallback), ""};
     if (asked.queries.empty()) return asked;
     if (asked.queries.size() != 1 && asked.queries.size() != count) {
-      at.reject(key, "expected one query, or " + std::to_string(count));
+      at.reject(key, "expected one query for all numbers, or " + std::to_string(count) + " queries");
       return asked;
     }
     asked.answer = form(at, answer_key, count / asked.queries.size(), "");
@@ -137,7 +139,7 @@ class InstrumentReader {
     speech.identity_of_four = identity.choice("answer", forms, forms[0]) == forms[0];
     speech.identity_contains = words(identity, "contains", "");
     if (speech.identity_query.empty() && !speech.identity_contains.empty())
-      identity.reject("contains", "nothing is asked that could contain it: there is no query");
+      identity.reject("contains", "needs a query, because the answer to it must contain this text");
   }
 
   void read_errors() {
@@ -154,7 +156,7 @@ class InstrumentReader {
     const bool together = speech.errors_asked == InstrumentSpeech::ErrorsAsked::with_command;
     if (together && (!speech.no_error.empty() || !speech.acknowledgement.empty() || !speech.refusals.empty()))
       errors.reject("asked", "no_error, acknowledgement and refusals need \"after each command\"");
-    if (together && speech.error_query.empty()) errors.reject("asked", "there is no query");
+    if (together && speech.error_query.empty()) errors.reject("asked", "needs the key 'query'");
   }
 
   void read_black_body() {
@@ -172,7 +174,7 @@ class InstrumentReader {
     if (words_of.limits.asks() != ends.empty()) {
       at.reject(ends.empty() ? "limits" : "range", "expected either limits or range");
     } else if (!ends.empty() && (ends.size() != 2 || !(ends[0] < ends[1]))) {
-      at.reject("range", "expected the lowest and the highest difference");
+      at.reject("range", "expected two numbers, the lowest and the highest difference");
     } else if (!ends.empty()) {
       words_of.limits_k = {ends[0] * words_of.unit.scale, ends[1] * words_of.unit.scale};
     }
@@ -184,14 +186,14 @@ class InstrumentReader {
     words_of.radiator = one_number(absolute, "radiator", form_of, "");
   }
 
-  /// A choice whose command has a place for a word.
+  /// Choice whose command has a placeholder for a word.
   static StageChoice choice(TomlReader& at) {
     StageChoice choice;
     choice.set = form(at, "set", 1, "");
     choice.set_point = words(at, "set_point", "");
     choice.measured = words(at, "measured", "");
     if (choice.set.empty() && !(choice.set_point.empty() && choice.measured.empty()))
-      at.reject("set", "missing, but there is a set_point or measured");
+      at.reject("set", "missing, but set_point and measured need it");
     return choice;
   }
 
@@ -205,7 +207,7 @@ class InstrumentReader {
     stage.plate_words = list(plate, "words", stage.plates);
     if (stage.catalogue.empty() == stage.plates.empty())
       plate.reject(stage.plates.empty() ? "names" : "catalogue", "expected either names or a catalogue");
-    if (stage.plate_words.size() != stage.plates.size()) plate.reject("words", "expected one word for each of names");
+    if (stage.plate_words.size() != stage.plates.size()) plate.reject("words", "expected one word for each name");
     if (stage.plate.set.empty() && stage.plates.size() > 1)
       plate.reject("names", "expected one name: there is no command to change the plate");
     check_distinct(plate, "names", stage.plates);
@@ -217,7 +219,8 @@ class InstrumentReader {
 
   static void check_distinct(TomlReader& at, std::string_view key, Texts texts) {
     std::sort(texts.begin(), texts.end());
-    if (std::adjacent_find(texts.begin(), texts.end()) != texts.end()) at.reject(key, "expected no two the same");
+    if (std::adjacent_find(texts.begin(), texts.end()) != texts.end())
+      at.reject(key, "expected values that all differ");
   }
 
   void read_mounting() {
@@ -231,7 +234,7 @@ class InstrumentReader {
     }
     check_distinct(mounting, "identity", used);
     if (!stage.mounting.set.empty() && stage.mounting_words[0].empty())
-      mounting.reject("identity", "missing, expected the word of the stage for it");
+      mounting.reject("identity", "missing, expected the word of the stage for this mounting");
   }
 
   void read_position() {
@@ -241,10 +244,10 @@ class InstrumentReader {
     position.unit = unit(at, length_units());
     position.decimals = static_cast<int>(at.whole("decimals", 0, 9, position.decimals));
     position.set = list(at, "set", std::nullopt);
-    if (!position.set.empty() && position.set.size() > 2) at.reject("set", "expected one command, or two");
+    if (!position.set.empty() && position.set.size() > 2) at.reject("set", "expected one or two commands");
     for (std::size_t i = 0; i < position.set.size(); ++i) {
       if (places_in(position.set[i]) * position.set.size() != 2)
-        at.reject("set", i, "expected {} for x and {} for y in one command, or one {} in each of two");
+        at.reject("set", i, "expected {} for x and {} for y in one command, or one {} in each of two commands");
     }
     position.set_point = question(at, "set_point", "answer", 2, Texts{});
     position.measured = question(at, "measured", "answer", 2, std::nullopt);
@@ -254,7 +257,7 @@ class InstrumentReader {
     if (position.limits.asks() != ends.empty()) {
       at.reject(ends.empty() ? "limits" : "range", "expected either limits or range");
     } else if (!ends.empty() && (ends.size() != 4 || !(ends[0] <= ends[1] && ends[2] <= ends[3]))) {
-      at.reject("range", "expected lowest and highest x, lowest and highest y");
+      at.reject("range", "expected four numbers: lowest and highest x, lowest and highest y");
     } else if (!ends.empty()) {
       for (std::size_t i = 0; i < 4; ++i) position.limits_mm[i] = ends[i] * position.unit.scale;
     }
@@ -269,13 +272,13 @@ class InstrumentReader {
     if (!run.set.empty() && places_in(run.set) != 2) at.reject("set", "expected {} for x and {} for the speed");
     run.measured = question(at, "measured", "answer", 4, std::nullopt);
     run.limits = question(at, "limits", "limits_answer", 2, Texts{});
-    const auto speeds = at.numbers("range", NumberRange::positive(), std::vector<double>{});
+    const auto speeds = at.numbers("range", NumberRange::between(1e-6, 1e6), std::vector<double>{});
     if (!table_.stage.position) {
-      at.reject("set", "expected no [run] without a [position]");
+      at.reject("set", "[run] needs a [position]");
     } else if (run.limits.asks() != speeds.empty()) {
       at.reject(speeds.empty() ? "limits" : "range", "expected either limits or range");
     } else if (!speeds.empty() && (speeds.size() != 2 || !(speeds[0] <= speeds[1]))) {
-      at.reject("range", "expected lowest and highest speed");
+      at.reject("range", "expected two numbers, the lowest and the highest speed");
     } else if (!speeds.empty()) {
       for (std::size_t i = 0; i < 2; ++i) run.limits_mm_s[i] = speeds[i] * table_.stage.position->unit.scale;
     }
@@ -292,11 +295,12 @@ class InstrumentReader {
     rule.answers = list(at, "answers", Texts{});
     rule.dwell_s = at.number("dwell_s", NumberRange::between(0, 3600), 0.0);
     if (rule.query.empty() && (rule.bit || !rule.answers.empty()))
-      at.reject("query", "missing, but there is an answer");
+      at.reject("query", "missing, but bit or answers are stated");
     if (!rule.query.empty() && rule.bit.has_value() != rule.answers.empty())
-      at.reject("query", "expected either bit or answers for what it answers");
+      at.reject("query", "expected either bit or answers, which interpret the answer to the query");
     if (rule.query.empty() && rule.dwell_s <= 0)
-      at.reject("dwell_s", "expected a query, or a number of seconds above 0 to stay within the tolerance");
+      at.reject("dwell_s",
+                "expected a query, or a time above 0 s during which the value must stay within the tolerance");
   }
 
   TomlReader file_;

@@ -1,18 +1,19 @@
-// Instruments from their TOML files (docs/instruments.md).
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Instruments from their TOML files (docs/reference/instruments.md).
 #pragma once
 
 #include <string_view>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/plan/resources.h"
 #include "tod/instruments/instrument_table.h"
 
 namespace todbench {
 
-/// By name ("scpi-black-body") or file. `invalid_input` with file and line for a key that is unknown, missing or out of
-/// its range, and for words that cannot work together.
+/// Loads an instrument by name ("scpi-black-body") or file. Errors: `invalid_input` with file and line (key unknown,
+/// missing or out of range; contradictory commands).
 [[nodiscard]] Result<InstrumentTable> load_instrument(std::string_view reference);
-/// The same from text already read.
+/// Parses text already read.
 [[nodiscard]] Result<InstrumentTable> parse_instrument(const Resource& resource);
 
 }  // namespace todbench

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/joined_uncertainty.h"
 
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 

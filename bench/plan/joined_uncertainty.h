@@ -1,18 +1,19 @@
-// Standard uncertainties joined into one, and what it is worth where some of them rest on few observations.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Combination of independent standard uncertainties with finite degrees of freedom.
 #pragma once
 
 #include <optional>
 
 namespace todbench {
 
-/// Independent contributions: the root of the sum of their squares, with the degrees of freedom of Welch and
-/// Satterthwaite (JCGM 100:2008, G.4).
+/// Root sum of squares of independent contributions, with the effective degrees of freedom of Welch and Satterthwaite
+/// (JCGM 100:2008, G.4, equation G.2b).
 class JoinedUncertainty {
  public:
-  /// A standard uncertainty in the unit of the result; no degrees of freedom: very many.
+  /// Adds a standard uncertainty in the unit of the result; empty degrees of freedom: infinite.
   void add(double standard, const std::optional<double>& degrees_of_freedom);
   [[nodiscard]] double u() const { return u_; }
-  /// Student's t for this upper tail times u.
+  /// Returns u times Student's t for this upper tail probability.
   [[nodiscard]] double half_width(double upper_tail) const;
 
  private:

@@ -1,4 +1,5 @@
-// Members of a plan as values of keys: for the rows of the table of keys.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Access to the members of a plan as key values, for the table of keys.
 #pragma once
 
 #include <cstdint>
@@ -63,7 +64,7 @@ constexpr const auto& values_of(const Effect&) {
   return all_effects;
 }
 
-/// The names of an enumeration.
+/// Returns the names of an enumeration.
 template <typename Values>
 std::vector<std::string> names_of(const Values& values) {
   std::vector<std::string> names;
@@ -71,7 +72,8 @@ std::vector<std::string> names_of(const Values& values) {
   return names;
 }
 
-/// The value of that name; the first where there is none, which the reader has said then.
+/// Returns the value with this name; the first value if the name is unknown (the reader has already recorded the
+/// mistake).
 template <typename E>
 E value_named(const std::string& name) {
   for (const E value : values_of(E{})) {
@@ -120,11 +122,11 @@ inline void from_key_value(std::optional<double>& member, const KeyValue& value)
 }
 inline void from_key_value(std::vector<int>& member, const KeyValue& value) {
   member.clear();
-  // What is no number of frames is refused by its range: it must not overflow before.
+  // The range check rejects invalid numbers of frames later; the cast must not overflow before.
   for (const double number : std::get<std::vector<double>>(value))
     member.push_back(number >= -1e9 && number <= 1e9 ? static_cast<int>(number) : -1);
 }
-/// Of another length than two: what the reader has refused.
+/// A list without exactly two elements is ignored: the reader has already rejected it.
 inline void from_key_value(SceneMotion& member, const KeyValue& value) {
   const auto& numbers = std::get<std::vector<double>>(value);
   if (numbers.size() == 2) member = {.x_mrad_s = numbers[0], .y_mrad_s = numbers[1]};
@@ -136,7 +138,7 @@ void from_key_value(std::vector<E>& member, const KeyValue& value) {
   for (const std::string& name : std::get<std::vector<std::string>>(value)) member.push_back(value_named<E>(name));
 }
 
-/// `reach(plan, row)` is the struct, const or not as the plan is.
+/// Returns access to a member of the struct `reach(plan, row)`, which is const if the plan is.
 template <typename Reach, typename Struct, typename T>
 KeyPlace place_of(Reach reach, T Struct::*member) {
   return {.get = [=](const Plan& plan, std::size_t row) { return to_key_value(reach(plan, row).*member); },
@@ -144,21 +146,21 @@ KeyPlace place_of(Reach reach, T Struct::*member) {
                      const KeyValue& value) { from_key_value(reach(plan, row).*member, value); }};
 }
 
-/// Members of the plan itself.
+/// Access to a member of the plan itself.
 template <typename T>
 KeyPlace in_plan(T Plan::*member) {
   return place_of(
       [](auto& plan, std::size_t) -> auto& { return plan; }, member);
 }
 
-/// Members of one of its structs.
+/// Access to a member of one of its structs.
 template <typename Struct, typename T>
 KeyPlace in(Struct Plan::*section, T Struct::*member) {
   return place_of(
       [section](auto& plan, std::size_t) -> auto& { return plan.*section; }, member);
 }
 
-/// The rows of a list that `reach(plan)` finds.
+/// Access to the rows of the list `reach(plan)`.
 template <typename Reach>
 SectionRows rows_of(Reach reach) {
   return {.count = [=](const Plan& plan) { return reach(plan).size(); },

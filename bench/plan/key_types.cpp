@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/key_types.h"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ std::string word_found(const std::vector<std::string>& words, const std::string&
   return found(one_of(words), "\"" + one_line(word) + "\"") + nearest_name_hint(word, words);
 }
 
-/// Empty where it may not be, or one listed twice.
+/// Mistakes: an empty list where one is required, or a duplicate.
 std::vector<ValueMistake> list_mistakes(const std::vector<std::string>& list, std::string_view noun,
                                         MayBeEmpty may_be_empty) {
   std::vector<ValueMistake> mistakes;
@@ -84,7 +85,7 @@ std::string wholes_expected(const WholesKey& type) {
   return whole_expected(type.each) + ", or a list of them";
 }
 
-/// Whole numbers are kept as doubles in a list.
+/// Lists keep whole numbers as doubles.
 bool is_whole(const WholeKey& type, double value) {
   return value == std::floor(value) && value >= static_cast<double>(type.low) &&
          value <= static_cast<double>(type.high);
@@ -101,7 +102,7 @@ std::string joined(const std::vector<T>& list, const Write& write) {
   return text;
 }
 
-/// What stands between commas, without the blanks around it; nothing for an empty text.
+/// Returns the parts between commas, trimmed; empty for an empty text.
 std::vector<std::string> parts_of(std::string_view text) {
   std::vector<std::string> parts;
   while (!text.empty()) {
@@ -127,7 +128,7 @@ Result<KeyValue> number_from(const NumberRange& range, const std::string& expect
 
 Result<KeyValue> whole_from(const WholeKey& type, std::string_view text) {
   const std::optional<double> value = parse_number(text);
-  // Whole numbers up to 2^53 are exact in a double; longer ones are for files.
+  // A double holds whole numbers exactly up to 2^53; larger ones need a file.
   if (!value || *value != std::floor(*value) || std::abs(*value) > 0x1p53) return refused(whole_expected(type), text);
   const auto whole = static_cast<std::int64_t>(*value);
   if (whole < type.low || whole > type.high) return refused(whole_expected(type), text);
@@ -184,26 +185,24 @@ KeyValue or_nothing(const std::optional<double>& value) {
 }  // namespace
 
 std::string expected_of(const KeyType& type) {
-  return std::visit(
-      Overloaded{
-          [](const TextKey&) -> std::string { return "a text"; },
-          [](const FlagKey&) -> std::string { return "true or false"; },
-          [](const NumberKey& t) { return t.range.describe(); },
-          [](const OptionalNumberKey& t) { return t.range.describe(); },
-          [](const NumberOrWordKey& t) { return number_or_word_expected(t); },
-          [](const WholeKey& t) { return whole_expected(t); }, [](const WholesKey& t) { return wholes_expected(t); },
-          [](const ChoiceKey& t) { return one_of(t.words); },
-          [](const NumbersKey& t) {
-            return (t.count ? std::string(t.noun) : "a list") + ", each " + t.range.describe();
-          },
-          [](const ChoicesKey& t) { return "a list, each " + one_of(t.words); },
-          [](const ResourceKey& t) {
-            return (resource_names(t.kind).empty() ? "file of a " : "name or file of a ") +
-                   std::string(to_string(t.kind));
-          },
-          [](const ResourcesKey& t) { return "a list, each name or file of a " + std::string(to_string(t.kind)); },
-          [](const FreeTableKey&) -> std::string { return "a table of names and values"; }},
-      type);
+  return std::visit(Overloaded{[](const TextKey&) -> std::string { return "a text"; },
+                               [](const FlagKey&) -> std::string { return "true or false"; },
+                               [](const NumberKey& t) { return t.range.describe(); },
+                               [](const OptionalNumberKey& t) { return t.range.describe(); },
+                               [](const NumberOrWordKey& t) { return number_or_word_expected(t); },
+                               [](const WholeKey& t) { return whole_expected(t); },
+                               [](const WholesKey& t) { return wholes_expected(t); },
+                               [](const ChoiceKey& t) { return one_of(t.words); },
+                               [](const NumbersKey& t) {
+                                 return (t.count ? std::string(t.noun) : "a list") + ", each " + t.range.describe();
+                               },
+                               [](const ChoicesKey& t) { return "a list, each " + one_of(t.words); },
+                               [](const ResourceKey& t) {
+                                 return std::string(resource_names(t.kind).empty() ? "a file" : "a name or a file");
+                               },
+                               [](const ResourcesKey&) -> std::string { return "a list, each a name or a file"; },
+                               [](const FreeTableKey&) -> std::string { return "a table of names and values"; }},
+                    type);
 }
 
 std::vector<ValueMistake> mistakes_of(const KeyType& type, const KeyValue& value) {
@@ -363,7 +362,7 @@ Result<KeyValue> value_from_text(const KeyType& type, std::string_view text) {
                  [&](const ChoicesKey& t) { return choices_from(t, text); },
                  [&](const ResourceKey&) { return Value(std::string(text)); },
                  [&](const ResourcesKey&) { return Value(parts_of(text)); },
-                 [&](const FreeTableKey&) { return Value(refused("a table of a file", text)); }},
+                 [&](const FreeTableKey&) { return Value(refused("a table in a plan file", text)); }},
       type);
 }
 

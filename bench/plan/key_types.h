@@ -1,4 +1,5 @@
-// What a key of a description may hold: as TOML, as text of a form or a command line, and whether it is in range.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Types of the keys of a description: TOML, text of a form or command line, and range.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +11,13 @@
 #include <variant>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/plan/resources.h"
 #include "bench/plan/strict_toml.h"
 
 namespace todbench {
 
-/// The value of any key; std::monostate: there is none.
+/// Value of any key; std::monostate: absent.
 using KeyValue = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>,
                               std::vector<std::string>, std::map<std::string, std::string>>;
 
@@ -25,11 +26,11 @@ struct FlagKey {};
 struct NumberKey {
   NumberRange range;
 };
-/// A number, or nothing: then the file has no such key.
+/// Optional number; empty: the file does not have the key.
 struct OptionalNumberKey {
   NumberRange range;
 };
-/// A number, or nothing, for which a word stands.
+/// Optional number; `word` in the file stands for empty.
 struct NumberOrWordKey {
   NumberRange range;
   std::string_view word;
@@ -38,29 +39,29 @@ struct WholeKey {
   std::int64_t low = 0;
   std::int64_t high = 0;
 };
-/// One, or a list of one or more.
+/// One whole number, or a list of at least one.
 struct WholesKey {
   WholeKey each{};
 };
 struct ChoiceKey {
   std::vector<std::string> words;
 };
-/// Lists. `noun` is what one of them is called.
+/// List of numbers. `noun` is the name of an element in messages.
 struct NumbersKey {
   NumberRange range;
   std::string_view noun;
-  std::optional<std::size_t> count{};  ///< nothing: one or more
+  std::optional<std::size_t> count{};  ///< empty: at least one
 };
 enum class MayBeEmpty { no, yes };
-/// Each word at most once.
+/// List of words, each at most once.
 struct ChoicesKey {
   std::vector<std::string> words;
   std::string_view noun;
   MayBeEmpty may_be_empty = MayBeEmpty::no;
 };
-/// Name or file of a description.
-/// What a plate that is named alone is for.
+/// Use of a plate that a single key names.
 enum class PlateUse { mtf, ctf };
+/// Name or file of a description.
 struct ResourceKey {
   ResourceKind kind;
   PlateUse use = PlateUse::mtf;  ///< of a plate
@@ -68,36 +69,38 @@ struct ResourceKey {
 struct ResourcesKey {
   ResourceKind kind;
 };
-/// A table of names that are free, values as text.
+/// Table with free names; values as text.
 struct FreeTableKey {};
 
 using KeyType = std::variant<TextKey, FlagKey, NumberKey, OptionalNumberKey, NumberOrWordKey, WholeKey, WholesKey,
                              ChoiceKey, NumbersKey, ChoicesKey, ResourceKey, ResourcesKey, FreeTableKey>;
 
-/// "a number above 0", "one of 'a', 'b'": what a key takes, for messages, tooltips and documents.
+/// Returns the accepted values for messages, tooltips and documents: "a number above 0", "one of 'a', 'b'".
 [[nodiscard]] std::string expected_of(const KeyType& type);
 
-/// Something wrong with a value.
+/// Mistake in a value.
 struct ValueMistake {
-  std::optional<std::size_t> element;  ///< of a list
+  std::optional<std::size_t> element;  ///< index, if the value is a list
   std::string sentence;                ///< "expected a number above 0, found -1"
 };
-/// What the type alone says against a value of its kind. What a resource names is not looked at.
+/// Returns the mistakes that the type alone shows. Resources are not looked up.
 [[nodiscard]] std::vector<ValueMistake> mistakes_of(const KeyType& type, const KeyValue& value);
 
-/// Reads a key. A wrong value is recorded in the reader and the fallback returned; without a fallback the key has to be
-/// there.
+/// Reads a key. A wrong value is recorded in the reader, and the fallback is returned. Without a fallback the key is
+/// required.
 [[nodiscard]] KeyValue read_value(const KeyType& type, TomlReader& reader, std::string_view key,
                                   const std::optional<KeyValue>& fallback);
-/// The right side of "key = value"; nothing where TOML says it by leaving the key out. Free tables have no such side.
+/// Returns the right side of "key = value"; empty if the value is expressed by leaving the key out, and for free
+/// tables.
 [[nodiscard]] std::optional<std::string> toml_value(const KeyType& type, const KeyValue& value);
-/// A basic string of TOML, in quotes.
+/// Returns `text` as a quoted basic string of TOML.
 [[nodiscard]] std::string toml_string(std::string_view text);
 
-/// As a person reads and writes it in one line: numbers plainly, lists with commas, yes and no, nothing as an empty
-/// text or the word that stands for it.
+/// Returns the value as one line of text for people: plain numbers, lists with commas, yes and no; an absent value as
+/// empty text or as its word.
 [[nodiscard]] std::string plain_text(const KeyType& type, const KeyValue& value);
-/// The other way round. `invalid_input` says in a sentence what is wrong, range included, without the key's name.
+/// Inverse of plain_text(). Errors: `invalid_input`, a sentence with the accepted range but without the name of the
+/// key.
 [[nodiscard]] Result<KeyValue> value_from_text(const KeyType& type, std::string_view text);
 
 }  // namespace todbench

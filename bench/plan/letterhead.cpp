@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/letterhead.h"
 
 #include <fmt/format.h>
@@ -41,19 +42,19 @@ std::optional<std::size_t> png_channels(int colour) {
 
 Result<PngHeader> png_header(std::string_view data) {
   const auto wrong = [](const char* why) { return fail(ErrorCode::invalid_input, why); };
-  if (data.size() != 13) return wrong("a PNG without a header");
+  if (data.size() != 13) return wrong("the PNG has no valid header");
   PngHeader header{png_number(data), png_number(data.substr(4)), data[8], data[9], data[12]};
   if (header.width == 0 || header.height == 0 || header.width > most_png_pixels || header.height > most_png_pixels)
-    return wrong("a logo has at most 2000 x 2000 pixels");
+    return wrong("the logo must have at most 2000 x 2000 pixels");
   const std::array depths{1, 2, 4, 8, 16};
   if (std::find(depths.begin(), depths.end(), header.depth) == depths.end() || !png_channels(header.colour) ||
       data[10] != 0 || data[11] != 0)
-    return wrong("a PNG of an unknown kind");
-  if (header.interlace != 0) return wrong("an interlaced PNG; save it without interlacing");
+    return wrong("the PNG is of an unknown kind");
+  if (header.interlace != 0) return wrong("the PNG is interlaced: save it without interlacing");
   return header;
 }
 
-/// How many bytes the picture has once it is inflated: a filter byte before each row.
+/// Returns the size of the inflated picture in bytes; each row starts with a filter byte.
 std::size_t png_picture_bytes(const PngHeader& header) {
   const std::size_t bits = header.width * *png_channels(header.colour) * static_cast<std::size_t>(header.depth);
   return header.height * (1 + (bits + 7) / 8);
@@ -89,10 +90,10 @@ std::vector<std::string> paragraphs_in(TomlReader& file, std::string_view key) {
 Result<std::string> logo_in(const std::filesystem::path& file) {
   std::error_code problem;
   if (!std::filesystem::is_regular_file(file, problem))
-    return fail(ErrorCode::invalid_input, file.string() + ": is no file");
+    return fail(ErrorCode::invalid_input, file.string() + ": no such file");
   const auto size = std::filesystem::file_size(file, problem);
   if (problem || size > most_png_bytes)
-    return fail(ErrorCode::invalid_input, file.string() + ": a logo has at most 512 KiB");
+    return fail(ErrorCode::invalid_input, file.string() + ": the logo must have at most 512 KiB");
   auto bytes = read_text_file(file);
   if (!bytes) return bytes;
   auto png = checked_png(*bytes);
@@ -129,18 +130,18 @@ std::string toml_of(const Letterhead& letterhead) {
 
 Result<std::string> checked_png(std::string_view bytes) {
   const auto wrong = [](const char* why) { return fail(ErrorCode::invalid_input, why); };
-  if (bytes.size() > most_png_bytes) return wrong("a logo has at most 512 KiB");
-  if (!bytes.starts_with(png_signature)) return wrong("is no PNG");
+  if (bytes.size() > most_png_bytes) return wrong("the logo must have at most 512 KiB");
+  if (!bytes.starts_with(png_signature)) return wrong("not a PNG");
   std::string kept(png_signature), packed;
   std::optional<PngHeader> header;
   for (bytes.remove_prefix(png_signature.size());;) {
-    if (bytes.size() < 12) return wrong("a PNG that is cut off");
+    if (bytes.size() < 12) return wrong("the PNG is truncated");
     const std::size_t size = png_number(bytes);
-    if (size > bytes.size() - 12) return wrong("a PNG that is cut off");
+    if (size > bytes.size() - 12) return wrong("the PNG is truncated");
     const auto type = bytes.substr(4, 4), data = bytes.substr(8, size), whole = bytes.substr(0, size + 12);
     const auto sum = ::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()) + 4, static_cast<uInt>(size + 4));
-    if (png_number(bytes.substr(size + 8)) != sum) return wrong("a PNG with a wrong checksum");
-    if ((type == "IHDR") == header.has_value()) return wrong("a PNG whose header is not at its beginning");
+    if (png_number(bytes.substr(size + 8)) != sum) return wrong("the PNG has a wrong checksum");
+    if ((type == "IHDR") == header.has_value()) return wrong("the PNG does not begin with one header");
     if (type == "IHDR") {
       auto read = png_header(data);
       if (!read) return tl::unexpected(read.error());
@@ -151,7 +152,7 @@ Result<std::string> checked_png(std::string_view bytes) {
     bytes.remove_prefix(whole.size());
     if (type == "IEND") break;
   }
-  if (!inflates_to(packed, png_picture_bytes(*header))) return wrong("a PNG whose picture is not whole");
+  if (!inflates_to(packed, png_picture_bytes(*header))) return wrong("the picture of the PNG is incomplete");
   return kept;
 }
 
@@ -169,9 +170,10 @@ Result<Letterhead> parse_letterhead(const Resource& resource) {
   const std::string logo = reader->text("logo", "");
   letterhead.logo_text = paragraph_in(*reader, "logo_text");
   letterhead.logo_height_mm = reader->number("logo_height_mm", NumberRange::between(5, 60), letterhead.logo_height_mm);
-  if (logo.find("://") != std::string::npos) reader->reject("logo", "expected a file; nothing is fetched");
+  if (logo.find("://") != std::string::npos)
+    reader->reject("logo", "expected a local file: the program does not download files");
   if (!logo.empty() && letterhead.logo_text.empty())
-    reader->reject("logo", "needs logo_text, which says what it shows");
+    reader->reject("logo", "needs logo_text, a description of the logo");
   letterhead.lines = paragraphs_in(*reader, "lines");
   letterhead.introduction = paragraphs_in(*reader, "introduction");
   letterhead.closing_title = paragraph_in(*reader, "closing_title");

@@ -1,5 +1,6 @@
-// What a laboratory puts on its reports: logo, lines, texts. From a TOML file; all of it is plain text and one picture,
-// so that a report stays self-contained and runs nothing.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Letterhead of a laboratory for its reports, from a TOML file. It consists of plain text and one picture, so a report
+// remains self-contained and executes nothing.
 #pragma once
 
 #include <filesystem>
@@ -8,42 +9,42 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/plan/resources.h"
 
 namespace todbench {
 
 struct Letterhead {
-  std::string title;      ///< over the first page; empty: that of the report
-  std::string logo_png;   ///< bytes as checked_png() returns them; empty: none
-  std::string logo_text;  ///< what the logo shows, for those who do not see it
+  std::string title;      ///< heading of the first page; empty: title of the report
+  std::string logo_png;   ///< as returned by checked_png(); empty: no logo
+  std::string logo_text;  ///< alternative text of the logo
   double logo_height_mm = 14;
-  std::vector<std::string> lines;         ///< beside the logo: name, address
+  std::vector<std::string> lines;         ///< name and address, next to the logo
   std::vector<std::string> introduction;  ///< paragraphs before the verdict
   std::string closing_title;
   std::vector<std::string> closing;  ///< paragraphs of a section at the end
-  std::string foot;                  ///< before the label at the foot of every printed page
+  std::string foot;                  ///< text before the label in the footer of printed pages
   bool operator==(const Letterhead&) const = default;
 };
 
-/// A PNG of at most 512 KiB and 2000 x 2000 pixels, whole (checksums, and as many bytes of picture as its size wants),
-/// without what is no picture: texts, times, profiles and everything else that a program may hide there.
-/// `invalid_input` with the reason.
+/// Checks a PNG of at most 512 KiB and 2000 x 2000 pixels and returns it without ancillary chunks (text, times,
+/// profiles and any other data). The file must be complete: checksums, and as many bytes of picture as its size
+/// requires. Errors: `invalid_input` with the reason.
 [[nodiscard]] Result<std::string> checked_png(std::string_view bytes);
 
-/// Reads a description and the logo that it names, relative to its file. `invalid_input` with file and line for a key
-/// that is unknown or out of range, a text of more than 2000 characters, more than 20 of a kind, a control character,
-/// or a logo that is none.
+/// Reads a description and its logo, whose path is relative to the file. Errors: `invalid_input` with file and line
+/// (key unknown or out of range, text over 2000 characters, more than 20 entries of a kind, control character, invalid
+/// logo).
 [[nodiscard]] Result<Letterhead> parse_letterhead(const Resource& resource);
 [[nodiscard]] Result<Letterhead> load_letterhead(const std::filesystem::path& file);
 
-/// Files of a session that keep it, relative to its folder.
+/// Files of the letterhead, relative to the session folder.
 inline constexpr std::string_view letterhead_file = "inputs/letterhead.toml";
 inline constexpr std::string_view letterhead_logo_file = "inputs/letterhead.png";
-/// Writes those of `letterhead` and names them.
+/// Writes the files of `letterhead` and returns their names.
 [[nodiscard]] Result<std::vector<std::string>> keep_letterhead(const std::filesystem::path& session,
                                                                const Letterhead& letterhead);
-/// The one that a session keeps; nothing where it has none.
+/// Returns the letterhead of a session; empty if it has none.
 [[nodiscard]] Result<std::optional<Letterhead>> kept_letterhead(const std::filesystem::path& session);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/loaded_plan.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace todbench {
 namespace {
 
-/// A description from its text, which is kept.
+/// Parses a description and keeps its text.
 template <typename T>
 Result<T> read_part(ResourceKind kind, const std::string& reference, const ResourceFinder& find, PlanParts& parts,
                     Result<T> (*parse)(const Resource&)) {
@@ -36,7 +37,7 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
   parts.plates.clear();
   for (std::size_t i = 0; i < references.size(); ++i) {
     const auto here = references.begin() + static_cast<std::ptrdiff_t>(i);
-    // One that is listed twice is said to be so; it is not another plate of that name.
+    // A duplicate in the list is reported as a duplicate, not as another plate with the same name.
     if (std::find(references.begin(), here, *here) != here) continue;
     Result<TargetPlate> plate = read_part(ResourceKind::plate, *here, find, parts, parse_plate);
     if (!plate) {
@@ -44,7 +45,7 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
       continue;
     }
     if (plate->triangles.empty()) {
-      mistakes.push_back({i, *here + ": the plate has no triangles, and trials are made with triangles"});
+      mistakes.push_back({i, *here + ": the plate has no triangles, but trials need triangles"});
       continue;
     }
     for (const TargetPlate& other : parts.plates) {
@@ -56,7 +57,7 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
   return mistakes;
 }
 
-/// Of keys that name one part: whether the plan needs it.
+/// Returns whether the plan needs the part, for keys that name a single one.
 bool is_asked_for(const ResourceKey& key, const Plan& plan) {
   if (key.kind == ResourceKind::plate) return key.use == PlateUse::mtf ? plan.measures.mtf : plan.measures.ctf;
   if (key.kind == ResourceKind::black_body || key.kind == ResourceKind::stage)
@@ -72,10 +73,10 @@ std::vector<ValueMistake> read_letterhead(const Plan& plan, const ResourceFinder
               parts.letterhead.emplace());
 }
 
-/// Why a plate cannot be used for a measure; empty: it can.
+/// Returns the reason why a plate cannot be used for a measure; empty if it can.
 std::string unfit_for(PlateUse use, const TargetPlate& plate) {
-  if (plate.rectangles.empty()) return "the plate has no rectangles, and an MTF or CTF needs straight edges";
-  if (use == PlateUse::ctf && plate.bars.empty()) return "the plate has no bars, and a CTF needs groups of them";
+  if (plate.rectangles.empty()) return "the plate has no rectangles, but an MTF or CTF needs straight edges";
+  if (use == PlateUse::ctf && plate.bars.empty()) return "the plate has no bars, but a CTF needs groups of bars";
   return "";
 }
 
@@ -91,15 +92,15 @@ std::vector<ValueMistake> read_measure_plate(PlateUse use, const Plan& plan, con
   if (const std::string why = unfit_for(use, *plate); !why.empty()) return {{std::nullopt, reference + ": " + why}};
   for (std::size_t i = 0; i < parts.plates.size(); ++i) {
     if (parts.plates[i].name == plate->name && i < plan.target.plates.size() && plan.target.plates[i] != reference)
-      return {{std::nullopt, reference + ": a plate of the trials has the name '" + plate->name + "'"}};
+      return {{std::nullopt, reference + ": a plate of the trials has the same name, '" + plate->name + "'"}};
   }
   if (!mtf && parts.mtf_plate && parts.mtf_plate->name == plate->name && plan.measures.mtf_plate != reference)
-    return {{std::nullopt, reference + ": the plate of the MTF has the name '" + plate->name + "', too"}};
+    return {{std::nullopt, reference + ": the plate of the MTF has the same name, '" + plate->name + "'"}};
   part = *std::move(plate);
   return {};
 }
 
-/// Nothing is read of an instrument that is not talked to.
+/// Reads an instrument table, if the plan needs it.
 std::vector<ValueMistake> read_instrument(ResourceKind kind, const std::string& reference, const Plan& plan,
                                           const ResourceFinder& find, PlanParts& parts) {
   if (!is_asked_for({kind}, plan)) return {};
@@ -113,7 +114,7 @@ std::vector<ValueMistake> read_instrument(ResourceKind kind, const std::string& 
                              std::string(to_string(expected)) + "\""}};
 }
 
-/// The parts whose names are not those of `known`.
+/// Reads the parts whose names differ between `plan` and `known`; all if `known` is null.
 Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFinder& find, PlanParts& parts) {
   for (const PlanSection& section : plan_sections()) {
     for (const PlanKey& key : section.keys) {
@@ -129,14 +130,15 @@ Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFin
   return {};
 }
 
-/// What the parts say against the plan.
+/// Returns the contradictions between parts and plan.
 Result<void> fits_together(const Plan& plan, const PlanParts& parts) {
-  constexpr double steepest = 0.5;  // pitches that the target moves from one row to the next
+  constexpr double steepest = 0.5;  // motion of the target between two rows, in pitches
   const cv::Point2d slope = readout_slope(parts.sensor, plan.simulation.motion);
   if (std::hypot(slope.x, slope.y) <= steepest) return {};
-  return fail(ErrorCode::invalid_input,
-              "motion_mrad_s in [simulation]: the target moves more than half a detector from one row of " +
-                  parts.sensor.name + " to the next");
+  return fail(
+      ErrorCode::invalid_input,
+      "motion_mrad_s in [simulation]: the target moves by more than half a detector pitch between two rows of " +
+          parts.sensor.name);
 }
 
 }  // namespace
@@ -228,9 +230,9 @@ Result<LoadedPlan> read_plan(std::string_view reference, const ResourceFinder& f
 Result<LoadedPlan> read_camera_plan(std::string_view reference) {
   auto loaded = read_plan(reference);
   if (loaded && loaded->plan().camera.id.empty())
-    return fail(
-        ErrorCode::invalid_input,
-        std::string(reference) + ": names no camera, expected key 'id' in [camera] (todbench devices lists them)");
+    return fail(ErrorCode::invalid_input,
+                std::string(reference) +
+                    ": the plan names no camera: state key 'id' in [camera]; todbench devices lists the cameras");
   return loaded;
 }
 

@@ -1,4 +1,5 @@
-// A plan and what it names, read once.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plan with the descriptions that it names, read once.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/plan/key_types.h"
 #include "bench/plan/letterhead.h"
 #include "bench/plan/plan.h"
@@ -21,37 +22,37 @@
 
 namespace todbench {
 
-/// The descriptions that a plan names, as their files say.
+/// Descriptions that a plan names, as read from their files.
 struct PlanParts {
-  std::vector<TargetPlate> plates;  ///< in the order of the plan, each with a name of its own
+  std::vector<TargetPlate> plates;  ///< in the order of the plan, names unique
   TemplateObserverSpec observer;
-  SensorSpec sensor;                       ///< with its own microscan
-  std::optional<TargetPlate> mtf_plate{};  ///< where [measures] asks for an MTF
-  std::optional<TargetPlate> ctf_plate{};  ///< where it asks for a CTF
-  InstrumentTable black_body{}, stage{};   ///< of a plan with a target of kind scpi; else whatever
-  std::optional<Letterhead> letterhead{};  ///< where [report] names one
-  /// The texts they were read from, by kind and reference.
+  SensorSpec sensor;                       ///< with the microscan of its file
+  std::optional<TargetPlate> mtf_plate{};  ///< present if [measures] requests an MTF
+  std::optional<TargetPlate> ctf_plate{};  ///< present if [measures] requests a CTF
+  InstrumentTable black_body{}, stage{};   ///< only for targets of kind scpi; otherwise unspecified
+  std::optional<Letterhead> letterhead{};  ///< present if [report] names one
+  /// Source texts by kind and reference.
   std::map<std::pair<ResourceKind, std::string>, Resource> sources{};
 };
 
-/// A plan that is valid, with the parts that it names: what every run, forecast and report begins with. Nothing of it
-/// is read again. Immutable; threads may share it.
+/// Valid plan with the parts that it names: the start of every run, forecast and report. Nothing is read again later.
+/// Immutable; threads may share it.
 class LoadedPlan {
  public:
-  /// Validates the plan and reads its parts through `find`. Errors: `invalid_input` about the key (validate(), or a
-  /// part that is not found or wrong).
+  /// Validates the plan and reads its parts with `find`. Errors: `invalid_input` about the key (validate(); part not
+  /// found or invalid).
   [[nodiscard]] static Result<LoadedPlan> load(Plan plan, const ResourceFinder& find = find_resource);
-  /// Of parts that have been read: those that the plan names. Errors: validate().
+  /// Combines a plan with parts already read, which must be those that it names. Errors: validate().
   [[nodiscard]] static Result<LoadedPlan> of(Plan plan, PlanParts parts);
-  /// Another plan, of which only those parts are read that this one does not name.
+  /// Loads another plan and reads only the parts that this one does not have.
   [[nodiscard]] Result<LoadedPlan> with(Plan plan, const ResourceFinder& find = find_resource) const;
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const std::vector<TargetPlate>& plates() const { return parts_.plates; }
-  /// Every plate that a target has to be able to show: of the trials, of MTF and CTF.
+  /// Returns every plate that the target must be able to show: for the trials, MTF and CTF.
   [[nodiscard]] std::vector<TargetPlate> shown_plates() const;
   [[nodiscard]] const TemplateObserverSpec& observer() const { return parts_.observer; }
-  /// With the microscan of the plan.
+  /// Sensor with the microscan of the plan.
   [[nodiscard]] const SensorSpec& sensor() const { return sensor_; }
   [[nodiscard]] const PlanParts& parts() const { return parts_; }
 
@@ -64,18 +65,18 @@ class LoadedPlan {
   SensorSpec sensor_;
 };
 
-/// As load_plan() and parse_plan(), with the parts.
+/// Like load_plan() and parse_plan(), with the parts.
 [[nodiscard]] Result<LoadedPlan> read_plan(std::string_view reference, const ResourceFinder& find = find_resource);
 [[nodiscard]] Result<LoadedPlan> read_plan(const Resource& resource, const std::filesystem::path& folder,
                                            const ResourceFinder& find = find_resource);
 
-/// A plan that names a camera; `invalid_input` for one that does not.
+/// Reads a plan and requires a camera id. Errors: `invalid_input` (also for a plan without a camera).
 [[nodiscard]] Result<LoadedPlan> read_camera_plan(std::string_view reference);
 
-/// The plan with the files that it names as absolute paths; relative ones are relative to `folder`.
+/// Returns the plan with absolute paths of the files that it names; relative ones are relative to `folder`.
 [[nodiscard]] Plan with_absolute_references(Plan plan, const std::filesystem::path& folder);
 
-/// Reads the parts that keys of a type name in `plan` into `parts`; what cannot be used, by element of the list.
+/// Reads the parts that keys of a type name in `plan` into `parts`. Returns the mistakes by element of the list.
 [[nodiscard]] std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, const ResourceFinder& find,
                                                    PlanParts& parts);
 

@@ -1,15 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/plan.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/normal.h"
+#include "acquisition/base/normal.h"
 #include "bench/plan/joined_uncertainty.h"
 
 namespace todbench {
 namespace {
 
-/// The standard uncertainty with very many degrees of freedom that has the same interval of 95 %.
+/// Returns the standard uncertainty with infinite degrees of freedom that gives the same 95 % interval.
 double widened(const JoinedUncertainty& joined) {
   return joined.half_width(0.025) / normal_z95;
 }

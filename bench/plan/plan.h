@@ -1,4 +1,5 @@
-// The plan of a measurement: what is measured with what, how long, and what is demanded. A value; the file is TOML.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measurement plan: equipment, conditions, duration and limits. A value type; the file format is TOML.
 #pragma once
 
 #include <array>
@@ -10,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/accuracy.h"
-#include "acquisition/core/result.h"
+#include "acquisition/base/accuracy.h"
+#include "acquisition/base/result.h"
 #include "bench/plan/budget_row.h"
 #include "bench/plan/conformity_rule.h"
 #include "bench/plan/resources.h"
@@ -27,19 +28,21 @@ namespace todbench {
 
 /// [camera]: the real or emulated camera. Without an id the plan can only be simulated.
 struct CameraPlan {
-  std::string id;                                ///< as `todbench devices` lists it, e.g. "gige:FLIR-48000123"
+  std::string id;                                ///< as listed by `todbench devices`, e.g. "gige:FLIR-48000123"
   double ifov_mrad = 0;                          ///< of one pixel; required with an id
-  double nuc_interval_s = 0;                     ///< correct the non-uniformity this often; 0: never commanded
+  double nuc_interval_s = 0;                     ///< period of commanded corrections; 0: never commanded
   double nuc_wait_s = 1;                         ///< frames within this time after a correction are not measured
-  std::map<std::string, std::string> settings;   ///< feature -> value, set before the run and read back
-  double reconnect_s = 60;                       ///< how long a lost camera is waited for; 0: not at all
-  ContrastUnit contrast = ContrastUnit::kelvin;  ///< of the camera alone; the twin is measured in kelvin
+  std::map<std::string, std::string> settings;   ///< feature -> value; set before the run and read back
+  double reconnect_s = 60;                       ///< maximum time to wait for a lost camera; 0: no reconnection
+  ContrastUnit contrast = ContrastUnit::kelvin;  ///< camera only; the twin is measured in kelvin
+  std::string frame_size;                        ///< "640x512": requested size; empty: chosen by the back end
+  std::string nuc_command;                       ///< feature that triggers a correction; empty: found by name
   bool operator==(const CameraPlan&) const = default;
 };
 
 enum class TargetKind {
   scpi,    ///< black body and plate stage on the network
-  prompt,  ///< the operator changes the target when asked
+  prompt,  ///< the operator changes the target on request
   scene,   ///< the simulated scene of a simulated or emulated camera
   display  ///< a monitor that the bench draws on
 };
@@ -47,98 +50,104 @@ inline constexpr std::array all_target_kinds{TargetKind::scpi, TargetKind::promp
                                              TargetKind::display};
 [[nodiscard]] std::string_view to_string(TargetKind kind);
 
-/// [target]: what is shown, in every combination.
+/// Section [target]. Every combination of its lists is shown.
 struct TargetPlan {
   TargetKind kind = TargetKind::scene;
-  std::string black_body;                            ///< address of the instrument; required for kind scpi
-  std::string stage;                                 ///< the same for the stage that moves the plate
-  std::string black_body_table = "scpi-black-body";  ///< its words, by name or file
+  std::string black_body;  ///< address of the instrument; required for kind scpi
+  std::string stage;       ///< address of the stage that moves the plate; required for kind scpi
+  std::string black_body_table = "scpi-black-body";  ///< command table: name or file
   std::string stage_table = "scpi-stage";
-  /// Of kind display: the program that shows pictures, the screen, and the contrast of black beside white.
+  /// Kind display: program that shows pictures, size of the picture, contrast of black and white on the screen (K of
+  /// the camera's scale), exponent of luminance over level, and settling time of the panel.
   std::string display = "todbench-gui --pictures";
   int display_width_px = 1920, display_height_px = 1080;
   double display_pixel_mm = 0, display_span_k = 0, display_gamma = 1, display_settle_s = 0.2;
-  std::vector<double> display_luminance{0, 1};          ///< of equally spaced levels from black to white
-  double distance_m = 2;                                ///< entrance pupil to plate; required in a file
+  std::vector<double> display_luminance{0, 1};  ///< replaces display_gamma: at equally spaced levels, black to white
+  double distance_m = 2;                        ///< entrance pupil to plate; required in a file
   std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
   std::vector<Mounting> mountings{all_mountings.begin(), all_mountings.end()};
-  std::vector<double> delta_t_k{16.9, 1.93, 0.23};  ///< set-points, never 0; the sign is the polarity
+  std::vector<double> delta_t_k{16.9, 1.93, 0.23};  ///< set contrasts, never 0; the sign is the polarity
   int phases = 16;                                  ///< sub-pixel shifts per plate, mounting and contrast
-  /// Of the air between plate and camera; 0 % humidity: not stated, and nothing is corrected.
+  /// Largest error of an observed shift of the plate; a larger one ends the run. 0: shifts are not checked.
+  double max_shift_error_px = 0.25;
+  /// Air between plate and camera; humidity 0: not stated, no correction.
   double air_temperature_c = 20, air_humidity_percent = 0;
-  double settle_timeout_s = 600;
+  double settle_timeout_s = 600;  ///< the run ends if the target is not stable by then
+  /// Largest deviation of the effective contrast from the set contrast; empty: derived from the budget
+  /// (allowed_contrast_deviation()).
+  std::optional<double> max_contrast_deviation_percent{};
+  /// Durations of changes of the target; the order of presentations follows from them.
   double plate_change_s = 60, mounting_change_s = 30, contrast_change_s = 20, shift_change_s = 0.1;
   bool operator==(const TargetPlan&) const = default;
 };
 
-/// [simulation]: the twin.
+/// Section [simulation]: the twin.
 struct SimulationPlan {
   std::string sensor = "sc2000";    ///< name or file
-  std::string accuracy = "normal";  ///< draft, normal, reference, or auto: from tolerance_percent alone
-  double tolerance_percent = 1;     ///< of the 75 % acuity
-  int microscan = 1;                ///< in place of the sensor's own, which a file need not repeat
-  int phases = 16;       ///< sub-pixel shifts per plate, mounting and contrast, in place of those of [target]
-  SceneMotion motion{};  ///< of the target; matters where the sensor has a time constant
-  std::vector<Effect> skip, force;
-  bool paired = true;  ///< graded answers: the twin is shown the camera's own presentations, too
+  std::string accuracy = "normal";  ///< draft, normal, reference, or auto (from tolerance_percent alone)
+  double tolerance_percent = 1;     ///< allowed numerical error of the 75 % acuity
+  int microscan = 1;                ///< samples per pitch and axis; replaces the value of the sensor file
+  int phases = 16;                  ///< sub-pixel shifts per plate, mounting and contrast of the twin
+  SceneMotion motion{};             ///< of the target; has an effect if the sensor has a time constant
+  std::vector<Effect> skip, force;  ///< effects left out, or simulated, regardless of the planner
+  bool paired = true;               ///< graded answers: the twin also judges the camera's presentations
   bool operator==(const SimulationPlan&) const = default;
 };
 
 enum class ScheduleKind {
-  constant,  ///< every combination of [target], in every phase
-  adaptive,  ///< what the answers so far leave open, until intervals are narrow enough
-             ///< (tod/schedule/adaptive_schedule.h)
+  constant,  ///< every combination of [target] at every phase
+  adaptive,  ///< chosen from the answers so far until intervals are narrow enough (tod/schedule/adaptive_schedule.h)
 };
 inline constexpr std::array all_schedule_kinds{ScheduleKind::constant, ScheduleKind::adaptive};
 [[nodiscard]] std::string_view to_string(ScheduleKind kind);
 
-/// What answers are to be taken.
+/// Kind of answers.
 enum class AnswersChoice {
-  automatic,  ///< graded where that is proven (chosen_answers()), else right and wrong
+  automatic,  ///< graded if validated for the plan (chosen_answers()), otherwise binary
   binary,     ///< right or wrong
-  graded,     ///< the probability of the right answer given what was seen, too
+  graded,     ///< also the probability of the correct answer for the observed picture
 };
 inline constexpr std::array all_answers_choices{AnswersChoice::automatic, AnswersChoice::binary, AnswersChoice::graded};
 [[nodiscard]] std::string_view to_string(AnswersChoice choice);
 
-/// [schedule]: of camera and twin.
+/// Section [schedule], for camera and twin.
 struct SchedulePlan {
   ScheduleKind kind = ScheduleKind::constant;
-  double half_width_percent = 10;  ///< adaptive: wanted half-width of the 95 % interval of S75
-  int max_presentations = 1000;    ///< adaptive: hard cap over all contrasts
+  double half_width_percent = 10;  ///< adaptive: target half-width of the 95 % interval of S75
+  int max_presentations = 1000;    ///< adaptive: maximum over all contrasts
   AnswersChoice answers = AnswersChoice::automatic;
-  /// Successive good ones, over which graded answers are averaged: of every contrast, or one number for each of
-  /// delta_t_k in its order; 0: chosen by with_frames() (bench/run/prediction.h).
+  /// Successive valid frames that a graded answer averages: one number for all contrasts, or one for each of delta_t_k
+  /// in its order; 0: chosen by with_frames() (bench/run/prediction.h).
   std::vector<int> frames_per_presentation{0};
   bool operator==(const SchedulePlan&) const = default;
 };
 
 inline constexpr std::array all_psychometric_forms{PsychometricForm::size, PsychometricForm::acuity};
 
-/// With what function answers are to be fitted.
+/// Function that is fitted to the answers.
 enum class EstimatorChoice {
-  automatic,   ///< that of the simulated twin where there is one, else a Weibull function (chosen_estimator())
+  automatic,   ///< function of the twin if it applies, otherwise Weibull (chosen_estimator())
   weibull,     ///< a Weibull function
-  twin_shape,  ///< the function of the simulated twin
+  twin_shape,  ///< function of the simulated twin
 };
 inline constexpr std::array all_estimator_choices{EstimatorChoice::automatic, EstimatorChoice::weibull,
                                                   EstimatorChoice::twin_shape};
 [[nodiscard]] std::string_view to_string(EstimatorChoice choice);
 
-/// [fit]
+/// Section [fit].
 struct FitPlan {
   PsychometricForm form = PsychometricForm::size;
-  std::optional<double> lapse = 0.0;  ///< nothing: free
+  std::optional<double> lapse = 0.0;  ///< lapse rate; empty: fitted
   EstimatorChoice estimator = EstimatorChoice::automatic;
   bool operator==(const FitPlan&) const = default;
 };
 
-/// What can be demanded of a unit. bench/judgement/demand_kinds.cpp has a row for each: its name, how it is judged, how
-/// it is shown.
+/// Kinds of demands. bench/judgement/demand_kinds.cpp has a row for each: name, rule of judgement, presentation.
 enum class DemandKind {
-  acuity,       ///< the 75 % acuity at a contrast, [[limits.acuity]]
-  identified,   ///< a threshold with both sides of its interval, at every contrast without a limit on acuity
-  equivalence,  ///< agreement with the simulated twin, [limits] equivalence_margin_percent
+  acuity,  ///< 75 % acuity at a contrast, [[limits.acuity]]
+  /// A threshold with both ends of its interval, at every contrast without a limit on acuity.
+  identified,
+  equivalence,  ///< to the simulated twin, [limits] equivalence_margin_percent
   // Physical measures, [[limits.measure]].
   netd,
   temporal_noise,
@@ -149,7 +158,7 @@ enum class DemandKind {
   noise_th,
   noise_vh,
   noise_tvh,
-  temperature_scale_at_least,  ///< contrast seen over contrast shown
+  temperature_scale_at_least,  ///< slope of the signal transfer
   temperature_scale_at_most,
   mtf_x,
   mtf_y,
@@ -163,7 +172,7 @@ enum class DemandKind {
   drift_rate,
   drift_pattern_rate,
   response_time,
-  scene_dependence,  ///< of the response on a hot bar in the field, `todbench scene-dependence`
+  scene_dependence,  ///< of the response to a hot bar in the field, `todbench scene-dependence`
   // Pixels of a zone, [[limits.zone]].
   zone_bad_pixels,
   zone_substituted_pixels,
@@ -171,14 +180,14 @@ enum class DemandKind {
   zone_largest_cluster,
 };
 
-/// [[limits.acuity]]: the 75 % acuity demanded at a contrast.
+/// Row of [[limits.acuity]]: required 75 % acuity at a contrast.
 struct AcuityLimit {
   double delta_t_k = 0;
   double least_acuity_per_mrad = 0;
   bool operator==(const AcuityLimit&) const = default;
 };
 
-/// Physical measures that can be limited, by their names in measures.json.
+/// Physical measures that can have a limit, named as in measures.json.
 enum class LimitedMeasure {
   netd,
   temporal_noise,
@@ -196,8 +205,8 @@ enum class LimitedMeasure {
   ctf_y,
   ifov_x,
   ifov_y,
-  distortion,          ///< at the corner, of either sign
-  drift_rate,          ///< of the mean, of either sign
+  distortion,          ///< at the corner, absolute value
+  drift_rate,          ///< of the mean, absolute value
   drift_pattern_rate,  ///< of the spatial noise
   response_time,
 };
@@ -222,66 +231,67 @@ inline constexpr std::array limited_measures{LimitedMeasure::netd,
                                              LimitedMeasure::drift_pattern_rate,
                                              LimitedMeasure::response_time};
 [[nodiscard]] std::string_view to_string(LimitedMeasure measure);
-/// An MTF or a CTF.
+/// Returns whether the measure is an MTF or a CTF.
 [[nodiscard]] bool is_modulation(LimitedMeasure measure);
-/// An angle per pixel.
+/// Returns whether the measure is an angle per pixel.
 [[nodiscard]] bool is_ifov(LimitedMeasure measure);
-/// Which limits a measure can have.
+/// Return whether the measure can have this kind of limit.
 [[nodiscard]] bool takes_at_least(LimitedMeasure measure);
 [[nodiscard]] bool takes_at_most(LimitedMeasure measure);
 
-/// [[limits.measure]]: limits on a physical measure, in its unit.
+/// Row of [[limits.measure]]: limits in the unit of the measure.
 struct MeasureLimit {
   LimitedMeasure measure = LimitedMeasure::netd;
-  std::optional<double> at_least{};  ///< of the temperature scale, an MTF, a CTF and an IFOV
+  std::optional<double> at_least{};  ///< temperature scale, MTF, CTF and IFOV only
   std::optional<double> at_most{};
   bool operator==(const MeasureLimit&) const = default;
 };
 
-/// Where a zone named so begins and ends, in place of its own.
+/// Name of the zone that is the whole frame, whatever its area.
 inline constexpr std::string_view whole_frame_zone = "whole";
 
-/// [[limits.zone]]: most pixels of a kind in a part of the frame.
+/// Row of [[limits.zone]]: largest number of defective pixels in a part of the frame.
 struct ZoneLimit {
   std::string name;
-  /// Left, top, right, bottom in fractions of the frame. Default: the middle half of each side.
+  /// Left, top, right, bottom as fractions of the frame. Default: the middle half of each side.
   std::vector<double> area{0.25, 0.25, 0.75, 0.75};
   std::optional<double> bad_pixels{}, substituted_pixels{}, clusters{}, largest_cluster{};
   bool operator==(const ZoneLimit&) const = default;
 };
 
-/// Name of the acuity in [[limits.fleet]]; the others are those of LimitedMeasure.
+/// Name of the acuity in [[limits.fleet]]; other rows use the names of LimitedMeasure.
 inline constexpr std::string_view fleet_acuity = "acuity";
-/// Units that say something of a spread: its standard deviation is known to a quarter.
+/// Least number of units for a fleet: their standard deviation then has a relative standard error of a quarter.
 inline constexpr int least_fleet_units = 10;
 
-/// [[limits.fleet]]: true values of earlier units of this kind, as `todbench history prior` states them.
+/// Row of [[limits.fleet]]: distribution of the true values of earlier units, as written by `todbench history prior`.
 struct FleetRow {
   std::string measure{fleet_acuity};
-  std::optional<double> delta_t_k{};  ///< of an acuity
-  double mean = 0;                    ///< in the unit of the measure; of an acuity the geometric one
-  double sd = 0;                      ///< of true values, in that unit; of an acuity in ln acuity
-  double u = 0;                       ///< of the values that say so, on the scale of sd; 0: as good as nothing
+  std::optional<double> delta_t_k{};  ///< acuity only
+  double mean = 0;                    ///< in the unit of the measure; geometric mean for an acuity
+  double sd = 0;                      ///< standard deviation of true values in that unit; of ln acuity for an acuity
+  double u = 0;                       ///< standard uncertainty of one value on the scale of sd; 0: negligible
   int units = 0;
   std::string source{};
   bool operator==(const FleetRow&) const = default;
 };
 
-/// [limits]
+/// Section [limits].
 struct LimitsPlan {
   std::vector<AcuityLimit> acuity;
-  std::optional<double> equivalence_margin_percent;  ///< demanded agreement with the twin; nothing: not demanded
+  std::optional<double> equivalence_margin_percent;  ///< agreement with the twin; empty: not required
   std::vector<MeasureLimit> measures{};
   std::vector<ZoneLimit> zones{};
   ConformityRule rule = ConformityRule::guarded_acceptance_and_rejection;
-  /// Of a wrong acceptance at the acceptance limit, in place of the 95 % interval as guard band.
+  /// Risk of a false acceptance at the acceptance limit. It sets the guard band in place of the 95 % interval.
   std::optional<double> guard_band_risk{};
   std::vector<FleetRow> fleets{};
-  std::optional<double> fleet_sd_percent{};  ///< of true acuities over the fleet; for what `plan` says beforehand
+  /// Spread of true acuities over the fleet; for the risks stated by `todbench plan`.
+  std::optional<double> fleet_sd_percent{};
   bool operator==(const LimitsPlan&) const = default;
 };
 
-/// [measurement]: see MeasurementOptions.
+/// Section [measurement]; see MeasurementOptions.
 struct MeasurementPlan {
   int registration_frames = 32;
   int contrast_frames = 16;
@@ -293,90 +303,90 @@ struct MeasurementPlan {
   double max_scale_deviation = 0.02;
   double max_rotation_deg = 10;
   double max_residual_px = 0.25;
-  double max_readback_deviation_k = 0.002;  ///< of what the target says it shows from what it was told; beyond: a note
-  bool record_frames = false;               ///< every frame of the camera into frames/, for `todbench replay`
+  double max_readback_deviation_k = 0.002;  ///< set point against read-back of the target; a larger one gives a note
+  bool record_frames = false;               ///< write every frame to frames/, for `todbench replay`
   bool operator==(const MeasurementPlan&) const = default;
 };
 
-/// Where pixels are looked at.
+/// Area of the pixel check.
 enum class PixelArea {
-  plate,  ///< what the plate covers
-  frame,  ///< everything: the flat field fills the picture
+  plate,  ///< area covered by the plate
+  frame,  ///< whole frame; the flat field must fill the picture
 };
 inline constexpr std::array all_pixel_areas{PixelArea::plate, PixelArea::frame};
 [[nodiscard]] constexpr std::string_view to_string(PixelArea area) {
   return area == PixelArea::frame ? "frame" : "plate";
 }
 
-/// [measures]: physical measures after the trials, with the same camera and target, and of the twin.
+/// Section [measures]: physical measures of the camera, after the trials with the same target, and of the twin.
 struct MeasuresPlan {
-  bool noise = false;     ///< temporal noise, NETD and 3-D noise, of the first plate at a contrast of 0
-  int noise_frames = 64;  ///< of the cube
-  bool pixels = false;    ///< bad and substituted ones, from the cube of the noise
+  bool noise = false;     ///< temporal noise, NETD and 3-D noise of the first plate at contrast 0
+  int noise_frames = 64;  ///< frames of the noise cube
+  bool pixels = false;    ///< bad and substituted pixels, from the noise cube
   PixelArea pixels_area = PixelArea::plate;
-  double pixels_response = 0.25;  ///< dead: response off the median's by more than this part of it
-  double pixels_offset = 5;       ///< dead or hot: level off by so many 1.4826 median deviations
-  double pixels_noisy = 3;        ///< temporal noise above so many medians
-  double pixels_blinking = 3;     ///< change of level above so many medians of it
-  bool transfer = false;          ///< contrast seen over contrast shown
+  double pixels_response = 0.25;  ///< dead: response deviates from the median by more than this share
+  double pixels_offset = 5;       ///< dead or hot: level deviates by more than this many 1.4826 median deviations
+  double pixels_noisy = 3;        ///< noisy: temporal noise above this many medians
+  double pixels_blinking = 3;     ///< blinking: change of level above this many medians
+  bool transfer = false;          ///< signal transfer: observed contrast over target read-back
   std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
   bool drift = false;                            ///< growth of mean and spatial noise after a correction
-  double drift_s = 20;                           ///< watched
-  bool response = false;                         ///< time constant, from steps of the first plate's contrast
-  double response_delta_t_k = 10;                ///< between which and 0 it steps
-  int response_steps = 16;                       ///< to and fro in turn
-  int response_frames = 24;                      ///< behind each
-  std::optional<double> response_settling_ms{};  ///< of the target's step; nothing: a simulated one steps at once
-  bool geometry = false;                         ///< IFOV and distortion, from the places of the triangles
-  bool triangles = false;                        ///< pictures of the smallest ones at every contrast
-  bool mtf = false;                              ///< along both axes, from the edges of a plate of its own
+  double drift_s = 20;                           ///< duration of the observation
+  bool response = false;                         ///< time constant, from contrast steps of the first plate
+  double response_delta_t_k = 10;                ///< the contrast steps between this and 0
+  int response_steps = 16;                       ///< up and down in turn
+  int response_frames = 24;                      ///< recorded after each step
+  std::optional<double> response_settling_ms{};  ///< of the target, to 0.1 %; empty only if it is simulated
+  bool geometry = false;                         ///< IFOV and distortion, from the positions of the triangles
+  bool triangles = false;                        ///< mean pictures of the smallest triangles at every contrast
+  bool mtf = false;                              ///< along both axes, from the edges of mtf_plate
   std::string mtf_plate = "edge";                ///< name or file
-  double mtf_delta_t_k = 10;                     ///< at which it is shown
-  int mtf_frames = 64;                           ///< averaged
-  double mtf_frequency_per_pitch = 0.25;         ///< at which the MTF is stated and limited
-  bool ctf = false;                              ///< along both axes, from the bars of a plate of its own
+  double mtf_delta_t_k = 10;                     ///< contrast of the plate
+  int mtf_frames = 64;                           ///< frames averaged
+  double mtf_frequency_per_pitch = 0.25;         ///< frequency at which the MTF is reported and limited
+  bool ctf = false;                              ///< along both axes, from the bars of ctf_plate
   std::string ctf_plate = "bars";                ///< name or file
-  double ctf_delta_t_k = 10;                     ///< at which it is shown
-  int ctf_frames = 64;                           ///< averaged
-  double ctf_frequency_per_pitch = 0.4;          ///< the group nearest to it is stated and limited
+  double ctf_delta_t_k = 10;                     ///< contrast of the plate
+  int ctf_frames = 64;                           ///< frames averaged
+  double ctf_frequency_per_pitch = 0.4;          ///< the nearest bar group is reported and limited
   bool operator==(const MeasuresPlan&) const = default;
 
-  /// Whether any is on.
+  /// Returns whether any measure is on.
   [[nodiscard]] bool any() const {
     return noise || transfer || drift || response || geometry || triangles || mtf || ctf;
   }
 };
 
-/// [motion]: passes of a plate that a stage moves, for `todbench dynamic PLAN`.
+/// Section [motion]: passes of a plate on a moving stage, for `todbench dynamic PLAN`.
 struct MotionPlan {
-  std::vector<double> speeds_mrad_s{10, 30};  ///< 0 is added
-  int passes = 8;  ///< of every plate, mounting, contrast and speed, to the right and to the left in turn
+  std::vector<double> speeds_mrad_s{10, 30};  ///< 0 is always included
+  int passes = 8;                             ///< per plate, mounting, contrast and speed; right and left in turn
   int frames = 8;
-  int lead_frames = 5;  ///< of motion before the first
+  int lead_frames = 5;  ///< frames of motion before the first one used
   PlaceSource places = PlaceSource::triangles;
   bool operator==(const MotionPlan&) const = default;
 };
 
-/// [report]
+/// Section [report].
 struct ReportPlan {
   std::string letterhead;  ///< file (bench/plan/letterhead.h); empty: none
   bool operator==(const ReportPlan&) const = default;
 };
 
-/// [[instrument]]: what the calibration of the result hangs on. For the report; a date that has passed refuses the
-/// measurement.
+/// Row of [[instrument]]: instrument on whose calibration the result depends. Printed in the report; an expired due
+/// date prevents the measurement.
 struct InstrumentPlan {
   std::string name, serial, certificate;
   std::string calibration_due;  ///< "YYYY-MM-DD", the last valid day; empty: no due date
   bool operator==(const InstrumentPlan&) const = default;
 };
 
-/// Everything with its default filled in.
+/// Complete plan with all defaults filled in.
 struct Plan {
   std::string name = "unnamed", description;
   std::string operator_name;  ///< key `operator`
   std::string place;
-  std::string unit;  ///< unit under test, in the words of who tests it
+  std::string unit;  ///< unit under test, free text
   std::string notes;
   std::uint64_t seed = 1;  ///< below 2^63
   CameraPlan camera;
@@ -392,41 +402,41 @@ struct Plan {
   ReportPlan report;
   UncertaintyPlan uncertainty;
   std::vector<InstrumentPlan> instruments;
-  /// [[module]]: those of place picture in the order of their rows behind camera and twin; at most one of place
+  /// Rows of [[module]]. Modules of place picture run in this order behind camera and twin. At most one has place
   /// observer.
   std::vector<ModulePlan> modules{};
   bool operator==(const Plan&) const = default;
 };
 
-/// A plan's keys are the rows of bench/plan/..._keys.cpp; docs/plan-keys.md lists them.
-///
-/// Reads a plan by name ("demo") or file. Relative files named in it are relative to its folder and absolute in the
-/// result. `invalid_input` with file and line for anything unknown, missing, of the wrong type, out of range,
-/// contradictory or not found.
+/// Reads a plan by name ("demo") or file; the keys are the rows of bench/plan/..._keys.cpp, listed in
+/// docs/reference/plan-keys.md. Relative file names in the plan are relative to its folder; the result has absolute
+/// ones. Errors: `invalid_input` with file and line (key or value unknown, missing, of the wrong type, out of range,
+/// contradictory, or a file not found).
 [[nodiscard]] Result<Plan> load_plan(std::string_view reference);
-/// The same from text already read; `folder` is where relative files are looked for.
+/// Parses text already read; relative file names are relative to `folder`.
 [[nodiscard]] Result<Plan> parse_plan(const Resource& resource, const std::filesystem::path& folder);
-/// The plan as TOML with nothing left out: parse_plan() of it is equal.
+/// Returns the complete plan as TOML; parse_plan() of it gives an equal plan.
 [[nodiscard]] std::string to_toml(const Plan& plan);
 
-/// What parse_plan() refuses in a file, of a plan that was made in any other way: values out of range and what
-/// contradicts each other. `invalid_input` about the key. What the plan names is not looked for: that is
-/// LoadedPlan::load() (bench/plan/loaded_plan.h).
+/// Checks a plan that was not read from a file for the mistakes that parse_plan() rejects: values out of range,
+/// contradictions. Errors: `invalid_input` about the key. Named descriptions are not looked up; LoadedPlan::load() does
+/// that (bench/plan/loaded_plan.h).
 [[nodiscard]] Result<void> validate(const Plan& plan);
 
-/// Relative standard uncertainty that the stated rows give the temperature scale of a camera: those of the contrast,
-/// without the camera's own; kelvin count by the largest step of the signal transfer. 1.96 of it hold 95 %.
+/// Returns the relative standard uncertainty of the camera's temperature scale from the contrast rows of the budget,
+/// without the camera's own row. Rows in kelvin are divided by the largest step of the signal transfer. The value is
+/// that of a normal distribution with the same 95 % interval (factor 1.96).
 [[nodiscard]] double relative_u_of_scale(const Plan& plan);
-/// The same for a temperature difference in the camera's scale: its camera-scale row.
+/// The same for a temperature difference on the camera's scale, from the camera-scale row.
 [[nodiscard]] double relative_u_of_camera_scale(const Plan& plan);
-/// The same for an angle per pixel: the rows of the distance and of the entrance pupil.
+/// The same for an angle per pixel, from the rows of distance and entrance pupil.
 [[nodiscard]] double relative_u_of_distance(const Plan& plan);
-/// Standard uncertainty of ln acuity from the stated rows whose sensitivity is known before the measurement, without
-/// those that are shared with `common`.
+/// Returns the standard uncertainty of ln acuity from the rows whose sensitivity is known before the measurement,
+/// without those shared with `common`.
 [[nodiscard]] double known_u_of_acuity(const Plan& plan, BudgetCommon common);
 
-/// The instruments whose due date is before `today`, as one sentence with code `calibration`; success when there is
-/// none.
+/// Fails if the due date of an instrument is before `today`. Error: code `calibration`, one sentence that names all of
+/// them.
 [[nodiscard]] Result<void> check_calibration(const Plan& plan, std::chrono::year_month_day today);
 
 }  // namespace todbench

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/plan_checks.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
+#include "acquisition/core/control_text.h"
 #include "bench/text/text.h"
 #include "tod/instruments/instrument_line.h"
 #include "tod/psychometric/tod_curve.h"
@@ -13,7 +15,7 @@ namespace {
 
 constexpr std::string_view address_forms = "\"HOST:PORT\", \"serial:/dev/NAME\" or \"vxi11:HOST\"";
 
-/// A host alone is no address here: a plan says the port.
+/// An address without a port is rejected: a plan must state the port.
 bool is_address(const std::string& text) {
   const auto address = instrument_address(text, 0);
   return address && (address->kind != InstrumentAddress::Kind::tcp || address->port != 0);
@@ -36,6 +38,12 @@ ValueMistakes check_camera_id(const Plan& plan, std::size_t /*row*/) {
   return {{std::nullopt, "expected SCHEME:NAME as listed by 'todbench devices', found \"" + one_line(id) + "\""}};
 }
 
+ValueMistakes check_frame_size(const Plan& plan, std::size_t /*row*/) {
+  const std::string& size = plan.camera.frame_size;
+  if (size.empty() || frame_size_of(size)) return {};
+  return {{std::nullopt, "expected WIDTHxHEIGHT in pixels, as in 640x512, found \"" + one_line(size) + "\""}};
+}
+
 ValueMistakes check_black_body(const Plan& plan, std::size_t /*row*/) {
   return check_address(plan, plan.target.black_body);
 }
@@ -55,22 +63,24 @@ ValueMistakes check_display_span(const Plan& plan, std::size_t /*row*/) {
     return {{std::nullopt, "needed for kind \"display\", expected a number above 0"}};
   for (const double delta_t_k : plan.target.delta_t_k) {
     if (std::abs(delta_t_k) > plan.target.display_span_k)
-      return {{std::nullopt, "the contrast " + number_text(delta_t_k) + " K is beyond what the display spans"}};
+      return {{std::nullopt, "the contrast " + number_text(delta_t_k) +
+                                 " K of [target] is larger than display_span_k, " +
+                                 number_text(plan.target.display_span_k) + " K"}};
   }
   return {};
 }
 
 ValueMistakes check_display_luminance(const Plan& plan, std::size_t /*row*/) {
   const std::vector<double>& luminance = plan.target.display_luminance;
-  if (luminance.size() < 2) return {{std::nullopt, "expected two luminances or more, of black and of white"}};
+  if (luminance.size() < 2) return {{std::nullopt, "expected at least two luminances, from black to white"}};
   for (std::size_t i = 1; i < luminance.size(); ++i) {
     if (!(luminance[i] > luminance[i - 1])) {
-      return {{i, "a brighter level has more light: expected more than " + number_text(luminance[i - 1]) + ", found " +
+      return {{i, "luminances must rise: expected more than " + number_text(luminance[i - 1]) + ", found " +
                       number_text(luminance[i])}};
     }
   }
   if (luminance.size() > 2 && plan.target.display_gamma != 1)
-    return {{std::nullopt, "a table stands in place of display_gamma: expected one of them"}};
+    return {{std::nullopt, "state either a table of luminances or display_gamma, not both"}};
   return {};
 }
 
@@ -78,9 +88,12 @@ ValueMistakes check_contrast_unit(const Plan& plan, std::size_t /*row*/) {
   if (plan.camera.contrast == ContrastUnit::kelvin) return {};
   ValueMistakes mistakes;
   if (plan.measures.any())
-    mistakes.push_back({std::nullopt, "grey levels are no kelvin: [measures] of such a camera have no meaning"});
+    mistakes.push_back(
+        {std::nullopt, "physical measures need kelvin: remove them from [measures], or use contrast = \"kelvin\""});
   if (!plan.modules.empty())
-    mistakes.push_back({std::nullopt, "contrasts in grey levels are not measured behind a [[module]]"});
+    mistakes.push_back(
+        {std::nullopt,
+         "grey levels cannot be measured behind a [[module]]: remove the module, or use contrast = \"kelvin\""});
   return mistakes;
 }
 
@@ -88,7 +101,7 @@ ValueMistakes check_contrasts(const Plan& plan, std::size_t /*row*/) {
   ValueMistakes mistakes;
   const std::vector<double>& contrasts = plan.target.delta_t_k;
   for (std::size_t i = 0; i < contrasts.size(); ++i) {
-    if (contrasts[i] == 0) mistakes.push_back({i, "a contrast of 0 K shows nothing"});
+    if (contrasts[i] == 0) mistakes.push_back({i, "a contrast of 0 K makes the triangles invisible"});
     for (std::size_t j = 0; j < i; ++j) {
       if (!same_contrast(contrasts[i], contrasts[j])) continue;
       mistakes.push_back({i, number_text(contrasts[i]) + " K is listed twice (contrasts within 0.5 % count as equal)"});
@@ -117,18 +130,18 @@ ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t /*row*
   }
   if (plan.schedule.answers != AnswersChoice::binary || std::ranges::all_of(frames, [](int n) { return n <= 1; }))
     return {};
-  return {{std::nullopt, "more than one frame needs answers = \"graded\": right or wrong is the answer to one frame"}};
+  return {{std::nullopt, "more than one frame needs answers = \"graded\": a binary answer is made from one frame"}};
 }
 
 ValueMistakes check_estimator(const Plan& plan, std::size_t /*row*/) {
   if (plan.schedule.answers != AnswersChoice::graded) return {};
   if (plan.fit.estimator == EstimatorChoice::weibull) {
     return {{std::nullopt,
-             "answers = \"graded\" needs \"twin-shape\": a Weibull function is off by more than the "
-             "interval of graded answers"}};
+             "answers = \"graded\" needs \"twin-shape\": the error of a Weibull function is larger than the interval "
+             "of graded answers"}};
   }
   if (plan.fit.lapse == 0.0) return {};
-  return {{std::nullopt, "graded answers are those of an observer that does not lapse: they need lapse = 0"}};
+  return {{std::nullopt, "graded answers need lapse = 0, because their observer does not lapse"}};
 }
 
 ValueMistakes check_transfer_steps(const Plan& plan, std::size_t /*row*/) {
@@ -136,23 +149,24 @@ ValueMistakes check_transfer_steps(const Plan& plan, std::size_t /*row*/) {
   std::sort(steps.begin(), steps.end());
   steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
   if (steps.size() >= 3) return {};
-  return {{std::nullopt, "expected three steps or more that differ, found " + std::to_string(steps.size())}};
+  return {{std::nullopt, "expected at least three different steps, found " + std::to_string(steps.size())}};
 }
 
 ValueMistakes check_pixels(const Plan& plan, std::size_t /*row*/) {
   constexpr int least_frames = 48;
   if (!plan.measures.pixels) return {};
-  if (!plan.measures.noise) return {{std::nullopt, "bad pixels are looked for in the cube of noise = true"}};
+  if (!plan.measures.noise)
+    return {{std::nullopt, "the pixel search needs noise = true, because it uses the noise cube"}};
   if (plan.measures.noise_frames >= least_frames) return {};
-  return {{std::nullopt, "bad pixels need noise_frames of " + std::to_string(least_frames) + " or more, found " +
-                             std::to_string(plan.measures.noise_frames)}};
+  return {{std::nullopt, "the pixel search needs noise_frames of at least " + std::to_string(least_frames) +
+                             ", found " + std::to_string(plan.measures.noise_frames)}};
 }
 
 ValueMistakes check_zone_name(const Plan& plan, std::size_t row) {
   const std::string& name = plan.limits.zones[row].name;
   if (name.empty()) return {{std::nullopt, "a zone needs a name"}};
   for (std::size_t other = 0; other < row; ++other)
-    if (plan.limits.zones[other].name == name) return {{std::nullopt, "a second zone '" + name + "'"}};
+    if (plan.limits.zones[other].name == name) return {{std::nullopt, "zone '" + name + "' is listed twice"}};
   if (!plan.measures.pixels) return {{std::nullopt, "limits of a zone need pixels = true in [measures]"}};
   return {};
 }
@@ -162,7 +176,7 @@ ValueMistakes check_zone_area(const Plan& plan, std::size_t row) {
   if (zone.name == whole_frame_zone || zone.area.size() != 4) return {};
   const auto& a = zone.area;
   if (!(a[0] < a[2]) || !(a[1] < a[3]))
-    return {{std::nullopt, "expected left below right and top below bottom, as in [0.25, 0.25, 0.75, 0.75]"}};
+    return {{std::nullopt, "expected left < right and top < bottom, for example [0.25, 0.25, 0.75, 0.75]"}};
   for (std::size_t other = 0; other < row; ++other) {
     const ZoneLimit& before = plan.limits.zones[other];
     if (before.name == whole_frame_zone || before.area.size() != 4) continue;
@@ -176,28 +190,28 @@ ValueMistakes check_zone_area(const Plan& plan, std::size_t row) {
 ValueMistakes check_zone_limits(const Plan& plan, std::size_t row) {
   const ZoneLimit& zone = plan.limits.zones[row];
   if (zone.bad_pixels || zone.substituted_pixels || zone.clusters || zone.largest_cluster) return {};
-  return {{std::nullopt, "there is no limit on zone '" + zone.name + "'"}};
+  return {{std::nullopt, "zone '" + zone.name + "' has no limit: state at least one, or remove the zone"}};
 }
 
 ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t /*row*/) {
   if (!plan.measures.mtf || plan.measures.mtf_delta_t_k != 0) return {};
-  return {{std::nullopt, "an edge without contrast has no MTF"}};
+  return {{std::nullopt, "the MTF needs a contrast other than 0"}};
 }
 
 ValueMistakes check_ctf_contrast(const Plan& plan, std::size_t /*row*/) {
   if (!plan.measures.ctf || plan.measures.ctf_delta_t_k != 0) return {};
-  return {{std::nullopt, "bars without contrast have no CTF"}};
+  return {{std::nullopt, "the CTF needs a contrast other than 0"}};
 }
 
 ValueMistakes check_response(const Plan& plan, std::size_t /*row*/) {
   if (!plan.measures.response) return {};
   ValueMistakes mistakes;
   if (plan.measures.response_delta_t_k == 0)
-    mistakes.push_back({std::nullopt, "a step without contrast has no response time"});
+    mistakes.push_back({std::nullopt, "the response time needs a contrast other than 0"});
   if (plan.target.kind != TargetKind::scene && !plan.measures.response_settling_ms)
-    mistakes.push_back({std::nullopt,
-                        "a response time needs response_settling_ms: a target that takes long for its "
-                        "step covers the camera's"});
+    mistakes.push_back(
+        {std::nullopt,
+         "the response time needs response_settling_ms: a slow step of the target hides the response of the camera"});
   return mistakes;
 }
 
@@ -217,11 +231,11 @@ ValueMistakes check_limit_contrast(const Plan& plan, std::size_t row) {
 ValueMistakes check_margin(const Plan& plan, std::size_t /*row*/) {
   const auto& margin = plan.limits.equivalence_margin_percent;
   if (!margin || plan.limits.rule == ConformityRule::simple) return {};
-  // Two one-sided tests at 5 %; contrast counts by a slope that is not known yet, and is left out.
+  // Two one-sided tests at 5 %. Contrast rows are left out because the slope of the curve is not known yet.
   const double stated = known_u_of_acuity(plan, BudgetCommon::twin);
   if (1.645 * stated < std::log1p(*margin / 100)) return {};
-  return {{std::nullopt, "nothing can pass: the budget alone makes a ratio of acuities uncertain by " +
-                             number_text(std::round(16450 * stated) / 100) + " % (90 %), the margin is " +
+  return {{std::nullopt, "no unit can pass: the budget alone gives a ratio of acuities an uncertainty of " +
+                             number_text(std::round(16450 * stated) / 100) + " % (90 %), but the margin is " +
                              number_text(*margin) + " %"}};
 }
 
@@ -268,7 +282,9 @@ ValueMistakes check_fleet_measure(const Plan& plan, std::size_t row) {
   const bool acuity = fleet.measure == fleet_acuity;
   const bool known = acuity || std::any_of(limited_measures.begin(), limited_measures.end(),
                                            [&](LimitedMeasure one) { return to_string(one) == fleet.measure; });
-  if (!known) return {{std::nullopt, "no measure '" + one_line(fleet.measure) + "' that can be limited"}};
+  if (!known)
+    return {
+        {std::nullopt, "expected acuity or a measure that can have a limit, found '" + one_line(fleet.measure) + "'"}};
   if (acuity && !fleet.delta_t_k) return {{std::nullopt, "a fleet of acuities needs delta_t_k"}};
   for (std::size_t other = 0; other < row; ++other) {
     const FleetRow& earlier = plan.limits.fleets[other];
@@ -282,20 +298,20 @@ ValueMistakes check_fleet_measure(const Plan& plan, std::size_t row) {
 ValueMistakes check_measure_limits(const Plan& plan, std::size_t row) {
   const MeasureLimit& limits = plan.limits.measures[row];
   const std::string name(to_string(limits.measure));
-  if (!limits.at_least && !limits.at_most) return {{std::nullopt, "there is no limit on " + name}};
+  if (!limits.at_least && !limits.at_most) return {{std::nullopt, name + " has no limit: state at_least or at_most"}};
   if (limits.at_least && !takes_at_least(limits.measure))
     return {{std::nullopt, name + " has no lower limit, only an upper one"}};
   if (limits.at_most && !takes_at_most(limits.measure))
     return {{std::nullopt, name + " has no upper limit, only a lower one"}};
   if (!limits.at_least || !limits.at_most) return {};
   if (*limits.at_least >= *limits.at_most)
-    return {{std::nullopt, "nothing can pass: the lower limit of " + name + " is not below the upper one"}};
+    return {{std::nullopt, "no unit can pass: the lower limit of " + name + " is not below the upper limit"}};
   if (plan.limits.rule == ConformityRule::simple) return {};
   const double stated_u = is_ifov(limits.measure) ? relative_u_of_distance(plan) : relative_u_of_scale(plan);
   const double expanded = 1.96 * stated_u * 0.5 * (*limits.at_least + *limits.at_most);
   if (2 * expanded < *limits.at_most - *limits.at_least) return {};
-  return {{std::nullopt, "nothing can pass: the budget alone makes " + name + " uncertain by " +
-                             number_text(std::round(1e6 * expanded) / 1e6) + ", the tolerance is " +
+  return {{std::nullopt, "no unit can pass: the budget alone gives " + name + " an expanded uncertainty of " +
+                             number_text(std::round(1e6 * expanded) / 1e6) + ", but the tolerance is " +
                              number_text(std::round(1e6 * (*limits.at_most - *limits.at_least)) / 1e6)}};
 }
 
@@ -303,23 +319,23 @@ ValueMistakes check_require(const Plan& plan, std::size_t /*row*/) {
   if (!plan.uncertainty.require) return {};
   std::string missing;
   for (const BudgetInput input : not_stated(plan.uncertainty)) {
-    // The run states it itself.
+    // The run adds this row itself.
     if (input == BudgetInput::air_path && plan.target.air_humidity_percent > 0 && plan.target.kind != TargetKind::scene)
       continue;
     missing += (missing.empty() ? "" : ", ") + std::string(to_string(input));
   }
   if (missing.empty()) return {};
-  return {{std::nullopt, "the budget has to be complete and does not state " + missing}};
+  return {{std::nullopt, "the budget must be complete, but it does not state " + missing}};
 }
 
 ValueMistakes check_budget_name(const Plan& plan, std::size_t row) {
   const std::string& name = plan.uncertainty.rows[row].name;
   for (const std::string_view own : {finite_trials_row, seen_contrast_row, read_back_row}) {
-    if (name == own) return {{std::nullopt, "the run itself states the row \"" + name + "\""}};
+    if (name == own) return {{std::nullopt, "the run itself adds the row \"" + name + "\": use another name"}};
   }
   for (std::size_t other = 0; other < row; ++other) {
     if (plan.uncertainty.rows[other].name == name)
-      return {{std::nullopt, "row '" + one_line(name) + "' is there twice"}};
+      return {{std::nullopt, "row '" + one_line(name) + "' is listed twice"}};
   }
   return {};
 }
@@ -345,7 +361,7 @@ ValueMistakes check_budget_unit(const Plan& plan, std::size_t row) {
 ValueMistakes check_coverage_factor(const Plan& plan, std::size_t row) {
   const BudgetRow& stated = plan.uncertainty.rows[row];
   if (stated.coverage_factor == 1 || stated.distribution == BudgetDistribution::normal) return {};
-  return {{std::nullopt, "row '" + one_line(stated.name) + "': only a normal value has a coverage factor"}};
+  return {{std::nullopt, "row '" + one_line(stated.name) + "': only a normal distribution has a coverage factor"}};
 }
 
 ValueMistakes check_due_date(const Plan& plan, std::size_t row) {
@@ -356,26 +372,27 @@ ValueMistakes check_due_date(const Plan& plan, std::size_t row) {
 
 ValueMistakes check_module_command(const Plan& plan, std::size_t row) {
   if (!plan.modules[row].command.empty()) return {};
-  return {{std::nullopt, "is empty"}};
+  return {{std::nullopt, "expected a command, found an empty text"}};
 }
 
 ValueMistakes check_module_place(const Plan& plan, std::size_t row) {
   if (plan.fit.estimator == EstimatorChoice::twin_shape)
     return {{std::nullopt,
-             "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull' or "
-             "'automatic'"}};
+             "with a module, [fit] estimator must be 'weibull' or 'automatic': the function of the sensor does not "
+             "include the module"}};
   if (plan.modules[row].place != ModulePlace::observer) {
     if (plan.schedule.answers != AnswersChoice::graded) return {};
     return {{std::nullopt,
-             "graded answers are fitted with the function of the sensor, which is not that behind a module: [schedule] "
-             "answers must be 'binary'"}};
+             "with a module, [schedule] answers must be 'binary' or 'automatic': graded answers need the function of "
+             "the sensor, which does not include the module"}};
   }
   for (std::size_t i = 0; i < row; ++i) {
-    if (plan.modules[i].place == ModulePlace::observer) return {{std::nullopt, "a second observer"}};
+    if (plan.modules[i].place == ModulePlace::observer)
+      return {{std::nullopt, "a second module with place = \"observer\": only one is possible"}};
   }
   if (plan.schedule.answers == AnswersChoice::graded)
-    return {
-        {std::nullopt, "an observer that is a module gives no graded answers: [schedule] answers must be 'binary'"}};
+    return {{std::nullopt,
+             "an observer module gives no graded answers: [schedule] answers must be 'binary' or 'automatic'"}};
   return {};
 }
 

@@ -1,4 +1,5 @@
-// The order of the sections. A new key is a member in plan.h and a row in the file of its section.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Order of the sections. A new key is a member in plan.h and a row in the file of its section.
 #include "bench/plan/plan_sections.h"
 
 namespace todbench {

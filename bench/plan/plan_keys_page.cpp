@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
 #include "bench/plan/plan_keys.h"
@@ -6,7 +7,7 @@ namespace todbench {
 
 namespace {
 
-/// A bar would end the cell.
+/// Escapes bars, which would end the cell.
 std::string cell(std::string_view text) {
   std::string result;
   for (const char c : text) result += c == '|' ? std::string("\\|") : std::string(1, c);
@@ -34,21 +35,22 @@ std::string row_text(const KeyAt& at) {
 std::string plan_keys_page() {
   std::string page =
       "# Keys of a plan\n\n"
-      "Every key of a plan file (TOML), from the table of the program (`bench/plan/plan_sections.h`); "
-      "`plan_keys_page FILE` writes this page, and a\ntest fails when it is not what the table says. "
-      "A key that is left out has its default. An unknown or misspelt key is refused with file and\nline. "
-      "Files named in a plan are relative to it. Options of the command line stand in place of a key: "
-      "`--record-frames` and `--letterhead` of `measure` and `demo`,\nthe others of `simulate` and `plan`; `--skip` "
-      "and `--force` "
-      "add to the plan's lists, `--seed` stands for `seed` everywhere.\n";
+      "This page lists every key of a plan file (TOML). `plan_keys_page FILE` writes it from the table of the program "
+      "(`bench/plan/plan_sections.h`), and a test\ncompares them.\n\n"
+      "- A key that is left out has its default.\n"
+      "- An unknown or misspelt key is rejected with file and line.\n"
+      "- File names in a plan are relative to the folder of the plan.\n"
+      "- An option of the command line replaces its key. The options `--record-frames` and `--letterhead` belong to "
+      "`measure` and `demo`, the others to\n  `simulate` and `plan`.\n"
+      "- `--skip` and `--force` add to the lists of the plan. `--seed` replaces `seed` in every command.\n";
   for (const PlanSection& section : plan_sections()) {
     const std::string name(section.name);
     page += "\n## " +
-            (name.empty()         ? "Before every section"
+            (name.empty()         ? "Top level"
              : section.repeated() ? "[[" + name + "]]"
                                   : "[" + name + "]") +
-            "\n\n" + std::string(section.sentence) + (section.repeated() ? " As many as there are." : "") +
-            "\n\n| key | what it is | takes | unit | default | option |\n|---|---|---|---|---|---|\n";
+            "\n\n" + std::string(section.sentence) + (section.repeated() ? " The table may be repeated." : "") +
+            "\n\n| key | meaning | values | unit | default | option |\n|---|---|---|---|---|---|\n";
     for (const PlanKey& key : section.keys) page += row_text({&section, &key, 0});
   }
   return page;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/plan_options.h"
 
 #include <algorithm>
@@ -30,6 +31,7 @@ MeasurementOptions measurement_options(const Plan& plan, const std::vector<Targe
   options.registration.max_rotation_deg = plan.measurement.max_rotation_deg;
   options.registration.max_residual_px = plan.measurement.max_residual_px;
   options.max_readback_deviation_k = plan.measurement.max_readback_deviation_k;
+  options.max_shift_error_px = plan.target.max_shift_error_px;
   options.seed = plan.seed;
   return options;
 }
@@ -87,7 +89,8 @@ ChosenEstimator chosen_estimator(const Plan& plan, const SensorSpec& sensor) {
 
 namespace {
 
-/// Of a contrast, those of camera or twin, whichever are fewer; of an adaptive schedule a contrast's share of the most.
+/// Returns the presentations of one contrast, the smaller number of camera and twin; for an adaptive schedule an equal
+/// share of the maximum.
 std::size_t presentations_of_contrast(const Plan& plan) {
   if (plan.schedule.kind == ScheduleKind::adaptive)
     return static_cast<std::size_t>(plan.schedule.max_presentations) /
@@ -135,7 +138,7 @@ Result<Accuracy> accuracy_of(const Plan& plan) {
   if (simulation.accuracy == "auto") return Accuracy::for_tolerance(simulation.tolerance_percent);
   Result<Accuracy> accuracy = Accuracy::named(simulation.accuracy);
   if (!accuracy) return accuracy;
-  // A draft is not asked for more than it can give; the others meet the tolerance.
+  // The direct estimate of a draft cannot meet the tolerance; the others do.
   if (simulation.accuracy != "draft") accuracy->standard_error_percent = simulation.tolerance_percent / 2;
   accuracy->acuity_tolerance_percent = simulation.tolerance_percent;
   return accuracy;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <map>
 #include <set>
 #include <string>
@@ -9,7 +10,7 @@ namespace todbench {
 
 namespace {
 
-/// The tables of a file by the name of their section; those of a repeated section by row.
+/// Tables of a file by section name; those of a repeated section by row.
 class Tables {
  public:
   explicit Tables(TomlReader root) { tables_[""].push_back(std::move(root)); }
@@ -56,7 +57,7 @@ class PlanReader {
       }
     }
     for (const PlanMistake& found : mistakes_in(plan_)) {
-      // What is missing has been said to be.
+      // Missing keys have been reported already.
       if (missing_.contains({found.at.key, found.at.row})) continue;
       reject(tables_.open(*found.at.section)[found.at.row], *found.at.key, found.mistake);
     }
@@ -86,9 +87,9 @@ class PlanReader {
       read_named(table, at, type);
   }
 
-  /// The parts that a key names: absolute in the plan, and read.
+  /// Makes the references of a key absolute in the plan and reads the parts.
   void read_named(TomlReader& table, const KeyAt& at, const KeyType& type) {
-    // What is absolute already stays as it is.
+    // Absolute references stay unchanged.
     plan_ = with_absolute_references(std::move(plan_), folder_);
     for (const ValueMistake& mistake : read_parts(type, plan_, find_, parts_)) reject(table, *at.key, mistake);
   }

@@ -1,12 +1,17 @@
-// The sections of a plan's keys, each in the file of its group.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sections of the plan keys, each defined in the file of its group.
 #pragma once
 
 #include "bench/plan/plan_keys.h"
 
 namespace todbench {
 
-inline constexpr NumberRange positive = NumberRange::positive();
-inline constexpr NumberRange not_negative = NumberRange::not_negative();
+/// Times in seconds, up to four months.
+inline constexpr NumberRange up_to_seconds = NumberRange::between(0, 1e7);
+/// Numbers without a fixed unit, for measures and budgets.
+inline constexpr NumberRange positive = NumberRange::between(1e-12, 1e12);
+inline constexpr NumberRange not_negative = NumberRange::between(0, 1e12);
+inline constexpr NumberRange any_sign = NumberRange::between(-1e12, 1e12);
 inline constexpr NumberRange share = NumberRange::between(0, 1);
 
 // bench_keys.cpp

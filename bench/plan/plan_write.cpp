@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <string>
 
@@ -16,13 +17,14 @@ void write_keys(std::string& text, const PlanSection& section, const Plan& plan,
   }
 }
 
-/// A section that a plan of defaults is written without.
+/// Returns whether the section is omitted from a plan of defaults.
 bool only_where_set(const PlanSection& section) {
   return std::none_of(section.keys.begin(), section.keys.end(),
                       [](const PlanKey& key) { return key.written_at_default; });
 }
 
-/// Free tables stand behind the keys of their section, which would otherwise be theirs; those of a row behind the row.
+/// Free tables follow the other keys of their section, because keys after them would belong to them; those of a row
+/// follow the row.
 void write_free_tables(std::string& text, const PlanSection& section, const Plan& plan, std::size_t row) {
   for (const PlanKey& key : section.keys) {
     if (!std::holds_alternative<FreeTableKey>(key.type)) continue;

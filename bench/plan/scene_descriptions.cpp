@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/scene_descriptions.h"
 
 #include <fmt/format.h>
@@ -13,17 +14,17 @@
 namespace todbench {
 namespace {
 
-const NumberRange kelvin_range = NumberRange::above_to(0, 99999);
+const NumberRange kelvin_range = NumberRange::between(1, 99999);
 const NumberRange share_range = NumberRange::between(0, 1);
-const NumberRange place_range = NumberRange::between(-1e6, 1e6);
+const NumberRange scene_place_range = NumberRange::between(-1e6, 1e6);
 
-/// The outline from two lists of coordinates; y as it stands in the file.
+/// Builds the outline from two lists of coordinates, y as in the file.
 Polygon outline_of(TomlReader& table, const char* x_key, const char* y_key) {
-  const auto x = table.numbers(x_key, place_range, std::nullopt);
-  const auto y = table.numbers(y_key, place_range, std::nullopt);
+  const auto x = table.numbers(x_key, scene_place_range, std::nullopt);
+  const auto y = table.numbers(y_key, scene_place_range, std::nullopt);
   Polygon outline;
   if (x.size() != y.size()) {
-    table.reject(y_key, fmt::format("expected as many as in {}, {}, found {}", x_key, x.size(), y.size()));
+    table.reject(y_key, fmt::format("expected {1} values as in {0}, found {2}", x_key, x.size(), y.size()));
     return outline;
   }
   for (std::size_t i = 0; i < x.size(); ++i) outline.emplace_back(x[i], y[i]);
@@ -61,8 +62,8 @@ Result<TargetModel> parse_target(const Resource& resource) {
     TargetPart part;
     part.name = table.text("name", fmt::format("{}", i + 1));
     part.profile_m = outline_of(table, "x_m", "z_m");
-    part.width_m = table.number("width_m", NumberRange::above_to(0, 9999), std::nullopt);
-    part.side_m = table.number("side_m", place_range, part.side_m);
+    part.width_m = table.number("width_m", NumberRange::between(1e-6, 9999), std::nullopt);
+    part.side_m = table.number("side_m", scene_place_range, part.side_m);
     part.temperature_k = table.number("temperature_k", kelvin_range, std::nullopt);
     part.emissivity = table.number("emissivity", share_range, part.emissivity);
     const bool both = table.flag("both_sides", false);
@@ -77,11 +78,11 @@ Result<TargetModel> parse_target(const Resource& resource) {
   return model;
 }
 
-/// Regions of a target that a scene names.
+/// Adds the regions of a target that a scene names.
 Result<void> add_target(TomlReader& table, const std::filesystem::path& folder, FieldScene& scene) {
   const std::string reference = table.text("target", "");
   const double azimuth_deg = table.number("azimuth_deg", NumberRange::between(-360, 360), 90.0);
-  const double x_m = table.number("x_m", place_range, 0.0), y_m = table.number("y_m", place_range, 0.0);
+  const double x_m = table.number("x_m", scene_place_range, 0.0), y_m = table.number("y_m", scene_place_range, 0.0);
   if (reference.empty()) {
     table.reject("target", "expected the name or the file of a target");
     return {};
@@ -115,9 +116,9 @@ Result<void> add_picture(TomlReader table, const std::filesystem::path& folder, 
   if (!table.present()) return {};
   const std::string file = table.text("file", ""), mask = table.text("mask", "");
   ScenePicture picture;
-  picture.pixel_mrad = table.number("pixel_mrad", NumberRange::above_to(0, 1000), std::nullopt);
-  picture.range_m = table.number("range_m", NumberRange::above_to(0, 1e6), std::nullopt);
-  const auto kelvin_per_count = table.optional_number("kelvin_per_count", NumberRange::above_to(0, 1000));
+  picture.pixel_mrad = table.number("pixel_mrad", NumberRange::between(1e-6, 1000), std::nullopt);
+  picture.range_m = table.number("range_m", NumberRange::between(1e-3, 1e6), std::nullopt);
+  const auto kelvin_per_count = table.optional_number("kelvin_per_count", NumberRange::between(1e-9, 1000));
   const auto offset_k = table.optional_number("offset_k", NumberRange::between(-1000, 99999));
   if (file.empty()) {
     table.reject("file", "expected a TIFF file");
@@ -129,9 +130,8 @@ Result<void> add_picture(TomlReader table, const std::filesystem::path& folder, 
   auto stored = read(path_of(file));
   if (!stored) return tl::unexpected(stored.error());
   if (stored->kind == StoredPicture::Kind::counts && (!kelvin_per_count || !offset_k)) {
-    return fail(ErrorCode::invalid_input, path_of(file) +
-                                              ": a picture of whole counts has no scale without kelvin_per_count "
-                                              "and offset_k");
+    return fail(ErrorCode::invalid_input,
+                path_of(file) + ": a picture of integer counts needs a scale, kelvin_per_count and offset_k");
   }
   picture.kelvin = stored->values * kelvin_per_count.value_or(1) + offset_k.value_or(0);
   if (!mask.empty()) {
@@ -170,7 +170,7 @@ Result<FieldScene> load_scene(std::string_view reference, const PictureReader& r
   for (TomlReader& table : targets) {
     if (auto added = add_target(table, folder, scene); !added) return fail(resource->origin, added.error());
   }
-  // Behind the regions of the scene in the file, in front of them in the picture.
+  // Later in the list than the regions of the scene, so in front of them in the picture.
   auto plate = add_plate(reader->section("plate"), folder, scene);
   if (!plate) return fail(resource->origin, plate.error());
   auto picture = add_picture(reader->section("picture"), folder, read_picture, scene);
@@ -199,10 +199,10 @@ Result<TargetSet> load_target_set(std::string_view reference) {
   set.surround_k = reader->number("surround_k", kelvin_range, set.background_k);
   if (names.size() < 2 || names.size() > 64) reader->reject("targets", "expected 2 to 64 targets");
   if (set.azimuths_deg.empty() || set.azimuths_deg.size() > 16)
-    reader->reject("azimuths_deg", "expected 1 to 16 aspects");
+    reader->reject("azimuths_deg", "expected 1 to 16 azimuths");
   std::set<double> sides;
   for (const double azimuth_deg : set.azimuths_deg) {
-    // A side that is named twice would count twice in every mean; 90 and -270 degrees are one.
+    // A duplicate aspect would count twice in every mean; 90 and -270 degrees are the same aspect.
     if (!sides.insert(azimuth_deg - 360 * std::floor(azimuth_deg / 360)).second)
       reader->reject("azimuths_deg", fmt::format("expected every side once, found {:g} degrees twice", azimuth_deg));
   }
@@ -212,7 +212,7 @@ Result<TargetSet> load_target_set(std::string_view reference) {
     auto model = load_target(absolute_reference(name, folder_of(*resource)));
     if (!model) return fail(resource->origin, model.error());
     if (!known.insert(model->name).second)
-      return fail(ErrorCode::invalid_input, resource->origin + ": target '" + model->name + "' is named twice");
+      return fail(ErrorCode::invalid_input, resource->origin + ": target '" + model->name + "' is listed twice");
     set.targets.push_back(*std::move(model));
   }
   return set;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/strict_toml.h"
 
 #include <algorithm>
@@ -6,12 +7,13 @@
 #include <utility>
 
 #include "bench/text/text.h"
+#include "bench/text/unit_hint.h"
 
 #include <toml++/toml.h>
 
 namespace todbench {
 
-/// One table being read. Tables live as long as their document, so readers may point to them.
+/// Table being read. Tables live as long as their document, so readers may point to them.
 struct TomlReader::Table {
   const toml::table* node = nullptr;  ///< null: the file has no such table
   std::string path;
@@ -26,7 +28,7 @@ struct TomlReader::Table {
   }
 };
 
-/// What all readers of one file share: the parsed tree, the tables opened and the mistakes so far.
+/// Shared state of all readers of a file: parsed tree, opened tables and mistakes.
 struct TomlReader::Document {
   enum class Kind { present, missing };
   struct Mistake {
@@ -40,7 +42,7 @@ struct TomlReader::Document {
   std::vector<Mistake> mistakes;
   std::vector<std::unique_ptr<Table>> tables;
 
-  /// `sentence` says it with the key, as the file shows it.
+  /// `sentence` includes the key as written in the file.
   [[nodiscard]] Mistake mistake(Kind kind, std::uint32_t line, const std::string& sentence, ErrorKey key) const {
     return {kind, line, file + ":" + std::to_string(line) + ": " + sentence, std::move(key)};
   }
@@ -54,7 +56,7 @@ struct TomlReader::Document {
     tables.back()->line = line;
     return tables.back().get();
   }
-  /// The node of a key, marked as asked for; a missing one without a fallback is a mistake.
+  /// Returns the node of a key and marks it as read; a missing key without a fallback is a mistake.
   const toml::node* ask(Table& table, std::string_view key, bool required, const std::string& expected) {
     table.asked.emplace(key);
     const toml::node* node = table.node ? table.node->get(key) : nullptr;
@@ -89,18 +91,27 @@ std::uint32_t line_of(const toml::node& node) {
   return std::max<std::uint32_t>(1, node.source().begin.line);
 }
 
+std::optional<double> any_number_in(const toml::node& node) {
+  return node.is_integer() ? std::optional<double>(static_cast<double>(node.as_integer()->get()))
+                           : node.value_exact<double>();
+}
+
 std::optional<double> number_in(const toml::node& node, const NumberRange& range) {
-  const std::optional<double> value = node.is_integer()
-                                          ? std::optional<double>(static_cast<double>(node.as_integer()->get()))
-                                          : node.value_exact<double>();
+  const std::optional<double> value = any_number_in(node);
   return value && range.contains(*value) ? value : std::nullopt;
+}
+
+/// Returns "; is the value in mm?" if that would explain the mistake.
+std::string hint_for(std::string_view key, const toml::node& node, const NumberRange& range) {
+  const std::optional<double> value = any_number_in(node);
+  return value ? unit_hint(key, *value, range) : std::string();
 }
 
 std::string one_of(std::span<const std::string> words) {
   return (words.size() == 1 ? "" : "one of ") + quoted_list(words);
 }
 
-/// Value of a scalar of a free table as TOML writes it, text without quotes; nothing for lists, tables and dates.
+/// Returns a scalar of a free table as TOML text (strings without quotes); empty for lists, tables and dates.
 std::optional<std::string> scalar_text(const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();
   if (node.is_integer() || node.is_boolean()) return describe_value(node);
@@ -113,7 +124,7 @@ std::optional<std::string> scalar_text(const toml::node& node) {
 Result<TomlReader> TomlReader::parse(std::string_view text, const std::string& file) {
   auto document = std::make_shared<Document>();
   document->file = file;
-  // The library as packaged reports by exception; it ends here.
+  // The packaged library reports errors by exceptions; they end here.
   try {
     document->root = toml::parse(text, file);
   } catch (const toml::parse_error& error) {
@@ -136,7 +147,7 @@ double TomlReader::number(std::string_view key, const NumberRange& range, std::o
   const toml::node* node = document_->ask(*table_, key, !fallback, range.describe());
   if (!node) return fallback.value_or(0);
   if (const std::optional<double> value = number_in(*node, range)) return *value;
-  document_->wrong(*table_, key, line_of(*node), expected_found(range.describe(), *node));
+  document_->wrong(*table_, key, line_of(*node), expected_found(range.describe(), *node) + hint_for(key, *node, range));
   return fallback.value_or(0);
 }
 
@@ -152,8 +163,9 @@ std::optional<double> TomlReader::number_or(std::string_view key, const NumberRa
   if (!node) return fallback;
   if (const auto* value = node->as_string(); value && value->get() == word) return std::nullopt;
   if (const std::optional<double> value = number_in(*node, range)) return value;
-  document_->wrong(*table_, key, line_of(*node),
-                   expected_found(range.describe() + " or \"" + std::string(word) + "\"", *node));
+  document_->wrong(
+      *table_, key, line_of(*node),
+      expected_found(range.describe() + " or \"" + std::string(word) + "\"", *node) + hint_for(key, *node, range));
   return fallback;
 }
 
@@ -224,7 +236,9 @@ std::vector<double> TomlReader::numbers(std::string_view key, const NumberRange&
   std::vector<double> values;
   for (const toml::node& element : *list) {
     const std::optional<double> value = number_in(element, range);
-    if (!value) document_->wrong(*table_, key, line_of(element), expected_found(range.describe(), element));
+    if (!value)
+      document_->wrong(*table_, key, line_of(element),
+                       expected_found(range.describe(), element) + hint_for(key, element, range));
     values.push_back(value.value_or(0));
   }
   return values;

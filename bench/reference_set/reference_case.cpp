@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/reference_set/reference_case.h"
 
 #include <utility>
@@ -9,7 +10,7 @@
 namespace todbench {
 namespace {
 
-/// Standard error of the truth, percent: a tenth of that of a result, so that it adds nothing to its tolerance.
+/// Standard error of the truth in percent: a tenth of that of a result, so its effect on the tolerance is negligible.
 constexpr double truth_error_percent = 0.35;
 
 SensorSpec sc2000() {
@@ -26,7 +27,7 @@ std::vector<ReferenceCase> reference_cases() {
   plain.description = "SC2000-class: staring, uncooled, 320 x 240";
   SensorSpec blurred = plain;
   blurred.name = "reference-blurred";
-  blurred.description = "SC2000-class with an optics that blurs by half a pitch";
+  blurred.description = "SC2000-class with optics that blur by half a pitch";
   blurred.aberration_sigma_pitch = 0.5;
   SensorSpec noisy = plain;
   noisy.name = "reference-noisy";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/reference_set/reference_files.h"
 
 #include <fmt/format.h>
@@ -65,7 +66,7 @@ std::string set_readme(const ReferenceSetOptions& options) {
   return fmt::format(
       R"(# {}
 
-Frames of simulated thermal cameras whose 75 % triangle size (TOD) is known, for checking an automatic TOD measurement.
+Frames of simulated thermal cameras with a known 75 % triangle size (TOD), to check an automatic TOD measurement.
 Made by `todbench reference-set --out DIR --seed {}`; the same seed gives the same bytes. Licence: GPL-3.0-or-later.
 
 S75 is the size (square root of the area over the distance, mrad) at which the observer of `observers/` names the direction
@@ -80,13 +81,13 @@ a psychometric form; `set.json` states it with its standard error. It is the thr
 | `CASE-frames.csv` | `frame` (from 0), `plate`, `mounting`, `shift_x_mm`, `shift_y_mm` |
 | `CASE-triangles.csv` | `frame`, `triangle`, `size_mm`, `size_mrad`, `apex` as mounted, `x_px`, `y_px` of the centroid (pixel centres at whole numbers) |
 | `plates/`, `observers/`, `sensors/` | descriptions of everything that was simulated |
-| `SHA256SUMS` | of every other file |
+| `SHA256SUMS` | SHA-256 of every other file |
 
 ## A result
 
 A CSV file with the columns `case`, `s75_mrad` and, if there is an interval, `s75_ci95_low_mrad` and `s75_ci95_high_mrad`;
-one row for each case. `todbench reference-set --check RESULT.csv --against DIR` says for each case by how much it is off.
-A result passes where every case is within {} % of its S75.
+one row for each case. `todbench reference-set --check RESULT.csv --against DIR` reports the deviation of each case.
+A result passes if every case is within {} % of its S75.
 )",
       reference_set_name, options.seed, options.frames, number_text(reference_tolerance_percent));
 }
@@ -120,7 +121,7 @@ Result<std::vector<ReferenceTruth>> read_truths(const std::filesystem::path& fol
   if (!listed) return tl::unexpected(listed.error());
   const auto found = set_sums(folder);
   if (!found) return tl::unexpected(found.error());
-  if (*listed != *found) return refuse("its files are not those that SHA256SUMS lists");
+  if (*listed != *found) return refuse("its files differ from those that SHA256SUMS lists");
   const Json json = Json::parse(*text, nullptr, false);
   if (json.is_discarded()) return refuse("set.json is not valid JSON");
   const JsonReader reader(json);
@@ -130,7 +131,8 @@ Result<std::vector<ReferenceTruth>> read_truths(const std::filesystem::path& fol
     out.push_back({c.at("case").text(), c.at("s75_mrad").number(), c.at("s75_standard_error_mrad").number()});
   if (auto read = reader.finish(); !read) return refuse("set.json: " + read.error().message);
   for (const ReferenceTruth& truth : out) {
-    if (!(truth.s75_mrad > 0) || !(truth.standard_error_mrad >= 0)) return refuse("set.json: a threshold that is none");
+    if (!(truth.s75_mrad > 0) || !(truth.standard_error_mrad >= 0))
+      return refuse("set.json: expected thresholds above 0 with a standard error of at least 0");
   }
   return out;
 }

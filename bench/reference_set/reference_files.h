@@ -1,4 +1,5 @@
-// The files of a reference set that are text.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Text files of a reference set.
 #pragma once
 
 #include <filesystem>
@@ -10,17 +11,17 @@
 
 namespace todbench {
 
-/// Every key of a sensor as a description.
+/// Returns a description with every key of a sensor.
 [[nodiscard]] std::string sensor_description(const SensorSpec& sensor);
-/// set.json.
+/// Returns set.json.
 [[nodiscard]] std::string set_description(const ReferenceSetOptions& options,
                                           const std::vector<ReferenceTruth>& truths);
-/// README.md: what it is, the columns, how a result is scored, licence.
+/// Returns README.md: purpose, columns, scoring, licence.
 [[nodiscard]] std::string set_readme(const ReferenceSetOptions& options);
-/// Lines "SHA256  PATH" of every file below the folder but SHA256SUMS, sorted. `io`.
+/// Returns the lines "SHA256  PATH" of every file below the folder except SHA256SUMS, sorted. Errors: `io`.
 [[nodiscard]] Result<std::string> set_sums(const std::filesystem::path& folder);
-/// The truths of a set that was written. `invalid_input`: no such folder, no set of this version, or a file that is not
-/// what SHA256SUMS says.
+/// Reads the truths of a written set. Errors: `invalid_input` (no such folder, no set of this version, or a file that
+/// differs from SHA256SUMS).
 [[nodiscard]] Result<std::vector<ReferenceTruth>> read_truths(const std::filesystem::path& folder);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/reference_set/reference_score.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr std::size_t columns = 4;
 
-/// Where each column stands.
+/// Position of each column.
 using Columns = std::array<std::optional<std::size_t>, columns>;
 
 Result<Columns> columns_of(const CsvTable& table) {
@@ -25,7 +26,7 @@ Result<Columns> columns_of(const CsvTable& table) {
                                 nearest_name_hint(table.header[i], known) + " (known: " + quoted_list(known) + ")");
     }
     auto& place = places[static_cast<std::size_t>(found - known.begin())];
-    if (place) return table.wrong(1, "column '" + *found + "' is there twice");
+    if (place) return table.wrong(1, "column '" + *found + "' occurs twice");
     place = i;
   }
   for (std::size_t k = 0; k < 2; ++k) {
@@ -48,7 +49,7 @@ Result<ReferenceResult> result_of(const CsvTable& table, const CsvRow& row, cons
   if (!places[2] || (row.fields[*places[2]].empty() && row.fields[*places[3]].empty())) return out;
   const auto low = parse_number(row.fields[*places[2]]), high = parse_number(row.fields[*places[3]]);
   if (!low || !(*low >= 0 && *low <= *size)) return wrong(*places[2], "a number from 0 to s75_mrad");
-  if (!high || !(*high >= *size)) return wrong(*places[3], "a number of s75_mrad or more");
+  if (!high || !(*high >= *size)) return wrong(*places[3], "a number of at least s75_mrad");
   out.ci95_mrad = Interval{*low, *high};
   return out;
 }
@@ -73,13 +74,13 @@ Result<std::vector<ReferenceResult>> parse_reference_result(std::string_view tex
                           "unknown case '" + one_line(result->name) + "'" + nearest_name_hint(result->name, known));
     }
     auto& slot = found[static_cast<std::size_t>(at - known.begin())];
-    if (slot) return table->wrong(row.line, "case '" + *at + "' is there twice");
+    if (slot) return table->wrong(row.line, "case '" + *at + "' occurs twice");
     slot = *std::move(result);
   }
   std::vector<ReferenceResult> out;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!found[i])
-      return fail(ErrorCode::invalid_input, std::string(name) + ": there is no row of case '" + known[i] + "'");
+      return fail(ErrorCode::invalid_input, std::string(name) + ": missing row of case '" + known[i] + "'");
     out.push_back(*std::move(found[i]));
   }
   return out;

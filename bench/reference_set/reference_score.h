@@ -1,4 +1,5 @@
-// How far somebody's thresholds are from those of the reference set.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Comparison of submitted thresholds with those of the reference set.
 #pragma once
 
 #include <optional>
@@ -12,16 +13,15 @@
 
 namespace todbench {
 
-/// A row of a result.
+/// Row of a result.
 struct ReferenceResult {
   std::string name;
   double s75_mrad = 0;
-  std::optional<Interval> ci95_mrad;  ///< both sides
+  std::optional<Interval> ci95_mrad;  ///< both ends
 };
-/// Columns case, s75_mrad and, both or neither, s75_ci95_low_mrad, s75_ci95_high_mrad, in any order; one row for each
-/// of `truths`. `invalid_input` "NAME:LINE: ..." for a column that is unknown, missing or there twice, a case that is
-/// unknown or there twice, a size that is no number above 0, an interval that does not hold it, and a case without a
-/// row.
+/// Parses columns case, s75_mrad and optionally the pair s75_ci95_low_mrad, s75_ci95_high_mrad, in any order; one row
+/// for each of `truths`. Errors: `invalid_input` "NAME:LINE: ..." (column unknown, missing or repeated; case unknown,
+/// repeated or without a row; size not above 0; interval that does not contain the size).
 [[nodiscard]] Result<std::vector<ReferenceResult>> parse_reference_result(std::string_view text, std::string_view name,
                                                                           std::span<const ReferenceTruth> truths);
 
@@ -29,8 +29,8 @@ struct CaseScore {
   ReferenceTruth truth;
   ReferenceResult result;
   double deviation_percent = 0;
-  bool within = false;                 ///< the tolerance
-  std::optional<bool> interval_holds;  ///< the threshold
+  bool within = false;                 ///< within the tolerance
+  std::optional<bool> interval_holds;  ///< whether the interval contains the true threshold
 };
 struct ReferenceScore {
   std::vector<CaseScore> cases;       ///< in the order of the truths

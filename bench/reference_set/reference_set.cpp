@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/reference_set/reference_set.h"
 
 #include <memory>
@@ -38,14 +39,14 @@ Result<void> write_descriptions(const std::filesystem::path& folder, const Refer
   return {};
 }
 
-/// The frames of one case in both formats, and what they show.
+/// Writer of the frames of one case in both formats, and of their content.
 class CaseWriter {
  public:
   static Result<CaseWriter> create(const std::filesystem::path& folder, const ReferenceCase& c,
                                    const SourceInfo& info) {
     StreamHeader header;
     header.info = info;
-    // The hour is no part of what is recorded: the same seed gives the same bytes.
+    // The time is not recorded: the same seed gives the same bytes.
     header.created_utc = "1970-01-01T00:00:00Z";
     header.annotations = {{"reference_set", std::string(reference_set_name)}, {"case", c.name}};
     auto stream = FrameStreamWriter::create(folder / (c.name + ".todrec"), header);
@@ -87,7 +88,7 @@ class CaseWriter {
   std::string triangles_ = "frame,triangle,size_mm,size_mrad,apex,x_px,y_px\n";
 };
 
-/// Presentations of a case: both plates, every mounting in turn, sub-pixel shifts spread evenly.
+/// Returns the presentations of a case: both plates, every mounting in turn, sub-pixel shifts spread evenly.
 std::vector<TargetState> presentations(const ReferenceCase& c, int frames, const RandomStream& stream) {
   const auto shifts = spread_phases(frames, stream);
   const double pixel_mm = c.sensor.ifov_mrad() * reference_distance_m;

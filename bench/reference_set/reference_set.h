@@ -1,4 +1,5 @@
-// A reference set that others can cite: frames of simulated cameras with known thresholds, from a seed.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Citable reference set: frames of simulated cameras with known thresholds, generated from a seed.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +14,15 @@ namespace todbench {
 
 struct ReferenceSetOptions {
   std::uint64_t seed = 1;
-  /// Frames of a case, half of each plate: 24 of six cases as TIFF and as recording are 44 MB.
+  /// Frames per case, half of them for each plate. 24 frames of six cases need 44 MB as TIFF and recording.
   int frames = 24;
   std::vector<ReferenceCase> cases = reference_cases();
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
 };
 
-/// Writes the set into an empty folder: for each case CASE.tif (pages of 16 bits), CASE.todrec (the same frames with
-/// their scale), CASE-frames.csv and CASE-triangles.csv; beside them set.json (truths and everything that made them),
-/// sensors, plates and observer as TOML, README.md and SHA256SUMS. The same seed gives the same bytes. `io`,
+/// Writes the set into an empty folder. For each case: CASE.tif (pages of 16 bits), CASE.todrec (the same frames with
+/// their scale), CASE-frames.csv and CASE-triangles.csv. For the set: set.json (truths and all settings), sensors,
+/// plates and observer as TOML, README.md and SHA256SUMS. The same seed gives the same bytes. Errors: `io`,
 /// `interrupted`.
 [[nodiscard]] Result<void> write_reference_set(const std::filesystem::path& folder, const ReferenceSetOptions& options,
                                                std::stop_token stop);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/cost_figure.h"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double smallest_error_percent = 1e-3;
 
-/// How the points of one knob are drawn.
+/// Style of the points of one knob.
 struct KnobStyle {
   std::string_view knob, label;
   PlotTone tone;
@@ -23,7 +24,7 @@ struct KnobStyle {
 constexpr std::array result_styles{
     KnobStyle{"draws", "noise draws", PlotTone::third, PlotMarker::bar, PlotLine::dashed},
     KnobStyle{"trials", "trials", PlotTone::muted, PlotMarker::square, PlotLine::dotted},
-    KnobStyle{"tolerance", "tolerance, every effect", PlotTone::second, PlotMarker::square, PlotLine::solid},
+    KnobStyle{"tolerance", "tolerance, all effects", PlotTone::second, PlotMarker::square, PlotLine::solid},
     KnobStyle{"planner", "planner's effects", PlotTone::muted, PlotMarker::disc, PlotLine::none},
 };
 constexpr std::array knob_styles{
@@ -33,7 +34,7 @@ constexpr std::array knob_styles{
     KnobStyle{"band", "truncated band", PlotTone::muted, PlotMarker::square, PlotLine::solid},
 };
 
-/// The smallest range that holds all values, with a margin.
+/// Smallest range that contains all values, with a margin.
 struct Span {
   double low = 0, high = 0;
   void add(double value) {
@@ -78,7 +79,7 @@ Plot plot_of(const CostFrontier& frontier, std::span<const KnobStyle> styles, st
   if (!chosen.points.empty()) {
     const PlotPoint& at = chosen.points.front();
     plot.references.push_back(
-        {.y = *at.y, .label = "chosen: " + significant(*at.y, 2) + " % for " + significant(*at.x, 2) + " s"});
+        {.y = *at.y, .label = "chosen: " + significant(*at.y, 2) + " % in " + significant(*at.x, 2) + " s"});
     plot.series.push_back(std::move(chosen));
   }
   plot.x = x.axis("Wall time (s)", 1.4);
@@ -88,7 +89,7 @@ Plot plot_of(const CostFrontier& frontier, std::span<const KnobStyle> styles, st
 
 Table point_table(const CostFrontier& frontier) {
   Table rows;
-  rows.caption = "Every way of computing that was measured";
+  rows.caption = "Measured settings of the computation";
   rows.header = {"Knob", "Setting", "Wall time (s)", "Error of acuity (%)", "Standard error (%)", "Remark"};
   for (const CostPoint& point : frontier.points) {
     const auto number = [&](const std::optional<double>& value) {
@@ -109,17 +110,17 @@ Table point_table(const CostFrontier& frontier) {
 Plot cost_result_plot(const CostFrontier& frontier) {
   Plot plot = plot_of(frontier, result_styles, "Error with standard error (%)");
   plot.id = "cost-result";
-  plot.title = "What accuracy costs in time";
+  plot.title = "Cost of accuracy in computing time";
   plot.description =
-      "Error of the 75 % acuity against the reference, standard error included, over wall time: for tolerances, noise "
-      "draws, trials and the planner's choices.";
+      "Error of the 75 % acuity against the reference, including the standard error, over wall time: tolerances, noise "
+      "draws, trials and the choices of the planner.";
   return plot;
 }
 
 Plot cost_knob_plot(const CostFrontier& frontier) {
   Plot plot = plot_of(frontier, knob_styles, "Error of this knob alone (%)");
   plot.id = "cost-knob";
-  plot.title = "What each numerical knob costs in time";
+  plot.title = "Cost of each numerical knob in computing time";
   plot.description =
       "Error of the 75 % acuity by one knob alone, the others at the reference level, over wall time: wavelengths, "
       "phases, wrapped signal, truncated band.";
@@ -137,21 +138,20 @@ Result<std::string> cost_document(const CostFrontier& frontier) {
 }
 
 Section cost_section(const CostFrontier& frontier) {
-  Section section{"What accuracy costs", {}};
-  section.blocks.emplace_back(Paragraph{
-      plain("Thresholds of the simulated sensor, computed in ways that take more or less time, against the reference "
-            "level (" +
-            std::to_string(frontier.reference_draws) + " draws per size, " + significant(frontier.reference_s, 2) +
-            " s, standard error " + significant(frontier.reference_standard_error_percent, 2) +
-            " %). Measured on one core of the machine that wrote this session.")});
+  Section section{"Cost of accuracy", {}};
+  section.blocks.emplace_back(Paragraph{plain(
+      "Thresholds of the simulated sensor, computed with faster and slower settings, against the reference level (" +
+      std::to_string(frontier.reference_draws) + " draws per size, " + significant(frontier.reference_s, 2) +
+      " s, standard error " + significant(frontier.reference_standard_error_percent, 2) +
+      " %). Measured on one core of the machine that wrote this session.")});
   section.blocks.emplace_back(
       Figure{drawn(cost_result_plot(frontier)),
-             "Error of the 75 % acuity, the largest over the contrasts, with its standard error, over wall time. "
-             "Best in the table: nothing measured is both faster and nearer."});
+             "Error of the 75 % acuity, the largest over the contrasts, with its standard error, over wall time. A "
+             "setting is marked as best in the table if no other measured setting is both faster and more accurate."});
   section.blocks.emplace_back(
       Figure{drawn(cost_knob_plot(frontier)),
-             "The same for one numerical knob alone, the others at the reference level, with the random numbers of its "
-             "reference; errors below 0.001 % are drawn there."});
+             "Error by one numerical knob alone, with the other knobs at the reference level and the same random "
+             "numbers as its reference. Errors below 0.001 % are drawn at 0.001 %."});
   section.blocks.emplace_back(point_table(frontier));
   if (!frontier.notes.empty()) section.blocks.emplace_back(list_of(frontier.notes));
   return section;

@@ -1,4 +1,5 @@
-// The measured frontier of accuracy and time as figures and as a table.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measured frontier of accuracy and time as figures and as a table.
 #pragma once
 
 #include <string>
@@ -9,15 +10,15 @@
 
 namespace todbench {
 
-/// What a result may be off by over its wall time: tolerance, draws, trials and planner, the chosen point apart. Both
-/// axes are logarithmic. Nothing measured: axes without points.
+/// Plot of the error of a result over its wall time: tolerance, draws, trials and planner; the chosen point is marked.
+/// Both axes are logarithmic. Without measurements the axes are empty.
 [[nodiscard]] Plot cost_result_plot(const CostFrontier& frontier);
-/// The error of each numerical knob alone over wall time; below 0.001 % it is drawn at 0.001 %.
+/// Plot of the error of each numerical knob over wall time; errors below 0.001 % are drawn at 0.001 %.
 [[nodiscard]] Plot cost_knob_plot(const CostFrontier& frontier);
-/// Both figures, one above the other, as a file of its own.
+/// Returns both figures, one above the other, as an SVG file.
 [[nodiscard]] Result<std::string> cost_document(const CostFrontier& frontier);
 
-/// Figures, table and notes.
+/// Returns figures, table and notes.
 [[nodiscard]] Section cost_section(const CostFrontier& frontier);
 
 }  // namespace todbench

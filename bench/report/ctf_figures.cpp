@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/ctf_figures.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace todbench {
 namespace {
 
-/// How a curve of a side is drawn.
+/// Style of a curve of one side.
 struct CtfPen {
   std::string label;
   PlotTone tone = PlotTone::first;
@@ -37,7 +38,7 @@ PlotSeries ctf_series(const CtfGroups& side, EdgeAxis axis, Modulation BarsCtf::
   return series;
 }
 
-/// The closed form as lines without markers: where there is one it lies behind the others.
+/// Adds the closed form as lines without markers behind the other curves, if there is one.
 void add_model(Plot& plot, const CtfGroups& side, EdgeAxis axis) {
   for (const auto& [phase, label] : {std::pair(&BarsModel::best, "closed form"), std::pair(&BarsModel::worst, "")}) {
     PlotSeries series{
@@ -68,7 +69,8 @@ Figure ctf_figure(EdgeAxis axis, const SessionMeasures& measures, bool camera) {
   Plot plot;
   plot.id = "ctf-" + name;
   plot.title = "CTF along " + name;
-  plot.description = "Modulation of four bars over their frequency at best and worst sampling phase, 95 % intervals";
+  plot.description =
+      "Modulation of four bars over spatial frequency at the best and the worst sampling phase, with 95 % intervals";
   plot.width = 430, plot.height = 390;
   plot.x = {.label = "Frequency (1/mrad)", .low = 0, .high = 0, .ticks = {}};
   plot.y = {.label = "CTF along " + name, .low = 0, .high = 1.1, .ticks = {}};
@@ -89,10 +91,10 @@ Figure ctf_figure(EdgeAxis axis, const SessionMeasures& measures, bool camera) {
     add_model(plot, *measures.main->ctf, axis);
     add_side(plot, *measures.main->ctf, axis, camera ? "camera" : "sensor", true);
   }
-  // Wide bars may all lie below it.
+  // The frequencies of wide bars may all lie below the band.
   if (!plot.bands.empty() && plot.bands.front().x.low >= plot.x.high) plot.bands.clear();
   return {drawn(plot), "CTF of four bars along " + name +
-                           ": modulation at the best and at the worst phase of the sampling, with 95 % intervals"};
+                           ": modulation at the best and the worst sampling phase, with 95 % intervals"};
 }
 
 }  // namespace

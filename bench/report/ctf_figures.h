@@ -1,4 +1,5 @@
-// The contrast transfer over frequency.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CTF over frequency.
 #pragma once
 
 #include <optional>
@@ -8,8 +9,8 @@
 
 namespace todbench {
 
-/// One figure an axis: best and worst sampling phase of every group of bars of the camera (`camera`; else of the
-/// simulated sensor) and of the twin, and the closed form. Nothing where no CTF was measured.
+/// Returns one figure per axis: best and worst sampling phase of every bar group of the camera (of the simulated sensor
+/// if not `camera`) and of the twin, and the closed form. Empty if no CTF was measured.
 [[nodiscard]] std::optional<FigurePairs> ctf_figures(const SessionMeasures& measures, bool camera);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/curve_lines.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@
 namespace todbench {
 namespace {
 
-/// Acuity of a contrast; nothing where there is no threshold.
+/// Acuity at a contrast; empty without a threshold.
 struct AcuityNow {
   std::optional<double> acuity;
   Interval interval;
@@ -27,14 +28,14 @@ AcuityNow acuity_at(const TodCurve* curve, double delta_t_k) {
 std::string acuity_text(const AcuityNow& now) {
   const auto number = [](const std::optional<double>& value) -> std::string {
     if (!value || !std::isfinite(*value)) return "–";
-    // Sides of intervals may be orders of magnitude away.
+    // Ends of intervals may be orders of magnitude away.
     return *value < 100 ? fmt::format("{:.3f}", *value) : fmt::format("{:.3g}", *value);
   };
   if (!now.acuity) return "–";
   return fmt::format("{} [{}, {}]", number(now.acuity), number(now.interval.low), number(now.interval.high));
 }
 
-/// Letters of a line of the plot, a UTF-8 character each.
+/// Characters of a line of the plot, one UTF-8 character each.
 class TextLine {
  public:
   TextLine(std::size_t width, double largest) : cells_(width, " "), largest_(largest) {}
@@ -65,8 +66,8 @@ class TextLine {
   double largest_;
 };
 
-/// The axis ends at a round number beyond everything that is drawn; intervals beyond twice the largest acuity or limit
-/// are cut.
+/// Returns the end of the axis: a round number beyond all drawn values. Intervals are cut at twice the largest acuity
+/// or limit.
 double axis_end(const CurveLines& shown) {
   double largest = 0, reach = 0;
   for (const AcuityLimit& limit : shown.limits) largest = std::max(largest, limit.least_acuity_per_mrad);

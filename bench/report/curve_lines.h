@@ -1,4 +1,5 @@
-// The TOD curve as lines of text, for a terminal.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// TOD curve as lines of text for a terminal.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +11,17 @@
 
 namespace todbench {
 
-/// What the lines show: acuity 1/S75 of every contrast of the plan, its 95 % interval, the twin's, and the limit.
+/// Input of the lines: acuity 1/S75 at every contrast of the plan with its 95 % interval, that of the twin, and the
+/// limits.
 struct CurveLines {
   std::vector<double> delta_t_k;       ///< set contrasts, in this order
-  const TodCurve* measured = nullptr;  ///< borrowed; null: nothing yet
+  const TodCurve* measured = nullptr;  ///< borrowed; null: not yet known
   const TodCurve* twin = nullptr;
   std::vector<AcuityLimit> limits{};
 };
-/// A heading and a line for each contrast, each of at most `columns` letters (40 at least are used).
+/// Returns a heading and a line for each contrast, each of at most `columns` characters (at least 40 are used).
 [[nodiscard]] std::vector<std::string> curve_lines(const CurveLines& shown, std::size_t columns);
-/// The same in one line: "16.9 K 0.512 [0.470, 0.559], 1.93 K –".
+/// Returns the same in one line: "16.9 K 0.512 [0.470, 0.559], 1.93 K –".
 [[nodiscard]] std::string curve_in_one_line(const CurveLines& shown);
 
 }  // namespace todbench

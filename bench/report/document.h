@@ -1,4 +1,5 @@
-// A document as a value: what a page says, without how it looks. html.h writes it as a page, the window as PDF.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Document as a value: content of a page without its appearance. html.h writes it as HTML, the window as PDF.
 #pragma once
 
 #include <string>
@@ -6,23 +7,23 @@
 #include <variant>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/report/drawing.h"
 
 namespace todbench {
 
-/// How a stretch of text is meant. What is good, bad or open also carries a sign, so that it reads in black and white.
+/// Role of a phrase. Good, bad and open phrases also carry a sign, so that they are readable in black and white.
 enum class Meaning {
   plain,
   strong,
-  reason,    ///< in brackets: why there is no value
-  unbroken,  ///< not broken over two lines where there is room: a number with its interval
+  reason,    ///< in brackets: reason for an absent value
+  unbroken,  ///< kept on one line if there is room: a number with its interval
   good,
   bad,
   open,
 };
 struct Phrase {
-  std::string text;  ///< plain, from anywhere: who writes a file escapes it
+  std::string text;  ///< plain text from any source; writers of files escape it
   Meaning meaning = Meaning::plain;
 };
 
@@ -36,12 +37,12 @@ struct RichText {
 [[nodiscard]] RichText plain(std::string_view text);
 [[nodiscard]] RichText strong(std::string_view text);
 [[nodiscard]] RichText unbroken(std::string_view text);
-/// A dash with the reason why there is no value.
+/// Returns a dash with the reason for the absent value.
 [[nodiscard]] RichText missing(std::string_view reason);
-/// `text`, or missing(reason) when it is empty.
+/// Returns `text`, or missing(reason) if it is empty.
 [[nodiscard]] RichText text_or_missing(std::string_view text, std::string_view reason);
 enum class Mood { good, bad, open };
-/// A word with its sign and colour.
+/// Returns a word with its sign and colour.
 [[nodiscard]] RichText badge(std::string_view word, Mood mood);
 
 struct Paragraph {
@@ -54,7 +55,7 @@ struct List {
   std::vector<RichText> items;
 };
 
-/// The header names units. Rows are as long as the header; the first cell is the row's header.
+/// Table whose header contains the units. Rows have the length of the header; the first cell is the row header.
 struct Table {
   std::string caption;
   std::vector<std::string> header;
@@ -65,18 +66,18 @@ struct NamedValue {
   std::string name;
   RichText value;
 };
-/// Two columns, name and value.
+/// Table with two columns, name and value.
 struct ValueTable {
   std::string caption;
   std::vector<NamedValue> values;
 };
 
 struct Figure {
-  Result<Drawing> drawing;  ///< or why there is none
+  Result<Drawing> drawing;  ///< or the reason for its absence
   std::string caption;
 };
 
-/// The same kind of things side by side, two in a row where there is room.
+/// Blocks of the same kind side by side, two in a row if there is room.
 struct FigurePairs {
   std::vector<Figure> figures;
 };
@@ -90,15 +91,15 @@ struct VerdictBox {
   std::vector<RichText> paragraphs;
 };
 
-/// Who signs, side by side, each with lines for name, date and signature.
+/// Signature fields side by side, each with lines for name, date and signature.
 struct Signatures {
   struct Signatory {
-    std::string role, name;  ///< no name: a line to write on
+    std::string role, name;  ///< empty name: a line to write on
   };
   std::vector<Signatory> signatories;
 };
 
-/// Whose report it is: a logo and lines beside it.
+/// Owner of the report: a logo with lines of text next to it.
 struct Imprint {
   std::string png;  ///< bytes of a PNG file; empty: no logo
   std::string png_text;
@@ -116,9 +117,9 @@ struct Section {
 
 struct Document {
   std::string title;       ///< of the file
-  std::string heading;     ///< over the first page
-  std::string subtitle;    ///< below it
-  std::string page_label;  ///< at the foot of every printed page: the report and the item
+  std::string heading;     ///< heading of the first page
+  std::string subtitle;    ///< below the heading
+  std::string page_label;  ///< footer of every printed page: report and unit
   std::vector<Block> opening;
   std::vector<Section> sections;
   std::vector<Block> before_heading{};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/drift_figures.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ struct DriftWords {
   std::string id, title, axis, caption;
 };
 
-/// Points as they were seen, less `zero_k`, and the line of the fit.
+/// Observed points minus `zero_k`, and the fitted line.
 Figure drift_figure(const DriftLaw& law, const DriftFit& fit, double zero_k, const DriftWords& words) {
   Plot plot;
   plot.id = words.id, plot.title = words.title, plot.description = words.caption;
@@ -51,12 +52,11 @@ std::optional<FigurePairs> drift_figures(const SessionMeasures& measures) {
   figures.figures.push_back(
       drift_figure(law, law.level, law.level.fitted_k.front(),
                    {"drift-level", "Drift of the mean", "Mean (mK)",
-                    "Mean of the flat field after a correction, from its first value by the fit"}));
-  figures.figures.push_back(
-      drift_figure(law, law.pattern, 0,
-                   {"drift-pattern", "Growth of the spatial noise", "Spatial noise (mK)",
-                    "Standard deviation over the pixels of what they have changed since the first group, without "
-                    "white noise, mean and shading"}));
+                    "Mean of the flat field after a correction, relative to the first value of the fit"}));
+  figures.figures.push_back(drift_figure(law, law.pattern, 0,
+                                         {"drift-pattern", "Growth of the spatial noise", "Spatial noise (mK)",
+                                          "Standard deviation over the pixels of their change since the first group of "
+                                          "frames, without white noise, mean and shading"}));
   return figures;
 }
 

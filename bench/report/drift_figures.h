@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mean and spatial noise of a camera over the time since its correction.
 #pragma once
 
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Nothing where no drift was measured.
+/// Returns the figures; empty if no drift was measured.
 [[nodiscard]] std::optional<FigurePairs> drift_figures(const SessionMeasures& measures);
 
 }  // namespace todbench

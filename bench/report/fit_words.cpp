@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/fit_words.h"
 
 #include <algorithm>
@@ -18,22 +19,23 @@ std::vector<const TodPoint*> points_by(const ReportData& data, FitEstimator esti
   return points;
 }
 
-/// Why, in brackets; empty where nobody said.
+/// Returns the reason in brackets; empty if unknown.
 std::string reason_of(const TodPoint& point) {
   return point.estimator_reason ? " (" + std::string(in_words(*point.estimator_reason)) + ")" : std::string();
 }
 
 std::string twin_in_words(const ReportData& data, const std::vector<const TodPoint*>& points) {
-  std::string text =
-      "The function is that of the simulated twin" + reason_of(*points.front()) +
-      ", averaged over phases and noise without a form and stretched in ln S to the answers by quasi-likelihood; S₇₅ "
-      "is the size at which it passes 0.75. The slope b is that of the Weibull function with the same rise there.";
+  std::string text = "The psychometric function is that of the simulated twin" + reason_of(*points.front()) +
+                     ", averaged over phases and noise without a parametric form. It is fitted to the answers by "
+                     "quasi-likelihood, shifted and, if needed, stretched in ln S. S₇₅ is the size at which it crosses "
+                     "0.75. The slope b is that of the Weibull function with the same slope at S₇₅.";
   const std::vector<const TodPoint*> others = points_by(data, FitEstimator::weibull);
   for (std::size_t i = 0; i < others.size(); ++i) {
     const bool simulated = data.measured && data.simulated && others[i] >= data.simulated->points.data() &&
                            others[i] < data.simulated->points.data() + data.simulated->points.size();
-    text += std::string(i == 0 ? " A Weibull function instead: " : ", ") + stated(others[i]->set_delta_t_k) + " K" +
-            (simulated ? ", simulated" : "") + reason_of(*others[i]) + (i + 1 == others.size() ? "." : "");
+    text += std::string(i == 0 ? " Contrasts with a Weibull function instead: " : ", ") +
+            stated(others[i]->set_delta_t_k) + " K" + (simulated ? ", simulated" : "") + reason_of(*others[i]) +
+            (i + 1 == others.size() ? "." : "");
   }
   return text;
 }
@@ -42,15 +44,15 @@ std::string frames_in_words(int frames) {
   return std::to_string(frames) + (frames == 1 ? " frame" : " frames");
 }
 
-/// What the answers of contrasts are that have them of one kind for one reason; with `contrasts` of which ones.
+/// Describes the answers of contrasts that share kind and reason; names the contrasts if `contrasts`.
 std::string answers_in_words(const std::vector<const TodPoint*>& points, bool contrasts) {
   const AnswersTaken& first = *points.front()->answers;
   const bool graded = first.kind == AnswerKind::graded;
   const bool alike = std::ranges::all_of(
       points, [&](const TodPoint* point) { return !graded || point->answers->frames == first.frames; });
   const std::string reason = " (" + std::string(in_words(first.reason)) + ")";
-  std::string text = graded ? "graded: the observer's probability of the right answer" + reason + ", averaged over "
-                            : "right or wrong, each to one frame" + reason;
+  std::string text = graded ? "graded: the observer's probability of a correct answer" + reason + ", averaged over "
+                            : "right or wrong, one answer for each frame" + reason;
   if (graded && alike) text += frames_in_words(first.frames) + " of a presentation";
   for (std::size_t i = 0; (contrasts || !alike) && i < points.size(); ++i) {
     if (i > 0) text += ", ";
@@ -90,7 +92,7 @@ std::string form_in_words(const ReportData& data) {
       data.fit.fixed_lapse ? "lapse λ fixed at " + stated(*data.fit.fixed_lapse) : "lapse λ free between 0 and 0.1";
   const auto points = points_by(data, FitEstimator::weibull);
   return form + (points.empty() ? std::string() : reason_of(*points.front())) + ", " + lapse +
-         ", fitted by maximum likelihood; S₇₅ is the size at which ψ = 0.75 exactly.";
+         ", fitted by maximum likelihood. S₇₅ is the size at which ψ = 0.75.";
 }
 
 std::string answers_in_words(const ReportData& data) {
@@ -100,7 +102,7 @@ std::string answers_in_words(const ReportData& data) {
     const std::string& only = measured.empty() ? simulated : measured;
     return only.empty() ? only : " Answers are " + only + ".";
   }
-  return " Answers are " + measured + ". Those of the twin are " + simulated + ".";
+  return " Answers are " + measured + ". The answers of the twin are " + simulated + ".";
 }
 
 }  // namespace todbench

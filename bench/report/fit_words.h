@@ -1,4 +1,5 @@
-// What a report says in words of the fitted functions and of the answers below them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sentences of a report about the fitted functions and the kind of answers.
 #pragma once
 
 #include <string>
@@ -7,11 +8,11 @@
 
 namespace todbench {
 
-/// The function and how it was fitted: sentences. Contrasts with another function than the first are named with the
+/// Returns sentences about the function and its fit. Contrasts with another function than the first are named with the
 /// reason.
 [[nodiscard]] std::string form_in_words(const ReportData& data);
-/// What was counted, as sentences behind a space; empty where nobody said. The frames of each contrast where they
-/// differ, the twin apart where its answers are others.
+/// Returns sentences about the kind of answers, preceded by a space; empty if unknown. States the frames of each
+/// contrast if they differ, and the twin separately if its answers differ.
 [[nodiscard]] std::string answers_in_words(const ReportData& data);
 
 }  // namespace todbench

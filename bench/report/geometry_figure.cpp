@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/geometry_figure.h"
 
 #include <fmt/format.h>
@@ -12,10 +13,10 @@
 namespace todbench {
 namespace {
 
-/// The longest residual is drawn as long as this part of the picture's width, at the most.
+/// Largest length of a drawn residual, as a share of the picture's width.
 constexpr double longest_share = 0.07;
 
-/// The longest residual as a part of the picture's width; a millionth at least.
+/// Returns the longest residual as a share of the picture's width, at least 1e-6.
 double longest_of(const std::optional<MeasureLines>& side) {
   double longest = 1e-6;
   if (!side || !side->geometry) return longest;
@@ -24,7 +25,7 @@ double longest_of(const std::optional<MeasureLines>& side) {
   return longest;
 }
 
-/// 1, 2 or 5 times a power of ten, so that the longest residual fits; 1 at least.
+/// Returns 1, 2 or 5 times a power of ten, so that the longest residual fits; at least 1.
 double magnification(const SessionMeasures& measures) {
   const double most = longest_share / std::max(longest_of(measures.main), longest_of(measures.twin));
   const double decade = std::pow(10, std::floor(std::log10(most)));
@@ -49,8 +50,8 @@ Figure residual_map(const GeometryMap& map, const std::string& who, const std::s
   }
   drawing.inside.push_back({.shape = std::move(lines), .pen = Pen::curve, .tone = PlotTone::second});
   const std::string caption = fmt::format(
-      "Where the triangles lie in the picture of the {}, and what the fitted lens leaves of their places, "
-      "drawn {:g} times as long",
+      "Positions of the triangles in the picture of the {} and their residuals after the lens fit, drawn {:g} times as "
+      "long",
       who, times);
   drawing.description = caption;
   return {std::move(drawing), caption};

@@ -1,4 +1,5 @@
-// The map of what the fitted lens leaves of the places of a plate's triangles.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Map of the residuals of the triangles' positions after the lens fit.
 #pragma once
 
 #include <optional>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Of the camera and of the twin; nothing where neither was measured.
+/// Returns the figures of camera and twin; empty if neither was measured.
 [[nodiscard]] std::optional<FigurePairs> geometry_figures(const SessionMeasures& measures, bool camera);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/grid_figure.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ constexpr std::array grid_lines{GridLine{PlotTone::first, PlotMarker::disc, Plot
                                 GridLine{PlotTone::first, PlotMarker::square, PlotLine::dashed},
                                 GridLine{PlotTone::second, PlotMarker::bar, PlotLine::dotted}};
 
-/// Indices in the order of the values.
+/// Returns the indices in the order of the values.
 std::vector<std::size_t> order_of(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -32,7 +33,7 @@ std::vector<std::size_t> order_of(const std::vector<double>& values) {
   return order;
 }
 
-/// At most so many, the first and the last among them.
+/// Returns at most `most` of them, including the first and the last.
 std::vector<std::size_t> spread_over(const std::vector<std::size_t>& all, std::size_t most) {
   if (all.size() <= most) return all;
   std::set<std::size_t> places;
@@ -86,7 +87,7 @@ std::optional<Plot> grid_plot(const GridFigure& grid) {
 }
 
 Section grid_section(const std::vector<GridFigure>& grids) {
-  Section section{"Other targets, the same air", {}};
+  Section section{"Other targets in the same atmosphere", {}};
   for (const GridFigure& grid : grids) {
     const auto plot = grid_plot(grid);
     if (!plot) {
@@ -95,7 +96,7 @@ Section grid_section(const std::vector<GridFigure>& grids) {
     }
     section.blocks.emplace_back(
         Figure{drawn(*plot), "Range for 75 % against contrast by " + grid.model +
-                                 ", a line for each size. A line ends where the range is not known."});
+                                 ", one line for each size. A line ends where the range is unknown."});
   }
   return section;
 }

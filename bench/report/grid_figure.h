@@ -1,4 +1,5 @@
-// A grid of targets as figures: range over contrast, a line for each size.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grid of targets as figures: range over contrast, a line for each size.
 #pragma once
 
 #include <optional>
@@ -10,16 +11,16 @@
 
 namespace todbench {
 
-/// One model's ranges of a grid.
+/// Ranges of one model on a grid.
 struct GridFigure {
-  std::string model;                         ///< its name: "tod"
+  std::string model;                         ///< name of the model: "tod"
   std::vector<double> sizes_m, contrasts_k;  ///< magnitudes > 0
   std::vector<std::optional<double>> r75_m;  ///< [size][contrast]
 };
 
-/// Six sizes at most, spread over those of the grid; nothing where no target has a range.
+/// Returns the plot with at most six sizes spread over those of the grid; empty if no target has a range.
 [[nodiscard]] std::optional<Plot> grid_plot(const GridFigure& grid);
-/// A section with the figure of every model that has one.
+/// Returns a section with the figure of every model that has one.
 [[nodiscard]] Section grid_section(const std::vector<GridFigure>& grids);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/html.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@
 namespace todbench {
 namespace {
 
-// A table of up to this many rows is not broken over two pages.
+// Tables with up to this many rows are kept on one page.
 constexpr std::size_t rows_kept_together = 14;
 
 Markup html(const Phrase& phrase) {
@@ -48,7 +49,7 @@ Markup caption_of(const std::string& caption) {
   return caption.empty() ? Markup{} : element("caption", escaped(caption));
 }
 
-/// One block of a document.
+/// Markup of one block of a document.
 struct BlockMarkup {
   Markup operator()(const Paragraph& paragraph) const {
     return line("p", html(paragraph.text), paragraph.role == Paragraph::Role::note ? "class=\"note\"" : "");

@@ -1,4 +1,6 @@
-// A document as a page: HTML 5 that is also well-formed XML, style and figures inside, no script, nothing from outside.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Document as a page: HTML 5 that is also well-formed XML, with inline style and figures, without scripts and external
+// resources.
 #pragma once
 
 #include <string>
@@ -7,7 +9,7 @@
 
 namespace todbench {
 
-/// A pure function. Every text is escaped; bytes that are no UTF-8 become U+FFFD.
+/// Returns the page. Every text is escaped; invalid UTF-8 becomes U+FFFD. A pure function.
 [[nodiscard]] std::string render_html(const Document& document);
 
 }  // namespace todbench

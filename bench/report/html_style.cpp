@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/html_style.h"
 
 #include "bench/report/markup.h"
@@ -6,8 +7,8 @@ namespace todbench {
 
 namespace {
 
-/// A CSS string: every ASCII character but letters and digits becomes an escape by number (CSS Syntax 3, 4.3.7), so
-/// that no text ends it or the style element early.
+/// Returns a CSS string in which every ASCII character except letters and digits is a numeric escape (CSS Syntax 3,
+/// 4.3.7), so that no text ends the string or the style element.
 std::string css_string(std::string_view plain) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string text = "\"";

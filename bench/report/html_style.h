@@ -1,4 +1,5 @@
-// The style sheet of the pages.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Style sheet of the pages.
 #pragma once
 
 #include <string>
@@ -6,7 +7,8 @@
 
 namespace todbench {
 
-/// CSS for everything but the drawings; `page_label` and the page number stand at the foot of every printed page.
+/// Returns the CSS for everything except drawings; `page_label` and the page number are in the footer of every printed
+/// page.
 [[nodiscard]] std::string page_style(std::string_view page_label);
 
 }  // namespace todbench

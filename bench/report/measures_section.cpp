@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/measures_section.h"
 
 #include <algorithm>
@@ -20,33 +21,33 @@ namespace todbench {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 53> names{{
-    {"scene_ratio", "Response to triangles, hot bar in the field over without"},
-    {"transfer_slope", "Temperature scale: contrast seen over contrast shown"},
-    {"transfer_offset", "Temperature scale: offset"},
-    {"transfer_nonlinearity", "Temperature scale: nonlinearity"},
-    {"ifov_x", "IFOV along x, from the places of the triangles"},
-    {"ifov_y", "IFOV along y, from the places of the triangles"},
-    {"ifov_stated", "IFOV as the plan states it"},
+    {"scene_ratio", "Response to triangles with a hot bar in the field, over the response without it"},
+    {"transfer_slope", "Temperature scale (SiTF slope): observed over shown contrast"},
+    {"transfer_offset", "Temperature scale (SiTF): offset"},
+    {"transfer_nonlinearity", "Temperature scale (SiTF): nonlinearity"},
+    {"ifov_x", "IFOV along x, from the positions of the triangles"},
+    {"ifov_y", "IFOV along y, from the positions of the triangles"},
+    {"ifov_stated", "IFOV stated in the plan"},
     {"ifov_model", "IFOV of the sensor model"},
     {"plate_rotation", "Rotation of the plate in the picture, clockwise"},
-    {"keystone_x", "Keystone: scale at the plate's right border over that at its left, less 1"},
-    {"keystone_y", "Keystone: scale at the plate's lower border over that at its upper, less 1"},
+    {"keystone_x", "Keystone: scale at the right border of the plate over scale at the left border, minus 1"},
+    {"keystone_y", "Keystone: scale at the lower border of the plate over scale at the upper border, minus 1"},
     {"distortion", "Radial distortion at the corner of the picture"},
-    {"distortion_model", "Radial distortion at the corner, of the sensor model"},
-    {"geometry_residual", "Places of the triangles: what the fitted lens leaves"},
+    {"distortion_model", "Radial distortion at the corner of the picture, sensor model"},
+    {"geometry_residual", "Positions of the triangles: residual after the lens fit"},
     {"temporal_noise", "Temporal noise of a pixel"},
     {"netd", "NETD (temporal noise over the temperature scale)"},
     {"netd_model", "NETD, closed form of the sensor model"},
     {"lag1_correlation", "Correlation of a pixel in successive frames"},
-    {"noise_counts", "Temporal noise in steps of the counts"},
-    {"shading_range", "Shading over the plate, taken out"},
+    {"noise_counts", "Temporal noise in quantization steps"},
+    {"shading_range", "Shading over the plate, removed"},
     {"drift_rate", "Drift of the mean after a correction"},
     {"drift_time_constant", "Drift of the mean: time constant"},
     {"drift_pattern_rate", "Growth of the spatial noise after a correction"},
     {"drift_pattern_time_constant", "Growth of the spatial noise: time constant"},
-    {"response_time", "Response time: time constant of steps"},
-    {"response_time_rise", "Response time of rises"},
-    {"response_time_fall", "Response time of falls"},
+    {"response_time", "Response time: time constant of the step response"},
+    {"response_time_rise", "Response time of rising steps"},
+    {"response_time_fall", "Response time of falling steps"},
     {"response_time_model", "Response time of the sensor model"},
     {"noise_t", "3-D noise t: whole frames"},
     {"noise_v", "3-D noise v: fixed rows"},
@@ -91,7 +92,7 @@ RichText value_of(const MeasureLine* line) {
   if (line->ci95.low == line->value && line->ci95.high == line->value) return plain(stated(*line->value));
   if (!line->ci95.low && !line->ci95.high) return plain(significant(*line->value, 3));
   RichText text = interval_or_missing(line->value, line->ci95, "not measured");
-  if (line->expanded) text += plain("; with the budget ") + interval_or_missing(line->value, *line->expanded, "");
+  if (line->expanded) text += plain("; expanded ") + interval_or_missing(line->value, *line->expanded, "");
   return text;
 }
 
@@ -114,7 +115,7 @@ PlotSeries mtf_series(const EdgeMtf& edge, double pitch_mrad, std::string label,
   return series;
 }
 
-/// Intervals every tenth of a cycle.
+/// Returns the intervals at every tenth of a cycle.
 PlotSeries mtf_bars(const EdgeMtf& edge, double pitch_mrad, PlotTone tone, PlotMarker marker) {
   PlotSeries series{.label = "", .tone = tone, .marker = marker, .points = {}};
   constexpr std::size_t every = 10;
@@ -134,7 +135,7 @@ const EdgeMtf* edge_of(const std::optional<MeasureLines>& side, const EdgeMtf& l
   return nullptr;
 }
 
-/// One place and axis: camera with its intervals, twin, closed form.
+/// Returns the figure of one place and axis: camera with intervals, twin, closed form.
 Figure mtf_figure(const EdgeMtf& edge, const SessionMeasures& measures, bool camera) {
   Plot plot;
   const std::string axis(to_string(edge.axis));
@@ -167,7 +168,7 @@ Figure mtf_figure(const EdgeMtf& edge, const SessionMeasures& measures, bool cam
   if (beyond_pitch_mrad > 0)
     plot.bands.push_back({"beyond half a cycle per pixel", PlotTone::muted, {0.5 / beyond_pitch_mrad, std::nullopt}});
   plot.y = {.label = "MTF along " + axis, .low = 0, .high = highest, .ticks = {}};
-  return {drawn(plot), "MTF along " + axis + " at '" + edge.place + "'; up to one cycle per pixel pitch"};
+  return {drawn(plot), "MTF along " + axis + " at '" + edge.place + "', up to one cycle per pixel pitch"};
 }
 
 std::optional<FigurePairs> mtf_figures(const SessionMeasures& measures, bool camera) {
@@ -178,7 +179,7 @@ std::optional<FigurePairs> mtf_figures(const SessionMeasures& measures, bool cam
   return figures;
 }
 
-/// One panel, with outlines where they are given.
+/// Returns one panel, with outlines if given.
 Figure panel_figure(const PlatePanels& panels, const std::string& png, const std::string& id, const std::string& title,
                     const std::string& caption, bool outlined) {
   constexpr double width = 430;
@@ -204,19 +205,19 @@ Figure panel_figure(const PlatePanels& panels, const std::string& png, const std
   return {std::move(drawing), caption};
 }
 
-/// The plate of the camera with what was found, that of the sensor model, the difference; and the difference of the
-/// twin, which is what noise alone makes.
+/// Returns the plate of the camera with the detected shapes, that of the sensor model, and the difference; also the
+/// difference of the twin, which shows the effect of noise alone.
 FigurePairs plate_figures(const PlatePanels& panels, const std::optional<MeasureLines>& twin, bool camera) {
   const std::string who = camera ? "camera" : "simulated sensor";
   const auto kelvin = [](double value) { return significant(value, 3) + " K"; };
   const std::string range = kelvin(panels.black_k) + " black to " + kelvin(panels.white_k) + " white";
   FigurePairs figures;
-  figures.figures.push_back(panel_figure(
-      panels, panels.seen, "seen", "Plate as the " + who + " saw it",
-      "The plate as the " + who + " saw it, " + range + "; outlines: the triangles where they were found", true));
-  figures.figures.push_back(panel_figure(panels, panels.expected, "expected", "Plate by the sensor model",
-                                         "The same by the sensor model at the same place, without noise, " + range,
-                                         false));
+  figures.figures.push_back(
+      panel_figure(panels, panels.seen, "seen", "Plate observed by the " + who,
+                   "Plate observed by the " + who + ", " + range + "; outlines: triangles as located", true));
+  figures.figures.push_back(
+      panel_figure(panels, panels.expected, "expected", "Plate computed by the sensor model",
+                   "Plate computed by the sensor model at the same position, without noise, " + range, false));
   const auto difference = [&](const PlatePanels& of, const std::string& id, const std::string& name) {
     figures.figures.push_back(panel_figure(
         of, of.difference, id, "Difference, " + name,
@@ -224,7 +225,7 @@ FigurePairs plate_figures(const PlatePanels& panels, const std::optional<Measure
   };
   difference(panels, "difference", who + " minus sensor model");
   if (twin && twin->picture)
-    difference(*twin->picture, "difference-twin", "simulated twin minus sensor model: what noise alone makes");
+    difference(*twin->picture, "difference-twin", "simulated twin minus sensor model (effect of noise alone)");
   return figures;
 }
 
@@ -238,16 +239,16 @@ std::optional<Section> measures_section(const ReportData& data) {
   Table table{.caption = "", .header = {"Measure", data.camera ? "camera" : "simulated sensor"}, .rows = {}};
   if (twin) table.header.emplace_back("simulated twin");
   table.header.emplace_back("Conditions");
-  std::vector<std::string> conditions;  // each with its number, which the rows name
+  std::vector<std::string> conditions;  // the rows refer to a condition by its number
   std::vector<MeasureLine> lines = (main ? main : twin)->lines;
-  // What only the twin has, such as its closed form.
+  // Measures of the twin alone, for example its closed form.
   if (main && twin) {
     for (const MeasureLine& line : twin->lines)
       if (line_of(main, line.measure) == nullptr) lines.push_back(line);
   }
   for (const MeasureLine& line : lines) {
     const MeasureLine* of_main = line_of(main, line.measure);
-    // A camera has no closed form: nothing that could have been measured.
+    // A camera has no closed form, so the value is not missing.
     const bool closed_form = of_main == nullptr && line.measure.ends_with("_model");
     std::vector<RichText> row{plain(name_of(line)), closed_form ? plain("–") : value_of(of_main)};
     if (twin) row.push_back(value_of(line_of(twin, line.measure)));
@@ -279,9 +280,9 @@ std::optional<Section> measures_section(const ReportData& data) {
     for (const auto& reason : twin->reasons) reasons.push_back("Simulated twin: " + reason);
   }
   if (!reasons.empty()) section.blocks.emplace_back(list_of(reasons));
-  section.blocks.emplace_back(note(
-      plain("In brackets 95 % intervals of the finite number of frames, pixels and steps. Black body, air path and "
-            "emissivity are not in them.")));
+  section.blocks.emplace_back(
+      note(plain("Brackets: 95 % intervals for the finite number of frames, pixels and steps. They do not include the "
+                 "uncertainty of the black body, the air path and the emissivity.")));
   return section;
 }
 

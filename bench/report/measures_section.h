@@ -1,4 +1,5 @@
-// The section of physical measures.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Section of physical measures.
 #pragma once
 
 #include <optional>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Camera beside twin; nothing where nothing was measured.
+/// Returns the section with camera and twin side by side; empty if there are no measures.
 [[nodiscard]] std::optional<Section> measures_section(const ReportData& data);
 
 }  // namespace todbench

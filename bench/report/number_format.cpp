@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/number_format.h"
 
 #include <fmt/format.h>
@@ -50,8 +51,14 @@ int decimals_for(std::optional<double> value, const Interval& interval) {
   } else if (finite(value) && finite(interval.high)) {
     width = *interval.high - *value;
   }
-  if (std::abs(width) > 0)
-    return std::clamp(1 - static_cast<int>(std::floor(std::log10(std::abs(width)))), 0, most_decimals);
+  const auto two_digits_of = [](double number) {
+    return 1 - static_cast<int>(std::floor(std::log10(std::abs(number))));
+  };
+  if (std::abs(width) > 0) {
+    // If the interval is wider than its value, the digits follow the value.
+    const bool wide = finite(value) && *value != 0 && std::abs(width) > std::abs(*value);
+    return std::clamp(wide ? two_digits_of(*value) : two_digits_of(width), 0, most_decimals);
+  }
   double scale = 0;
   for (const std::optional<double> candidate : {interval.high, interval.low, value})
     if (finite(candidate)) scale = std::abs(*candidate);

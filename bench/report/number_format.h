@@ -1,4 +1,5 @@
-// Numbers as people read them: independent of the locale, to the digits their interval supports, never NaN.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers for people: independent of the locale, with the digits that their interval supports, never NaN.
 #pragma once
 
 #include <optional>
@@ -9,34 +10,34 @@
 
 namespace todbench {
 
-/// `decimals` digits behind the point, ASCII, "-0.00" becomes "0.00". A dash for a value that is not finite.
+/// Returns `decimals` digits after the point in ASCII; "-0.00" becomes "0.00"; a dash for a non-finite value.
 [[nodiscard]] std::string fixed(double value, int decimals);
 
-/// As fixed(), with the sign U+2212, for text.
+/// Returns fixed() with the sign U+2212, for text.
 [[nodiscard]] std::string shown(double value, int decimals);
 
-/// To `digits` significant digits, without exponent: 0.0702, 16.9, 1500.
+/// Returns `digits` significant digits without exponent: 0.0702, 16.9, 1500.
 [[nodiscard]] std::string significant(double value, int digits);
 
-/// A number that someone stated, without trailing zeros: up to six significant digits, 20, 0.25, 47.5.
+/// Returns a stated number with up to six significant digits and without trailing zeros: 20, 0.25, 47.5.
 [[nodiscard]] std::string stated(double value);
 
-/// Digits behind the point at which half the width of the interval keeps two significant digits (JCGM 100:2008, 7.2.6).
-/// With one side open the distance from the value to the bound counts; without any width three significant digits of
-/// the value.
+/// Returns the digits after the point that leave two significant digits of the half-width of the interval (JCGM
+/// 100:2008, 7.2.6). If one end is open, the distance from the value to the other end counts; without any width, three
+/// significant digits of the value.
 [[nodiscard]] int decimals_for(std::optional<double> value, const Interval& interval);
 
-/// "0.480 [0.468, 0.493]"; with one side open "0.480 [≥ 0.468]"; without a value "≥ 0.468"; a dash when nothing is
-/// known.
+/// Returns "0.480 [0.468, 0.493]"; "0.480 [≥ 0.468]" if one end is open; "≥ 0.468" without a value; a dash if both are
+/// absent.
 [[nodiscard]] std::string with_interval(std::optional<double> value, const Interval& interval);
 
-/// Whether there is a value or a bound.
+/// Returns whether there is a value or a bound.
 [[nodiscard]] bool anything_known(std::optional<double> value, const Interval& interval);
 
-/// "0.032", "< 0.001".
+/// Returns "0.032" or "< 0.001".
 [[nodiscard]] std::string probability(double p);
 
-/// Names of reasons and verdicts as words: underscores become spaces.
+/// Returns the name of a reason or verdict as words: underscores become spaces.
 [[nodiscard]] std::string words(std::string_view name);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/pattern_truth.h"
 
 #include <fmt/format.h>
@@ -19,14 +20,14 @@ std::string toml_list(const std::vector<std::string>& words) {
   return fmt::format("[{}]", fmt::join(words, ", "));
 }
 
-/// A plate that load_plate() reads: one pixel is one millimetre.
+/// Returns a plate for load_plate(): one pixel is one millimetre.
 std::string plate_toml(const TestPicture& picture) {
   const TargetPlate& plate = picture.plate;
   std::string text = fmt::format(
       "name = \"{}\"\ndescription = \"test picture, 1 pixel = 1 mm, origin in the middle\"\nwidth_mm = {}\nheight_mm = "
       "{}\n",
       plate.name, number_text(plate.width_mm), number_text(plate.height_mm));
-  // Every triangle has a phase of its own, so a row of the file holds one.
+  // Every triangle has its own phase, so each row of the file holds one.
   for (const auto& triangle : plate.triangles) {
     text += fmt::format(
         "\n[[row]]\nsize_mm = {}\ny_mm = {}\nx_mm = {}\napex = {}\nnames = {}\n", number_text(triangle.size_mm),
@@ -71,7 +72,7 @@ Result<PictureKind> picture_kind_named(std::string_view name) {
     const auto level = parse_number(name.substr(of_level.size()));
     if (level && *level >= 0 && *level <= 1) return PictureKind(FlatPicture{*level});
     return fail(ErrorCode::invalid_input,
-                "'" + one_line(name) + "': expected a level from 0 to 1 behind 'flat:', as in 'flat:0.25'");
+                "'" + one_line(name) + "': expected a level from 0 to 1 after 'flat:', as in 'flat:0.25'");
   }
   const std::vector<std::string> known(kind_names.begin(), kind_names.end());
   return fail(ErrorCode::invalid_input, "unknown pattern '" + one_line(name) + "'" + nearest_name_hint(name, known) +
@@ -79,9 +80,9 @@ Result<PictureKind> picture_kind_named(std::string_view name) {
 }
 
 std::string pattern_truth(const PictureRequest& request, const TestPicture& picture, std::string_view shown) {
-  const std::string text =
-      fmt::format("# Truth of {}: {} x {} pixels, levels from {} to {}; a pixel has the mean over its area.\n", shown,
-                  picture.levels.cols, picture.levels.rows, number_text(request.low), number_text(request.high));
+  const std::string text = fmt::format(
+      "# Truth of {}: {} x {} pixels, levels from {} to {}; the value of a pixel is the mean over its area.\n", shown,
+      picture.levels.cols, picture.levels.rows, number_text(request.low), number_text(request.high));
   const bool plate = std::holds_alternative<TodPicture>(request.kind);
   return text + (plate ? plate_toml(picture) : other_toml(request, picture));
 }

@@ -1,21 +1,22 @@
-// What is in a test picture, as a file beside it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Content of a test picture, as a file next to it.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/pattern/test_picture.h"
 
 namespace todbench {
 
-/// "tod", "mrtd", "edge", "ramp", "siemens", "flat", as they are without options; "flat:0.25", of this level.
-/// `invalid_input` for another name or level.
+/// Parses "tod", "mrtd", "edge", "ramp", "siemens", "flat" with default options, or "flat:0.25" with a level. Errors:
+/// `invalid_input` (another name or level).
 [[nodiscard]] Result<PictureKind> picture_kind_named(std::string_view name);
 [[nodiscard]] std::string_view name_of(const PictureKind& kind);
 
-/// TOML: of "tod" a plate that load_plate() reads (one pixel is one millimetre, the origin the middle), of the others
-/// their parameters. `shown` is what the first line calls the picture.
+/// Returns TOML: for "tod" a plate for load_plate() (one pixel is one millimetre, origin at the centre), for others
+/// their parameters. `shown` is the name of the picture in the first line.
 [[nodiscard]] std::string pattern_truth(const PictureRequest& request, const TestPicture& picture,
                                         std::string_view shown);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/picture_page.h"
 
 #include <fmt/format.h>
@@ -29,7 +30,7 @@ std::string page_with_pictures(const Document& document, std::string_view title,
                   element("div", figures,
                           R"(style="display:grid;grid-template-columns:repeat(auto-fit,minmax(18rem,1fr));gap:1rem")"));
   std::string page = render_html(document);
-  // Text is escaped, so the tags stand where the document ends its header and itself.
+  // Text is escaped, so these tags occur only at the ends of header and document.
   const std::string end = place == PicturePlace::first ? "</header>" : "</main>";
   const auto at = page.find(end);
   return page.insert(place == PicturePlace::first ? at + end.size() : at, "\n" + section.text + "\n");

@@ -1,4 +1,5 @@
-// Pages that show pictures of cameras beside what a document says.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pages that combine a document with pictures of cameras.
 #pragma once
 
 #include <span>
@@ -8,16 +9,16 @@
 
 namespace todbench {
 
-/// Drawn with its elements as squares, three in a row where there is room.
+/// Picture with its pixels drawn as squares, three in a row if there is room.
 struct PagePicture {
   std::string title, caption;
-  std::string png;  ///< the bytes of a PNG file
+  std::string png;  ///< bytes of a PNG file
 };
 
 enum class PicturePlace { first, last };
 
-/// render_html() of the document with a section of pictures before its other sections, or behind them. Nothing from
-/// outside: the pictures are in the page.
+/// Returns render_html() of the document with a section of pictures before or after its other sections. The pictures
+/// are embedded; there are no external resources.
 [[nodiscard]] std::string page_with_pictures(const Document& document, std::string_view title,
                                              std::span<const PagePicture> pictures, PicturePlace place);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/pixel_figures.h"
 
 #include <algorithm>
@@ -22,21 +23,21 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> pixel_me
     {"pixels_blinking", "Blinking pixels"},
 }};
 
-/// What a map shows and what its greys or colours mean.
+/// Returns the title of a map and the meaning of its greys or colours.
 std::pair<std::string, std::string> words_of(const PixelMap& map) {
-  // A temperature and not a difference: hundredths of a kelvin count.
+  // Temperatures, unlike differences, need hundredths of a kelvin.
   const int digits = map.black_k > 100 ? 5 : 3;
   const auto kelvin = [digits](double value) { return significant(value, digits) + " K"; };
   const std::string greys = ": " + kelvin(map.black_k) + " black to " + kelvin(map.white_k) + " white";
   if (map.name == "temporal_noise") return {"Temporal noise of each pixel", greys};
   if (map.name == "fixed_pattern") return {"Fixed pattern, without shading", greys};
-  if (map.name == "triangles") return {"The smallest triangles " + map.note, greys};
-  if (map.name == "bar_out") return {"Hot bar out of the field", ""};
-  if (map.name == "bar_in") return {"Hot bar in the field", ", by the grey scale of the picture without it"};
+  if (map.name == "triangles") return {"Smallest triangles " + map.note, greys};
+  if (map.name == "bar_out") return {"Hot bar outside the field", ""};
+  if (map.name == "bar_in") return {"Hot bar in the field", ", in the grey scale of the picture without the bar"};
   if (map.name != "defects") return {map.name, greys};
-  std::string colours = ", each drawn larger than it is; ";
+  std::string colours = ", drawn enlarged; ";
   for (const DefectColour& colour : defect_colours()) colours += std::string(colour.words) + ", ";
-  return {"Bad and substituted pixels", colours + "not looked at: grey"};
+  return {"Bad and substituted pixels", colours + "not examined: grey"};
 }
 
 Figure map_figure(const PixelMap& map, const std::string& who, std::size_t number, const std::string& id) {
@@ -48,7 +49,7 @@ Figure map_figure(const PixelMap& map, const std::string& who, std::size_t numbe
   if (map.name == "triangles") drawing.id += "-" + std::to_string(number);
   drawing.title = title + ", " + who;
   drawing.description = title + meaning;
-  // A tall one is narrower, so that two pairs fit on a page.
+  // Tall maps are narrower, so that two pairs fit on a page.
   constexpr double most_height = 360;
   const double scale = std::min(width / map.width, most_height / map.height);
   drawing.width = width, drawing.height = scale * map.height;

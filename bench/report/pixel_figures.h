@@ -1,4 +1,5 @@
-// Maps of pixels in the section of physical measures, and what the counts of pixels are called.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pixel maps in the section of physical measures, and names of pixel counts.
 #pragma once
 
 #include <optional>
@@ -10,10 +11,11 @@
 
 namespace todbench {
 
-/// Maps of the camera (or of the simulated sensor alone) beside those of the twin; nothing where there are none.
+/// Returns the maps of the camera (or of the simulated sensor alone) next to those of the twin; empty if there are
+/// none.
 [[nodiscard]] std::optional<FigurePairs> pixel_figures(const SessionMeasures& measures, bool camera);
 
-/// "bad_pixels (centre)" as "Bad pixels in zone 'centre'"; empty for a measure that counts no pixels.
+/// Returns "Bad pixels in zone 'centre'" for "bad_pixels (centre)"; empty for a measure that counts no pixels.
 [[nodiscard]] std::string pixel_measure_name(std::string_view measure);
 
 }  // namespace todbench

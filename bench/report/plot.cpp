@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/plot.h"
 
 #include <algorithm>
@@ -6,8 +7,8 @@
 namespace todbench {
 namespace {
 
-// Lengths in units of the drawing. Text is 13 units high and, in the fonts of the style, at most 0.62 of that wide per
-// character on average.
+// Lengths in units of the drawing. Text is 13 units high; in the fonts of the style a character is on average at most
+// 0.62 of that wide.
 constexpr double character_width = 0.58 * 13;
 constexpr double margin_top = 14, margin_right = 18, margin_left = 66;
 constexpr double below_axis = 50;  // tick labels and axis label
@@ -19,7 +20,7 @@ Pen pen_of(PlotLine line) {
   return line == PlotLine::dashed ? Pen::dashed : line == PlotLine::dotted ? Pen::dotted : Pen::curve;
 }
 
-/// Characters, not bytes.
+/// Width by characters, not bytes.
 double text_width(std::string_view text) {
   return character_width * static_cast<double>(std::count_if(text.begin(), text.end(), [](char byte) {
            return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
@@ -28,13 +29,13 @@ double text_width(std::string_view text) {
 
 struct LegendEntry {
   std::string label;
-  const PlotSeries* series = nullptr;  ///< or, where null, a band
+  const PlotSeries* series = nullptr;  ///< null: the entry is a band
   PlotTone tone = PlotTone::first;
   double x = 0;
   int row = 0;
 };
 
-/// Entries side by side, a new row where the next would leave the picture.
+/// Places entries side by side and starts a new row if the next entry would leave the picture.
 std::vector<LegendEntry> legend_entries(const Plot& plot) {
   std::vector<LegendEntry> entries;
   for (auto series = plot.series.rbegin(); series != plot.series.rend(); ++series)
@@ -91,7 +92,7 @@ class Canvas {
     if (value <= 0) return -1;
     return std::log(value / axis.low) / std::log(axis.high / axis.low);
   }
-  // Far outside is as good as just outside: no coordinate grows beyond what a renderer can hold.
+  // Limits positions to slightly outside the plot, so that no coordinate exceeds the range of renderers.
   [[nodiscard]] double x(double value) const {
     return margin_left + std::clamp(fraction(plot_.x, value), -1.0, 2.0) * (right_ - margin_left);
   }
@@ -174,8 +175,8 @@ class Canvas {
 
   enum class IntervalEnd { with_cap, with_arrow };
 
-  /// An end of an interval: a cap where it is inside, an arrow where it is open or beyond the edge. `outward` is the
-  /// direction in which the interval goes on, of length one.
+  /// Draws an end of an interval: a cap if it is inside, an arrow if it is open or beyond the edge. `outward`: unit
+  /// vector in the direction of the interval.
   void draw_end(Place end, Place outward, IntervalEnd kind, PlotTone tone) {
     const Place across{cap * std::abs(outward.y), cap * std::abs(outward.x)};
     const bool bounded = kind == IntervalEnd::with_cap;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/plot_ticks.h"
 
 #include <algorithm>
@@ -10,14 +11,14 @@
 namespace todbench {
 namespace {
 
-// Relative to the range: a tick at the very end of an axis is inside it whatever the rounding.
+// Relative to the range: a tick at the very end of an axis is inside despite rounding.
 constexpr double slack = 1e-9;
 
 double power_of_ten(int exponent) {
   return std::pow(10.0, exponent);
 }
 
-/// Shortest way to write a multiple of 10^exponent.
+/// Returns the shortest text of a multiple of 10^exponent.
 std::string tick_label(double value, int exponent) {
   return shown(value, std::max(0, -exponent));
 }
@@ -40,7 +41,7 @@ std::vector<Tick> linear_ticks(double low, double high, int most_labels) {
   return ticks;
 }
 
-/// Multiples of the decades that lie in the range.
+/// Returns the multiples of the decades within the range.
 std::vector<Tick> decade_ticks(double low, double high, std::span<const double> multiples) {
   std::vector<Tick> ticks;
   const int last = static_cast<int>(std::floor(std::log10(high)));

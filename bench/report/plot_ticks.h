@@ -1,10 +1,11 @@
-// Where an axis has its ticks.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ticks of an axis.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
@@ -14,7 +15,7 @@ struct PlotAxis {
   std::string label;  ///< with its unit: "Size S (mrad)"
   AxisScale scale = AxisScale::linear;
   double low = 0, high = 1;   ///< high > low; logarithmic: low > 0
-  std::vector<double> ticks;  ///< labelled ticks; empty: chosen
+  std::vector<double> ticks;  ///< labelled ticks; empty: chosen automatically
 };
 
 struct Tick {
@@ -22,11 +23,12 @@ struct Tick {
   std::string label;  ///< empty for a minor tick
 };
 
-/// `invalid_input` for a range that is empty, not finite, or not positive on a logarithmic axis.
+/// Checks an axis. Errors: `invalid_input` (range empty, not finite, or not positive on a logarithmic axis).
 [[nodiscard]] Result<void> validate(const PlotAxis& axis);
 
-/// Ticks inside the axis, increasing; at most `most_labels` of them labelled. Linear: steps of 1, 2 or 5 times a power
-/// of ten. Logarithmic: decades, filled with 2 and 5 or more where there is room, minor ticks at the whole multiples.
+/// Returns the ticks inside the axis in increasing order, at most `most_labels` of them labelled. Linear: steps of 1, 2
+/// or 5 times a power of ten. Logarithmic: decades, with 2, 5 or more multiples if there is room; minor ticks at
+/// integer multiples.
 [[nodiscard]] std::vector<Tick> axis_ticks(const PlotAxis& axis, int most_labels);
 
 }  // namespace todbench

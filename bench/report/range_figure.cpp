@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/range_figure.h"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ const ModelStyle& style_of(const ModelRange& model) {
   return found == styles.end() ? styles.front() : *found;
 }
 
-/// The limit with the numbers behind it.
+/// Returns the limit with its numbers.
 RichText limit_text(const ModelRange& model) {
   const auto limit = model.dominant();
   if (!limit) return missing("no range");
@@ -38,8 +39,8 @@ RichText limit_text(const ModelRange& model) {
 
 Table range_table(std::span<const ModelRange> models) {
   Table table;
-  table.caption = "Ranges by model; they differ by tens of per cent and are not to be averaged";
-  table.header = {"Model", "Criterion", "Form of P", "R50 (m)", "R75 (m), 95 %", "Dominant limit", "Reads"};
+  table.caption = "Ranges by model. The models differ by tens of percent: do not average them";
+  table.header = {"Model", "Criterion", "Form of P", "R50 (m)", "R75 (m), 95 %", "Dominant limit", "Input"};
   for (const auto& model : models) {
     table.rows.push_back(
         {plain(model.title), plain(model.criterion + " = " + stated(model.criterion_value)),
@@ -55,7 +56,7 @@ Plot range_plot(std::span<const ModelRange> models) {
   Plot plot;
   plot.id = "range-models";
   plot.title = "Probability of the task against range";
-  plot.description = "Probability of a correct answer over range, one line for each model; the ranges for 75 % marked.";
+  plot.description = "Probability of a correct answer over range, one line for each model. Marks: ranges for 75 %.";
   double farthest = 0;
   for (const auto& model : models) {
     if (model.curve.empty() && !model.r75_m) continue;
@@ -85,7 +86,7 @@ Plot range_plot(std::span<const ModelRange> models) {
 
 Result<std::string> range_svg(std::span<const ModelRange> models) {
   if (std::all_of(models.begin(), models.end(), [](const auto& model) { return model.curve.empty(); }))
-    return fail(ErrorCode::not_identifiable, "no model has a range: there is nothing to draw");
+    return fail(ErrorCode::not_identifiable, "no model gives a range, so there is no curve to draw");
   const auto drawing = drawn(range_plot(models));
   if (!drawing) return tl::unexpected(drawing.error());
   return svg_document(std::array{*drawing});
@@ -97,12 +98,11 @@ Document range_page(std::span<const ModelRange> models, const RangePage& page) {
   document.heading = "Ranges by model";
   document.subtitle = page.target;
   document.page_label = "Ranges, " + page.target;
-  Section section{"One target, one air", {}};
-  section.blocks.emplace_back(Paragraph{plain("Air: " + page.air + ".")});
-  section.blocks.emplace_back(
-      Figure{drawn(range_plot(models)),
-             "Probability of a correct answer against range by each model with its own criterion. Marks: the range for "
-             "75 % with its 95 % interval, where one is known."});
+  Section section{"One target in one atmosphere", {}};
+  section.blocks.emplace_back(Paragraph{plain("Atmosphere: " + page.air + ".")});
+  section.blocks.emplace_back(Figure{drawn(range_plot(models)),
+                                     "Probability of a correct answer against range by each model with its own "
+                                     "criterion. Marks: range for 75 % with its 95 % interval, if known."});
   section.blocks.emplace_back(range_table(models));
   std::vector<std::string> notes = page.notes;
   for (const auto& model : models) {

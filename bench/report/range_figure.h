@@ -1,4 +1,5 @@
-// Range models side by side: P against range as a figure, the answers as a table.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Comparison of range models: probability over range as a figure, results as a table.
 #pragma once
 
 #include <span>
@@ -10,18 +11,19 @@
 
 namespace todbench {
 
-/// P over range, a line for each model that answers, with the 75 % ranges and their intervals on a line of their own.
+/// Returns the plot of probability over range: a line for each model with a result, and marks for the 75 % ranges with
+/// their intervals.
 [[nodiscard]] Plot range_plot(std::span<const ModelRange> models);
-/// The figure as a file of its own. `invalid_input` where no model has a curve.
+/// Returns the figure as an SVG file. Errors: `invalid_input` (no model has a curve).
 [[nodiscard]] Result<std::string> range_svg(std::span<const ModelRange> models);
 
-/// What the page says beside the models.
+/// Text of the page besides the models.
 struct RangePage {
   std::string target;  ///< "4.9 m, 2 K"
   std::string air;
   std::vector<std::string> notes;
 };
-/// Figure, table and assumptions.
+/// Returns figure, table and assumptions.
 [[nodiscard]] Document range_page(std::span<const ModelRange> models, const RangePage& page);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/report.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ std::string subtitle(const ReportData& data) {
   return text;
 }
 
-/// What every printed page must name: the report and the item.
+/// Returns the label of printed pages: report and unit.
 std::string page_label(const ReportData& data) {
   std::string label;
   if (data.letterhead && !data.letterhead->foot.empty()) label = data.letterhead->foot + " · ";
@@ -29,7 +30,7 @@ std::string page_label(const ReportData& data) {
   return label;
 }
 
-/// What the laboratory says, around what the report says. It takes nothing away.
+/// Adds the texts of the laboratory around the report. The report itself stays complete.
 void add_letterhead(const Letterhead& letterhead, Document& document) {
   if (!letterhead.title.empty()) document.heading = letterhead.title;
   if (!letterhead.logo_png.empty() || !letterhead.lines.empty())

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/report_csv.h"
 
 #include <array>
@@ -5,6 +6,7 @@
 #include <string_view>
 
 #include "bench/judgement/demand_kinds.h"
+#include "bench/text/spreadsheet.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 
@@ -28,17 +30,17 @@ std::string field(const std::optional<double>& number) {
 }
 
 void add(std::string& table, const Row& row) {
-  const std::array fields{csv_field(row.section),
-                          csv_field(row.name),
+  const std::array fields{spreadsheet_field(row.section),
+                          spreadsheet_field(row.name),
                           field(row.set_delta_t_k),
                           field(row.value),
                           field(row.interval.low),
                           field(row.interval.high),
                           row.interval_percent ? std::to_string(*row.interval_percent) : std::string(),
                           field(row.limit),
-                          csv_field(row.unit),
-                          csv_field(row.decision),
-                          csv_field(row.text)};
+                          spreadsheet_field(row.unit),
+                          spreadsheet_field(row.decision),
+                          spreadsheet_field(row.text)};
   for (const std::string& text : fields) table += (&text == &fields.front() ? "" : ",") + text;
   table += "\n";
 }
@@ -72,7 +74,7 @@ void add_verdict(std::string& table, const ReportData& data) {
     add(table, {.section = "verdict",
                 .name = "decision",
                 .decision = "none",
-                .text = "files of the session are not those that the run wrote"});
+                .text = "files of the session were changed after the run"});
     return;
   }
   if (!data.verdict) return;
@@ -131,7 +133,7 @@ void add_measures(std::string& table, const std::string& section, const std::opt
                   .name = "mtf_" + std::string(to_string(edge.axis)) + " at " +
                           number_text(edge.frequency_per_pitch[i]) + " cycles per pitch, " + edge.place,
                   .value = edge.mtf[i],
-                  .interval = {edge.low[i], edge.high[i]},
+                  .interval = {edge.low[i] > 0 ? std::optional(edge.low[i]) : std::nullopt, edge.high[i]},
                   .interval_percent = 95,
                   .unit = "1"});
     }
@@ -167,7 +169,7 @@ void add_curve(std::string& table, const std::string& section, const std::option
   }
 }
 
-/// Statistical intervals stand in the rows of the curve.
+/// Adds the expanded intervals; the statistical ones are in the rows of the curve.
 void add_uncertainty(std::string& table, const std::optional<CurveUncertainty>& uncertainty) {
   if (!uncertainty) return;
   for (const PointUncertainty& point : uncertainty->points) {

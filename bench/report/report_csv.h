@@ -1,4 +1,5 @@
-// The report as a table, for programs.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Report as a table for programs.
 #pragma once
 
 #include <string>
@@ -7,14 +8,19 @@
 
 namespace todbench {
 
-/// report.csv: one row per number or text of the report, in the order of the page. The columns are
-///   section    what it is about: "session", "verdict", "demand", "measured", "simulated", "human", "comparison",
-///   "frames" name       of the number, with its unit: "s75_mrad" set_delta_t_k  contrast, where there is one value,
-///   low, high  with the 95 % interval, or that of `interval_percent`; empty: there is none interval_percent limit of a
-///   demand, in the unit of its value unit       of value, interval and limit; empty for texts and counts decision
-///   "pass" ...: of a demand or of the whole; of a threshold the verdict of its fit text       a sentence, or the value
-///   of what is no number
-/// A session whose files were changed gives no verdict, as its page. A pure function.
+/// Returns report.csv: one row per number or text of the report, in the order of the page. If files of the session were
+/// changed, the decision is "none" and there are no demands, as on the page. A pure function. Columns:
+/// | section          | "session", "verdict", "demand", "measured", "simulated", "human", "measures", "measures_twin",
+/// |                  | "comparison", "frames", "uncertainty"
+/// | name             | of the number, with its unit: "s75_mrad"
+/// | set_delta_t_k    | set contrast, if there is one
+/// | value            | the number, if there is one
+/// | low, high        | ends of its interval; empty: absent or open
+/// | interval_percent | confidence of the interval; empty: no interval
+/// | limit            | of a demand, in the unit of its value
+/// | unit             | of value, interval and limit; empty for texts, counts and ratios
+/// | decision         | "pass" ... of a demand or of the verdict; of a threshold the verdict of its fit
+/// | text             | sentence, or a value that is not a number
 [[nodiscard]] std::string report_csv(const ReportData& data);
 
 }  // namespace todbench

@@ -1,4 +1,5 @@
-// What a person answered to the camera's frames, beside the model.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Section of a person's answers to the camera's frames, compared with the model.
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
@@ -10,7 +11,7 @@ RichText threshold_cell(const PsychometricFit& fit) {
   return interval_or_missing(fit.threshold, fit.ci95, "not identified");
 }
 
-/// What the same frames gave with the model observer: those of the camera, or of a simulated one.
+/// Returns the curve of the model observer for the same frames: of the camera, or of a simulated one.
 const std::optional<TodCurve>& model_curve(const ReportData& data) {
   return data.measured ? data.measured : data.simulated;
 }
@@ -33,7 +34,7 @@ std::optional<Section> human_section(const ReportData& data) {
   if (!data.human) return {};
   const auto& model = model_curve(data);
   Table rows;
-  rows.caption = "A person and the model observer on the same frames; in brackets the 95 % interval";
+  rows.caption = "Person and model observer on the same frames; brackets: 95 % interval";
   rows.header = {"Set ΔT (K)", "Human S₇₅ (mrad)", "Human slope", "Human trials", "Human fit", "Model S₇₅ (mrad)"};
   for (const TodPoint& point : data.human->points) {
     const TodPoint* judged = model ? point_at(*model, point.set_delta_t_k) : nullptr;
@@ -47,10 +48,10 @@ std::optional<Section> human_section(const ReportData& data) {
   for (std::size_t i = 0; i < plots.size(); ++i)
     figures.figures.push_back(
         {drawn(plots[i]), "Set contrast ΔT = " + stated(data.human->points[i].set_delta_t_k) + " K"});
-  return Section{
-      "Human observer",
-      {std::move(rows), std::move(figures),
-       note(plain("Four alternatives, no feedback, patches in random order, the answers of the model not shown."))}};
+  return Section{"Human observer",
+                 {std::move(rows), std::move(figures),
+                  note(plain("Task: four alternatives, no feedback, patches in random order. The answers of the model "
+                             "were not shown."))}};
 }
 
 }  // namespace todbench

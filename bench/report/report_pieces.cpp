@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/report_pieces.h"
 
 #include "bench/report/number_format.h"
@@ -20,11 +21,11 @@ std::string_view in_words(FitVerdict verdict) {
     case FitVerdict::no_data:
       return "no trials";
     case FitVerdict::above_range:
-      return "answers at chance at every size: only a lower limit of the size";
+      return "answers at chance level at every size: only a lower limit of the threshold";
     case FitVerdict::below_range:
-      return "answers right at every size: only an upper limit of the size";
+      return "answers correct at every size: only an upper limit of the threshold";
     case FitVerdict::slope_unidentifiable:
-      return "one size only: slope not identifiable";
+      return "only one size: slope not identifiable";
     case FitVerdict::step:
       return "step from chance to certainty between two sizes";
     case FitVerdict::flat_or_decreasing:

@@ -1,4 +1,5 @@
-// The sections of a report and the words they share.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sections of a report and the words that they share.
 #pragma once
 
 #include <optional>
@@ -11,14 +12,14 @@
 
 namespace todbench {
 
-/// One item a sentence.
+/// Returns a list with one item per sentence.
 [[nodiscard]] List list_of(const std::vector<std::string>& sentences);
 
-/// with_interval(), or why there is neither a value nor a bound.
+/// Returns with_interval(), or the reason if there is neither a value nor a bound.
 [[nodiscard]] RichText interval_or_missing(std::optional<double> value, const Interval& interval,
                                            std::string_view reason);
 
-/// What a verdict means, for a reader who does not know the program.
+/// Returns the meaning of a verdict for readers who do not know the program.
 [[nodiscard]] std::string_view in_words(FitVerdict verdict);
 [[nodiscard]] std::string_view in_words(ComparisonVerdict verdict);
 [[nodiscard]] std::string_view in_words(Mounting mounting);
@@ -26,7 +27,7 @@ namespace todbench {
 [[nodiscard]] Mood mood_of(VerdictKind verdict);
 [[nodiscard]] Mood mood_of(ComparisonVerdict verdict);
 
-// What was found.
+// Results.
 [[nodiscard]] VerdictBox verdict_box(const ReportData& data);
 [[nodiscard]] Section limits_section(const ReportData& data);
 [[nodiscard]] Section curve_section(const ReportData& data);
@@ -35,10 +36,11 @@ namespace todbench {
 [[nodiscard]] Section comparison_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> answers_section(const ReportData& data);
 
-// How it was found.
+// Conditions and provenance.
 [[nodiscard]] Section identification_section(const ReportData& data);
 [[nodiscard]] Section set_up_section(const ReportData& data);
-/// Part of the set-up: set, read-back and seen contrast side by side; nothing where no presentations are known.
+/// Returns a part of the set-up: set contrast, read-back and effective contrast side by side; empty if no presentations
+/// are known.
 [[nodiscard]] std::optional<Table> target_table(const ReportData& data);
 [[nodiscard]] Section effects_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> frames_section(const ReportData& data);

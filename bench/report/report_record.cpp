@@ -1,4 +1,5 @@
-// How it was found: who, with what, in which geometry, with which frames and versions.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sections on conditions and provenance: people, equipment, geometry, frames and versions.
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +34,7 @@ std::vector<NamedValue> camera_values(const SourceInfo& camera, const std::strin
 Block set_up_table(const ReportData& data) {
   Table rows;
   rows.caption = "Registration of the plate in the picture, once per set-up";
-  rows.header = {"Plate",        "Mounting",          "Scale (px/mm)", "Scale against plan (%)",
+  rows.header = {"Plate",        "Mounting",          "Scale (px/mm)", "Scale deviation from plan (%)",
                  "Rotation (°)", "Residual (px rms)", "Triangles used"};
   for (const SetUpRecord& record : data.set_ups) {
     const Registration& registration = record.registration;
@@ -119,18 +120,18 @@ Section set_up_section(const ReportData& data) {
 Section effects_section(const ReportData& data) {
   Section section{"Effects simulated and skipped", {}};
   if (!data.simulated_sensor && data.plan.decisions.empty()) {
-    section.blocks.emplace_back(Paragraph{missing("nothing was simulated")});
+    section.blocks.emplace_back(Paragraph{missing("no sensor was simulated")});
     return section;
   }
   Table rows;
-  rows.header = {"Effect, in the order of the chain", "Decision", "Reason", "Change of acuity if skipped (%)"};
+  rows.header = {"Effect, in the order of the signal chain", "Decision", "Reason", "Change of acuity if skipped (%)"};
   for (const EffectDecision& decision : data.plan.decisions) {
     rows.rows.push_back({plain(in_words(decision.effect)),
                          plain(decision.decision == Decision::simulate ? "simulated" : "skipped"),
                          text_or_missing(decision.reason, "none given"),
                          decision.predicted_change_percent && std::isfinite(*decision.predicted_change_percent)
                              ? plain(significant(*decision.predicted_change_percent, 2))
-                             : missing("no criterion promises a value")});
+                             : missing("no criterion predicts a value")});
   }
   if (data.simulated_sensor) section.blocks.emplace_back(sensor_paragraph(*data.simulated_sensor));
   section.blocks.emplace_back(std::move(rows));
@@ -147,7 +148,7 @@ std::optional<Section> frames_section(const ReportData& data) {
       seen > 0
           ? " (" + shown(100 * static_cast<double>(rejected) / static_cast<double>(seen), 2) + " % of those received)"
           : "";
-  frames.push_back({"Rejected and never measured", plain(std::to_string(rejected) + share)});
+  frames.push_back({"Rejected (not measured)", plain(std::to_string(rejected) + share)});
   for (const auto& [reason, count] : data.frames_rejected)
     frames.push_back({"… " + words(reason), plain(std::to_string(count))});
   frames.push_back({"Lost (gaps in the sequence)", plain(std::to_string(data.frames_lost))});
@@ -165,8 +166,8 @@ std::optional<Section> frames_section(const ReportData& data) {
 Section provenance_section(const ReportData& data) {
   std::vector<NamedValue> values = text_values(data.provenance);
   if (values.empty()) values.push_back({"Versions and seeds", missing("not recorded")});
-  values.push_back({"SHA-256 of the session's manifest",
-                    text_or_missing(data.manifest_sha256, "no manifest vouches for the files")});
+  values.push_back(
+      {"SHA-256 of the session's manifest", text_or_missing(data.manifest_sha256, "no manifest confirms the files")});
   return {"Versions and seeds", {ValueTable{"", std::move(values)}}};
 }
 
@@ -179,29 +180,30 @@ Section statements_section(const ReportData& data) {
   List list;
   const auto item = [&](std::string_view text) { list.items.push_back(plain(text)); };
   item("The results relate only to the item tested, in the state and with the settings listed here.");
-  item(
-      "Intervals have a coverage of 95 %. They are profile-likelihood intervals (likelihood drop 3.84) of the fitted "
-      "function, widened by the variance between groups of trials that share a frame or a place on the plate, with "
-      "Student's t.");
+  const auto graded = [](const std::optional<TodCurve>& curve) {
+    return curve && std::ranges::any_of(curve->points, [](const TodPoint& p) { return is_quasi(p.fit.interval); });
+  };
+  item(std::string("Intervals have a coverage of 95 %. ") +
+       (graded(data.measured) || graded(data.simulated)
+            ? "Intervals of graded answers are symmetric in the logarithm of the size. They are Student's t times a "
+              "standard error from the scatter of the answers over presentations and set-ups."
+            : "They are profile-likelihood intervals (likelihood drop 3.84) of the fitted function. They are widened "
+              "with Student's t by the variance between groups of trials that share a frame or a place on the plate."));
   if (data.uncertainty)
-    item("The expanded intervals hold in addition the rows of the budget under Uncertainty; they decide.");
+    item(
+        "The expanded intervals also contain the rows of the budget under Uncertainty. Limits are judged by the "
+        "expanded intervals.");
+  item(std::string(data.uncertainty ? "The statistical intervals contain" : "The intervals contain") +
+       " the variation between trials: noise, sampling phase and the finite number of answers. They do not contain "
+       "errors that are equal in all trials: triangle sizes, distance (an error of 1 % changes the acuity by 1 %), "
+       "calibration of the contrast, and the difference between the model observer and people.");
   item(
-      std::string(data.uncertainty ? "The statistical intervals hold" : "The intervals hold") +
-      " what varies between trials: noise, sampling phase and the finite number of answers. They do "
-      "not hold what is "
-      "the same in all trials: triangle sizes, distance (1 % of it is 1 % of acuity), the calibration of the contrast, "
-      "and the difference "
-      "between the model observer and people.");
-  item(
-      "Size S is the square root of the area of a triangle, in mrad. The task has four alternatives; chance is 25 %, "
-      "the threshold is 75 % "
-      "correct.");
+      "Size S is the square root of the area of a triangle, in mrad. The task has four alternatives. Chance is 25 %, "
+      "and the threshold is 75 % correct.");
   if (data.measured)
     item(
-        "Effective contrast is what the camera itself saw on the large triangles, in its own temperature scale; set "
-        "contrast is "
-        "what the target was "
-        "told.");
+        "The effective contrast is the contrast that the camera observed at the large triangles, in its own "
+        "temperature scale. The set contrast is the contrast that the black body was told.");
   return {"Statements", {std::move(list)}};
 }
 

@@ -1,4 +1,5 @@
-// What was found: verdict, curves, functions, comparison.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sections on results: verdict, curves, functions, comparison.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,8 +21,8 @@ constexpr std::string_view one_sided_note =
     "A single bound in brackets (≥ or ≤) is a one-sided 95 % limit: the data do not bound the other side.";
 
 constexpr std::string_view groups_note =
-    "Groups: trials that share a frame, or a place on the plate, are one group; the intervals allow for what they have "
-    "in common.";
+    "Groups: trials that share a frame or a place on the plate form one group. The intervals include the variation "
+    "that these trials share.";
 
 RichText optional_number(std::optional<double> value, int digits, std::string_view reason) {
   return value && std::isfinite(*value) ? plain(significant(*value, digits)) : missing(reason);
@@ -40,7 +41,7 @@ std::string simulated_name(const ReportData& data) {
                                                                        : "simulated";
 }
 
-/// Limits on acuity, at the contrast the camera saw where it was measured: there the point to compare with is drawn.
+/// Returns the acuity limits at the effective contrast if it was measured, because the points are drawn there.
 std::vector<DrawnLimit> acuity_limits(const ReportData& data) {
   std::vector<DrawnLimit> limits;
   if (!data.verdict) return limits;
@@ -73,7 +74,7 @@ RichText trials_cell(const PsychometricFit& fit) {
   return unbroken(fit.clusters > 0 ? trials + " / " + shown(fit.clusters, 0) : trials);
 }
 
-/// Beside the fit, so that no number stands alone that is not fit for a decision.
+/// Returns the fit with its adequacy, so that a number unfit for a decision is never shown without a remark.
 RichText fit_cell(const TodPoint& point) {
   RichText cell = plain(in_words(point.fit.verdict));
   if (point.adequacy && !point.adequacy->adequate())
@@ -83,7 +84,7 @@ RichText fit_cell(const TodPoint& point) {
   return cell;
 }
 
-/// What speaks against the numbers of a curve, one sentence each; empty where nothing does.
+/// Returns the findings against the numbers of a curve, one sentence each; empty if there are none.
 std::vector<RichText> findings_of(const TodCurve& curve, std::string_view which) {
   std::vector<RichText> items;
   for (const TodPoint& point : curve.points) {
@@ -104,7 +105,7 @@ void add_findings(Section& section, const ReportData& data) {
     if (*curve)
       for (RichText& item : findings_of(**curve, which)) findings.items.push_back(std::move(item));
   if (findings.items.empty()) return;
-  section.blocks.emplace_back(Paragraph{strong("What speaks against these numbers")});
+  section.blocks.emplace_back(Paragraph{strong("Findings about these results")});
   section.blocks.emplace_back(std::move(findings));
 }
 
@@ -139,7 +140,7 @@ Table curve_table(const TodCurve& curve, const std::string& caption, bool with_d
   return rows;
 }
 
-/// Set contrasts of both curves, each once, in the order of the curves.
+/// Returns the set contrasts of both curves without duplicates, in the order of the curves.
 std::vector<double> all_contrasts(const ReportData& data) {
   std::vector<double> contrasts;
   for (const std::optional<TodCurve>* curve : {&data.measured, &data.simulated}) {
@@ -159,11 +160,11 @@ const TodPoint* point_of(const std::optional<TodCurve>& curve, double contrast) 
 
 RichText limit_cell(const Demand& demand) {
   const LimitSide side = row_of(demand.kind).side;
-  if (side == LimitSide::none || !demand.limit || !std::isfinite(*demand.limit)) return missing("no number");
+  if (side == LimitSide::none || !demand.limit || !std::isfinite(*demand.limit)) return missing("no limit value");
   return unbroken((side == LimitSide::at_least ? "≥ " : "≤ ") + stated(*demand.limit));
 }
 
-/// The column says 95 %; another confidence stands with the number.
+/// The column header states 95 %; another confidence is stated with the number.
 RichText result_cell(const Demand& demand) {
   if (demand.interval_percent == 95 || (!demand.interval.low && !demand.interval.high))
     return interval_or_missing(demand.result, demand.interval, "no value");
@@ -171,7 +172,7 @@ RichText result_cell(const Demand& demand) {
                   " %)");
 }
 
-/// Conditional decisions by their names, and how sure the decision is.
+/// Names conditional decisions, and states the risks of the decision.
 RichText conformity_words(const Demand& demand) {
   std::string text;
   if (demand.conformity == ConformityDecision::conditional_pass ||
@@ -182,31 +183,49 @@ RichText conformity_words(const Demand& demand) {
   if (const auto risk = demand.producer_risk()) text += ", producer's risk " + probability(*risk);
   if (const auto& fleet = demand.fleet) {
     text += "; with the fleet of " + std::to_string(fleet->units) + " earlier units: probability of conformity " +
-            probability(fleet->p_conformity) + ", over the fleet accepted and outside " +
+            probability(fleet->p_conformity) + "; over the fleet, probability of a wrong acceptance " +
             probability(fleet->consumer_risk) + " (at most " + probability(fleet->consumer_risk_most) +
-            "), rejected and inside " + probability(fleet->producer_risk) + " (at most " +
+            "), of a wrong rejection " + probability(fleet->producer_risk) + " (at most " +
             probability(fleet->producer_risk_most) + ")";
   }
   return plain(text);
 }
 
-/// The interval of the finite number of trials, beside the one that decides.
+/// Returns the result with the interval of the finite number of trials.
 RichText statistical_cell(const Demand& demand) {
   Demand alone = demand;
   if (demand.statistical) alone.interval = *demand.statistical;
   return result_cell(alone);
 }
 
+/// Returns whether the answers are graded: their sum is not a count.
+bool has_graded_answers(const TodPoint& point) {
+  return point.answers ? point.answers->kind == AnswerKind::graded : is_quasi(point.fit.interval);
+}
+
+std::string answers_header(const TodCurve& curve) {
+  const auto graded = std::ranges::count_if(curve.points, has_graded_answers);
+  if (graded == 0) return "Correct / trials";
+  return graded == std::ssize(curve.points) ? "Mean probability of a correct answer; trials"
+                                            : "Correct / trials, or mean probability; trials";
+}
+
+RichText answers_cell(const TodPoint& point, const AnswersAtSize& answers) {
+  if (!has_graded_answers(point)) return unbroken(shown(answers.correct, 0) + " / " + shown(answers.total, 0));
+  if (!(answers.total > 0)) return missing("no trials");
+  return unbroken(fixed(answers.correct / answers.total, 3) + "; " + shown(answers.total, 0));
+}
+
 Table answers_table(const std::string& caption, const TodCurve& curve) {
   Table rows;
   rows.caption = caption;
-  rows.header = {"Set ΔT (K)", "Size (mrad)", "Correct / trials", "Proportion [95 %]"};
+  rows.header = {"Set ΔT (K)", "Size (mrad)", answers_header(curve), "Proportion [95 %]"};
   for (const TodPoint& point : curve.points) {
     for (const AnswersAtSize& answers : answers_by_size(point)) {
       rows.rows.push_back(
           {plain(stated(point.set_delta_t_k)),
            plain(answers.size_mrad > 0 ? significant(answers.size_mrad, 4) : "0 (catch trials)"),
-           unbroken(shown(answers.correct, 0) + " / " + shown(answers.total, 0)),
+           answers_cell(point, answers),
            interval_or_missing(answers.correct / answers.total, proportion_interval(answers), "no trials")});
     }
   }
@@ -225,28 +244,27 @@ Headline headline(ReportVerdict verdict) {
     case ReportVerdict::fail:
       return {"✗ FAIL", "At least one limit is not met.", Mood::bad};
     case ReportVerdict::inconclusive:
-      return {"? INCONCLUSIVE", "No limit is violated, but at least one is not decided by these data.", Mood::open};
+      return {"? INCONCLUSIVE", "No limit is violated, but these data do not decide at least one limit.", Mood::open};
     case ReportVerdict::interrupted:
-      return {"? INTERRUPTED", "The run ended early. The results below are partial and no verdict can be given.",
+      return {"? INTERRUPTED", "The run ended early. The results below are partial, so there is no verdict.",
               Mood::open};
     case ReportVerdict::changed:
       return {"✗ FILES CHANGED",
-              "Files of this session are not those that its run wrote. The page shows them as they were found; no "
-              "verdict can be given.",
+              "Files of this session were changed after the run. The report shows the files as they are now, so there "
+              "is no verdict.",
               Mood::bad};
     case ReportVerdict::not_judged:
       break;
   }
-  return {"NO VERDICT", "The plan asks for no limits; this report states results only.", Mood::open};
+  return {"NO VERDICT", "The plan has no limits. This report states results only.", Mood::open};
 }
 
-/// A run in several pieces says so beside its verdict.
+/// Returns the remark about one interruption of a run, shown with the verdict.
 RichText resumption(const Interruption& loss, std::size_t segment) {
   return strong("Interrupted and resumed:") +
-         plain(
-             fmt::format(" segment {} begins with presentation {}. The camera was away for {:.1f} s ({}); it came back "
-                         "with the same serial number and settings, the plate {:.2f} pixels from where it was.",
-                         segment, loss.presentation, loss.away_s, loss.reason, loss.moved_px));
+         plain(fmt::format(" segment {} begins with presentation {}. The camera was lost for {:.1f} s ({}). It "
+                           "returned with the same serial number and settings. The plate had moved by {:.2f} pixels.",
+                           segment, loss.presentation, loss.away_s, loss.reason, loss.moved_px));
 }
 
 }  // namespace
@@ -258,15 +276,15 @@ VerdictBox verdict_box(const ReportData& data) {
   if (data.revision)
     box.paragraphs.push_back(
         strong("Revision " + std::to_string(data.revision->number) + " of " + data.revision->utc + ":") +
-        plain(" " + data.revision->reason + ". It amends the report that was signed."));
+        plain(" " + data.revision->reason + ". It amends the signed report."));
   for (const std::string& file : data.accepted_changes)
     box.paragraphs.push_back(strong("Changed, removed or added after the session ended:") + plain(" " + file));
   if (data.cut_off)
     box.paragraphs.push_back(strong("Cut off:") +
-                             plain(" the run wrote no manifest, so nothing vouches for its files."));
+                             plain(" the run wrote no manifest, so its files cannot be verified."));
   const auto by_a_bar = [](const Demand& demand) { return demand.kind == DemandKind::scene_dependence; };
   if (data.verdict && std::any_of(data.verdict->demands.begin(), data.verdict->demands.end(), by_a_bar))
-    box.paragraphs.push_back(strong("About a hot bar in the field alone:") + plain(" " + data.verdict->reason + "."));
+    box.paragraphs.push_back(strong("Only about a hot bar in the field:") + plain(" " + data.verdict->reason + "."));
   if (verdict != ReportVerdict::not_judged && verdict != ReportVerdict::changed)
     box.paragraphs.push_back(strong("Decision rule:") + plain(" ") +
                              text_or_missing(data.verdict ? data.verdict->rule_in_words : "", "not stated"));
@@ -283,19 +301,19 @@ VerdictBox verdict_box(const ReportData& data) {
 Section limits_section(const ReportData& data) {
   Section section{"Limits", {}};
   if (!data.verdict || !limits_asked(*data.verdict))
-    section.blocks.emplace_back(Paragraph{missing("the plan asks for no limits")});
+    section.blocks.emplace_back(Paragraph{missing("the plan has no limits")});
   if (!data.verdict || data.verdict->demands.empty()) return section;
   const auto& demands = data.verdict->demands;
   const bool expanded =
       std::any_of(demands.begin(), demands.end(), [](const Demand& demand) { return demand.statistical.has_value(); });
   Table rows;
-  // What changed files say of a limit is no verdict.
+  // Decisions in changed files are not verdicts.
   const bool believed = report_verdict(data) != ReportVerdict::changed;
   rows.header = {"Quantity",
                  "Unit",
                  "Limit",
                  expanded ? "Result [expanded 95 %]" : "Result [95 %]",
-                 believed ? "Verdict" : "In the files",
+                 believed ? "Verdict" : "Decision in the files",
                  "Reason"};
   if (expanded) rows.header.insert(rows.header.begin() + 4, "Statistical [95 %]");
   for (const Demand& demand : demands) {
@@ -320,7 +338,7 @@ Plot tod_plot(const ReportData& data) {
   Plot plot = tod_figure({measured_name(data), pointer(data.measured)}, {simulated_name(data), pointer(data.simulated)},
                          limits);
   if (!data.human) return plot;
-  // The person's curve as the figure draws a curve, in the third tone.
+  // Curve of the person in the style of the figure, in the third tone.
   const Plot human = tod_figure({"human", pointer(data.human)}, {}, {});
   for (PlotSeries series : human.series) {
     series.tone = PlotTone::third;
@@ -347,24 +365,24 @@ std::vector<Plot> psychometric_plots(const ReportData& data) {
 Section curve_section(const ReportData& data) {
   if (!data.measured && !data.simulated) return {"TOD curve", {Paragraph{missing("no results")}}};
   Section section{"TOD curve", {}};
-  section.blocks.emplace_back(Figure{
-      drawn(tod_plot(data)),
-      "TOD curve: acuity (linear) against contrast (logarithmic), at the effective contrast, which the camera saw. "
-      "Horizontal bars are 95 % intervals; an arrow is a side that the data leave open. The two curves are drawn a few "
-      "pixels apart so that their bars do not hide each other."});
+  section.blocks.emplace_back(
+      Figure{drawn(tod_plot(data)),
+             "TOD curve: acuity (linear) against effective contrast (logarithmic), the contrast that the camera "
+             "observed. Horizontal bars are 95 % intervals. An arrow marks a side that the data do not bound. The two "
+             "curves are drawn a few pixels apart so that their bars do not hide each other."});
   if (data.measured)
     section.blocks.emplace_back(
-        curve_table(*data.measured, "Measured; in brackets the 95 % interval, behind ± the standard error", false));
+        curve_table(*data.measured, "Measured; brackets: 95 % interval, ±: standard error", false));
   if (data.simulated)
     section.blocks.emplace_back(
-        curve_table(*data.simulated, "Simulated; in brackets the 95 % interval, behind ± the standard error", true));
+        curve_table(*data.simulated, "Simulated; brackets: 95 % interval, ±: standard error", true));
   add_findings(section, data);
   section.blocks.emplace_back(note(plain(form_in_words(data) + answers_in_words(data) + " " +
                                          std::string(one_sided_note) + " " + std::string(groups_note))));
   if (data.simulated)
     section.blocks.emplace_back(
-        note(plain("Direct S₇₅: where the phase-averaged proportion correct of the observer crosses 75 %, without a "
-                   "psychometric form. It checks the fit; the comparison uses S₇₅.")));
+        note(plain("Direct S₇₅: the size at which the phase-averaged proportion correct of the observer crosses 75 %, "
+                   "without a psychometric form. It checks the fit. The comparison uses S₇₅.")));
   return section;
 }
 
@@ -378,13 +396,13 @@ std::optional<Section> psychometric_section(const ReportData& data) {
   return Section{
       "Psychometric functions",
       {std::move(figures),
-       note(plain("Points: proportion correct with 95 % intervals: of right and wrong answers Wilson's, every trial "
-                  "taken as independent; of graded answers from their scatter over presentations. "
+       note(plain("Points: proportion correct with 95 % intervals. For right and wrong answers these are Wilson "
+                  "intervals of independent trials. For graded answers they come from the scatter over presentations. "
                   "Lines: fitted functions. Shaded: 95 % interval of S₇₅, widened for groups of trials. "
                   "Dashed: threshold (75 %) and chance (25 %)."))}};
 }
 
-/// The ratios by common phases; nothing where there are none.
+/// Returns the table of ratios by common phases; empty if there are none.
 std::optional<Table> paired_table(const Comparison& comparison) {
   Table rows;
   rows.header = {"Set ΔT (K)",
@@ -393,7 +411,7 @@ std::optional<Table> paired_table(const Comparison& comparison) {
                  "p different",
                  "p equivalent",
                  "Standard error (%)",
-                 "Of it the twin's noise (variance, %)",
+                 "Share of the twin's noise (variance, %)",
                  "Verdict"};
   for (const ComparisonPoint& point : comparison.points) {
     if (!point.paired) continue;
@@ -412,7 +430,7 @@ Section comparison_section(const ReportData& data) {
   constexpr const char* title = "Measured against simulated";
   if (!data.comparison) {
     const std::string_view reason =
-        data.measured && data.simulated ? "not asked for" : "needs a measured and a simulated curve";
+        data.measured && data.simulated ? "not requested" : "needs a measured and a simulated curve";
     return {title, {Paragraph{missing(reason)}}};
   }
   Table rows;
@@ -442,8 +460,8 @@ Section comparison_section(const ReportData& data) {
   Section section{title, {std::move(rows)}};
   if (auto paired = paired_table(*data.comparison)) {
     section.blocks.emplace_back(
-        note(plain("Paired by presentation: the twin was shown what the camera saw, with the same sub-pixel phases. "
-                   "These ratios decide. " +
+        note(plain("Paired by presentation: the twin took the same presentations as the camera, with the same "
+                   "sub-pixel phases. The verdict uses these ratios. " +
                    not_cancelled_by_pairs(data.measured && has_contrast_measured_once(*data.measured)))));
     section.blocks.emplace_back(*std::move(paired));
   }
@@ -451,9 +469,9 @@ Section comparison_section(const ReportData& data) {
   if (!findings.items.empty()) section.blocks.emplace_back(std::move(findings));
   section.blocks.emplace_back(
       note(plain("p different: likelihood-ratio test of a common threshold, corrected for groups of trials. p "
-                 "equivalent: two one-sided tests that the ratio lies within the margin, chosen before the "
-                 "measurement; below 0.05 the 90 % interval lies within it. Neither test significant is "
-                 "inconclusive: more trials are needed, nothing is shown.")));
+                 "equivalent: two one-sided tests that the ratio lies within the margin, which was chosen before the "
+                 "measurement. If p equivalent is below 0.05, the 90 % interval lies within the margin. If neither "
+                 "test is significant, the result is inconclusive and more trials are needed.")));
   return section;
 }
 

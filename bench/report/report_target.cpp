@@ -1,4 +1,5 @@
-// What the target was told, what it said, and what the camera saw of it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Table of the target: set-points, read-back and effective contrast.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,7 +10,7 @@
 namespace todbench {
 namespace {
 
-/// Mean of what was said, and what is farthest from the set-point.
+/// Mean of the reported values, and the largest deviation from the set-point.
 class Said {
  public:
   void add(const std::optional<double>& value, double set) {
@@ -48,7 +49,7 @@ std::map<double, ContrastRow, std::greater<>> rows_by_contrast(const std::vector
   return rows;
 }
 
-/// Kelvin to a tenth of a millikelvin, a tenth of what black bodies of this class resolve.
+/// Kelvin to a tenth of a millikelvin, a tenth of the resolution of black bodies of this class.
 RichText kelvin(const std::optional<double>& value, std::string_view reason) {
   return value ? plain(shown(*value, 4)) : missing(reason);
 }
@@ -61,27 +62,27 @@ std::optional<double> difference(const std::optional<double>& a, const std::opti
 
 std::optional<Table> target_table(const ReportData& data) {
   if (data.presentations.empty()) return {};
-  constexpr std::string_view silent = "the target does not say", unseen = "not seen";
+  constexpr std::string_view silent = "not reported by the target", unseen = "not observed";
   Table rows;
   rows.caption =
-      "Contrast as it was set, as the target read it back and as the camera saw it, means over the presentations; "
-      "largest deviation of a read-back in brackets";
+      "Set contrast, read-back of the target and contrast observed by the camera, means over the presentations; "
+      "brackets: largest deviation of a read-back";
   rows.header = {"Set (K)",
                  "Read back (K)",
-                 "Seen (K)",
+                 "Observed (K)",
                  "Read back − set (K)",
-                 "Seen − set (K)",
-                 "Seen − read back (K)",
+                 "Observed − set (K)",
+                 "Observed − read back (K)",
                  "Black body − plate (K)",
                  "Longest settling (s)",
                  "Presentations"};
   const auto air = data.presentations.front().air_transmittance;
   if (air) {
     rows.caption +=
-        ". The air leaves " + shown(100 * *air, 2) +
-        " % of a contrast on its way to the camera: what the camera saw is compared with that of the read-back";
-    rows.header[5] = "Seen − read back behind the air (K)";
-    rows.header.insert(rows.header.begin() + 2, "Read back behind the air (K)");
+        ". The air transmits " + shown(100 * *air, 2) +
+        " % of the contrast, so the observed contrast is compared with the read-back times this transmittance";
+    rows.header[5] = "Observed − read back × transmittance (K)";
+    rows.header.insert(rows.header.begin() + 2, "Read back × transmittance (K)");
   }
   for (const auto& [set_k, row] : rows_by_contrast(data.presentations)) {
     const auto read_back = row.read_back.mean(), seen = row.seen.mean();
@@ -91,7 +92,7 @@ std::optional<Table> target_table(const ReportData& data) {
                   : missing(silent);
     rows.rows.push_back({plain(stated(set_k)), kelvin(read_back, silent), kelvin(seen, unseen), deviation,
                          kelvin(difference(seen, set_k), unseen), kelvin(difference(seen, arriving), unseen),
-                         kelvin(row.sensors.mean(), "no sensor says so"), plain(shown(row.longest_s, 1)),
+                         kelvin(row.sensors.mean(), "no sensor"), plain(shown(row.longest_s, 1)),
                          plain(std::to_string(row.presentations))});
     if (air) rows.rows.back().insert(rows.rows.back().begin() + 2, kelvin(row.expected.mean(), silent));
   }

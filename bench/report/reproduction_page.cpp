@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/reproduction_page.h"
 
 #include <algorithm>
@@ -36,12 +37,13 @@ RichText graded(const ReproducedFigure& figure) {
 
 Section figures_section(const Reproduction& reproduction) {
   Table rows;
-  rows.header = {"Quantity", "Published", "Here, 95 %", "By graded answers, 95 %", "Difference", "Why"};
+  rows.header = {"Quantity",   "Published",  "Computed here, 95 %", "By graded answers, 95 %",
+                 "Difference", "Explanation"};
   for (const auto& figure : reproduction.figures) {
-    rows.rows.push_back({plain(figure.quantity), text_or_missing(figure.published, "left open in the paper"),
+    rows.rows.push_back({plain(figure.quantity), text_or_missing(figure.published, "not stated in the paper"),
                          ours(figure), graded(figure), plain(difference_in_words(figure)), plain(figure.remark)});
   }
-  return {"Published beside ours", {std::move(rows)}};
+  return {"Published and computed values", {std::move(rows)}};
 }
 
 Plot curve_plot(const Reproduction& reproduction, const std::string& id, const std::string& title,
@@ -87,7 +89,7 @@ Plot range_plot(const Reproduction& reproduction) {
   const PlotTone tones[] = {PlotTone::first, PlotTone::second, PlotTone::third, PlotTone::muted};
   std::size_t index = 0;
   for (const auto& range : reproduction.ranges) {
-    if (range.observer != reproduction.model_observer) continue;  // as in the paper; four curves can be told apart
+    if (range.observer != reproduction.model_observer) continue;  // as in the paper; four curves stay distinct
     PlotSeries series;
     series.label = range.sensor + ", " + range.observer;
     series.tone = tones[index++ % 4];
@@ -121,7 +123,7 @@ Plot range_plot(const Reproduction& reproduction) {
 
 Section thresholds_section(const Reproduction& reproduction) {
   Table rows;
-  rows.header = {"Sensor", "Observer", "Contrast [K]", "Acuity [1/mrad], 95 %", "Found by"};
+  rows.header = {"Sensor", "Observer", "Contrast [K]", "Acuity [1/mrad], 95 %", "Method"};
   for (const auto& t : reproduction.thresholds) {
     rows.rows.push_back({plain(t.sensor), plain(t.observer), plain(stated(t.delta_t_k)),
                          unbroken(with_interval(t.acuity_per_mrad, t.ci95)), plain(t.method)});
@@ -142,8 +144,8 @@ Section ranges_section(const Reproduction& reproduction) {
   }
   return {"Ranges",
           {Figure{drawn(range_plot(reproduction)),
-                  "Fraction of correct identifications of a small craft against range, from the TOD curves, and the "
-                  "four points that the paper states."},
+                  "Fraction of correct identifications of a small craft against range, computed from the TOD curves, "
+                  "and the four points stated in the paper."},
            std::move(rows)}};
 }
 
@@ -153,14 +155,13 @@ Section curves_section(const Reproduction& reproduction) {
   std::vector<std::string> beside = reproduction.simulated_sensors;
   if (!beside.empty()) beside.resize(1);
   beside.insert(beside.end(), reproduction.cameras.begin(), reproduction.cameras.end());
-  const auto sensors = curve_plot(reproduction, "cameras", "Emulated camera beside the simulation", beside);
-  return {
-      "TOD curves",
-      {Figure{drawn(observers),
-              "Both observers on the simulated sensor, without and with 2 x 2 microscan (Figure 10 of the paper)."},
-       Figure{drawn(sensors),
-              "The emulated camera, single pictures and super-resolved, beside the simulated sensor (Figure 9 of the "
-              "paper)."}}};
+  const auto sensors = curve_plot(reproduction, "cameras", "Emulated camera and simulation", beside);
+  return {"TOD curves",
+          {Figure{drawn(observers),
+                  "Both observers on the simulated sensor, without and with 2 x 2 microscan (Figure 10 of the paper)."},
+           Figure{drawn(sensors),
+                  "Emulated camera, with single and with super-resolved pictures, and simulated sensor (Figure 9 of "
+                  "the paper)."}}};
 }
 
 Section settings_section(const Reproduction& reproduction) {
@@ -188,7 +189,7 @@ Document reproduction_document(const Reproduction& reproduction) {
                        curves_section(reproduction),
                        ranges_section(reproduction),
                        thresholds_section(reproduction),
-                       {"What the paper does not state", {list_of(reproduction.assumptions)}},
+                       {"Assumptions not stated in the paper", {list_of(reproduction.assumptions)}},
                        settings_section(reproduction)}};
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/response_figure.h"
 
 #include <algorithm>
@@ -12,15 +13,15 @@ namespace {
 
 constexpr double milliseconds = 1000;
 constexpr double shown_time_constants = 8;
-constexpr double longest_s = 1e6, most_left = 10;  // of a record that somebody may have written
+constexpr double longest_s = 1e6, most_left = 10;  // limits for records that may have been edited
 
 Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::string& who) {
   Plot plot;
   plot.id = id, plot.title = "Response to steps, " + who;
-  plot.description = "Part of a step of the target that is left over the time since it, " + who +
-                     ": frames behind the first whole exposure, and the first order that fits";
+  plot.description = "Remaining part of a step of the target over the time since the step, " + who +
+                     ": frames after the first complete exposure, and the fitted first-order response";
   plot.width = 430, plot.height = 330;
-  PlotSeries line{.label = "first order",
+  PlotSeries line{.label = "first-order fit",
                   .tone = PlotTone::second,
                   .marker = PlotMarker::none,
                   .line = PlotLine::solid,
@@ -42,8 +43,7 @@ Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::s
       line.points.push_back({.x = milliseconds * time_s, .y = left, .x_interval = {}, .y_interval = {}});
   }
   plot.x = {.label = "Time since the step (ms)", .low = 0, .high = milliseconds * last_s, .ticks = {}};
-  plot.y = {
-      .label = "Part of the step that is left", .low = low - 0.05 * (high - low), .high = 1.12 * high, .ticks = {}};
+  plot.y = {.label = "Remaining part of the step", .low = low - 0.05 * (high - low), .high = 1.12 * high, .ticks = {}};
   for (PlotSeries* series : {&line, &rise, &fall})
     if (!series->points.empty()) plot.series.push_back(std::move(*series));
   return {drawn(plot), plot.description};

@@ -1,4 +1,5 @@
-// What is left of a step of the target over the time since it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Remaining part of a step of the target over the time since the step.
 #pragma once
 
 #include <optional>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Nothing where no response time was measured.
+/// Returns the figures; empty if no response time was measured.
 [[nodiscard]] std::optional<FigurePairs> response_figure(const SessionMeasures& measures, bool camera);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/svg.h"
 
 #include <fmt/format.h>
@@ -29,7 +30,7 @@ std::string box_attributes(const Box& box) {
   return fmt::format(R"(x="{}" y="{}" width="{}" height="{}")", at(box.x), at(box.y), at(box.width), at(box.height));
 }
 
-/// The element of a shape.
+/// SVG element of a shape.
 struct ShapeElement {
   std::string css;
 
@@ -87,7 +88,7 @@ Markup contents(const Drawing& drawing) {
   return picture;
 }
 
-/// `placement` stands before the attributes that every drawing has.
+/// `placement` precedes the attributes that every drawing has.
 Markup svg(const Drawing& drawing, std::string_view placement) {
   const Markup words = element("title", escaped(drawing.title), fmt::format(R"(id="{}-title")", drawing.id)) +
                        element("desc", escaped(drawing.description), fmt::format(R"(id="{}-desc")", drawing.id)) +
@@ -151,7 +152,7 @@ std::string variable_of(Ink ink) {
   return "none";
 }
 
-/// drawing_style() in its light shades without variables, which viewers of files do not know.
+/// Returns drawing_style() in light shades without CSS variables, which file viewers do not support.
 std::string document_style() {
   const DrawingPalette palette = light_palette();
   const auto of_tone = [&](PlotTone tone) {

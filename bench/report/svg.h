@@ -1,4 +1,5 @@
-// Drawings as SVG text; the same drawing gives the same text.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Drawings as SVG text; equal drawings give equal text.
 #pragma once
 
 #include <span>
@@ -9,13 +10,13 @@
 
 namespace todbench {
 
-/// One <svg> element for a page that has drawing_style().
+/// Returns one <svg> element for a page that contains drawing_style().
 [[nodiscard]] Markup svg_element(const Drawing& drawing);
 
-/// CSS of all drawings of a page: light, dark by the reader's preference, always light on paper.
+/// Returns the CSS of all drawings of a page: light or dark by the reader's preference, always light on paper.
 [[nodiscard]] std::string drawing_style();
 
-/// A file of its own with its style inside, for any viewer: the drawings one below the other, in light shades.
+/// Returns a stand-alone SVG file for any viewer: the drawings one below the other, in light shades.
 [[nodiscard]] std::string svg_document(std::span<const Drawing> drawings);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/tod_figures.h"
 
 #include <algorithm>
@@ -6,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "acquisition/core/distributions.h"
-#include "acquisition/core/normal.h"
+#include "acquisition/base/distributions.h"
+#include "acquisition/base/normal.h"
 #include "bench/report/number_format.h"
 #include "tod/psychometric/acuity.h"
 #include "tod/psychometric/twin_shape.h"
@@ -15,7 +16,7 @@
 namespace todbench {
 namespace {
 
-/// Smallest and largest of the values seen so far.
+/// Range of the included values.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -28,7 +29,7 @@ struct Range {
   [[nodiscard]] bool empty() const { return !(low <= high); }
 };
 
-/// The contrast the camera saw; the set one where it was not measured.
+/// Returns the effective contrast, or the set contrast if it was not measured.
 double contrast_of(const TodPoint& point) {
   return point.delta_t_k != 0 ? point.delta_t_k : point.set_delta_t_k;
 }
@@ -37,7 +38,7 @@ PlotPoint tod_point(const TodPoint& point) {
   return {acuity_per_mrad(point.fit), std::abs(contrast_of(point)), acuity_interval(point.fit.ci95), {}};
 }
 
-/// The points of one sign. A line joins neighbouring contrasts.
+/// Returns the points of one sign. A line joins neighbouring contrasts.
 PlotSeries tod_series(const NamedCurve& curve, PlotTone tone, double sign) {
   PlotSeries series;
   const bool is_first = tone == PlotTone::first;
@@ -54,7 +55,7 @@ PlotSeries tod_series(const NamedCurve& curve, PlotTone tone, double sign) {
 
 PlotSeries limit_series(std::span<const DrawnLimit> limits) {
   PlotSeries series;
-  series.label = "limit (least acuity)";
+  series.label = "limit (minimum acuity)";
   series.tone = PlotTone::muted;
   series.marker = PlotMarker::bar;
   for (const DrawnLimit& limit : limits)
@@ -62,7 +63,7 @@ PlotSeries limit_series(std::span<const DrawnLimit> limits) {
   return series;
 }
 
-/// Ends of an axis that hold everything in `range` with room at the ends.
+/// Sets the ends of an axis to contain `range` with a margin.
 void set_logarithmic_range(PlotAxis& axis, const Range& range, double room) {
   axis.scale = AxisScale::logarithmic;
   axis.low = range.empty() ? 0.1 : range.low / room;
@@ -88,7 +89,7 @@ PlotSeries proportions(const NamedPoint& point, const PsychometricLayer& layer) 
 
 PlotSeries fitted_curve(const PsychometricFit& fit, PsychometricForm form, const PlotAxis& sizes,
                         const PsychometricLayer& layer) {
-  // 160 steps over an axis of some 350 px: the chords stay within a tenth of a pixel of the curve.
+  // 160 steps over an axis of about 350 px: chords stay within a tenth of a pixel of the curve.
   constexpr int steps = 160;
   PlotSeries series;
   series.tone = layer.tone;
@@ -151,7 +152,7 @@ Interval wilson_interval(double correct, double total) {
   const double p = correct / total;
   const double middle = (p + z * z / (2 * total)) / (1 + z * z / total);
   const double half = z / (1 + z * z / total) * std::sqrt(p * (1 - p) / total + z * z / (4 * total * total));
-  // The bounds at the ends are exactly 0 and 1; computed, they miss them by rounding.
+  // The bounds at the ends are exactly 0 and 1; the formula misses them by rounding.
   return {correct > 0 ? std::max(0.0, middle - half) : 0.0, correct < total ? std::min(1.0, middle + half) : 1.0};
 }
 
@@ -201,7 +202,7 @@ Plot with_acuity_axis(Plot plot, AxisScale scale) {
   plot.x.scale = scale;
   plot.x.low = 0;
   if (scale == AxisScale::linear) {
-    // An interval that is far longer than its value must not squeeze the others into a corner.
+    // A very long interval must not compress the other points.
     Range points;
     for (const PlotSeries& series : plot.series)
       for (const PlotPoint& point : series.points) points.include(point.x);

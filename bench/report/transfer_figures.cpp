@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/transfer_figures.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "acquisition/core/normal.h"
+#include "acquisition/base/normal.h"
 #include "bench/report/plot.h"
 
 namespace todbench {
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double millikelvin_of_transfer = 1000;
 
-/// The side that is drawn in front, or the twin behind it.
+/// Side drawn in front, or the twin behind it.
 struct TransferSide {
   const TransferCurve* curve = nullptr;
   std::string label;
@@ -34,7 +35,7 @@ std::vector<TransferSide> transfer_sides(const SessionMeasures& measures, bool c
   return sides;
 }
 
-/// Smallest and largest contrast that was shown, with room; both polarities where both were shown.
+/// Returns the range of the shown contrasts with a margin, on both sides of 0 if both polarities were shown.
 Interval shown_range(const std::vector<TransferSide>& sides) {
   double low = 0, high = 0;
   for (const TransferSide& side : sides) {
@@ -45,7 +46,7 @@ Interval shown_range(const std::vector<TransferSide>& sides) {
   return {.low = low - room, .high = high + room};
 }
 
-/// At least four on an axis of this range, on both sides of 0.
+/// Returns at least four ticks on an axis of this range, on both sides of 0.
 std::vector<double> contrast_ticks(const Interval& range) {
   constexpr double fewest = 4;
   const double span = *range.high - *range.low;
@@ -62,13 +63,13 @@ std::vector<double> contrast_ticks(const Interval& range) {
 
 Figure transfer_figure(const std::vector<TransferSide>& sides) {
   Plot plot;
-  plot.id = "transfer", plot.title = "Signal transfer";
-  plot.description = "Contrast seen by the camera's scale over the contrast that the target says it shows";
+  plot.id = "transfer", plot.title = "Signal transfer (SiTF)";
+  plot.description = "Contrast observed in the camera's temperature scale over the contrast that the target reports";
   plot.width = 430, plot.height = 380;
   const Interval range = shown_range(sides);
-  plot.x = {.label = "Contrast shown (K)", .low = *range.low, .high = *range.high, .ticks = contrast_ticks(range)};
+  plot.x = {.label = "Shown contrast (K)", .low = *range.low, .high = *range.high, .ticks = contrast_ticks(range)};
   double low = *range.low, high = *range.high;
-  plot.series.push_back({.label = "scale that is right",
+  plot.series.push_back({.label = "correct scale",
                          .tone = PlotTone::muted,
                          .marker = PlotMarker::none,
                          .line = PlotLine::dotted,
@@ -93,19 +94,19 @@ Figure transfer_figure(const std::vector<TransferSide>& sides) {
     }
     plot.series.push_back(std::move(line)), plot.series.push_back(std::move(steps));
   }
-  plot.y = {.label = "Contrast seen (K)", .low = low, .high = high, .ticks = {}};
+  plot.y = {.label = "Observed contrast (K)", .low = low, .high = high, .ticks = {}};
   return {drawn(plot),
-          "Signal transfer: contrast seen over the contrast that the target says it shows, with the "
-          "straight line of least squares; dotted: a temperature scale that is right"};
+          "Signal transfer (SiTF): observed contrast over the contrast that the target reports, with the least-squares "
+          "line; dotted: correct temperature scale"};
 }
 
 Figure residual_figure(const std::vector<TransferSide>& sides) {
   Plot plot;
-  plot.id = "transfer-residuals", plot.title = "Signal transfer: residuals";
-  plot.description = "What the straight line leaves of each step, 95 % intervals";
+  plot.id = "transfer-residuals", plot.title = "Signal transfer (SiTF): residuals";
+  plot.description = "Residual of each step from the least-squares line, with 95 % intervals";
   plot.width = 430, plot.height = 380;
   const Interval range = shown_range(sides);
-  plot.x = {.label = "Contrast shown (K)", .low = *range.low, .high = *range.high, .ticks = contrast_ticks(range)};
+  plot.x = {.label = "Shown contrast (K)", .low = *range.low, .high = *range.high, .ticks = contrast_ticks(range)};
   plot.references = {{0, ""}};
   double reach = 1e-3;
   for (const TransferSide& side : sides) {
@@ -122,10 +123,9 @@ Figure residual_figure(const std::vector<TransferSide>& sides) {
     }
     plot.series.push_back(std::move(left));
   }
-  plot.y = {.label = "Seen less the line (mK)", .low = -reach, .high = reach, .ticks = {}};
+  plot.y = {.label = "Observed minus line (mK)", .low = -reach, .high = reach, .ticks = {}};
   return {drawn(plot),
-          "What the straight line leaves of each step, with 95 % intervals from the scatter over the "
-          "triangles"};
+          "Residual of each step from the least-squares line, with 95 % intervals from the scatter over the triangles"};
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Signal transfer: contrast seen over contrast shown, and what the straight line leaves.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Signal transfer: observed contrast over target read-back, and the residuals of the straight line.
 #pragma once
 
 #include <optional>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Of camera and twin; nothing where neither was measured.
+/// Returns the figures of camera and twin; empty if neither was measured.
 [[nodiscard]] std::optional<FigurePairs> transfer_figures(const SessionMeasures& measures, bool camera);
 
 }  // namespace todbench

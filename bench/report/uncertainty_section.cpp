@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/uncertainty_section.h"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ std::string source_of(const BudgetRow& row) {
 
 Table summary_table(const CurveUncertainty& uncertainty) {
   Table rows;
-  rows.caption = "Acuity in 1/mrad: the interval of the finite number of trials beside the expanded one, 95 % each";
+  rows.caption = "Acuity (1/mrad): statistical and expanded 95 % intervals";
   rows.header = {"Set ΔT (K)",         "d ln acuity / d ln ΔT", "Statistical", "Expanded",
                  "u of ln acuity (%)", "ν effective",           "k",           "U, GUM (%)",
                  "U, Monte Carlo (%)"};
@@ -51,7 +52,7 @@ Table summary_table(const CurveUncertainty& uncertainty) {
                               interval(point.statistical_mrad), interval(point.expanded_mrad)};
     if (const auto& found = point.combined) {
       row.push_back(plain(significant(100 * found->u, 3)));
-      row.push_back(plain(found->nu_eff ? significant(*found->nu_eff, 3) : "very many"));
+      row.push_back(plain(found->nu_eff ? significant(*found->nu_eff, 3) : "infinite"));
       row.push_back(plain(significant(found->k, 4)));
       row.push_back(plain(significant(100 * found->expanded_gum, 3)));
       row.push_back(plain(significant(100 * found->expanded_monte_carlo, 3)));
@@ -75,10 +76,10 @@ Table rows_table(const PointUncertainty& point) {
     RichText source = text_or_missing(source_of(row), "not stated");
     if (!common.empty()) source += plain("; " + common);
     rows.rows.push_back(
-        {plain(row.name == enters ? row.name : row.name + fmt::format(" (enters: {})", enters)),
+        {plain(row.name == enters ? row.name : row.name + fmt::format(" (input: {})", enters)),
          unbroken(significant(row.value, 3) + unit) +
              plain(fmt::format(", {}{}", to_string(row.distribution), divisor == "1" ? "" : ": / " + divisor)),
-         plain(row.degrees_of_freedom ? significant(*row.degrees_of_freedom, 3) : "very many"),
+         plain(row.degrees_of_freedom ? significant(*row.degrees_of_freedom, 3) : "infinite"),
          row.sensitivity ? plain(significant(*row.sensitivity, 3)) : missing("not known"),
          plain(significant(100 * applied.contribution, 3)), plain(shown(applied.share_percent, 1)), std::move(source)});
   }
@@ -94,16 +95,16 @@ std::optional<Section> uncertainty_section(const ReportData& data) {
     std::string names;
     for (const std::string& name : data.uncertainty->not_stated) names += (names.empty() ? "" : ", ") + name;
     section.blocks.emplace_back(
-        Paragraph{strong("Not stated, and not in the expanded intervals:") + plain(" " + names)});
+        Paragraph{strong("Not stated, so not included in the expanded intervals:") + plain(" " + names)});
   }
   for (const PointUncertainty& point : data.uncertainty->points) section.blocks.emplace_back(rows_table(point));
   section.blocks.emplace_back(note(plain(
-      "Combined in ln acuity (JCGM 100:2008): geometry counts as it is, contrast by the slope of the measured curve. "
-      "Degrees of freedom after Welch and Satterthwaite, k of Student's t for 95 %; checked by 200 000 draws (JCGM "
-      "101:2008) with the seed of the plan. Each side of the expanded interval is the largest of the GUM, the draws "
-      "and "
-      "the statistical interval, and decides. Rows common to camera and twin cancel in their ratio, rows common to a "
-      "series in its trend, rows common to contrasts in the shape of the curve.")));
+      "The rows are combined in ln acuity (JCGM 100:2008). Relative errors of geometry enter directly, errors of "
+      "contrast by the slope of the measured curve. Degrees of freedom follow Welch and Satterthwaite; k is that of "
+      "Student's t for 95 %. The result is checked by 200 000 draws (JCGM 101:2008) with the seed of the plan. Each "
+      "side of the expanded interval is the largest of the GUM value, the draws and the statistical interval. Limits "
+      "are judged by the expanded interval. Rows common to camera and twin cancel in their ratio. Rows common to a "
+      "series cancel in its trend. Rows common to contrasts cancel in the shape of the curve.")));
   return section;
 }
 

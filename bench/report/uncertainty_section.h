@@ -1,4 +1,5 @@
-// The section of a report that says what the expanded intervals hold.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Section of a report about the contents of the expanded intervals.
 #pragma once
 
 #include <optional>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Nothing where the plan has no budget.
+/// Returns the section; empty if the plan has no budget.
 [[nodiscard]] std::optional<Section> uncertainty_section(const ReportData& data);
 
 }  // namespace todbench

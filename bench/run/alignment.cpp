@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/alignment.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/host_clock.h"
+#include "acquisition/base/host_clock.h"
 #include "bench/plan/plan_options.h"
 #include "bench/report/number_format.h"
 #include "bench/run/devices.h"
@@ -19,8 +20,8 @@ namespace todbench {
 namespace {
 
 constexpr double focus_factor = 1.3;    ///< the emulated laboratory stays within 1.1
-constexpr double tilt_percent = 1;      ///< half of what the plan lets scale and plan differ
-constexpr double drift_limit_px = 0.2;  ///< a hundred times the error of the located middle
+constexpr double tilt_percent = 1;      ///< half of the deviation between scale and plan that the plan allows
+constexpr double drift_limit_px = 0.2;  ///< a hundred times the error of the located centre
 
 Polygon plate_corners(const TargetPlate& plate, const Registration& registration) {
   const double x = plate.width_mm / 2, y = plate.height_mm / 2;
@@ -45,7 +46,7 @@ double magnification_spread_percent(const TargetPlate& plate, const Registration
 void add_remarks(Alignment& look, const TargetPlate& plate, const std::vector<int>& sides, cv::Size picture) {
   const Registration& registration = *look.registration;
   if (look.expected_blur_px > 0 && registration.blur_px > focus_factor * look.expected_blur_px) {
-    look.remarks.push_back({AlignmentHint::out_of_focus, "Out of focus: edges are blurred by " +
+    look.remarks.push_back({AlignmentHint::out_of_focus, "Out of focus: the edges have a blur of " +
                                                              fixed(registration.blur_px, 2) + " px, expected " +
                                                              fixed(look.expected_blur_px, 2) + " px"});
   }
@@ -55,17 +56,17 @@ void add_remarks(Alignment& look, const TargetPlate& plate, const std::vector<in
   }
   const auto problems = windows_out_of_picture(plate, registration, sides, picture);
   if (!problems.empty()) {
-    look.remarks.push_back({AlignmentHint::near_edge, "Too near the edge: " + std::to_string(problems.size()) +
-                                                          " windows leave the picture, first " +
+    look.remarks.push_back({AlignmentHint::near_edge, "Too close to the edge: " + std::to_string(problems.size()) +
+                                                          " windows extend beyond the picture, first " +
                                                           problems.front().triangle});
   }
   if (look.drift_px > drift_limit_px) {
     look.remarks.push_back({AlignmentHint::drifting, "Drifting: the plate has moved by " + fixed(look.drift_px, 2) +
-                                                         " px since alignment began"});
+                                                         " px since the alignment started"});
   }
 }
 
-/// Blur that registration sees in a noise-free picture of the simulated sensor; 0 when it cannot be found there.
+/// Blur by registration in a noise-free picture of the simulated sensor; 0 if the plate is not found in it.
 double expected_blur_px(const ExperimentInputs& inputs, const TargetPlate& plate, const Plan& plan) {
   if (sensor_module(inputs.sensor) != nullptr) return 0;
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
@@ -82,7 +83,7 @@ double expected_blur_px(const ExperimentInputs& inputs, const TargetPlate& plate
   return found ? found->blur_px : 0;
 }
 
-/// Everything that stays the same from look to look.
+/// State that is common to all looks.
 struct Aligning {
   TargetPlate plate;  ///< as mounted
   std::vector<int> sides;
@@ -182,7 +183,8 @@ Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std
   if (listener.on_frame) bench->camera = observed_source(std::move(bench->camera), listener.on_frame);
   const auto states = constant_stimuli(stimuli_options(plan, inputs->plates, plan.camera.ifov_mrad, Side::measured),
                                        RandomStream(plan.seed, "schedule"));
-  if (states.empty()) return fail(ErrorCode::invalid_input, "the plan shows nothing");
+  if (states.empty())
+    return fail(ErrorCode::invalid_input, "the plan shows no target: it has no plate, mounting or contrast");
   TargetState state = states.front();
   state.shift_mm = {0, 0};
   const MeasurementOptions options = camera_options(plan, inputs->plates);

@@ -1,4 +1,5 @@
-// Setting up a bench: where the plate is in the picture now, and what is wrong with that.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Alignment of a bench: the present position of the plate in the picture, and its faults.
 #pragma once
 
 #include <functional>
@@ -17,12 +18,12 @@
 
 namespace todbench {
 
-/// What stands between a set-up and a measurement, each with the number that decides.
+/// Reasons why a set-up cannot be measured yet, each with its limit.
 enum class AlignmentHint {
   not_found,     ///< registration failed
-  out_of_focus,  ///< edges are blurred 1.3 times as much as the sensor description says, or more
+  out_of_focus,  ///< edge blur at least 1.3 times that of the sensor description
   tilted,        ///< magnification differs by more than 1 % over the plate or between directions
-  near_edge,     ///< a window leaves the picture
+  near_edge,     ///< an observer's window leaves the picture
   drifting,      ///< the plate has moved by more than 0.2 px since the first look
 };
 [[nodiscard]] std::string_view to_string(AlignmentHint hint);
@@ -36,21 +37,21 @@ struct AlignmentRemark {
 struct AlignedTriangle {
   std::string name;
   Polygon outline_px;
-  cv::Rect window;  ///< what the observer will see
+  cv::Rect window;  ///< area that the observer judges
 };
 
-/// One look.
+/// Result of one look at the plate.
 struct Alignment {
-  std::optional<Registration> registration;  ///< nothing: see remarks
+  std::optional<Registration> registration;  ///< empty: the plate was not found, see remarks
   std::vector<AlignedTriangle> triangles;
   Polygon plate_px;                      ///< the corners of the plate
-  double expected_blur_px = 0;           ///< of the simulated sensor; 0: not known
-  double drift_px = 0;                   ///< of the plate's middle since the first look
+  double expected_blur_px = 0;           ///< of the simulated sensor; 0: unknown
+  double drift_px = 0;                   ///< of the centre of the plate since the first look
   double temporal_noise_k = 0;           ///< per pixel
-  std::vector<AlignmentRemark> remarks;  ///< none: ready to measure
+  std::vector<AlignmentRemark> remarks;  ///< empty: ready to measure
 };
 
-/// Called from the aligning thread.
+/// Callbacks, called from the aligning thread.
 struct AlignmentListener {
   std::function<void(std::string_view phase)> on_phase;
   std::function<void(const SourceInfo&)> on_open;
@@ -58,14 +59,14 @@ struct AlignmentListener {
   std::function<void(const Alignment&)> on_alignment;
 };
 
-/// What one averaged picture (kelvin) says. `first`: the registration of the first look, to see drift; `sides`: of the
-/// observer's windows, per triangle in order.
+/// Evaluates one averaged picture in kelvin. `first`: the registration of the first look, reference of the drift;
+/// `sides`: side lengths of the observer's windows, per triangle in order.
 [[nodiscard]] Alignment look_at_plate(const cv::Mat1d& kelvin, const TargetPlate& mounted_plate,
                                       const std::vector<int>& sides, const RegistrationOptions& options,
                                       double expected_blur_px, const std::optional<Registration>& first);
 
-/// Shows the first plate of the plan at its highest contrast and looks at it again and again until stopped, which is
-/// success. Errors: as open_bench(); `disconnected`, `integrity`.
+/// Shows the first plate of the plan at its highest contrast and looks at it repeatedly until stopped; a stop is
+/// success. Errors: those of open_bench(); `disconnected`, `integrity`.
 [[nodiscard]] Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std::stop_token stop);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/bench_host.h"
 
 #include <utility>
@@ -5,7 +6,7 @@
 namespace todbench {
 namespace {
 
-class BenchHost final : public MeasurementHost {
+class BenchHost final : public RunController {
  public:
   explicit BenchHost(const BenchHostOptions& options) : options_(options) {}
 
@@ -13,7 +14,9 @@ class BenchHost final : public MeasurementHost {
   [[nodiscard]] Result<bool> rests(std::stop_token stop) override {
     return options_.pause != nullptr && options_.pause->rest(std::move(stop));
   }
-  [[nodiscard]] FramesMeanwhile frames_while_presenting() const override { return options_.frames_while_presenting; }
+  [[nodiscard]] FramesWhilePresenting frames_while_presenting() const override {
+    return options_.frames_while_presenting;
+  }
   [[nodiscard]] Result<std::int64_t> asked_while_presenting(std::int64_t calls) override { return calls; }
   [[nodiscard]] bool recovers() const override { return options_.camera != nullptr; }
   [[nodiscard]] Result<void> recover(std::stop_token stop) override {
@@ -27,7 +30,7 @@ class BenchHost final : public MeasurementHost {
 
 }  // namespace
 
-std::unique_ptr<MeasurementHost> bench_host(const BenchHostOptions& options) {
+std::unique_ptr<RunController> bench_host(const BenchHostOptions& options) {
   return std::make_unique<BenchHost>(options);
 }
 

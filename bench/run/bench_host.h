@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The host of a measurement on an opened bench.
 #pragma once
 
@@ -5,18 +6,18 @@
 
 #include "bench/run/pause.h"
 #include "bench/run/reconnecting_source.h"
-#include "tod/measurement/measurement_host.h"
+#include "tod/measurement/run_controller.h"
 
 namespace todbench {
 
-/// What there is to command with. Everything outlives the host.
+/// Options of bench_host(). All pointers outlive the host.
 struct BenchHostOptions {
-  const Pause* pause = nullptr;  ///< null: the run never rests
-  FramesMeanwhile frames_while_presenting = FramesMeanwhile::leave;
-  ReconnectingSource* camera = nullptr;  ///< the camera, where it may come back; null: a loss ends the run
+  const Pause* pause = nullptr;  ///< null: the run never pauses
+  FramesWhilePresenting frames_while_presenting = FramesWhilePresenting::leave;
+  ReconnectingSource* camera = nullptr;  ///< a camera that may reconnect; null: a loss ends the run
 };
 
-/// The clock is CLOCK_MONOTONIC.
-[[nodiscard]] std::unique_ptr<MeasurementHost> bench_host(const BenchHostOptions& options);
+/// Creates the host. Its clock is CLOCK_MONOTONIC.
+[[nodiscard]] std::unique_ptr<RunController> bench_host(const BenchHostOptions& options);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/bench_time.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-/// One presentation after another, as measure() goes through them.
+/// Counts changes and frames of one presentation after another, in the order of measure().
 class Walk {
  public:
   explicit Walk(const Plan& plan) : plan_(plan) {}
@@ -29,7 +30,7 @@ class Walk {
     take_frames(plate || mounting, contrast, state.delta_t_k);
   }
 
-  /// What [measures] asks for behind the trials, as measure_camera() goes through it.
+  /// Counts the requests of [measures] after the trials, in the order of measure_camera().
   void measure(const TargetState& last, const std::string& first_plate) {
     const MeasuresPlan& measures = plan_.measures;
     if (!measures.any()) return;
@@ -67,7 +68,7 @@ class Walk {
   }
 
   [[nodiscard]] BenchTime finished(double frame_rate_hz) {
-    // A simulated camera is as fast as the processor, and so is what it looks at.
+    // A simulated camera and its scene are as fast as the processor.
     if (plan_.target.kind == TargetKind::scene) {
       time_.changes_s = 0;
       return time_;
@@ -82,11 +83,11 @@ class Walk {
  private:
   void take_frames(bool new_set_up, bool new_contrast, double delta_t_k) {
     const MeasurementPlan& measurement = plan_.measurement;
-    // Of a sensor with modules of its own nothing is predicted.
+    // The camera is predicted without the modules of the sensor.
     int frames = measurement.frames_after_change + chosen_answers(plan_, {}, delta_t_k).frames;
     if (new_set_up) frames += measurement.registration_frames;
     if (new_set_up || new_contrast) frames += measurement.contrast_frames;
-    // Where a hand has moved the plate it is looked for.
+    // After the operator has moved the plate, it is located again.
     if (!new_set_up && plan_.target.kind == TargetKind::prompt) frames += measurement.contrast_frames;
     time_.frames += static_cast<std::uint64_t>(frames);
   }
@@ -99,7 +100,7 @@ class Walk {
 
 std::vector<TargetState> listed_presentations(const Plan& plan, const std::vector<TargetPlate>& plates) {
   ConstantStimuliOptions stimuli = stimuli_options(plan, plates, plan.camera.ifov_mrad, Side::measured);
-  // Shifts are counted, not measured: a plan without a camera has them too.
+  // Shifts are only counted: a plan without a camera has them too.
   stimuli.pixel_mm = 1;
   stimuli.drawings.clear();
   if (plan.schedule.kind == ScheduleKind::adaptive) {

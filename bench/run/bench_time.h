@@ -1,4 +1,5 @@
-// How long a plan keeps the bench: the one formula, for the command line and the window.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Time that a plan occupies the bench: the only formula, for the command line and the window.
 #pragma once
 
 #include <cstdint>
@@ -9,35 +10,34 @@
 
 namespace todbench {
 
-/// Changes of the target and frames of the camera, in the order in which measure() and then measure_camera() ask for
-/// them.
+/// Changes of the target and frames of the camera, in the order in which measure() and measure_camera() request them.
 struct BenchTime {
   std::uint64_t presentations = 0;
-  /// Presentations for which it changes; the first one brings everything.
+  /// Presentations that change each property; the first presentation changes all.
   std::uint64_t plate_changes = 0, mounting_changes = 0, contrast_changes = 0, shift_changes = 0;
-  /// What one presentation changes, changes together: black body and stage settle at the same time, and a hand that
-  /// brings another plate holds it as it has to be held. So each presentation takes as long as the slowest of them.
-  double changes_s = 0;  ///< with those of the physical measures
-  /// For registration, contrast, answers and physical measures, and those discarded after a change.
+  /// Changes of one presentation run in parallel: black body and stage settle at the same time, and an operator brings
+  /// another plate in the right mounting. So each presentation takes as long as its slowest change.
+  double changes_s = 0;  ///< including those of the physical measures
+  /// For registration, contrast, answers and physical measures, including frames discarded after a change.
   std::uint64_t frames = 0;
   double frames_s = 0;
-  double corrections_s = 0;  ///< waiting after commanded corrections of the camera
+  double corrections_s = 0;  ///< waiting time after commanded corrections of the camera
   [[nodiscard]] double total_s() const { return changes_s + frames_s + corrections_s; }
 };
 
-/// Of the camera of a plan, whose frames per presentation are chosen (with_frames()), with its frames `frame_rate_hz`
-/// apart. `presentations`: how many are expected of an adaptive schedule, which goes through the same set-ups visit by
-/// visit; nothing: as many as the plan lists, of an adaptive one its cap. A target of kind scene is as fast as the
-/// processor: counts, and no time.
+/// Computes the bench time of a plan whose frames per presentation are chosen (with_frames()). `presentations`: the
+/// number expected of an adaptive schedule, which visits the same set-ups repeatedly; empty: the number that the plan
+/// lists, or the cap of an adaptive schedule. For a target of kind scene only counts are computed, no times: it is as
+/// fast as the processor.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
                                    std::optional<double> presentations);
-/// The same where the presentations are listed already.
+/// The same for presentations that are already listed.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates,
                                    const std::vector<TargetState>& listed, double frame_rate_hz,
                                    std::optional<double> presentations);
 
-/// The presentations of a constant schedule, for bench_time(): of an adaptive one those of its visits, for it stays in
-/// a set-up for a visit, whatever a change takes. They do not depend on the frames of a presentation. Choosing their
+/// Returns the presentations of a constant schedule for bench_time(); of an adaptive schedule those of its visits,
+/// because it stays in a set-up for a whole visit. They do not depend on the frames per presentation. Choosing their
 /// phases takes 20 ms for the demonstration.
 [[nodiscard]] std::vector<TargetState> listed_presentations(const Plan& plan, const std::vector<TargetPlate>& plates);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/comparison_forecast.h"
 
 #include <algorithm>
@@ -9,16 +10,16 @@
 namespace todbench {
 namespace {
 
-/// Standard error of ln S75 from the interval, nothing where a side is open.
+/// Standard error of ln S75 from the interval; empty if a side is open.
 std::optional<double> standard_error(const PsychometricFit& fit) {
   if (!fit.ci95.low || !fit.ci95.high || !(*fit.ci95.low > 0)) return std::nullopt;
   return std::log(*fit.ci95.high / *fit.ci95.low) / (2 * 1.96);
 }
 
-/// From here on a probability rounds to 100 %, which none is.
+/// From here on a probability would round to 100 %, which is never correct.
 constexpr double nearly_certain = 0.995;
 
-/// "62 %"; what would round to all of them is "more than 99 %".
+/// "62 %"; "more than 99 %" instead of a rounded 100 %.
 std::string probability_text(double probability) {
   return probability >= nearly_certain ? "more than 99 %" : number_text(std::round(100 * probability)) + " %";
 }
@@ -28,7 +29,7 @@ std::string probability_text(double probability) {
 ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction) {
   const double margin = comparison_options(plan).margin_percent;
   const std::string margin_text = number_text(margin) + " %";
-  // Of the twin's trials the camera makes so many; an adaptive schedule is the same for both.
+  // Ratio of the camera's trials to the twin's; an adaptive schedule is the same for both.
   const double share = plan.schedule.kind == ScheduleKind::adaptive
                            ? 1.0
                            : static_cast<double>(plan.target.phases) / plan.simulation.phases;
@@ -37,7 +38,7 @@ ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& p
   for (const ContrastPrediction& contrast : prediction.contrasts) {
     if (!contrast.uncertainty_percent || !(*contrast.uncertainty_percent > 0)) {
       return {std::nullopt, "the comparison with the twin cannot be decided at " + number_text(contrast.delta_t_k) +
-                                " K: no threshold is expected among the sizes of the plates"};
+                                " K: the expected threshold is outside the sizes of the plates"};
     }
     const double se_b = std::log1p(*contrast.uncertainty_percent / 100) / 1.96;
     contrasts.push_back({.delta_t_k = contrast.delta_t_k,
@@ -53,13 +54,13 @@ ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& p
   const std::string needed =
       number_text(outlook.trials_needed_a) + " trials per contrast (" + number_text(std::round(planned)) + " planned)";
   if (outlook.reaches_80_percent()) {
-    return {outlook, "if camera and twin are equal, the comparison finds them equivalent within " + margin_text +
+    return {outlook, "if camera and twin are equal, the comparison declares them equivalent within " + margin_text +
                          " with a probability of " + (outlook.power >= nearly_certain ? "" : "at least ") + power +
-                         "; 80 % would need " + needed};
+                         ". A probability of 80 % would need " + needed};
   }
-  return {outlook, "warning: the plan can hardly show equivalence within " + margin_text +
-                       ": equal acuities would be found equivalent with a probability of " + power + "; 80 % needs " +
-                       needed};
+  return {outlook, "warning: the plan is unlikely to show equivalence within " + margin_text +
+                       ": equal acuities would be declared equivalent with a probability of " + power +
+                       ". A probability of 80 % needs " + needed};
 }
 
 ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b, const Comparison& comparison) {
@@ -72,7 +73,7 @@ ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b, con
     const auto se_a = standard_error(of_a->fit), se_b = standard_error(of_b->fit);
     if (!se_a || !se_b) {
       return {std::nullopt, "warning: these trials cannot show equivalence at " + number_text(point.set_delta_t_k) +
-                                " K: an interval has an open side"};
+                                " K: an interval has no upper or no lower limit"};
     }
     margin = point.margin_percent;
     trials = std::max(trials, of_a->fit.trials);
@@ -84,10 +85,11 @@ ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b, con
   }
   if (contrasts.empty()) return {};
   const ComparisonOutlook outlook = comparison_outlook(contrasts, margin);
-  const std::string sentence = "trials like these find equal acuities equivalent within " + number_text(margin) +
-                               " % with a probability of " + probability_text(outlook.power) + "; 80 % needs " +
-                               number_text(outlook.trials_needed_a) + " trials per contrast of A (" +
-                               number_text(trials) + " made), those of B in proportion";
+  const std::string sentence = "with this number of trials, equal acuities are declared equivalent within " +
+                               number_text(margin) + " % with a probability of " + probability_text(outlook.power) +
+                               ". A probability of 80 % needs " + number_text(outlook.trials_needed_a) +
+                               " trials per contrast of A (" + number_text(trials) +
+                               " made), and the same proportion of B";
   return {outlook, (outlook.reaches_80_percent() ? "" : "warning: ") + sentence};
 }
 

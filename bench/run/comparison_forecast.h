@@ -1,4 +1,5 @@
-// What a comparison can show: of a plan, said before it is made, and of two curves that have been measured.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Power of a comparison: of a plan before it is measured, and of two measured curves.
 #pragma once
 
 #include <optional>
@@ -12,15 +13,15 @@
 namespace todbench {
 
 struct ComparisonForecast {
-  std::optional<ComparisonOutlook> outlook;  ///< nothing where a contrast identifies no threshold
-  std::string sentence;                      ///< begins with "warning" where the power stays below 80 %
+  std::optional<ComparisonOutlook> outlook;  ///< empty if a contrast identifies no threshold
+  std::string sentence;                      ///< begins with "warning" if the power is below 80 %
 };
 
-/// Outlook of camera against twin: standard errors from the predicted uncertainty of the simulated design, that of the
-/// camera scaled to its own number of phases.
+/// Forecasts the comparison of camera and twin. Standard errors: the predicted uncertainty of the simulated design, for
+/// the camera scaled to its own number of phases.
 [[nodiscard]] ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction);
 
-/// Of two curves, at the contrasts of their comparison: standard errors from their intervals, clusters included.
+/// Forecasts the comparison of two curves at its contrasts. Standard errors: from their intervals, clusters included.
 [[nodiscard]] ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b,
                                                      const Comparison& comparison);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/default_design.h"
 
 #include <algorithm>
@@ -45,9 +46,9 @@ Result<LoadedPlan> with_suitable_distance(const LoadedPlan& loaded, std::stop_to
     extent_mm = std::max({extent_mm, plate.width_mm * sensor.height / sensor.width, plate.height_mm});
   }
   const double middle_mm = std::sqrt(smallest * largest);
-  // The plate may fill nine tenths of the picture.
+  // The plate may fill 90 % of the picture.
   const double nearest_m = extent_mm / (0.9 * sensor.height * sensor.ifov_mrad());
-  // Registration and contrast need triangles of five displayed samples and more.
+  // Registration and contrast need triangles of at least five displayed samples.
   const double farthest_m = largest * sensor.samples_per_pitch() / (5.0 * sensor.ifov_mrad());
   plan.target.distance_m = std::max(nearest_m, std::min(middle_mm / middle_mrad, farthest_m));
   return loaded.with(std::move(plan));

@@ -1,4 +1,5 @@
-// A measurement design for a sensor that nobody wrote a plan for.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A measurement design for a sensor without a plan.
 #pragma once
 
 #include <stop_token>
@@ -7,11 +8,11 @@
 
 namespace todbench {
 
-/// The plan without a unit under test, its limits, camera and instruments: a simulation that nobody wrote a plan for.
+/// Returns the plan without unit under test, limits, camera and instruments: a pure simulation.
 [[nodiscard]] Plan plan_of_nobody(Plan plan);
 
-/// The plan with the distance at which the sizes of its plates straddle the 75 % sizes that a draft estimate predicts
-/// for its contrasts, as far as the plates fit into the picture. Leaves the distance alone where there is no estimate.
+/// Returns the plan with a suitable distance: the sizes of its plates straddle the 75 % sizes that a draft estimate
+/// predicts for its contrasts, as far as the plates fit into the picture. The distance stays if there is no estimate.
 /// Errors: `interrupted`.
 [[nodiscard]] Result<LoadedPlan> with_suitable_distance(const LoadedPlan& loaded, std::stop_token stop);
 

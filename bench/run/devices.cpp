@@ -1,11 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/devices.h"
 
 #include "acquisition/core/camera_id.h"
+#include "acquisition/core/control_text.h"
 #include "acquisition/recording/recording_backend.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/resources.h"
 #include "bench/run/bench_host.h"
+#include "bench/run/camera_settings.h"
 #include "bench/run/display_target.h"
 #include "bench/run/reconnecting_source.h"
 #include "bench/run/terminal_operator.h"
@@ -24,14 +27,14 @@
 namespace todbench {
 namespace {
 
-/// A scene without a plate: what a simulated camera sees when no target is connected to it.
+/// A scene without a plate: the view of a simulated camera without a target.
 PlateScene empty_scene(double distance_m) {
   PlateScene scene;
   scene.distance_m = distance_m;
   return scene;
 }
 
-/// Simulated sensors by name, "sim:sc2000", looking at an empty scene.
+/// Simulated sensors by name, "sim:sc2000", with an empty scene.
 class SimulatedBackend final : public CameraBackend {
  public:
   [[nodiscard]] std::string scheme() const override { return std::string(camera_scheme::sim); }
@@ -57,7 +60,7 @@ class SimulatedBackend final : public CameraBackend {
   }
 };
 
-/// Shows other contrasts than it is told: those that a camera saw when it was told the same.
+/// Shows other contrasts than the set ones: those that a camera observed for them.
 class RemappedTarget final : public Target {
  public:
   RemappedTarget(std::unique_ptr<Target> target, std::map<double, double> shown)
@@ -101,9 +104,17 @@ Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_
   return open_scpi_target(options, stop);
 }
 
-/// A camera that sends whether it is asked or not. Neither is a recording, nor is its end a loss.
+/// Whether the camera sends without requests. Recordings do not, and their end is not a loss.
 bool free_running(const Plan& plan) {
   return !has_scheme(plan.camera.id, camera_scheme::file) && !has_scheme(plan.camera.id, camera_scheme::sim);
+}
+
+/// All settings that the plan writes into the camera.
+std::map<std::string, std::string> settings_of(const CameraPlan& camera) {
+  std::map<std::string, std::string> settings = camera.settings;
+  if (!camera.frame_size.empty()) settings[frame_size_feature] = camera.frame_size;
+  if (!camera.nuc_command.empty()) settings[nuc_command_feature] = camera.nuc_command;
+  return settings;
 }
 
 Result<void> write_settings(FrameSource& camera, const std::map<std::string, std::string>& settings) {
@@ -159,15 +170,15 @@ Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, c
     const auto sensor = camera_name(plan.camera.id, camera_scheme::sim);
     if (!sensor) {
       return fail(ErrorCode::invalid_input,
-                  "a target of kind 'scene' is the simulated scene of a camera 'sim:NAME'; camera " + plan.camera.id +
-                      " needs kind 'scpi', 'prompt' or 'display'");
+                  "a target of kind 'scene' needs a simulated camera 'sim:NAME'. For camera " + plan.camera.id +
+                      " set [target] kind to 'scpi', 'prompt' or 'display'");
     }
     auto spec = load_sensor(*sensor);
     if (!spec) return tl::unexpected(spec.error());
     auto accuracy = accuracy_of(plan);
     if (!accuracy) return tl::unexpected(accuracy.error());
-    // A camera of its own: the twin has the plan's seed, and noise of both that is the same would cancel. The scene may
-    // run; at rest the effects of motion are neutral.
+    // The camera has its own seed: with the seed of the twin, equal noise of both would cancel. The scene may move; at
+    // rest the effects of motion are neutral.
     auto model =
         std::make_shared<const SensorModel>(*spec, full_plan(*spec, {}, {}, any_motion), *accuracy, plan.seed + 1);
     auto bench = simulated_bench(std::move(model), loaded.shown_plates(), plan.target.distance_m, {});
@@ -175,22 +186,27 @@ Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, c
     return bench;
   }
   if (plan.target.kind == TargetKind::display && camera_name(plan.camera.id, camera_scheme::sim)) {
-    return fail(ErrorCode::invalid_input,
-                "camera " + plan.camera.id + " is simulated and sees no monitor: it needs a target of kind 'scene'");
+    return fail(
+        ErrorCode::invalid_input,
+        "camera " + plan.camera.id + " is simulated and cannot observe a monitor: [target] kind must be 'scene'");
   }
   OpenedBench bench;
   auto camera = camera_registry(stop, on_progress).open(plan.camera.id);
   if (!camera) return tl::unexpected(camera.error());
   bench.camera = std::move(*camera);
-  if (auto written = write_settings(*bench.camera, plan.camera.settings); !written) {
+  const auto settings = settings_of(plan.camera);
+  if (auto written = write_settings(*bench.camera, settings); !written) {
     return fail("camera " + plan.camera.id, written.error());
   }
-  if (free_running(plan)) hosting.frames_while_presenting = FramesMeanwhile::take;
+  auto warnings = check_written_settings(*bench.camera, plan.camera.settings);
+  if (!warnings) return fail("camera " + plan.camera.id, warnings.error());
+  bench.warnings = *std::move(warnings);
+  if (free_running(plan)) hosting.frames_while_presenting = FramesWhilePresenting::take;
   if (free_running(plan) && plan.camera.reconnect_s > 0) {
     bench.patience = std::chrono::milliseconds(static_cast<long>(plan.camera.reconnect_s * 1000));
     auto returning = std::make_unique<ReconnectingSource>(
         std::move(bench.camera), [id = plan.camera.id] { return camera_registry().open(id); },
-        ReconnectionOptions{.patience = bench.patience, .settings = plan.camera.settings});
+        ReconnectionOptions{.patience = bench.patience, .settings = settings});
     hosting.camera = returning.get();
     bench.camera = std::move(returning);
   }

@@ -1,4 +1,5 @@
-// From the words of a plan to opened devices.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opens the devices that a plan names.
 #pragma once
 
 #include <chrono>
@@ -12,37 +13,39 @@
 #include "bench/plan/loaded_plan.h"
 #include "bench/run/experiment_host.h"
 #include "sim_devices/sensor/simulated_camera.h"
-#include "tod/measurement/measurement_host.h"
+#include "tod/measurement/run_controller.h"
 #include "tod/presentation/target.h"
 #include "tod/presentation/target_wait.h"
 
 namespace todbench {
 
-/// What goes on while a camera is opened, in a sentence.
+/// Receives progress messages while a camera is opened, one sentence each.
 using SayProgress = std::function<void(std::string_view sentence)>;
 
-/// Every back end of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors. `stop` ends the opening
-/// of a camera that takes its time (`interrupted`), `on_progress` tells of it about once a second.
+/// All back ends of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors. `stop` aborts a slow
+/// opening (`interrupted`); `on_progress` is called about once a second.
 [[nodiscard]] CameraRegistry camera_registry(std::stop_token stop = {}, const SayProgress& on_progress = {});
 
-/// A camera, what changes the target before it, and who commands a measurement with them.
+/// A camera, the target in front of it, and the host that controls a measurement with them.
 struct OpenedBench {
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<Target> target;
-  bool simulated = false;                 ///< the camera is a sensor model, its clock that of the model
-  std::chrono::milliseconds patience{0};  ///< how long a camera that was lost is waited for; 0 in a replay
-  std::unique_ptr<MeasurementHost> host = std::make_unique<UnattendedHost>();  ///< may use `camera`
+  bool simulated = false;                 ///< the camera is a sensor model and provides the clock
+  std::chrono::milliseconds patience{0};  ///< time to wait for a lost camera; 0 in a replay
+  std::unique_ptr<RunController> host = std::make_unique<UnattendedHost>();  ///< may use `camera`
+  std::vector<std::string> warnings{};  ///< settings that read back otherwise, one sentence each
 };
 
-/// Opens what the plan names and writes its settings into the camera. Errors: `not_found`, `invalid_input` (a target
-/// that cannot work with this camera, a setting that is refused), `interrupted`.
-/// `host` commands what is measured with it; `on_wait` is told while the target takes its time.
+/// Opens the devices of the plan and writes its settings into the camera. Errors: `not_found`, `invalid_input` (the
+/// target cannot work with this camera, or a setting is refused), `calibration` (a setting that scales counts reads
+/// back otherwise), `interrupted`. `host` controls the measurement; `on_wait` is called while the target
+/// settles.
 [[nodiscard]] Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop,
                                              const ExperimentHost& host = {}, const SayProgress& on_progress = {},
                                              const OnTargetWait& on_wait = {});
 
-/// A simulated sensor behind a scene. `shown_delta_t_k`: set-point -> contrast really shown, so that a twin shows what
-/// a camera saw; set-points that are not in it are shown as they are. `source`: of simulated_source().
+/// Creates a simulated sensor in front of a scene. `shown_delta_t_k`: set contrast -> contrast shown, so that a twin
+/// shows the contrasts that a camera observed; others are shown as set. `source`: options of simulated_source().
 [[nodiscard]] OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model,
                                           const std::vector<TargetPlate>& plates, double distance_m,
                                           std::map<double, double> shown_delta_t_k, SceneMotion motion = {},

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/direct_results.h"
 
 #include <utility>
@@ -15,7 +16,7 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
   std::vector<double> contrasts;
   for (const auto& point : curve.points) contrasts.push_back(point.delta_t_k);
   DirectResults results;
-  // Together they share their images. Where one has no threshold the others are estimated alone.
+  // Contrasts estimated together share their images. If one has no threshold, the others are estimated alone.
   std::vector<std::vector<double>> attempts{contrasts};
   for (std::size_t i = 0; i < attempts.size() && !results.ended_by; ++i) {
     auto found = direct_estimate(inputs.sensor, inputs.effects, observer, attempts[i], options);

@@ -1,4 +1,5 @@
-// The sizes at 75 % of a simulated curve without trials.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sizes at 75 % of a simulated curve, estimated without trials.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +15,14 @@
 
 namespace todbench {
 
-/// The contrasts of a curve that have one, as their size at 75 % without trials; what has none is a note.
+/// S75 without trials for the contrasts of a curve; contrasts without an estimate have a note.
 struct DirectResults {
   std::map<double, DirectPoint> points;  ///< by contrast
   std::vector<std::string> notes;
   std::optional<Error> ended_by;
 };
 
-/// `shown_delta_t_k`: what the scene shows of a set contrast, where it is not the same.
+/// `shown_delta_t_k`: contrast that the scene shows for a set contrast, if different.
 [[nodiscard]] DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inputs,
                                            const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
                                            std::stop_token stop);

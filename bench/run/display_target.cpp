@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/display_target.h"
 
 #include <fmt/format.h>
@@ -16,14 +17,14 @@ namespace {
 constexpr double screen_levels = 255;
 constexpr int least_levels = 16;
 
-/// Shares of the pattern to levels whose light is in proportion to them.
+/// Converts shares of the pattern to levels whose light is proportional to them.
 cv::Mat1f drawn_levels(const cv::Mat1d& shares, const DisplayLevels& ends, const DisplayTone& tone) {
   const double ground = tone.light_of(ends.ground / screen_levels);
   cv::Mat1f levels(shares.size());
   for (int row = 0; row < shares.rows; ++row) {
     for (int column = 0; column < shares.cols; ++column) {
       const double share = shares(row, column);
-      // Most of a picture is ground: its level needs no power.
+      // Fast path: most pixels are background and need no power function.
       const double level =
           share == 0 ? ends.ground / screen_levels : tone.level_of(ground + ends.light_difference * share);
       levels(row, column) = static_cast<float>(level);
@@ -37,10 +38,12 @@ Result<DisplayLevels> levels_of_contrast(double delta_t_k, const DisplayTargetOp
   const DisplayLevels ends = display_levels(std::clamp(contrast, -1.0, 1.0), options.tone);
   const int steps = ends.pattern - ends.ground;
   if (std::abs(contrast) <= 1 && std::abs(steps) >= least_levels) return ends;
-  return fail(ErrorCode::invalid_input,
-              fmt::format("a contrast of {:g} K is {:.3g} of the {:g} K that the display spans, {} of its {:g} levels: "
-                          "from {} levels on edges can be drawn",
-                          delta_t_k, contrast, options.span_k, steps, screen_levels, least_levels));
+  return fail(
+      ErrorCode::invalid_input,
+      fmt::format(
+          "a contrast of {:g} K is {:.3g} of the display's span of {:g} K, {} of its {:g} levels: edges need at "
+          "least {} levels and a contrast within the span",
+          delta_t_k, contrast, options.span_k, steps, screen_levels, least_levels));
 }
 
 class DisplayTarget final : public Target {
@@ -53,11 +56,11 @@ class DisplayTarget final : public Target {
   [[nodiscard]] const TargetCapabilities& capabilities() const override { return capabilities_; }
 
   [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
-    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the display was changed");
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the display changed");
     const auto plate = std::find_if(options_.plates.begin(), options_.plates.end(),
                                     [&](const TargetPlate& known) { return known.name == state.plate; });
     if (plate == options_.plates.end())
-      return fail(ErrorCode::invalid_input, "the display knows no plate '" + state.plate + "'");
+      return fail(ErrorCode::invalid_input, "the display has no plate '" + state.plate + "'");
     const auto shown_levels = levels_of_contrast(state.delta_t_k, options_);
     if (!shown_levels) return tl::unexpected(shown_levels.error());
     const DisplayLevels ends = *shown_levels;
@@ -79,16 +82,17 @@ class DisplayTarget final : public Target {
  private:
   static Result<void> is_shown(const cv::Mat1f& levels, const cv::Mat1f& shown) {
     if (shown.size() != levels.size()) {
-      return fail(ErrorCode::integrity, fmt::format("the display shows {} x {} pixels in place of {} x {}", shown.cols,
+      return fail(ErrorCode::integrity, fmt::format("the display shows {} x {} pixels, expected {} x {}", shown.cols,
                                                     shown.rows, levels.cols, levels.rows));
     }
-    // Half a level, and rounding of single precision.
+    // Half a level, plus rounding of single precision.
     const double largest = cv::norm(levels, shown, cv::NORM_INF);
     if (largest <= 0.5 / screen_levels + 1e-6) return {};
-    return fail(ErrorCode::integrity,
-                fmt::format("the display does not show what was drawn: a pixel is {:.1f} levels off; is the picture "
-                            "scaled, covered or corrected in colour?",
-                            largest * screen_levels));
+    return fail(
+        ErrorCode::integrity,
+        fmt::format("the display does not show the drawn picture: a pixel differs by {:.1f} levels. Check whether the "
+                    "picture is scaled, covered or colour-corrected",
+                    largest * screen_levels));
   }
 
   void wait(const std::stop_token& stop) const {
@@ -156,7 +160,7 @@ Result<ShowLevels> shown_by_program(const std::string& command) {
 }
 
 Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options, const std::string& command) {
-  // Mountings turn and mirror a plate about its middle: what fits once, fits always.
+  // Mountings rotate and mirror a plate about its centre: a plate that fits in one fits in all.
   for (const TargetPlate& plate : options.plates) {
     if (auto fits = plate_picture(plate, {0, 0}, options.display, 0, 1); !fits) return tl::unexpected(fits.error());
   }
@@ -167,7 +171,7 @@ Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options
   if (!show) return tl::unexpected(show.error());
   const auto first = (*show)(cv::Mat1f(options.display.size_px, static_cast<float>(options.tone.level_of(0.5))));
   if (!first) {
-    // It never showed anything: what is missing is a screen, not a device that was lost.
+    // The program never showed a picture: a screen is missing, no device was lost.
     const ErrorCode code = first.error().code;
     return fail("the display", with_code(code == ErrorCode::disconnected ? ErrorCode::not_found : code, first.error()));
   }

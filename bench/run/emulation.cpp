@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/emulation.h"
 
 #include <sys/stat.h>
@@ -39,7 +40,7 @@ std::optional<CameraModel> gvsp_model(std::string_view camera) {
 #endif
 
 #ifdef TODBENCH_WITH_ARAVIS
-/// Levels in a file that another program writes again and again, whole each time.
+/// Levels in a file that another program replaces repeatedly, complete each time.
 class LevelsInFile {
  public:
   explicit LevelsInFile(std::string file) : file_(std::move(file)) {}
@@ -47,14 +48,14 @@ class LevelsInFile {
   std::shared_ptr<const cv::Mat1f> operator()() {
     struct stat now {};
     if (::stat(file_.c_str(), &now) != 0) return levels_ = nullptr;
-    // Replaced files are other files: two of the same moment differ.
+    // The inode distinguishes replaced files with the same time.
     const std::array<std::int64_t, 4> version{static_cast<std::int64_t>(now.st_ino), now.st_mtim.tv_sec,
                                               now.st_mtim.tv_nsec, now.st_size};
     if (version == version_) return levels_;
     constexpr std::size_t most_values = std::size_t{1} << 26;
     const auto content = read_text_file(file_);
     const auto place = content ? find_message(*content, most_values) : tl::unexpected(content.error());
-    // What cannot be read stays what it was; the next change is looked at again.
+    // An unreadable file leaves the levels as they are; the next change is read again.
     if (!place || !*place || (*place)->shape.size() != 2 || (*place)->count == 0) return levels_;
     version_ = version;
     return levels_ = std::make_shared<const cv::Mat1f>(picture_at(*content, **place));
@@ -93,7 +94,7 @@ std::vector<std::string> emulated_cameras() {
 
 void enter_emulation(const std::string& camera) {
 #ifdef TODBENCH_WITH_EMULATED_VIDEO
-  // All of them but the GigE cameras are behind device nodes.
+  // All cameras except the GigE ones are behind device nodes.
   if (!camera.starts_with(gige)) MockSystem::enter();
 #else
   (void)camera;
@@ -113,7 +114,7 @@ EmulationArguments emulation_for(const Plan& plan) {
   arguments.distance_m = plan.target.distance_m;
   arguments.black_body_port = 0;
   arguments.stage_port = 0;
-  arguments.seed = plan.seed + 1;  // a camera of its own, not the twin's noise
+  arguments.seed = plan.seed + 1;  // a separate camera: its noise is not the twin's
   return arguments;
 }
 
@@ -197,7 +198,7 @@ Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& a
 }
 
 Plan with_laboratory(Plan plan, const Laboratory& laboratory) {
-  // The address of the camera is enough on GigE; anything else is known by its serial number.
+  // GigE cameras are identified by address, others by serial number.
   plan.camera.id = has_scheme(laboratory.camera_id(), camera_scheme::gige)
                        ? camera_id(camera_scheme::gige, laboratory.camera_address())
                        : laboratory.camera_id();

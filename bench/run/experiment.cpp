@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/experiment.h"
 
 #include <algorithm>
@@ -6,23 +7,25 @@
 #include <memory>
 
 #include "acquisition/recording/frame_stream.h"
+#include "bench/judgement/run_findings.h"
+#include "bench/run/background_twin_functions.h"
 #include "bench/run/bench_host.h"
+#include "bench/run/camera_settings.h"
+#include "bench/run/camera_surrogate.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/direct_results.h"
 #include "bench/run/experiment_inputs.h"
-#include "bench/run/functions_meanwhile.h"
 #include "bench/run/grey_results.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/observed_source.h"
 #include "bench/run/paired_comparison.h"
 #include "bench/run/physical_measures.h"
 #include "bench/run/recorded_bench.h"
-#include "bench/run/session_frame.h"
+#include "bench/run/session_end.h"
 #include "bench/run/simulated_responses.h"
 #include "bench/run/simulated_set_up.h"
 #include "bench/run/twin_shapes.h"
 #include "bench/text/text.h"
-#include "sim_devices/sensor/effect_quantisation.h"
 #include "tod/adequacy/adequacy.h"
 #include "tod/measurement/contrast_error.h"
 #include "tod/measurement/measurement.h"
@@ -42,8 +45,8 @@ class Recorder {
   Recorder(SessionFolder& folder, const ExperimentListener& listener, std::stop_token stop)
       : folder_(folder), listener_(listener), forward_(std::move(stop), [this] { halt_.request_stop(); }) {}
 
-  /// Trials and presentations reach the disk one by one. A disk that refuses stops the run with `io`; what counts then
-  /// is what is on it.
+  /// Writes trials and presentations to the disk one by one. A disk error stops the run with `io`; then the data on the
+  /// disk count.
   [[nodiscard]] Result<MeasurementResult> run(OpenedBench& bench, Observer& observer, TrialSchedule& schedule,
                                               const MeasurementOptions& options, SessionCurve which) {
     auto writer = folder_.open_trials(which);
@@ -58,7 +61,7 @@ class Recorder {
       halt_.request_stop();
     };
     MeasurementListener events;
-    // A simulated exposure happens at no time of the host: its files are the same whenever it is made.
+    // A simulated exposure has no host time: its files do not depend on when it is made.
     events.on_trial = [&](Trial trial) {
       if (bench.simulated) trial.host_time_ns = trial.device_time_ns;
       if (!write_error) keep(writer->append(trial));
@@ -112,7 +115,7 @@ class Recorder {
   std::stop_callback<std::function<void()>> forward_;
 };
 
-/// What modules write to standard error goes into the log of the session, the first lines of it.
+/// Writes the first lines of the modules' standard error to the log of the session.
 ModuleLine module_log(SessionFolder& folder) {
   constexpr int most_lines = 1000;
   return [&folder, lines = std::make_shared<int>(0)](std::string_view line) {
@@ -134,7 +137,7 @@ Trials trials_of(const MeasurementResult& result) {
   return result.ended_by ? Trials::ended_early : Trials::all;
 }
 
-/// Fits a curve with the functions of its simulated sensor, where the plan has it so. `known`: of fit_twin_shapes().
+/// Fits a curve with the functions of its simulated sensor, if the plan requests it. `known`: of fit_twin_shapes().
 TwinShapesOutcome take_shape(TodCurve& curve, std::span<const Trial> trials, Trials made, const Plan& plan,
                              const ExperimentInputs& inputs, const std::map<double, double>& shown_delta_t_k,
                              const TodCurve* known, std::stop_token stop) {
@@ -154,25 +157,26 @@ TwinShapesOutcome take_shape(TodCurve& curve, std::span<const Trial> trials, Tri
 }
 
 void say_that_it_is_fitted(const MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
-                           const SessionFrame& frame) {
+                           const OpenSession& open) {
   if (!result.ended_by && chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape)
-    phase(frame.folder, frame.listener, "fitting with the functions of " + inputs.sensor.name);
+    phase(open.folder, open.listener, "fitting with the functions of " + inputs.sensor.name);
 }
 
-/// What became of the fit.
-void keep_shape(MeasurementResult& result, const TwinShapesOutcome& outcome, const SessionFrame& frame) {
+/// Stores the outcome of the fit.
+void keep_shape(MeasurementResult& result, const TwinShapesOutcome& outcome, const OpenSession& open) {
   if (!result.ended_by) result.ended_by = outcome.ended_by;
   for (const auto& sentence : outcome.notes) {
-    note(frame.folder, frame.listener, sentence);
+    note(open.folder, open.listener, sentence);
     result.notes.push_back(sentence);
   }
 }
 
-/// What a twin has from the camera before it; a simulation alone has nothing.
+/// Inputs of a twin from its camera; empty for a simulation alone.
 struct FromCamera {
   const TodCurve* curve = nullptr;
-  std::map<double, double> shown_delta_t_k{};  ///< what it saw of each set contrast
-  std::map<std::string, double> responses{};   ///< of simulated_responses(), where they are those of the twin too
+  const TodCurve* functions = nullptr;         ///< fitted with the functions of the twin
+  std::map<double, double> shown_delta_t_k{};  ///< observed contrast for each set contrast
+  std::map<std::string, double> responses{};   ///< of simulated_responses(), if they are those of the twin too
 };
 
 Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, SessionFolder& folder,
@@ -196,27 +200,27 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   if (!result) return fail("simulating", result.error());
   TwinRun run{.result = std::move(*result), .curve = {}, .wall_s = 0};
   auto curve = tod_curve(run.result.trials, fit_options(plan));
-  // What ended the run is the reason, not that the few trials up to there make no curve.
+  // Report the reason of the early end rather than that its few trials make no curve.
   if (!curve) return tl::unexpected(run.result.ended_by.value_or(curve.error()));
   run.curve = std::move(*curve);
   add_contrast_errors(run.curve, run.result.contrasts);
   run.curve.sensor = inputs.sensor.name;
   run.curve.observer = observer_name(plan, inputs);
+  keep_noise(run.result, run.curve);
   for (auto& point : run.curve.points) {
-    // Of the sensor as it is: where the planner leaves the noise out, that says nothing about its counts.
-    point.noise_counts =
-        sensor_module(inputs.sensor) != nullptr ? run.result.temporal_noise_counts : noise_in_counts(inputs.sensor);
-    point.lag1_correlation = run.result.lag1_correlation;
+    if (!run.result.judged_contrasts.empty() || sensor_module(inputs.sensor) != nullptr) continue;
+    // Noise of the complete sensor: if the planner skips noise, the counts are not representative.
+    point.noise_counts = inputs.stated_noise_counts;
   }
 
   const TodCurve stopped_by = known_functions(set_up->functions, run.curve);
   say_that_it_is_fitted(run.result, plan, inputs, {folder, listener});
   const TwinShapesOutcome shaped =
       take_shape(run.curve, run.result.trials, trials_of(run.result), plan, inputs, shown_delta_t_k,
-                 stopped_by.points.empty() ? camera.curve : &stopped_by, stop);
+                 stopped_by.points.empty() ? camera.functions : &stopped_by, stop);
   keep_shape(run.result, shaped, {folder, listener});
   if (!run.result.ended_by && has_modules(plan, inputs.sensor)) {
-    const std::string sentence = "no direct estimate: it would leave out the modules";
+    const std::string sentence = "no direct estimate: it would not include the modules";
     note(folder, listener, sentence);
     run.result.notes.push_back(sentence);
   } else if (!run.result.ended_by) {
@@ -243,7 +247,7 @@ std::chrono::year_month_day today() {
   return std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
 }
 
-/// What the twin adds to a measured curve; what failed there ends the session early.
+/// Results that the twin adds to a measured curve; its errors end the session early.
 struct TwinResults {
   std::optional<RunRecord> run;
   std::optional<TodCurve> curve;
@@ -251,7 +255,7 @@ struct TwinResults {
   std::optional<Error> ended_by;
 };
 
-/// The simulated twin at the contrasts that the camera saw, and the comparison.
+/// Simulates the twin at the contrasts that the camera observed, and compares.
 TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const FromCamera& camera, SessionFolder& folder,
                      const ExperimentHost& host, const ExperimentListener& listener, std::stop_token stop) {
   phase(folder, listener, "simulating its twin " + inputs.sensor.name);
@@ -275,11 +279,11 @@ TwinResults run_twin(const Plan& plan, const ExperimentInputs& inputs, const Fro
   return results;
 }
 
-/// The same by the phases that camera and twin both saw.
-void pair_with_twin(ExperimentOutcome& outcome, Meanwhile<Pairs>& made, const ExperimentInputs& inputs,
-                    const SessionFrame& frame, std::stop_token stop) {
+/// The same by the phases that camera and twin both observed.
+void pair_with_twin(ExperimentOutcome& outcome, BackgroundTask<Pairs>& made, const ExperimentInputs& inputs,
+                    const OpenSession& open, std::stop_token stop) {
   if (!outcome.comparison || outcome.ended_by) return;
-  phase(frame.folder, frame.listener, "showing " + inputs.sensor.name + " what the camera saw");
+  phase(open.folder, open.listener, "presenting the camera's targets to " + inputs.sensor.name);
   const Pairs& pairs = made.get(std::move(stop));
   Comparison& comparison = *outcome.comparison;
   for (std::size_t i = 0; i < comparison.points.size(); ++i) {
@@ -288,11 +292,11 @@ void pair_with_twin(ExperimentOutcome& outcome, Meanwhile<Pairs>& made, const Ex
     });
     if (same != pairs.ratios.points.end()) add_paired(comparison, i, *same->paired);
   }
-  for (const auto& sentence : pairs.said.notes) note(frame.folder, frame.listener, sentence);
+  for (const auto& sentence : pairs.said.notes) note(open.folder, open.listener, sentence);
   outcome.ended_by = pairs.said.ended_by;
 }
 
-/// A tolerance beyond the hard caps is refused before anything is simulated or moved.
+/// Rejects a tolerance beyond the hard caps before anything is simulated or moved.
 Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
   if (has_modules(plan, inputs.sensor)) return {};
   if (const auto prediction = predict_plan(plan, inputs); !prediction) return tl::unexpected(prediction.error());
@@ -303,27 +307,31 @@ Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
 struct MeasuredRun {
   MeasurementResult result;
   MeasurementOptions options;
-  std::map<double, ProportionTable> functions{};  ///< that an adaptive schedule stopped by
+  std::map<double, ProportionTable> functions{};  ///< of an adaptive schedule's stopping rule
+  std::vector<ChangedSetting> changed{};          ///< of the camera, from its opening to the last frame
 };
 
-/// What the contrast estimate of the camera reads of the plates.
+/// Response of the contrast estimator for the plates, for the camera.
 Result<std::map<std::string, double>> responses_of_camera(const Plan& plan, const ExperimentInputs& inputs,
                                                           std::stop_token stop) {
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   return simulated_responses(model, plan, inputs.plates, camera_options(plan, inputs.plates), std::move(stop));
 }
 
-/// The measurement with the camera of the plan, into the session.
-Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& inputs,
-                                 std::map<std::string, double> responses, OpenedBench& bench, SessionFolder& folder,
-                                 const ExperimentListener& listener, std::stop_token stop) {
+/// Measures with the camera of the plan, into the session.
+Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& inputs, CameraSurrogate& surrogate,
+                                 OpenedBench& bench, SessionFolder& folder, const ExperimentListener& listener,
+                                 std::stop_token stop) {
+  const SourceInfo at_start = bench.camera->info();
   const auto modules = picture_modules(plan, inputs.sensor, Side::measured);
   const ModuleLine log_line = module_log(folder);
   put_modules_behind(bench, modules, log_line);
   const auto observer = observer_of(plan, inputs, log_line);
   MeasurementOptions options = camera_options(plan, inputs.plates);
   take_answers(options, plan, inputs);
-  options.contrast_response = std::move(responses);
+  options.max_contrast_error = gross_contrast_deviations(plan);
+  options.contrast_response = surrogate.responses();
+  options.learn_response = [&surrogate](const SetUpPicture& found) { return surrogate.learn(found); };
   const auto air = stated_air(plan, inputs.sensor);
   if (!air) return tl::unexpected(air.error());
   options.air_transmittance = *air;
@@ -335,7 +343,10 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
                                       RandomStream(plan.seed, "schedule"), *functions);
   auto result = Recorder(folder, listener, stop).run(bench, *observer, *schedule, options, SessionCurve::main);
   if (!result) return tl::unexpected(result.error());
-  return MeasuredRun{*std::move(result), std::move(options), *std::move(functions)};
+  options.contrast_response = surrogate.responses();
+  options.learn_response = {};
+  return MeasuredRun{*std::move(result), std::move(options), *std::move(functions),
+                     changed_settings(*bench.camera, at_start)};
 }
 
 std::map<double, double> contrasts_seen(const TodCurve& curve) {
@@ -344,19 +355,16 @@ std::map<double, double> contrasts_seen(const TodCurve& curve) {
   return seen;
 }
 
-/// The curve of these trials before it has the shape of the twin. Fails where they make none.
+/// Returns the curve of these trials without the shape of the twin. Fails if they make none.
 Result<TodCurve> curve_of_camera(MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
-                                 const SourceInfo& info, const SessionFrame& frame) {
+                                 const SourceInfo& info, const OpenSession& open) {
   auto curve = tod_curve(result.trials, fit_options(plan));
   if (!curve) return tl::unexpected(result.ended_by.value_or(curve.error()));
   add_contrast_errors(*curve, result.contrasts);
   curve->sensor = info.model + " " + info.serial;
   curve->observer = observer_name(plan, inputs);
-  for (auto& point : curve->points) {
-    point.noise_counts = result.temporal_noise_counts;
-    point.lag1_correlation = result.lag1_correlation;
-  }
-  if (auto kept = keep_grey_levels(*curve, result, frame); !kept && !result.ended_by) result.ended_by = kept.error();
+  keep_noise(result, *curve);
+  if (auto kept = keep_grey_levels(*curve, result, open); !kept && !result.ended_by) result.ended_by = kept.error();
   return curve;
 }
 
@@ -364,35 +372,83 @@ Result<TodCurve> curve_of_camera(MeasurementResult& result, const Plan& plan, co
 struct FittedCurve {
   TodCurve curve;
   TwinShapesOutcome said;
+  std::optional<TodCurve> by_twin{};  ///< with the function of the twin, if `curve` has that of the surrogate
+
+  std::map<double, double> model_u{};  ///< by set contrast, if the pictures contradict the model
+
+  [[nodiscard]] const TodCurve& functions_of_twin() const { return by_twin ? *by_twin : curve; }
 };
 
-/// On a thread of its own: a contrast that was seen more than 2 % beside what was set needs a function of its own,
-/// which takes a second. What is lent outlives it. `functions`: null where an adaptive schedule stopped by those of
-/// `measured`.
-std::unique_ptr<Meanwhile<FittedCurve>> fit_meanwhile(TodCurve curve, const MeasuredRun& measured, const Plan& plan,
-                                                      const ExperimentInputs& inputs, FunctionsMeanwhile* functions) {
-  const Trials made = trials_of(measured.result);
-  const std::span<const Trial> trials = measured.result.trials;
-  return std::make_unique<Meanwhile<FittedCurve>>([curve = std::move(curve), made, trials, &measured, &plan, &inputs,
-                                                   functions](std::stop_token stop) {
-    TodCurve known;
-    if (made == Trials::all)
-      known = functions != nullptr ? functions->known_for(curve, stop) : known_functions(measured.functions, curve);
-    FittedCurve fitted{curve, {}};
-    fitted.said = take_shape(fitted.curve, trials, made, plan, inputs, contrasts_seen(curve), &known, std::move(stop));
-    examine(fitted.curve, fit_options(plan));
-    return fitted;
-  });
+std::vector<AdequacyFinding> findings_of(const std::vector<ChangedSetting>& changed) {
+  std::vector<AdequacyFinding> out;
+  for (const ChangedSetting& one : changed)
+    out.push_back({FindingKind::setting_change, {}, {}, sentence(one), scales_counts(one.feature)});
+  return out;
 }
 
-/// The camera's physical measures; then, whether what was recorded of it all is on the disk.
+/// Widens the interval if the pictures contradict the model or could not be compared. The half-width of a rectangular
+/// distribution is the largest of: the difference between the functions or responses of twin and surrogate, and the
+/// effect of another slope.
+void widen_where_not_verified(FittedCurve& fitted, const CameraSurrogate& surrogate) {
+  if (!surrogate.refused() && !surrogate.unseen()) return;
+  for (TodPoint& point : fitted.curve.points) {
+    if (!surrogate.refused() && !point.fit.twin_shape) continue;
+    double shift = surrogate.response_shift();
+    if (point.fit.twin_shape) shift = std::max(shift, std::abs(point.fit.twin_shape->departure_shift));
+    const TodPoint* twin = fitted.by_twin ? point_at(*fitted.by_twin, point.set_delta_t_k) : nullptr;
+    if (twin != nullptr && twin->fit.threshold && point.fit.threshold)
+      shift = std::max(shift, std::abs(std::log(*point.fit.threshold / *twin->fit.threshold)));
+    fitted.model_u[point.set_delta_t_k] = shift / std::sqrt(3.0);
+    join_uncertainty(point.fit, fitted.model_u[point.set_delta_t_k], std::nullopt);
+  }
+}
+
+/// Fits on its own thread: an effective contrast that differs by more than 2 % from the set one needs its own function,
+/// which takes a second. Borrowed objects outlive it. `functions`: null if an adaptive schedule stopped by those of
+/// `measured`.
+std::unique_ptr<BackgroundTask<FittedCurve>> fit_in_background(TodCurve curve, const MeasuredRun& measured,
+                                                               const Plan& plan, const ExperimentInputs& inputs,
+                                                               BackgroundTwinFunctions* functions,
+                                                               const CameraSurrogate& surrogate) {
+  const Trials made = trials_of(measured.result);
+  const std::span<const Trial> trials = measured.result.trials;
+  return std::make_unique<BackgroundTask<FittedCurve>>(
+      [curve = std::move(curve), made, trials, &measured, &plan, &inputs, functions, &surrogate](std::stop_token stop) {
+        TodCurve known;
+        if (made == Trials::all)
+          known = functions != nullptr ? functions->known_for(curve, stop) : known_functions(measured.functions, curve);
+        FittedCurve fitted{curve, {}};
+        fitted.said = take_shape(fitted.curve, trials, made, plan, inputs, contrasts_seen(curve), &known, stop);
+        const auto lent = surrogate.lent();
+        if (lent && made == Trials::all && !fitted.said.ended_by &&
+            chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape) {
+          fitted.by_twin = std::move(fitted.curve);
+          fitted.curve = curve;
+          fitted.said = take_shape(fitted.curve, trials, made, plan, *lent, contrasts_seen(curve), nullptr, stop);
+        }
+        join_contrast_errors(fitted.curve);
+        widen_where_not_verified(fitted, surrogate);
+        examine(fitted.curve, fit_options(plan));
+        for (TodPoint& point : fitted.curve.points)
+          if (point.adequacy && fitted.model_u.contains(point.set_delta_t_k))
+            point.adequacy->findings.push_back(surrogate.finding());
+        const MeasurementResult& run = measured.result;
+        const auto settings = findings_of(measured.changed);
+        for (auto& sentence :
+             add_run_findings(fitted.curve, plan, {run.presentations, run.contrasts, run.constancy, settings}))
+          fitted.said.notes.push_back(std::move(sentence));
+        return fitted;
+      });
+}
+
+/// Takes the camera's physical measures, then checks that the recording is complete on disk.
 std::optional<CameraMeasures> measures_of_camera(MeasuredRun& measured, const Plan& plan,
                                                  const ExperimentInputs& inputs, OpenedBench& bench,
-                                                 FrameStreamWriter* recording, const SessionFrame& frame,
+                                                 FrameStreamWriter* recording, const OpenSession& open,
                                                  std::stop_token stop) {
   std::optional<Error>& ended_by = measured.result.ended_by;
   if (ended_by) return std::nullopt;
-  auto measures = physical_measures(plan, measured.options, inputs, bench, frame, std::move(stop));
+  auto measures = physical_measures(plan, measured.options, inputs, bench, open, std::move(stop));
   if (!measures) ended_by = measures.error();
   if (recording != nullptr && !ended_by) {
     if (auto kept = recording->verified_frames(); !kept) ended_by = with_context("recording", kept.error());
@@ -400,25 +456,25 @@ std::optional<CameraMeasures> measures_of_camera(MeasuredRun& measured, const Pl
   return measures ? *std::move(measures) : std::nullopt;
 }
 
-/// What was begun beside the camera.
-struct Beside {
-  Meanwhile<Pairs>* pairs;  ///< null: none are made
-  MeasuresMeanwhile& measures;
+/// Work started in parallel to the camera.
+struct BackgroundWork {
+  BackgroundTask<Pairs>* pairs;  ///< null: none are made
+  BackgroundMeasures& measures;
 };
 
-/// Run, comparison and physical measures of the twin.
+/// Adds run, comparison and physical measures of the twin.
 void add_twin(ExperimentOutcome& outcome, Provenance& provenance, const FromCamera& camera, const LoadedPlan& loaded,
-              const Plan& plan, const ExperimentInputs& inputs, const Beside& beside, const ExperimentHost& host,
-              const SessionFrame& frame, const std::stop_token& stop) {
-  TwinResults twin = run_twin(plan, inputs, camera, frame.folder, host, frame.listener, stop);
+              const Plan& plan, const ExperimentInputs& inputs, const BackgroundWork& background,
+              const ExperimentHost& host, const OpenSession& open, const std::stop_token& stop) {
+  TwinResults twin = run_twin(plan, inputs, camera, open.folder, host, open.listener, stop);
   provenance.twin_run = std::move(twin.run);
   outcome.twin = std::move(twin.curve);
   outcome.comparison = std::move(twin.comparison);
   outcome.ended_by = std::move(twin.ended_by);
-  if (beside.pairs != nullptr) pair_with_twin(outcome, *beside.pairs, inputs, frame, stop);
+  if (background.pairs != nullptr) pair_with_twin(outcome, *background.pairs, inputs, open, stop);
   if (outcome.ended_by) return;
   if (outcome.measures) compare_picture(*outcome.measures, loaded, inputs);
-  auto measures = beside.measures.take(frame, stop);
+  auto measures = background.measures.take(open, stop);
   if (measures)
     outcome.twin_measures = *std::move(measures);
   else
@@ -450,22 +506,22 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
   if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
   auto folder = begin_session(*chosen, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
-  const SessionFrame frame{*folder, listener};
+  const OpenSession open{*folder, listener};
   if (listener.on_session) listener.on_session(folder->path());
 
   for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
   phase(*folder, listener, "simulating " + inputs->sensor.name);
   auto run = run_simulated(plan, *inputs, *folder, SessionCurve::main, {}, options.host, listener, stop);
   if (!run) {
-    // Below what can be seen, the plate may not be found either: that is the reason, not its symptom.
+    // At contrasts below the threshold the plate may not be found either: report the cause, not the symptom.
     if (!inputs->identifiable && run.error().code == ErrorCode::calibration)
-      return abandon(frame, plan, provenance,
+      return abandon(open, plan, provenance,
                      {ErrorCode::not_identifiable, inputs->warnings.front() + "; " + run.error().message});
-    return abandon(frame, plan, provenance, run.error());
+    return abandon(open, plan, provenance, run.error());
   }
   std::optional<CameraMeasures> measures;
   if (!run->result.ended_by) {
-    auto found = simulated_measures(loaded, *inputs, frame, stop);
+    auto found = simulated_measures(loaded, *inputs, open, stop);
     if (found)
       measures = *std::move(found);
     else
@@ -483,7 +539,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
                     .figures = figures_of(*provenance.run),
                     .ended_by = run->result.ended_by,
                     .presentations = std::move(run->result.presentations)},
-                   plan, frame, provenance);
+                   plan, open, provenance);
 }
 
 Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
@@ -528,14 +584,15 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   provenance.target = bench.target->capabilities().description;
   auto folder = begin_session(*chosen, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
-  const SessionFrame frame{*folder, listener};
+  const OpenSession open{*folder, listener};
   if (listener.on_session) listener.on_session(folder->path());
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
+  for (const auto& warning : bench.warnings) note(*folder, listener, warning);
   for (const auto& warning : inputs.warnings) note(*folder, listener, warning);
   std::shared_ptr<FrameStreamWriter> recording;
   if (plan.measurement.record_frames) {
     auto begun = record_bench(bench, folder->path());
-    if (!begun) return abandon(frame, plan, provenance, begun.error());
+    if (!begun) return abandon(open, plan, provenance, begun.error());
     recording = *std::move(begun);
   }
 
@@ -546,33 +603,42 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   const auto begin = Clock::now();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
   auto responses = responses_of_camera(plan, inputs, stop);
-  if (!responses) return abandon(frame, plan, provenance, with_context("measuring", responses.error()));
-  std::optional<FunctionsMeanwhile> functions;
+  if (!responses) return abandon(open, plan, provenance, with_context("measuring", responses.error()));
+  std::optional<BackgroundTwinFunctions> functions;
   if (plan.schedule.kind == ScheduleKind::constant) functions.emplace(plan, inputs);
-  MeasuresMeanwhile twin_measures(loaded, inputs);
-  auto measured = run_measured(plan, inputs, *std::move(responses), bench, *folder, listener, stop);
-  if (!measured) return abandon(frame, plan, provenance, with_context("measuring", measured.error()));
+  BackgroundMeasures twin_measures(loaded, inputs);
+  CameraSurrogate surrogate(*chosen, inputs, *responses);
+  auto measured = run_measured(plan, inputs, surrogate, bench, *folder, listener, stop);
+  if (!measured) return abandon(open, plan, provenance, with_context("measuring", measured.error()));
   MeasurementResult& result = measured->result;
   result.notes.insert(result.notes.end(), inputs.warnings.begin(), inputs.warnings.end());
   if (!forecast.empty()) result.notes.push_back(forecast);
-  auto curve = curve_of_camera(result, plan, inputs, info, frame);
+  provenance.camera_optics = surrogate.record();
+  if (const auto sentence = surrogate.sentence()) {
+    note(*folder, listener, *sentence);
+    result.notes.push_back(*sentence);
+  }
+  auto curve = curve_of_camera(result, plan, inputs, info, open);
   if (!curve) {
     provenance.run = run_record(result, seconds_since(begin));
-    return abandon(frame, plan, provenance, curve.error());
+    return abandon(open, plan, provenance, curve.error());
   }
-  const auto fit = fit_meanwhile(*std::move(curve), *measured, plan, inputs, functions ? &*functions : nullptr);
-  std::unique_ptr<Meanwhile<Pairs>> pairs;
+  const auto fit =
+      fit_in_background(*std::move(curve), *measured, plan, inputs, functions ? &*functions : nullptr, surrogate);
+  std::unique_ptr<BackgroundTask<Pairs>> pairs;
   if (!result.ended_by) {
     const auto camera_of = [&](std::stop_token halt) {
-      return PairedCamera{fit->get(std::move(halt)).curve, result.trials, result.set_ups};
+      const FittedCurve& made = fit->get(std::move(halt));
+      return PairedCamera{made.curve, result.trials, result.set_ups, made.by_twin ? &*made.by_twin : nullptr,
+                          &made.model_u};
     };
-    pairs = pairs_meanwhile(camera_of, plan, inputs);
+    pairs = pairs_in_background(camera_of, plan, inputs);
   }
-  auto measures = measures_of_camera(*measured, plan, inputs, bench, recording.get(), frame, stop);
+  auto measures = measures_of_camera(*measured, plan, inputs, bench, recording.get(), open, stop);
   bench = {};
-  say_that_it_is_fitted(result, plan, inputs, frame);
+  say_that_it_is_fitted(result, plan, inputs, open);
   const FittedCurve& fitted = fit->get(stop);
-  keep_shape(result, fitted.said, frame);
+  keep_shape(result, fitted.said, open);
   provenance.run = run_record(result, seconds_since(begin));
   ExperimentOutcome outcome{.folder = folder->path(),
                             .curve = fitted.curve,
@@ -585,12 +651,13 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
                             .ended_by = result.ended_by,
                             .presentations = std::move(result.presentations)};
   if (!outcome.ended_by) {
-    FromCamera camera{.curve = &fitted.curve, .shown_delta_t_k = contrasts_seen(fitted.curve)};
-    if (plan.camera.contrast == ContrastUnit::kelvin) camera.responses = measured->options.contrast_response;
-    add_twin(outcome, provenance, camera, loaded, plan, inputs, {pairs.get(), twin_measures}, options.host, frame,
-             stop);
+    FromCamera camera{.curve = &fitted.curve,
+                      .functions = &fitted.functions_of_twin(),
+                      .shown_delta_t_k = contrasts_seen(fitted.curve)};
+    if (plan.camera.contrast == ContrastUnit::kelvin) camera.responses = *responses;
+    add_twin(outcome, provenance, camera, loaded, plan, inputs, {pairs.get(), twin_measures}, options.host, open, stop);
   }
-  return concluded(std::move(outcome), plan, frame, provenance);
+  return concluded(std::move(outcome), plan, open, provenance);
 }
 
 }  // namespace todbench

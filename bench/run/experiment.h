@@ -1,4 +1,5 @@
-// From a plan to a session folder: measure, simulate the twin, compare, judge, report.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a plan to a session folder: measures, simulates the twin, compares, judges, reports.
 #pragma once
 
 #include <chrono>
@@ -23,57 +24,57 @@
 
 namespace todbench {
 
-/// What goes on, for a terminal or a window; it decides nothing. Called from the thread of the run.
+/// Progress callbacks for a terminal or a window; they do not affect the run. Called from the thread of the run.
 struct ExperimentListener {
   std::function<void(std::string_view phase)> on_phase{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
   std::function<void(std::string_view sentence)> on_note{};
-  /// The camera was lost and is waited for, `patience` at most; also said as a note. A replay waits for nothing: 0.
+  /// The camera is lost and awaited for at most `patience` (0 in a replay); also reported as a note.
   std::function<void(const SourceInfo& camera, std::chrono::milliseconds patience)> on_lost{};
-  /// The target takes its time, or does no longer (nothing).
+  /// The run waits for the target; empty: no longer.
   OnTargetWait on_wait{};
-  /// The folder exists and holds the plan.
+  /// The session folder exists and contains the plan.
   std::function<void(const std::filesystem::path& folder)> on_session{};
   std::function<void(const SourceInfo&)> on_open{};
-  /// Every frame of the camera as it arrives, good or bad; not those of the twin.
+  /// Every frame of the camera as it arrives, valid or not; not those of the twin.
   std::function<void(const Frame&)> on_frame{};
   std::function<void(SessionCurve, const SetUpRecord&)> on_set_up{};
-  /// A trial that is on disk, and the patch that was judged, lent for the call.
+  /// A trial that is on disk, and its judged patch, valid during the call.
   std::function<void(SessionCurve, const Trial&, const Patch&)> on_trial{};
 };
 
 struct ExperimentOptions {
   std::filesystem::path folder;
   ExistingFolder existing = ExistingFolder::refuse;
-  ExperimentHost host{};  ///< who commands the run
+  ExperimentHost host{};  ///< controls the run
 };
 
-/// What a run came to. The session folder holds the same.
+/// Result of a run. The session folder contains the same.
 struct ExperimentOutcome {
   std::filesystem::path folder;
-  TodCurve curve;                ///< measured, or simulated for simulate_plan()
-  std::optional<TodCurve> twin;  ///< simulated, beside a measured curve
+  TodCurve curve;                ///< measured, or simulated by simulate_plan()
+  std::optional<TodCurve> twin;  ///< simulated; with a measured curve only
   std::optional<Comparison> comparison;
-  Verdict verdict;                                ///< as verdict.json
-  std::optional<CameraMeasures> measures{};       ///< physical, of the camera or of the simulated sensor alone
+  Verdict verdict;                                ///< same as verdict.json
+  std::optional<CameraMeasures> measures{};       ///< physical; of the camera or of the simulated sensor alone
   std::optional<CameraMeasures> twin_measures{};  ///< of the twin
   SensorPlan effects;                             ///< of the simulated sensor
   RunFigures figures;                             ///< of `curve`
-  std::optional<Error> ended_by;                  ///< why it stopped early; the folder is valid and marked interrupted
+  std::optional<Error> ended_by;                  ///< of an early stop; the folder is valid and marked interrupted
   std::vector<Presentation> presentations{};      ///< of `curve`
-  std::optional<CurveUncertainty> uncertainty{};  ///< of `curve`; nothing where the plan has no budget
+  std::optional<CurveUncertainty> uncertainty{};  ///< of `curve`; empty if the plan has no budget
 };
 
-/// Measures with the devices of the plan, runs its simulated twin and compares. Fails when nothing could be measured:
-/// without a folder when a device cannot be opened, with a folder marked interrupted after that. Of what the plan names
-/// nothing is read again.
+/// Measures with the devices of the plan, simulates its twin and compares. Fails if no data could be measured: without
+/// a folder if a device cannot be opened, otherwise with a folder marked interrupted. Files that the plan names are not
+/// read again.
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
-/// The same after LoadedPlan::load().
+/// Calls LoadedPlan::load() first.
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
 
-/// measure_plan() on a bench that is open already.
+/// The same as measure_plan(), on an open bench.
 [[nodiscard]] Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const ExperimentInputs& inputs,
                                                          OpenedBench bench, const ExperimentOptions& options,
                                                          const ExperimentListener& listener, std::stop_token stop);

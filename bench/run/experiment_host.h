@@ -1,4 +1,5 @@
-// Who commands an experiment.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The host that controls an experiment.
 #pragma once
 
 #include "bench/run/pause.h"
@@ -7,11 +8,11 @@
 
 namespace todbench {
 
-/// What decides how a run goes on, beside its plan. What only wants to know how it goes is an ExperimentListener.
+/// Controls of a run beyond its plan. An ExperimentListener only receives progress.
 struct ExperimentHost {
-  /// Lets a run rest between two presentations; null: it never does. Outlives the run.
+  /// Lets a run pause between two presentations; null: it never pauses. Outlives the run.
   const Pause* pause = nullptr;
-  /// Answers a request to a target of kind prompt; none: the terminal.
+  /// Answers the requests of a target of kind prompt; empty: asks at the terminal.
   AskOperator ask_operator{};
   HostClocks clocks = host_clocks();
 };

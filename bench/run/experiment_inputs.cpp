@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/experiment_inputs.h"
 
 #include <algorithm>
@@ -7,13 +8,14 @@
 #include "bench/plan/plan_options.h"
 #include "bench/run/module_chain.h"
 #include "bench/text/text.h"
+#include "sim_devices/sensor/effect_quantisation.h"
 #include "tod/measurement/geometry.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {
 
-/// Sizes that do not fit are named before anything is computed or moved, a few of them.
+/// Names a few sizes that do not fit, before anything is computed or moved.
 Result<void> check_geometry(const MeasurementOptions& options, const ExperimentInputs& inputs, cv::Size picture) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   auto misfits = find_misfits(options, observer, picture);
@@ -45,26 +47,29 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   inputs.ctf_plate = loaded.parts().ctf_plate;
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
+  inputs.stated_noise_counts = noise_in_counts(loaded.sensor());
   if (has_modules(plan, loaded.sensor())) {
     if (chosen_estimator(plan, loaded.sensor()).estimator == FitEstimator::twin_shape)
-      return fail(ErrorCode::invalid_input,
-                  "the functions of the sensor are not those behind a module: [fit] estimator must be 'weibull' or "
-                  "'automatic'");
+      return fail(
+          ErrorCode::invalid_input,
+          "the psychometric functions of the sensor do not include a module: [fit] estimator must be 'weibull' or "
+          "'automatic'");
     if (plan.schedule.answers == AnswersChoice::graded)
-      return fail(ErrorCode::invalid_input,
-                  "graded answers are fitted with the function of the sensor, which is not that behind a module: "
-                  "[schedule] answers must be 'binary' or 'automatic'");
+      return fail(
+          ErrorCode::invalid_input,
+          "graded answers are fitted with the psychometric function of the sensor, which does not include a module: "
+          "[schedule] answers must be 'binary' or 'automatic'");
     if (auto possible = check_sensor_module(loaded.sensor(), inputs.motion); !possible)
       return tl::unexpected(possible.error());
     if (const ModulePlan* module = sensor_module(loaded.sensor())) {
       if (plan.measures.any())
         return fail(ErrorCode::invalid_input,
-                    "physical measures are compared with the closed forms of the sensor, which a module in its place "
-                    "does not have: no [measures]");
+                    "physical measures are compared with the closed forms of the sensor, and a module in place of the "
+                    "sensor has none: remove [measures]");
       inputs.warnings.push_back("the simulated sensor is the module '" + one_line(module->command) +
-                                "', which is told the keys of the sensor file");
+                                "'; it receives the keys of the sensor file");
     }
-    // What may be left out for the sensor alone may matter behind a module.
+    // An effect that is negligible for the sensor alone may matter behind a module.
     inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
     inputs.sensor = as_planned(loaded.sensor(), inputs.effects);
     auto accuracy = accuracy_of(plan);
@@ -79,7 +84,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
     inputs.warnings = std::move(effects->warnings);
   } else {
     inputs.identifiable = false;
-    // Without a threshold there is nothing that skipping could change by little.
+    // Without a threshold there is no reference for a small change, so no effect is skipped.
     inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
     inputs.warnings.push_back(effects.error().message);
   }
@@ -115,7 +120,8 @@ MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& i
   options.frames_after_change = 0;
   options.nuc_interval_s = 0;
   options.free_running = false;
-  options.max_readback_deviation_k = 0;  // its scene shows what the camera saw, not what the plan sets
+  options.max_shift_error_px = 0;        // the simulated scene shows the plate at the requested place
+  options.max_readback_deviation_k = 0;  // the scene shows the contrast that the camera observed, not the set one
   options.integrity.reject_frozen = inputs.effects.simulates(Effect::temporal_noise) && inputs.sensor.netd_k > 0;
   return options;
 }

@@ -1,4 +1,5 @@
-// Everything that a plan names, and whether it fits together.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Loads the parts that a plan names and checks that they fit together.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,41 +15,42 @@
 
 namespace todbench {
 
-/// What a run works with: the parts of a plan, and what the planner decided about them.
+/// Inputs of a run: the parts of a plan, and the planner's decisions about them.
 struct ExperimentInputs {
   std::vector<TargetPlate> plates;         ///< of the trials
-  std::optional<TargetPlate> mtf_plate{};  ///< where an MTF is asked for
-  std::optional<TargetPlate> ctf_plate{};  ///< where a CTF is asked for
+  std::optional<TargetPlate> mtf_plate{};  ///< if an MTF is requested
+  std::optional<TargetPlate> ctf_plate{};  ///< if a CTF is requested
   TemplateObserverSpec observer;
-  SensorSpec sensor;                      ///< as planned: parameters of skipped effects at their neutral values
-  SensorPlan effects;                     ///< what the scene calls for within the tolerance, and why
-  std::vector<ContrastOutlook> outlooks;  ///< per contrast that has a threshold
+  SensorSpec sensor;                      ///< as planned: parameters of skipped effects have their neutral values
+  double stated_noise_counts = 0;         ///< temporal noise of the sensor with all effects, in counts
+  SensorPlan effects;                     ///< effects that the scene calls for within the tolerance, with reasons
+  std::vector<ContrastOutlook> outlooks;  ///< for each contrast with a threshold
   SceneMotion motion{};
-  std::vector<std::string> warnings;  ///< of the planner, a sentence each
-  bool identifiable = true;           ///< a contrast has a threshold
+  std::vector<std::string> warnings;  ///< of the planner, one sentence each
+  bool identifiable = true;           ///< at least one contrast has a threshold
   Accuracy accuracy;
 };
 
-/// The planner's decisions for what a plan shows. Errors as plan_effects().
+/// Returns the planner's decisions for the scenes of a plan. Errors: those of plan_effects().
 [[nodiscard]] Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor,
                                                  const TemplateObserverSpec& observer, EffectPlanner& planner);
 
-/// Asks the planner once; where no contrast has a threshold everything is simulated, and a warning says so;
-/// with modules it is not asked and everything is simulated.
+/// Loads the inputs and asks the planner once. If no contrast has a threshold, every effect is simulated and a warning
+/// says so. With modules, every effect is simulated without asking the planner.
 [[nodiscard]] Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlanner& planner);
 
-/// What the air that the plan states leaves of a contrast in the band of the sensor; nothing where it states none, and
-/// before a simulated scene, which has none. Errors: bench_transmittance().
+/// Returns the transmittance of the stated air in the band of the sensor; empty if the plan states none, and for a
+/// simulated scene, which has no air. Errors: those of bench_transmittance().
 [[nodiscard]] Result<std::optional<double>> stated_air(const Plan& plan, const SensorSpec& sensor);
 
-/// The answers that chosen_answers() says; without it they are right or wrong.
+/// Sets the kind of answers by chosen_answers(); without this call they are binary.
 void take_answers(MeasurementOptions& options, const Plan& plan, const ExperimentInputs& inputs);
 
-/// How the simulated sensor is measured: as the camera, but nothing has to settle and nothing is corrected.
+/// Returns the options for the simulated sensor: those of the camera, without settling and corrections.
 [[nodiscard]] MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs);
 
-/// `invalid_input` naming up to three sizes that do not fit into the picture or too near their neighbours. To be asked
-/// before anything is computed or moved.
+/// Checks that all sizes fit into the picture and keep their distance from neighbours. `invalid_input` names up to
+/// three that do not. Call it before anything is computed or moved.
 [[nodiscard]] Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& inputs, cv::Size picture);
 [[nodiscard]] Result<void> check_simulated_geometry(const Plan& plan, const ExperimentInputs& inputs);
 

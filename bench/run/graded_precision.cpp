@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/graded_precision.h"
 
 #include <algorithm>
 #include <boost/math/special_functions/owens_t.hpp>
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 namespace {
@@ -16,7 +17,7 @@ double graded_freedom(const GradedDesignFigures& design) {
   return std::max(3.0, 0.5 * design.presentations - 1);
 }
 
-/// The part that noise with this share of what decides has in the variance of an answer at the threshold.
+/// Share of the variance of an answer at the threshold due to noise with this share of the deciding noise.
 double part_of_answers(double share) {
   constexpr double p = 0.75, seen = 2.0 / 3;  // p = 1/4 + 3/4 seen
   const double z = distribution::quantile(distribution::Normal(), seen);
@@ -30,26 +31,66 @@ double phases_of(const GradedDesignFigures& design) {
   return std::max(1.0, static_cast<double>(design.presentations) / design.set_ups);
 }
 
-/// Presentations of a triangle that see the same pattern, and triangles of other set-ups that do: 1 or more.
+/// Share of common detectors after a sub-pixel shift of the triangle.
+double same_detectors(const GradedDesignFigures& design) {
+  constexpr double moved_pitch = 1.9;
+  return std::exp(-std::pow(moved_pitch / design.size_pitch, 2));
+}
+
+/// Number of presentations of a triangle with the same pattern, including triangles of other set-ups; at least 1.
 double answers_of_a_pattern(const GradedDesignFigures& design) {
-  constexpr double of_other_set_ups = 1.5, moved_pitch = 1.9;
-  const double alike = std::exp(-std::pow(moved_pitch / design.size_pitch, 2));
-  return std::max(1.0, phases_of(design) * of_other_set_ups * alike);
+  constexpr double of_other_set_ups = 1.5;
+  return std::max(1.0, phases_of(design) * of_other_set_ups * same_detectors(design));
+}
+
+/// Covariance of the answers to two frames at this lag, without that of the pattern, over the variance of an answer.
+double shared_at(const GradedDesignFigures& design, double lag_frames) {
+  const double remembered = (design.sensor_share - design.pattern_share) *
+                            std::pow(std::clamp(design.noise_correlation, 0.0, 1.0), lag_frames);
+  return part_of_answers(design.pattern_share + remembered) - part_of_answers(design.pattern_share);
+}
+
+/// Variance of the mean of the answers to the frames of a presentation, due to the sensor's temporal noise.
+double of_own_frames(const GradedDesignFigures& design) {
+  double sum = shared_at(design, 0);
+  if (design.noise_correlation > 0) {
+    for (int k = 1; k < design.frames; ++k)
+      sum += 2 * (1 - static_cast<double>(k) / design.frames) * shared_at(design, k);
+  }
+  return sum / design.frames;
+}
+
+/// The same for the covariance with the other, successive presentations of its set-up.
+double of_other_presentations(const GradedDesignFigures& design) {
+  if (!(design.noise_correlation > 0)) return 0;
+  const double phases = phases_of(design), apart = design.frames + design.frames_between;
+  double sum = 0;
+  for (int m = 1; m < phases; ++m) {
+    if (std::pow(design.noise_correlation, m * apart - design.frames) < 1e-4) break;
+    double mean = 0;
+    for (int k = 1 - design.frames; k < design.frames; ++k)
+      mean += (design.frames - std::abs(k)) * shared_at(design, m * apart + k);
+    sum += 2 * (1 - m / phases) * mean / (static_cast<double>(design.frames) * design.frames);
+  }
+  return sum * same_detectors(design);
 }
 
 }  // namespace
 
 double graded_variance_ratio(const GradedDesignFigures& design) {
   const double of_sensor = part_of_answers(design.sensor_share), of_pattern = part_of_answers(design.pattern_share);
-  // Evenly spread phases leave a variance that falls with their square, that of answers falls with their number.
+  // The variance left by evenly spread phases falls with the square of their number, that of answers with their number.
   const double left = design.set_ups >= cancelling_set_ups ? std::min(0.15, 0.048 / phases_of(design)) : 0.15;
   const double frames = design.frames, draws = design.draws;
-  return (of_sensor - of_pattern) / frames + (1 - of_sensor) / (frames * draws) + left +
-         of_pattern * answers_of_a_pattern(design);
+  return of_own_frames(design) + (1 - of_sensor) / (frames * draws) + left + of_pattern * answers_of_a_pattern(design) +
+         of_other_presentations(design);
 }
 
 double pattern_inflation(const GradedDesignFigures& design) {
-  return 1 + part_of_answers(design.pattern_share) * (answers_of_a_pattern(design) - 1);
+  GradedDesignFigures single = design;
+  single.frames = 1;
+  return 1 + part_of_answers(design.pattern_share) * (answers_of_a_pattern(design) - 1) +
+         of_other_presentations(single);
 }
 
 int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/grey_results.h"
 
 #include <fmt/format.h>
@@ -12,10 +13,11 @@ namespace todbench {
 
 Result<void> check_contrast_of(const Plan& plan, const ExperimentInputs& inputs, const SourceInfo& info) {
   if (plan.camera.contrast == ContrastUnit::kelvin && !info.scale.calibrated()) {
-    return fail(ErrorCode::calibration,
-                "camera " + info.id +
-                    " has no temperature scale: contrasts in kelvin cannot be measured; contrast = \"grey-levels\" in "
-                    "[camera] takes them from the large triangles of every frame");
+    return fail(
+        ErrorCode::calibration,
+        "camera " + info.id +
+            " has no temperature scale: contrasts in kelvin cannot be measured. Set contrast = \"grey-levels\" in "
+            "[camera] to measure them at the large triangles of every frame");
   }
   return check_grey_references(camera_options(plan, inputs.plates));
 }
@@ -42,13 +44,13 @@ GreySummary grey_summary(const std::vector<GreyFrame>& frames, double set_delta_
 
 std::string sentence(const GreySummary& summary) {
   return fmt::format(
-      "{:+.3f} K are {:.4g} grey levels, {:.4g} a kelvin ({:.4g} to {:.4g} in {} frames), each known to {:.2g} % "
-      "(standard uncertainty); the noise of a pixel is {:.2g} of their steps",
+      "{:+.3f} K are {:.4g} grey levels, {:.4g} per kelvin ({:.4g} to {:.4g} in {} frames), each with a standard "
+      "uncertainty of {:.2g} %; the pixel noise is {:.2g} grey levels",
       summary.set_delta_t_k, summary.levels, summary.levels_per_k, summary.lowest_per_k, summary.highest_per_k,
       summary.frames, 100 * summary.relative_uncertainty, summary.noise_steps);
 }
 
-Result<void> keep_grey_levels(TodCurve& curve, MeasurementResult& result, const SessionFrame& frame) {
+Result<void> keep_grey_levels(TodCurve& curve, MeasurementResult& result, const OpenSession& open) {
   if (result.grey_frames.empty()) return {};
   for (TodPoint& point : curve.points) {
     const GreySummary grey = grey_summary(result.grey_frames, point.set_delta_t_k);
@@ -56,9 +58,9 @@ Result<void> keep_grey_levels(TodCurve& curve, MeasurementResult& result, const 
     point.delta_t_se_k = std::hypot(point.delta_t_se_k, grey.relative_uncertainty * std::abs(point.delta_t_k));
     point.noise_counts = grey.noise_steps;
     result.notes.push_back(sentence(grey));
-    note(frame.folder, frame.listener, result.notes.back());
+    note(open.folder, open.listener, result.notes.back());
   }
-  return frame.folder.write_grey_levels(result.grey_frames);
+  return open.folder.write_grey_levels(result.grey_frames);
 }
 
 }  // namespace todbench

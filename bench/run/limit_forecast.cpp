@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/limit_forecast.h"
 
 #include <fmt/format.h>
@@ -5,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
-#include "acquisition/core/normal.h"
+#include "acquisition/base/distributions.h"
+#include "acquisition/base/normal.h"
 #include "bench/judgement/acuity_uncertainty.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
 
-/// The curve that is expected, as far as a budget looks at it.
+/// The expected curve, with the data that a budget needs.
 TodCurve expected_curve(const PlanPrediction& prediction) {
   TodCurve curve;
   for (const ContrastPrediction& contrast : prediction.contrasts) {
@@ -50,7 +51,7 @@ Result<LimitOutlook> outlook(const LimitsPlan& limits, const FleetRow* row, doub
   out.p_rejected = cdf(normal, (accepted_from - ln_acuity) / u);
   out.passes_95_from_per_mrad = std::exp(accepted_from + quantile(normal, 0.95) * u);
   if (limits.fleet_sd_percent) {
-    const auto risks = global_risks({.mean = ln_acuity, .sd = std::log1p(*limits.fleet_sd_percent / 100)}, u,
+    const auto risks = global_risks({.mean = ln_acuity, .sd = std::log1p(*limits.fleet_sd_percent / 100)}, {u},
                                     {.at_least = ln_limit}, {.at_least = accepted_from});
     if (!risks) return tl::unexpected(risks.error());
     out.fleet = *risks;
@@ -69,9 +70,8 @@ std::string percent(double share) {
 
 std::string words_of_fleet(const FleetForecast& now, const FleetForecast& better, std::string_view with) {
   return fmt::format(
-      "of the good ones in the fleet of {} earlier units {} will not pass (at most {}), {} {} ({}); bad and accepted "
-      "{} "
-      "({})",
+      "in the fleet of {} earlier units {} of the good units will not pass (at most {}), {} {} ({}); bad units "
+      "accepted: {} ({})",
       now.units, percent(now.good_rejected), percent(now.good_rejected_most), with, percent(better.good_rejected),
       percent(better.good_rejected_most), percent(now.bad_accepted), percent(better.bad_accepted));
 }
@@ -107,27 +107,28 @@ Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanP
 
 std::string in_words(const LimitForecast& forecast) {
   std::string text = fmt::format(
-      "{} K, at least {} 1/mrad: a camera like the simulated one ({:.4g} 1/mrad) does not pass with {}; with four "
-      "times "
-      "the presentations {}; from {:.4g} 1/mrad ({:.4g}) a camera passes with 95 %",
+      "{} K, at least {} 1/mrad: a camera like the simulated one ({:.4g} 1/mrad) does not pass with a probability of "
+      "{}, or {} with four times the presentations; a camera with at least {:.4g} 1/mrad ({:.4g}) passes with a "
+      "probability of 95 %",
       number_text(forecast.delta_t_k), number_text(forecast.least_acuity_per_mrad), forecast.expected_acuity_per_mrad,
       percent(forecast.planned.p_rejected), percent(forecast.fourfold.p_rejected),
       forecast.planned.passes_95_from_per_mrad, forecast.fourfold.passes_95_from_per_mrad);
   if (forecast.planned.fleet && forecast.fourfold.fleet) {
     text +=
-        fmt::format("; of the fleet good and rejected {} ({}), bad and accepted {} ({})",
+        fmt::format("; in the fleet, good units rejected: {} ({}), bad units accepted: {} ({})",
                     percent(forecast.planned.fleet->producer_risk), percent(forecast.fourfold.fleet->producer_risk),
                     percent(forecast.planned.fleet->consumer_risk), percent(forecast.fourfold.fleet->consumer_risk));
   }
   if (forecast.planned.earlier && forecast.fourfold.earlier)
-    text += "; " + words_of_fleet(*forecast.planned.earlier, *forecast.fourfold.earlier, "with four times");
+    text += "; " +
+            words_of_fleet(*forecast.planned.earlier, *forecast.fourfold.earlier, "with four times the presentations");
   return text;
 }
 
 Result<std::vector<MeasureForecast>> measure_forecasts(const LimitsPlan& limits) {
   std::vector<MeasureForecast> forecasts;
   for (const MeasureLimit& limit : limits.measures) {
-    // Of a size without its sign the fleet is not normal.
+    // The fleet of a quantity without sign is not normally distributed.
     if (limit.measure == LimitedMeasure::distortion || limit.measure == LimitedMeasure::drift_rate) continue;
     const auto row = std::find_if(limits.fleets.begin(), limits.fleets.end(),
                                   [&](const FleetRow& one) { return one.measure == to_string(limit.measure); });
@@ -157,8 +158,8 @@ std::string in_words(const MeasureForecast& forecast) {
   std::string text(to_string(forecast.measure));
   if (forecast.at_least) text += ", at least " + number_text(*forecast.at_least);
   if (forecast.at_most) text += ", at most " + number_text(*forecast.at_most);
-  return text + fmt::format(", measured as before with u {:.3g}: ", forecast.u) +
-         words_of_fleet(forecast.as_before, forecast.half_u, "with half of u");
+  return text + fmt::format(", measured as before (u = {:.3g}): ", forecast.u) +
+         words_of_fleet(forecast.as_before, forecast.half_u, "with half of this u");
 }
 
 }  // namespace todbench

@@ -1,11 +1,12 @@
-// What the limits of a plan will say of good cameras, before anything is measured.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Predicted verdicts of the limits of a plan on good cameras, before anything is measured.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/judgement/conformity.h"
 #include "bench/judgement/fleet_prior.h"
 #include "bench/plan/plan.h"
@@ -13,17 +14,17 @@
 
 namespace todbench {
 
-/// One number of presentations.
+/// Forecast for one number of presentations.
 struct LimitOutlook {
   double u_ln_acuity = 0;                  ///< of trials and stated budget
   double guard_band_ln = 0;                ///< of ln acuity, by the rule of the plan
-  double p_rejected = 0;                   ///< that a camera with the acuity of the simulated sensor does not pass
-  double passes_95_from_per_mrad = 0;      ///< a camera of this acuity or better passes with 95 %
-  std::optional<GlobalRisks> fleet{};      ///< of a fleet around the simulated sensor, where the plan states its spread
-  std::optional<FleetForecast> earlier{};  ///< of the fleet of earlier units, where the plan has its row
+  double p_rejected = 0;                   ///< risk that a camera with the acuity of the simulated sensor does not pass
+  double passes_95_from_per_mrad = 0;      ///< a camera with at least this acuity passes with a probability of 95 %
+  std::optional<GlobalRisks> fleet{};      ///< of a fleet around the simulated sensor, if the plan states its spread
+  std::optional<FleetForecast> earlier{};  ///< of the fleet of earlier units, if the plan has its row
 };
 
-/// One limit on acuity.
+/// Forecast of one limit on acuity.
 struct LimitForecast {
   double delta_t_k = 0;
   double least_acuity_per_mrad = 0;
@@ -31,19 +32,19 @@ struct LimitForecast {
   LimitOutlook planned, fourfold;       ///< as planned, and with four times the presentations
 };
 
-/// Of every limit on acuity at whose contrast a threshold is expected. Errors: curve_uncertainty().
+/// Forecasts every limit on acuity at whose contrast a threshold is expected. Errors: those of curve_uncertainty().
 [[nodiscard]] Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanPrediction& prediction);
 
-/// One limit on a measure for which the plan has the row of a fleet, with the uncertainty of the values that the row
-/// is of, and with half of it.
+/// Forecast of one limit on a measure for which the plan has the row of a fleet: with the uncertainty of the row's
+/// values, and with half of it.
 struct MeasureForecast {
   LimitedMeasure measure = LimitedMeasure::netd;
   std::optional<double> at_least{}, at_most{};
   double u = 0;
   FleetForecast as_before, half_u;
 };
-/// Of every limit on a measure whose row states an uncertainty; measures whose sign does not count are left out.
-/// Errors: global_risks().
+/// Returns a forecast for every limit on a measure whose row states an uncertainty; measures whose sign is ignored are
+/// left out. Errors: those of global_risks().
 [[nodiscard]] Result<std::vector<MeasureForecast>> measure_forecasts(const LimitsPlan& limits);
 
 /// "netd, at most 0.06: ..."

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/live_curve.h"
 
 #include <chrono>
@@ -40,7 +41,7 @@ void LiveCurve::work(const std::stop_token& stop) {
         FittedCurves{.version = version, .measured = fit.curve_of(measured, stop), .twin = fit.curve_of(twin, stop)});
     lock.lock();
     latest_ = std::move(fitted);
-    // Not more often than anybody looks.
+    // Limits the rate of fits.
     changed_.wait_for(lock, stop, least_fit_period, [] { return false; });
   }
 }

@@ -1,4 +1,5 @@
-// The TOD curve of a run while it grows, fitted beside it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The TOD curve of a running measurement, fitted on a thread of its own.
 #pragma once
 
 #include <condition_variable>
@@ -16,14 +17,14 @@
 
 namespace todbench {
 
-/// As fitted to the answers so far.
+/// Fits to the answers so far.
 struct FittedCurves {
-  std::uint64_t version = 0;  ///< larger for later ones
+  std::uint64_t version = 0;  ///< increases with every fit
   std::optional<TodCurve> measured, twin;
 };
 
-/// Fits on a thread of its own, about once a second, so that the run does not wait for it, with the function that the
-/// result will have (RunningFit). Any thread.
+/// Fits on its own thread about once a second, so that the run does not wait, with the same function as the result
+/// (RunningFit). Any thread.
 class LiveCurve {
  public:
   explicit LiveCurve(const Plan& plan);

@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/module_chain.h"
 
+#include <algorithm>
 #include <array>
-#include <cstdio>
+#include <chrono>
 #include <filesystem>
 #include <limits>
 #include <sstream>
@@ -37,16 +39,12 @@ class PlannedModule final : public ChainStage {
   std::unique_ptr<ChainStage> stage_;
 };
 
-/// Output of a command for a shell, its first line, within ten seconds.
-std::string first_line_of(const std::string& command) {
-  std::string quoted = "'";
-  for (const char c : command) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  FILE* pipe = ::popen(("timeout -s KILL 10 sh -c " + quoted + "' 2>&1 </dev/null").c_str(), "r");
-  if (pipe == nullptr) return "";
-  std::array<char, 256> line{};
-  const bool read = std::fgets(line.data(), line.size(), pipe) != nullptr;
-  ::pclose(pipe);
-  return read ? one_line(std::string(line.data(), std::string(line.data()).find_last_not_of('\n') + 1)) : "";
+/// Returns the output of the version command of a module, within its limits and ten seconds.
+std::string version_of(const ModulePlan& module) {
+  ModuleOptions options = stage_options(module).process;
+  options.command = module.version;
+  options.limit = std::chrono::seconds(10);
+  return one_line(first_line_of_module(options));
 }
 
 const ModulePlan* observer_module(const Plan& plan) {
@@ -64,8 +62,9 @@ bool has_modules(const Plan& plan, const SensorSpec& sensor) {
 
 Result<void> refuse_modules(const Plan& plan, const SensorSpec& sensor) {
   if (!has_modules(plan, sensor)) return {};
-  return fail(ErrorCode::invalid_input,
-              "nothing is estimated without trials where the plan or its sensor has a [[module]]: simulate it");
+  return fail(
+      ErrorCode::invalid_input,
+      "the plan or its sensor has a [[module]], which an estimate without trials cannot include: use 'simulate'");
 }
 
 std::vector<ModulePlan> picture_modules(const Plan& plan, const SensorSpec& sensor, Side side) {
@@ -100,6 +99,18 @@ void put_modules_behind(OpenedBench& bench, const std::vector<ModulePlan>& modul
                                   std::make_shared<ProcessingRecord>());
 }
 
+void keep_noise(const MeasurementResult& result, TodCurve& curve) {
+  for (TodPoint& point : curve.points) {
+    point.noise_counts = result.temporal_noise_counts;
+    point.lag1_correlation = result.lag1_correlation;
+    for (const JudgedContrast& judged : result.judged_contrasts) {
+      if (!same_contrast(judged.set_delta_t_k, point.set_delta_t_k)) continue;
+      const double steps = judged.scale.steps.noise_steps();
+      if (judged.scale.steps.noise_levels > 0) point.noise_counts = std::min(point.noise_counts.value_or(steps), steps);
+    }
+  }
+}
+
 std::unique_ptr<Observer> observer_of(const Plan& plan, const ExperimentInputs& inputs,
                                       const ModuleLine& on_error_line) {
   if (const ModulePlan* module = observer_module(plan))
@@ -118,7 +129,7 @@ ModuleRecord module_record(const ModulePlan& module) {
   ModuleRecord record;
   record.place = to_string(module.place);
   record.command = module.command;
-  if (!module.version.empty()) record.version = first_line_of(module.version);
+  if (!module.version.empty()) record.version = version_of(module);
   std::istringstream words(module.command);
   for (std::string word; words >> word;) {
     std::error_code problem;

@@ -1,4 +1,5 @@
-// The modules of a plan and of its sensor in a run: behind the camera, in place of the observer, in its record.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The modules of a plan and of its sensor in a run: behind the camera, in place of the observer, in the record.
 #pragma once
 
 #include <functional>
@@ -12,38 +13,44 @@
 #include "bench/run/experiment_inputs.h"
 #include "hvs/observer/observer.h"
 #include "sim_devices/module/module_plan.h"
+#include "tod/measurement/measurement.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 
 using ModuleLine = std::function<void(std::string_view line)>;
 
 [[nodiscard]] bool has_modules(const Plan& plan, const SensorSpec& sensor);
-/// Success where there is none; `invalid_input`: what follows from sensor and observer alone leaves modules out.
+/// Succeeds if there are no modules; otherwise `invalid_input`, because the calculation uses sensor and observer alone.
 [[nodiscard]] Result<void> refuse_modules(const Plan& plan, const SensorSpec& sensor);
 
-/// In the order of the chain: of the simulated sensor its own, the sensor itself included, then those of the plan; of
-/// the camera those of the plan.
+/// Returns the modules in the order of the chain. Simulated sensor: its own, including the sensor itself, then those of
+/// the plan. Camera: those of the plan.
 [[nodiscard]] std::vector<ModulePlan> picture_modules(const Plan& plan, const SensorSpec& sensor, Side side);
-/// Those that are picture to picture, ready for the first one; their errors are those of the run.
+/// Returns the modules that map a picture to a picture, ready for the first one; their errors occur during the run.
 [[nodiscard]] std::vector<std::unique_ptr<ChainStage>> module_stages(const std::vector<ModulePlan>& modules,
                                                                      const ModuleLine& on_error_line);
-/// What is left out after a change of the target: what one remembers the next remembers again.
+/// Returns the number of frames to discard after a change of the target. Memories of successive modules add up.
 [[nodiscard]] int settle_frames(const std::vector<ModulePlan>& modules);
-/// Every frame of the bench goes through the modules; what they made of it is judged (ProcessedAs::judged). Without
-/// modules nothing changes.
+/// Passes every frame of the bench through the modules; their output is judged (ProcessedAs::judged). Without modules
+/// the bench stays as it is.
 void put_modules_behind(OpenedBench& bench, const std::vector<ModulePlan>& modules, const ModuleLine& on_error_line);
 
-/// The observer of a plan: its templates, or the module in their place.
+/// Stores the noise of the run in counts and its correlation in every point. With stages behind the camera, it is the
+/// lower noise of the camera's and the judged pictures at that contrast.
+void keep_noise(const MeasurementResult& result, TodCurve& curve);
+
+/// Creates the observer of a plan: its templates, or the module that replaces them.
 [[nodiscard]] std::unique_ptr<Observer> observer_of(const Plan& plan, const ExperimentInputs& inputs,
                                                     const ModuleLine& on_error_line);
-/// Its name in results.
+/// Returns the name of the observer in results.
 [[nodiscard]] std::string observer_name(const Plan& plan, const ExperimentInputs& inputs);
 
-/// Command, what its version command says within ten seconds, hashes of the files that the command names.
+/// Returns the command, the output of its version command (10 s at most), and hashes of the files it names.
 [[nodiscard]] ModuleRecord module_record(const ModulePlan& module);
-/// In words.
+/// Returns the record as text.
 [[nodiscard]] std::string text_of(const ModuleRecord& record);
-/// Of all modules of a run, the observer last.
+/// Returns the records of all modules of a run, the observer last.
 [[nodiscard]] std::vector<ModuleRecord> module_records(const Plan& plan, const SensorSpec& sensor, Side side);
 
 }  // namespace todbench

@@ -1,4 +1,5 @@
-// A camera whose frames somebody else looks at too.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A camera with a second listener to its frames.
 #pragma once
 
 #include <functional>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// `camera` with every frame that next() returns shown to `on_frame` first, on the thread that calls next().
+/// Returns `camera` with a callback: `on_frame` gets every frame that next() returns, on the thread that calls next().
 [[nodiscard]] std::unique_ptr<FrameSource> observed_source(std::unique_ptr<FrameSource> camera,
                                                            std::function<void(const Frame&)> on_frame);
 

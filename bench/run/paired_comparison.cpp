@@ -1,6 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/paired_comparison.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "bench/plan/plan_options.h"
@@ -22,7 +25,7 @@ bool unfit_for_pairs(const TodPoint& point) {
 
 Result<RatioOfPairs> ratio_at(const TodPoint& point, const ContrastScatter& contrast, std::span<const Trial> trials,
                               double margin_percent, const ExperimentInputs& inputs, TemplateObserver& observer,
-                              const PairedTwinOptions& options) {
+                              const PairedTwinOptions& options, const TodPoint* by_twin, double model_u) {
   if (!point.fit.twin_shape)
     return fail(ErrorCode::invalid_input, "the camera's answers are not fitted with the function of the twin");
   if (trials.empty() || !all_graded(trials)) return fail(ErrorCode::invalid_input, "not all answers are graded");
@@ -32,8 +35,31 @@ Result<RatioOfPairs> ratio_at(const TodPoint& point, const ContrastScatter& cont
   std::vector<PairedAnswer> pairs;
   for (std::size_t i = 0; i < camera.size(); ++i)
     pairs.push_back({camera[i], (*twin)[i].probability_correct, (*twin)[i].variance});
-  return paired_ratio(pairs, point.fit.twin_shape->table, point.fit.twin_shape->slope_fitted, options.draws,
-                      margin_percent, contrast);
+  const TwinShapeUse& use = *point.fit.twin_shape;
+  std::optional<OwnFunctions> own;
+  if (by_twin != nullptr) {
+    const TwinShapeUse& of_twin = *by_twin->fit.twin_shape;
+    own.emplace(OwnFunctions{of_twin.table, std::pow(use.shape_se_ln_threshold, 2) +
+                                                std::pow(of_twin.shape_se_ln_threshold, 2) + model_u * model_u});
+  } else if (model_u > 0) {
+    own.emplace(OwnFunctions{use.table, model_u * model_u, use.slope_fitted});
+  }
+  return paired_ratio(pairs, use.table, use.slope_fitted, options.draws, margin_percent, contrast, own);
+}
+
+double model_u_of(const PairedCamera& camera, double set_delta_t_k) {
+  if (camera.model_u == nullptr) return 0;
+  const auto found = camera.model_u->find(set_delta_t_k);
+  return found == camera.model_u->end() ? 0 : found->second;
+}
+
+/// The point with the function of the twin; null if the camera's point has it.
+Result<const TodPoint*> point_by_twin(const PairedCamera& camera, double set_delta_t_k) {
+  if (camera.by_twin == nullptr) return nullptr;
+  const TodPoint* found = point_at(*camera.by_twin, set_delta_t_k);
+  if (found == nullptr || !found->fit.twin_shape)
+    return fail(ErrorCode::invalid_input, "the twin has no psychometric function at this contrast");
+  return found;
 }
 
 }  // namespace
@@ -67,8 +93,11 @@ PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& came
     std::vector<Trial> own;
     std::ranges::copy_if(camera.trials, std::back_inserter(own),
                          [&](const Trial& trial) { return trial.set_delta_t_k == point->set_delta_t_k; });
-    auto paired = ratio_at(*point, contrasts[static_cast<std::size_t>(point - camera.curve.points.data())], own,
-                           compared.margin_percent, inputs, observer, options);
+    const ContrastScatter& contrast = contrasts[static_cast<std::size_t>(point - camera.curve.points.data())];
+    auto paired = point_by_twin(camera, point->set_delta_t_k).and_then([&](const TodPoint* by_twin) {
+      return ratio_at(*point, contrast, own, compared.margin_percent, inputs, observer, options, by_twin,
+                      model_u_of(camera, point->set_delta_t_k));
+    });
     if (!paired) {
       if (paired.error().code == ErrorCode::interrupted) {
         outcome.ended_by = paired.error();
@@ -84,19 +113,20 @@ PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& came
   return outcome;
 }
 
-std::unique_ptr<Meanwhile<Pairs>> pairs_meanwhile(std::function<PairedCamera(std::stop_token)> camera_of,
-                                                  const Plan& plan, const ExperimentInputs& inputs) {
+std::unique_ptr<BackgroundTask<Pairs>> pairs_in_background(std::function<PairedCamera(std::stop_token)> camera_of,
+                                                           const Plan& plan, const ExperimentInputs& inputs) {
   if (!pairs_asked(plan, inputs.sensor)) return nullptr;
-  return std::make_unique<Meanwhile<Pairs>>([camera_of = std::move(camera_of), &plan, &inputs](std::stop_token stop) {
-    const PairedCamera camera = camera_of(stop);
-    Pairs pairs;
-    const double margin = comparison_options(plan).margin_percent;
-    for (const TodPoint& point : camera.curve.points)
-      pairs.ratios.points.push_back({.set_delta_t_k = point.set_delta_t_k, .margin_percent = margin});
-    const PairedTwinOptions options = paired_options(inputs, camera.set_ups, plan.seed, std::move(stop));
-    pairs.said = add_paired_ratios(pairs.ratios, camera, inputs, options);
-    return pairs;
-  });
+  return std::make_unique<BackgroundTask<Pairs>>(
+      [camera_of = std::move(camera_of), &plan, &inputs](std::stop_token stop) {
+        const PairedCamera camera = camera_of(stop);
+        Pairs pairs;
+        const double margin = comparison_options(plan).margin_percent;
+        for (const TodPoint& point : camera.curve.points)
+          pairs.ratios.points.push_back({.set_delta_t_k = point.set_delta_t_k, .margin_percent = margin});
+        const PairedTwinOptions options = paired_options(inputs, camera.set_ups, plan.seed, std::move(stop));
+        pairs.said = add_paired_ratios(pairs.ratios, camera, inputs, options);
+        return pairs;
+      });
 }
 
 }  // namespace todbench

@@ -1,7 +1,9 @@
-// The comparison of a camera with its twin by the phases that both saw.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Comparison of a camera with its twin by the phases that both observed.
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/run/background_task.h"
 #include "bench/run/experiment_inputs.h"
-#include "bench/run/meanwhile.h"
 #include "sim_devices/prediction/paired_twin.h"
 #include "tod/comparison/comparison.h"
 #include "tod/measurement/measurement.h"
@@ -18,41 +20,45 @@
 
 namespace todbench {
 
-/// A plan asks for it, and its answers allow it.
+/// Whether a plan requests paired comparison and its answers allow it.
 [[nodiscard]] bool pairs_asked(const Plan& plan, const SensorSpec& sensor);
 
-/// What a camera answered.
+/// Answers of a camera.
 struct PairedCamera {
   const TodCurve& curve;  ///< fitted with the functions of the twin
   std::span<const Trial> trials;
-  std::span<const SetUpRecord> set_ups;  ///< where its plates were found
+  std::span<const SetUpRecord> set_ups;  ///< positions of its plates
+  /// Fit with the functions of the twin, if `curve` has those of the camera's surrogate; null: `curve` is that fit.
+  const TodCurve* by_twin = nullptr;
+  /// By set contrast: standard uncertainty of ln S75 of a camera whose pictures contradict its model; null: none.
+  const std::map<double, double>* model_u = nullptr;
 };
 
 struct PairedOutcome {
-  std::vector<std::string> notes;  ///< a sentence for each contrast that has no paired ratio
+  std::vector<std::string> notes;  ///< one sentence for each contrast without a paired ratio
   std::optional<Error> ended_by;   ///< `interrupted`
 };
 
-/// What the twin is shown of a camera's presentations.
+/// Options that show the twin the presentations of a camera.
 [[nodiscard]] PairedTwinOptions paired_options(const ExperimentInputs& inputs, std::span<const SetUpRecord> set_ups,
                                                std::uint64_t seed, std::stop_token stop);
 
 /// Shows the twin every presentation of the camera (twin_answers()) and adds the paired ratios (paired_ratio()) to the
-/// points of a comparison whose A is the camera's curve. A point without the function of the twin, with answers that
-/// are not graded, or not in the comparison keeps the unpaired ratio; of a threshold that is not fit for a decision
-/// the paired verdict is inconclusive as well.
+/// points of a comparison whose A is the camera's curve. A point keeps the unpaired ratio if it has no function of the
+/// twin, no graded answers, or is not in the comparison. If a threshold is not fit for a decision, the paired verdict
+/// is inconclusive too.
 [[nodiscard]] PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& camera,
                                               const ExperimentInputs& inputs, const PairedTwinOptions& options);
 
-/// Paired ratios of every contrast of a curve.
+/// Paired ratios of all contrasts of a curve.
 struct Pairs {
-  Comparison ratios;  ///< of its points only the contrast, the margin and the paired ratio are set
+  Comparison ratios;  ///< only contrast, margin and paired ratios of its points are set
   PairedOutcome said;
 };
-/// In a thread of its own, while the camera's physical measures are taken and the twin makes its own trials; null where
-/// the plan asks for none. `camera_of` is asked there, and may wait for its curve; what it refers to, plan and inputs
-/// outlive it.
-[[nodiscard]] std::unique_ptr<Meanwhile<Pairs>> pairs_meanwhile(std::function<PairedCamera(std::stop_token)> camera_of,
-                                                                const Plan& plan, const ExperimentInputs& inputs);
+/// Computes the pairs on its own thread while the camera's physical measures are taken and the twin makes its own
+/// trials; null if the plan requests none. `camera_of` is called there and may wait for its curve; the objects it
+/// refers to, plan and inputs outlive it.
+[[nodiscard]] std::unique_ptr<BackgroundTask<Pairs>> pairs_in_background(
+    std::function<PairedCamera(std::stop_token)> camera_of, const Plan& plan, const ExperimentInputs& inputs);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/pause.h"
 
 #include <chrono>
@@ -23,7 +24,7 @@ bool Pause::paused() const {
 }
 
 bool Pause::rest(std::stop_token stop) const {
-  // A frame at 50 Hz lasts 20 ms: a camera's queue does not fill meanwhile.
+  // At 50 Hz (20 ms per frame) a camera's queue does not fill in this time.
   constexpr std::chrono::milliseconds longest{50};
   std::unique_lock lock(mutex_);
   (void)changed_.wait_for(lock, stop, longest, [this] { return !paused_; });

@@ -1,4 +1,5 @@
-// A run that rests between two presentations.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A pause of a run between two presentations.
 #pragma once
 
 #include <condition_variable>
@@ -7,14 +8,14 @@
 
 namespace todbench {
 
-/// Switched by one thread, obeyed by another. Thread-safe.
+/// Pause switch: set by one thread, obeyed by another. Thread-safe.
 class Pause {
  public:
   void pause();
   void resume();
   [[nodiscard]] bool paused() const;
-  /// Returns at once when not paused; otherwise rests up to a twentieth of a second, less when resumed or stopped.
-  /// True: still paused.
+  /// Returns at once if not paused; otherwise waits for at most 50 ms, less if resumed or stopped. Returns true if
+  /// still paused.
   [[nodiscard]] bool rest(std::stop_token stop) const;
 
  private:

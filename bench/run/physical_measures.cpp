@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/physical_measures.h"
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "bench/run/camera_settings.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/plate_picture.h"
 #include "bench/run/simulated_responses.h"
@@ -18,8 +20,8 @@
 namespace todbench {
 namespace {
 
-/// The transfer of the sensor along the normal of each edge. Its frequencies are per detector pitch, those of a picture
-/// per sample.
+/// Adds the transfer function of the sensor along the normal of each edge. Its frequencies are per detector pitch,
+/// those of a picture per sample.
 void add_closed_form(MtfMeasure& mtf, const SensorModel& model, const ExperimentInputs& inputs) {
   const TransferFunction transfer =
       sensor_transfer(model.spec(), model.plan(), inputs.accuracy.wavelengths, inputs.motion);
@@ -34,8 +36,8 @@ void add_closed_form(MtfMeasure& mtf, const SensorModel& model, const Experiment
   }
 }
 
-/// Of the bars of each group: their spectrum through the sensor's transfer along the normal, sampled once a pitch. The
-/// pitch is that of the samples, of which a microscan has several to a detector.
+/// Adds the same for the bars of each group: their spectrum through the sensor's transfer function along the normal,
+/// sampled once per pitch. The pitch is that of the samples; with microscan a detector has several.
 void add_closed_form(CtfMeasure& ctf, const SensorModel& model, const ExperimentInputs& inputs) {
   const TransferFunction transfer =
       sensor_transfer(model.spec(), model.plan(), inputs.accuracy.wavelengths, inputs.motion);
@@ -89,8 +91,8 @@ std::vector<double> triangle_contrasts(const Plan& plan) {
   return plan.measures.triangles ? plan.target.delta_t_k : std::vector<double>{};
 }
 
-/// Temporal noise of a sample in one frame over the response of a scale that is right: white noise with its memory in
-/// averaged exposures, rows, columns, rounding. Nothing where a stage behind the noise changes it.
+/// Temporal noise of a sample in one frame over the response of a correct scale: white noise with its correlation in
+/// averaged exposures, rows, columns, rounding. Empty if a stage behind the noise changes it.
 std::optional<double> closed_form_netd_k(const SensorSpec& spec, const SensorPlan& plan) {
   if (!is_neutral(spec, Effect::display) || spec.defective_pixel_share > 0) return std::nullopt;
   const double lines_k2 = std::pow(spec.row_noise_k, 2) + std::pow(spec.column_noise_k, 2);
@@ -103,7 +105,7 @@ namespace {
 
 using MaybeMeasures = Result<std::optional<CameraMeasures>>;
 
-/// physical_measures() without a word. Precondition: some are asked for.
+/// physical_measures() without messages. Precondition: the plan requests some.
 MaybeMeasures measures_of_bench(const Plan& plan, const MeasurementOptions& options, const ExperimentInputs& inputs,
                                 OpenedBench& bench, std::stop_token stop) {
   auto measures = measure_camera(*bench.camera, *bench.target,
@@ -133,14 +135,14 @@ MaybeMeasures measures_of_bench(const Plan& plan, const MeasurementOptions& opti
   return *std::move(measures);
 }
 
-/// Says what goes on, waits for `make`, and says what could not be measured. Nothing where none is asked for.
+/// Reports progress, waits for `make`, and reports measures that failed. Empty if the plan requests none.
 template <typename Make>
-MaybeMeasures with_words(const Plan& plan, const SessionFrame& frame, const Make& make) {
+MaybeMeasures with_words(const Plan& plan, const OpenSession& open, const Make& make) {
   if (!plan.measures.any()) return std::nullopt;
-  phase(frame.folder, frame.listener, "physical measures");
+  phase(open.folder, open.listener, "physical measures");
   MaybeMeasures made = make();
   if (!made || !*made) return made;
-  for (const auto& reason : (*made)->reasons) note(frame.folder, frame.listener, reason);
+  for (const auto& reason : (*made)->reasons) note(open.folder, open.listener, reason);
   return made;
 }
 
@@ -148,8 +150,14 @@ MaybeMeasures with_words(const Plan& plan, const SessionFrame& frame, const Make
 
 Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const MeasurementOptions& options,
                                                         const ExperimentInputs& inputs, OpenedBench& bench,
-                                                        const SessionFrame& frame, std::stop_token stop) {
-  return with_words(plan, frame, [&] { return measures_of_bench(plan, options, inputs, bench, std::move(stop)); });
+                                                        const OpenSession& open, std::stop_token stop) {
+  return with_words(plan, open, [&] {
+    auto made = measures_of_bench(plan, options, inputs, bench, std::move(stop));
+    if (!made || !*made) return made;
+    for (const ChangedSetting& changed : changed_settings(*bench.camera, bench.camera->info()))
+      (*made)->reasons.push_back("a setting changed during the physical measures: " + sentence(changed));
+    return made;
+  });
 }
 
 namespace {
@@ -157,7 +165,7 @@ namespace {
 std::shared_ptr<const SensorModel> whole_sensor(const LoadedPlan& loaded, const ExperimentInputs& inputs) {
   SensorSpec sensor = loaded.parts().sensor;
   sensor.microscan = loaded.plan().simulation.microscan;
-  // A contrast that steps is seen through the effects of motion.
+  // The response to a contrast step needs the effects of motion.
   const SceneMotion motion = loaded.plan().measures.response ? any_motion : SceneMotion{};
   return std::make_shared<const SensorModel>(sensor, full_plan(sensor, {}, {}, motion), inputs.accuracy,
                                              loaded.plan().seed);
@@ -180,11 +188,11 @@ void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const E
 
 namespace {
 
-/// simulated_measures() without a word. Precondition: some are asked for.
+/// simulated_measures() without messages. Precondition: the plan requests some.
 MaybeMeasures measures_of_sensor(const LoadedPlan& loaded, const ExperimentInputs& inputs, std::stop_token stop) {
   Plan plan = loaded.plan();
   const auto model = whole_sensor(loaded, inputs);
-  // It does not drift: the default time says so as well as an hour, of a program that makes the pictures the shortest.
+  // The sensor does not drift, so the default time is enough; a program in its place gets the shortest.
   plan.measures.drift_s =
       sensor_module(model->spec()) == nullptr ? std::min(plan.measures.drift_s, MeasuresPlan{}.drift_s) : 2;
   MeasurementOptions options = simulated_options(plan, inputs);
@@ -198,7 +206,7 @@ MaybeMeasures measures_of_sensor(const LoadedPlan& loaded, const ExperimentInput
     (*measures)->netd_model_k = closed_form_netd_k(model->spec(), model->plan());
   if (measures && *measures && plan.measures.response) (*measures)->response_model_ms = model->spec().time_constant_ms;
   if (measures && *measures && (*measures)->geometry) {
-    (*measures)->geometry->distance_relative_u.reset();  // the scene is where it is
+    (*measures)->geometry->distance_relative_u.reset();  // the distance of the scene is exact
     (*measures)->geometry->model_ifov_mrad = model->spec().ifov_mrad() / model->spec().samples_per_pitch();
     (*measures)->geometry->model_distortion_percent =
         model->spec().distortion_percent + model->spec().distortion_r4_percent;
@@ -211,19 +219,19 @@ MaybeMeasures measures_of_sensor(const LoadedPlan& loaded, const ExperimentInput
 }  // namespace
 
 Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded, const ExperimentInputs& inputs,
-                                                         const SessionFrame& frame, std::stop_token stop) {
-  return with_words(loaded.plan(), frame, [&] { return measures_of_sensor(loaded, inputs, std::move(stop)); });
+                                                         const OpenSession& open, std::stop_token stop) {
+  return with_words(loaded.plan(), open, [&] { return measures_of_sensor(loaded, inputs, std::move(stop)); });
 }
 
-MeasuresMeanwhile::MeasuresMeanwhile(const LoadedPlan& loaded, const ExperimentInputs& inputs)
+BackgroundMeasures::BackgroundMeasures(const LoadedPlan& loaded, const ExperimentInputs& inputs)
     : loaded_(loaded), inputs_(inputs) {
   if (!loaded.plan().measures.any() || has_modules(loaded.plan(), inputs.sensor)) return;
   made_.emplace([this](std::stop_token stop) { return measures_of_sensor(loaded_, inputs_, std::move(stop)); });
 }
 
-Result<std::optional<CameraMeasures>> MeasuresMeanwhile::take(const SessionFrame& frame, std::stop_token stop) {
-  if (!made_) return simulated_measures(loaded_, inputs_, frame, std::move(stop));
-  return with_words(loaded_.plan(), frame, [&] { return made_->get(std::move(stop)); });
+Result<std::optional<CameraMeasures>> BackgroundMeasures::take(const OpenSession& open, std::stop_token stop) {
+  if (!made_) return simulated_measures(loaded_, inputs_, open, std::move(stop));
+  return with_words(loaded_.plan(), open, [&] { return made_->get(std::move(stop)); });
 }
 
 }  // namespace todbench

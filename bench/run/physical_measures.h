@@ -1,48 +1,49 @@
-// The physical measures that a plan asks for, of the camera and of its simulated twin.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The physical measures that a plan requests, of the camera and of its simulated twin.
 #pragma once
 
 #include <optional>
 #include <stop_token>
 
+#include "bench/run/background_task.h"
 #include "bench/run/devices.h"
 #include "bench/run/experiment_inputs.h"
-#include "bench/run/meanwhile.h"
-#include "bench/run/session_frame.h"
+#include "bench/run/session_end.h"
 #include "tod/camera_measures/camera_measures.h"
 
 namespace todbench {
 
-/// With the bench of the trials, after them; `options` are those of the trials, the plates those of `inputs`. What
-/// cannot be measured is a reason in the result and a note. Nothing: none is asked for. Fails with `interrupted` only.
+/// Measures with the bench after the trials; `options` are those of the trials, the plates those of `inputs`. For a
+/// measure that cannot be taken, the result contains a reason and the session a note. Empty: the plan requests none.
+/// Errors: `interrupted`.
 [[nodiscard]] Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan,
                                                                       const MeasurementOptions& options,
                                                                       const ExperimentInputs& inputs,
-                                                                      OpenedBench& bench, const SessionFrame& frame,
+                                                                      OpenedBench& bench, const OpenSession& open,
                                                                       std::stop_token stop);
 
-/// The same of the plan's sensor as it is described, with every effect: also with those that the planner leaves out of
-/// the trials. Beside its MTF and CTF stand the closed forms.
+/// Returns the same for the plan's sensor as described, with all effects, also those that the planner skips in the
+/// trials. Adds the closed forms of its MTF and CTF.
 [[nodiscard]] Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded,
                                                                        const ExperimentInputs& inputs,
-                                                                       const SessionFrame& frame, std::stop_token stop);
+                                                                       const OpenSession& open, std::stop_token stop);
 
-/// simulated_measures() on a thread of its own: they depend on the plan alone, and a camera that measures leaves
-/// processor time. A program in place of the sensor is left alone until its turn comes.
-class MeasuresMeanwhile {
+/// Runs simulated_measures() on its own thread: they depend on the plan alone, and a measuring camera leaves processor
+/// time. With a program in place of the sensor, they start at take().
+class BackgroundMeasures {
  public:
-  /// Begins, unless they have to wait; `loaded` and `inputs` outlive it.
-  MeasuresMeanwhile(const LoadedPlan& loaded, const ExperimentInputs& inputs);
-  /// Waits for them, and says then what there is to say.
-  [[nodiscard]] Result<std::optional<CameraMeasures>> take(const SessionFrame& frame, std::stop_token stop);
+  /// Starts, unless the sensor is a program; `loaded` and `inputs` outlive it.
+  BackgroundMeasures(const LoadedPlan& loaded, const ExperimentInputs& inputs);
+  /// Waits for the measures and emits their notes.
+  [[nodiscard]] Result<std::optional<CameraMeasures>> take(const OpenSession& open, std::stop_token stop);
 
  private:
   const LoadedPlan& loaded_;
   const ExperimentInputs& inputs_;
-  std::optional<Meanwhile<Result<std::optional<CameraMeasures>>>> made_;
+  std::optional<BackgroundTask<Result<std::optional<CameraMeasures>>>> made_;
 };
 
-/// Puts the picture of the plan's sensor beside the mean picture of the plate, where there is one; a reason where they
-/// cannot be compared.
+/// Adds the picture of the plan's sensor to the mean picture of the plate, if any; a reason if they are not comparable.
 void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const ExperimentInputs& inputs);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/plate_picture.h"
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@ constexpr double step_px = 0.05;  // for the derivatives with respect to place
 constexpr int rounds = 2;
 constexpr int unknowns = 6;  // level, contrast, x, y, rotation, scale
 
-/// The part of the model's picture that the camera's field is, at a contrast of 1 K.
+/// The part of the model's picture at the camera's field, at a contrast of 1 K.
 cv::Mat1d rendered(const SensorModel& model, const PlateScene& scene, const cv::Rect& field) {
   const auto unit = model.unit_signal(scene);
   cv::Mat1d out;
@@ -61,7 +62,7 @@ Result<Fit> fitted(const PlateView& seen, const SensorModel& model, const PlateS
   }
   cv::Mat1d solution;
   if (!cv::solve(columns, values, solution, cv::DECOMP_SVD) || !(std::abs(solution(1, 0)) > 0))
-    return fail(ErrorCode::invalid_input, "the picture of the sensor model does not fit that of the camera");
+    return fail(ErrorCode::invalid_input, "the picture of the sensor model cannot be fitted to that of the camera");
   const cv::Mat1d picture = columns * solution;
   return Fit{picture.reshape(1, here.rows).clone(), solution(1, 0),
              cv::Point2d(solution(2, 0), solution(3, 0)) / solution(1, 0)};
@@ -85,9 +86,9 @@ Result<PlatePicture> plate_picture(const PlateView& seen, const TargetPlate& pla
   for (int round = 0; round < rounds; ++round) {
     auto fit = fitted(seen, model, scene, centre);
     if (!fit) return tl::unexpected(fit.error());
-    // Beyond half a pixel the picture is no straight line of the place.
+    // Beyond half a pixel the picture is not a linear function of the position.
     if (!(cv::norm(fit->moved_px) < 0.5))
-      return fail(ErrorCode::invalid_input, "the picture of the sensor model does not fit that of the camera");
+      return fail(ErrorCode::invalid_input, "the picture of the sensor model cannot be fitted to that of the camera");
     moved += fit->moved_px;
     scene.centre_px += fit->moved_px;
     out.expected_k = fit->picture;

@@ -1,15 +1,16 @@
-// The mean picture of the plate beside that of a sensor model at the same place.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compares the mean picture of the plate with that of a sensor model at the same place.
 #pragma once
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/camera_measures/camera_measures.h"
 
 namespace todbench {
 
-/// The picture that the model makes of the plate without noise, at the place, scale and rotation at which it was found;
-/// contrast, level and what is left of place, scale and rotation are fitted by least squares. `invalid_input` where the
-/// model has another number of pixels than the camera, or the contrast cannot be fitted.
+/// Computes the model's noise-free picture of the plate at the observed place, scale and rotation. Contrast, level and
+/// the residuals of place, scale and rotation are fitted by least squares. Errors: `invalid_input` (the model and the
+/// camera differ in the number of pixels, or the contrast cannot be fitted).
 [[nodiscard]] Result<PlatePicture> plate_picture(const PlateView& seen, const TargetPlate& plate,
                                                  const SensorModel& model, SceneMotion motion);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/precision_frontier.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ Plan with_answers(Plan plan, AnswerKind answers, const std::vector<int>& frames)
   return plan;
 }
 
-/// Computing time of a choice: of the camera's side where there is one.
+/// Computing time of a choice, for the camera if there is one.
 Result<double> computing_s(const Plan& plan, const ExperimentInputs& inputs, std::stop_token stop) {
   const auto time = predict_time(plan, inputs, std::move(stop));
   if (!time) return tl::unexpected(time.error());

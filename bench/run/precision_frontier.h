@@ -1,4 +1,5 @@
-// What frames and graded answers buy: time on the bench against the interval of S75.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bench time against the interval of S75, for numbers of frames and kinds of answers.
 #pragma once
 
 #include <optional>
@@ -9,28 +10,28 @@
 
 namespace todbench {
 
-/// The plan with other answers, all else as it is.
+/// The plan with other answers, otherwise unchanged.
 struct PrecisionChoice {
   AnswerKind answers = AnswerKind::binary;
   std::vector<int> frames{1};  ///< per presentation: of every contrast, or one number for each
   std::vector<ContrastPrediction> contrasts{};
   std::optional<double> half_width_percent{};  ///< half the 95 % interval of S75, the largest over the contrasts
-  double seconds = 0;        ///< of the measurement with the camera, or of the simulation where the plan has none
-  bool planned = false;      ///< what the plan says
-  bool recommended = false;  ///< of the graded ones that which buys most: least squared half-width times seconds
+  double seconds = 0;        ///< of the measurement with the camera, or of the simulation if the plan has no camera
+  bool planned = false;      ///< the choice of the plan
+  bool recommended = false;  ///< the graded choice with the smallest squared half-width times seconds
 };
 
-/// The plan with as many phases of the simulation as the camera is shown, where there is one: predict_plan() of it is
-/// about the camera's curve.
+/// Returns the plan with the camera's number of phases for the simulation, if there is a camera: predict_plan() then
+/// predicts the camera's curve.
 [[nodiscard]] Plan as_measured(Plan plan);
 
-/// Of the camera's curve where there is one: binary answers, and graded ones with 1, 2, 4 and 8 frames; the plan's own
-/// numbers (with_frames()), where they are others. Half-widths are those of predict_plan(), times those of
-/// predict_times() (1 and 2 frames are timed, the others follow). Errors as there.
+/// Returns the choices for the camera's curve, if there is one: binary answers, and graded ones with 1, 2, 4 and 8
+/// frames, and the plan's own numbers (with_frames()) if they differ. Half-widths come from predict_plan(), times from
+/// predict_times() (1 and 2 frames are timed, the others follow). Errors: as there.
 [[nodiscard]] Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                                       std::stop_token stop);
 
-/// `plan --json` and `cost --json`, key "frontier".
+/// Key "frontier" of `plan --json` and `cost --json`.
 [[nodiscard]] Json frontier_json(const std::vector<PrecisionChoice>& choices);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/prediction.h"
 
 #include <algorithm>
@@ -18,12 +19,12 @@
 namespace todbench {
 namespace {
 
-// Weibull slopes of the searching observer: 2.8 (noise rules) to 6.5 (microscan, no noise). The first tier finds them
-// within a quarter, except without noise, where it sees steps.
+// Weibull slopes of the searching observer: 2.8 (noise dominates) to 6.5 (microscan, no noise). The first tier finds
+// them within a quarter, except without noise, where its function has steps.
 constexpr double flattest = 2.5, steepest = 6;
 
-// Intervals of runs over the one of the expected counts: 1.03 +- 0.07, because answers scatter and trials of one
-// presentation or place are not quite independent. 19 of 20 runs stay below 1.2 (asked_uncertainty_study).
+// Intervals of runs over that of the expected counts: 1.03 +- 0.07, because answers scatter and trials of one
+// presentation or place are slightly dependent. 95 % of runs stay below 1.2 (asked_uncertainty_study).
 constexpr double likely_excess = 1.2;
 
 /// Trials per size at one contrast.
@@ -40,10 +41,10 @@ std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& p
   return levels;
 }
 
-/// Of the noise that decides an answer at a contrast, in variance.
+/// Shares in the variance of the noise that decides an answer at a contrast.
 struct NoiseShares {
-  double sensor = 0;   ///< what the sensor has and the observer does not make
-  double pattern = 0;  ///< of it the fixed pattern, which is not in q_eff
+  double sensor = 0;   ///< noise of the sensor, not of the observer
+  double pattern = 0;  ///< its fixed pattern, which q_eff does not include
 };
 
 NoiseShares noise_shares(const ExperimentInputs& inputs, const ContrastOutlook& outlook) {
@@ -56,8 +57,8 @@ NoiseShares noise_shares(const ExperimentInputs& inputs, const ContrastOutlook& 
   return {(std::max(0.0, white - own) / factor + pattern) / all, pattern / all};
 }
 
-/// Relative standard error of the threshold of a table of proportions (needed_draws(), twin_shapes.h), for answers
-/// with this one.
+/// Relative standard error of the threshold of a table of proportions (needed_draws(), twin_shapes.h), for answers with
+/// this standard error.
 double se_of_shape(const Accuracy& accuracy, double q_eff, std::optional<double> se_ln_threshold) {
   return (0.046 + 0.285 * q_eff) / std::sqrt(draws_of_twin_shape(se_ln_threshold, accuracy));
 }
@@ -66,16 +67,20 @@ GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inpu
                                   int frames) {
   const NoiseShares shares = noise_shares(inputs, outlook);
   const auto set_ups = static_cast<int>(inputs.plates.size() * plan.target.mountings.size());
+  // A simulated scene changes between two frames.
+  const double change_s = plan.target.kind == TargetKind::scene ? 0 : plan.target.shift_change_s;
   return {.sensor_share = shares.sensor,
           .pattern_share = shares.pattern,
           .size_pitch = outlook.s75_pitch,
           .frames = frames,
           .draws = MeasurementOptions::graded_draws,
           .set_ups = set_ups,
-          .presentations = set_ups * plan.simulation.phases};
+          .presentations = set_ups * plan.simulation.phases,
+          .noise_correlation = inputs.sensor.noise_correlation,
+          .frames_between = change_s * inputs.sensor.frame_rate_hz};
 }
 
-/// Half the interval of ln S75 of graded answers, from the standard error of as many right and wrong ones.
+/// Half-width of the interval of ln S75 of graded answers, from the standard error of as many binary ones.
 double graded_half_width(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
                          double binary_se) {
   const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
@@ -86,7 +91,7 @@ double graded_half_width(const Plan& plan, const ExperimentInputs& inputs, const
   return graded_interval_factor(design) * se;
 }
 
-/// The same of right and wrong answers.
+/// The same for binary answers.
 double binary_half_width(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
                          double binary_se) {
   const bool by_twin = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
@@ -108,8 +113,8 @@ std::optional<double> uncertainty_percent(const Plan& plan, const ExperimentInpu
   return 100 * std::expm1(half);
 }
 
-/// Of an adaptive schedule, from what constant stimuli would come to: as many trials as make the interval as narrow as
-/// asked, or as the cap allows. It never ends a contrast before eight presentations.
+/// Adapts the prediction of constant stimuli to an adaptive schedule: as many trials as the requested interval needs,
+/// or as the cap allows, and at least eight presentations per contrast.
 void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates) {
   if (plan.schedule.kind != ScheduleKind::adaptive || !point.uncertainty_percent || !(point.trials > 0)) return;
   double triangles = 0;
@@ -119,20 +124,20 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
   const double needed = std::max(point.trials * std::pow(constant / asked, 2), 8 * per_presentation);
   const double share = plan.schedule.max_presentations / static_cast<double>(plan.target.delta_t_k.size());
   const double cap = std::max(std::floor(share), 1.0) * per_presentation;
-  // Below the cap the schedule goes on until the interval itself is narrow enough.
+  // Below the cap the schedule continues until the interval itself is narrow enough.
   const double reached = needed <= cap ? asked : constant * std::sqrt(point.trials / cap);
   point.uncertainty_percent = 100 * std::expm1(reached);
   point.trials = std::round(std::min(needed, cap));
 }
 
-/// A tolerance that the caps do not allow is refused with the best that they do at every contrast, and its price on
-/// this machine.
+/// Rejects a tolerance beyond the caps; the message states the best possible tolerance over all contrasts, and its time
+/// on this machine.
 Result<void> reachable(const Plan& plan, const ExperimentInputs& inputs) {
   const Accuracy& accuracy = inputs.accuracy;
   const auto draws_at = [&](const ContrastOutlook& outlook) { return needed_draws(accuracy, outlook.q_eff); };
   const auto worst = std::ranges::max_element(inputs.outlooks, {}, draws_at);
   if (worst == inputs.outlooks.end() || draws_at(*worst) <= Accuracy::max_noise_draws) return {};
-  // Half the tolerance is the demanded standard error, which falls with the root of the draws.
+  // The requested standard error is half the tolerance and falls with the root of the draws.
   const double best = plan.simulation.tolerance_percent * std::sqrt(draws_at(*worst) / Accuracy::max_noise_draws);
   double price_s = 0;
   for (const auto& outlook : inputs.outlooks) {
@@ -142,12 +147,11 @@ Result<void> reachable(const Plan& plan, const ExperimentInputs& inputs) {
     if (!price) return tl::unexpected(price.error());
     price_s += *price;
   }
-  return fail(ErrorCode::invalid_input, "a tolerance of " + number_text(plan.simulation.tolerance_percent) +
-                                            " % cannot be met at " + number_text(worst->delta_t_k) +
-                                            " K: the most noise draws per size, " +
-                                            std::to_string(Accuracy::max_noise_draws) + ", reach about " +
-                                            number_text(std::ceil(best * 100) / 100) + " %, for about " +
-                                            number_text(std::ceil(price_s * 10) / 10) + " s over all contrasts");
+  return fail(ErrorCode::invalid_input,
+              "a tolerance of " + number_text(plan.simulation.tolerance_percent) + " % cannot be met at " +
+                  number_text(worst->delta_t_k) + " K: the maximum of " + std::to_string(Accuracy::max_noise_draws) +
+                  " noise draws per size can reach about " + number_text(std::ceil(best * 100) / 100) +
+                  " %, in about " + number_text(std::ceil(price_s * 10) / 10) + " s over all contrasts");
 }
 
 }  // namespace
@@ -192,7 +196,7 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
 
   PlanPrediction out{.figures = {}, .contrasts = {}, .warnings = inputs.warnings};
   const auto levels = levels_of(plan, inputs.plates);
-  double constant_trials = 0, trials = 0;  // per contrast, of all
+  double constant_trials = 0, trials = 0;  // of all trials per contrast
   for (const auto& level : levels) constant_trials += level.total;
   bool all_identified = true;
   for (const double delta_t_k : plan.target.delta_t_k) {
@@ -212,7 +216,7 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
           std::max(out.figures.predicted_uncertainty_percent.value_or(0), *point.uncertainty_percent);
     } else {
       all_identified = false;
-      out.warnings.push_back("at " + number_text(delta_t_k) + " K the sizes of the plates identify no threshold");
+      out.warnings.push_back("at " + number_text(delta_t_k) + " K the sizes of the plates do not identify a threshold");
     }
     out.contrasts.push_back(point);
   }

@@ -1,4 +1,5 @@
-// What a plan will do, before it does it: effects, trials, uncertainty, time.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Prediction of a plan: effects, trials, uncertainty, time.
 #pragma once
 
 #include <stop_token>
@@ -11,40 +12,41 @@
 
 namespace todbench {
 
-/// One contrast of a plan before it is measured.
+/// Prediction of one contrast.
 struct ContrastPrediction {
   double delta_t_k = 0;
-  std::optional<double> s75_mrad;  ///< of the first tier; nothing: no threshold is expected
-  /// Half the 95 % interval of S75 from the trials, right and wrong or graded as the plan has them
-  /// (graded_precision.h), which 19 of 20 runs do not exceed; of an adaptive schedule what is
-  /// asked of it, or what its cap allows. Nothing: not identified.
+  std::optional<double> s75_mrad;  ///< of the first tier; empty: no threshold is expected
+  /// Half-width of the 95 % interval of S75 from the trials, binary or graded as planned (graded_precision.h), which
+  /// 95 % of runs do not exceed. Adaptive schedule: the requested one, or the one its cap allows. Empty: not
+  /// identified.
   std::optional<double> uncertainty_percent;
-  double trials = 0;  ///< of the simulation at this contrast
+  double trials = 0;  ///< of the simulation
 };
 
 struct PlanPrediction {
-  PlanFigures figures;  ///< uncertainty: the largest over the contrasts; no times
+  PlanFigures figures;  ///< uncertainty: the largest over the contrasts; without times
   std::vector<ContrastPrediction> contrasts;
-  std::vector<std::string> warnings;  ///< a sentence each
+  std::vector<std::string> warnings;  ///< one sentence each
 };
 
-/// The plan with every number of frames per presentation: where it leaves one open and graded answers are taken, the
-/// fewest of 1, 2, 4 and 8 whose variance (graded_precision.h) times the time of a presentation (bench_time()) is
-/// within 10 % of the least of them; four where no time or no threshold is predicted, and one of right and wrong
-/// answers.
+/// Returns the plan with all numbers of frames per presentation. If the plan leaves one open and takes graded answers,
+/// it becomes the smallest of 1, 2, 4 and 8 whose variance (graded_precision.h) times the time of a presentation
+/// (bench_time()) is within 10 % of the minimum, or four if no time or no threshold is predicted. Binary answers get
+/// one frame.
 [[nodiscard]] Plan with_frames(Plan plan, const ExperimentInputs& inputs);
 
-/// Nothing is simulated and nothing read; two milliseconds. `inputs` are those of the plan (experiment_inputs()).
-/// `invalid_input` where the tolerance cannot be met within the hard caps (the message says what can and for what
-/// time). Contrasts without threshold have no uncertainty, and then the plan has none; a warning names them.
+/// Predicts a plan in two milliseconds, without simulation or reading of files. `inputs`: those of the plan
+/// (experiment_inputs()). Errors: `invalid_input` (the tolerance cannot be met within the hard caps; the message states
+/// the possible tolerance and its time). A contrast without a threshold has no uncertainty, and then the plan has none;
+/// a warning names it.
 [[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& inputs);
 
 /// Adds the times to a prediction of the same plan: predict_time() (bench/run/time_prediction.h) and bench_time()
-/// (bench/run/bench_time.h). A plan whose times cannot be predicted keeps none.
+/// (bench/run/bench_time.h). If the times cannot be predicted, they stay empty.
 [[nodiscard]] Result<void> predict_times(const Plan& plan, const ExperimentInputs& inputs, PlanPrediction& prediction,
                                          std::stop_token stop);
 
-/// Presentations to be expected of an adaptive schedule; nothing of the other, which shows its list.
+/// Returns the expected presentations of an adaptive schedule; empty for a constant one, which shows its list.
 [[nodiscard]] std::optional<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                            const std::vector<ContrastPrediction>& contrasts);
 

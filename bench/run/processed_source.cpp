@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/processed_source.h"
 
 #include <algorithm>
@@ -29,8 +30,11 @@ class ProcessedSource final : public ForwardingSource {
     if (record_->frame_ms.size() == picture_frame_ + 1) record_->picture = answer->counts.clone();
     if (as_ == ProcessedAs::judged)
       frame->judged = std::make_shared<const JudgedPicture>(*std::move(answer));
-    else
+    else {
       frame->counts = answer->counts;
+      // Carries the record of clipped samples.
+      frame->judged = std::make_shared<const JudgedPicture>(*std::move(answer));
+    }
     return frame;
   }
 
@@ -43,7 +47,8 @@ class ProcessedSource final : public ForwardingSource {
       frame.counts.convertTo(picture, CV_32F);
       for (const auto& stage : stages_) {
         auto answer = stage->process(picture);
-        // Frames from before a change of the target and after it may make no picture; they are not judged.
+        if (const auto believed = stage->believed_px()) out.scan_px = *believed / out.samples_per_pixel;
+        // Frames from before and after a change of the target may not combine to a picture; they are not judged.
         if (!answer && as_ == ProcessedAs::judged && answer.error().code == ErrorCode::not_identifiable) {
           out.none = Error{ErrorCode::integrity, answer.error().message};
           return out;
@@ -53,21 +58,23 @@ class ProcessedSource final : public ForwardingSource {
         out.first_px += stage->first_px() / out.samples_per_pixel;
         out.samples_per_pixel *= stage->samples_per_pixel();
       }
-      out.counts = counts_of(picture, frame.significant_bits);
+      put_counts(picture, frame.significant_bits, out);
     }
     record_->frame_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
     return out;
   }
-  cv::Mat1w counts_of(const cv::Mat1f& picture, int significant_bits) {
+  void put_counts(const cv::Mat1f& picture, int significant_bits, JudgedPicture& out) {
     const float full = static_cast<float>((1 << significant_bits) - 1);
-    cv::Mat1w counts(picture.size());
-    std::transform(picture.begin(), picture.end(), counts.begin(), [&](float value) {
-      const float rounded = std::nearbyint(value);
-      if (rounded < 0 || rounded > full) ++record_->clipped;
-      return static_cast<std::uint16_t>(std::clamp(rounded, 0.0F, full));
+    out.counts = cv::Mat1w(picture.size());
+    std::transform(picture.begin(), picture.end(), out.counts.begin(), [&](float value) {
+      return static_cast<std::uint16_t>(std::clamp(std::nearbyint(value), 0.0F, full));
     });
-    return counts;
+    // Up to half a count beyond an end, a value still rounds to the end.
+    const cv::Mat1b beyond = (picture < -0.5F) | (picture > full + 0.5F);
+    const int clipped = cv::countNonZero(beyond);
+    record_->clipped += static_cast<std::size_t>(clipped);
+    if (clipped > 0) out.cut_off = beyond;
   }
 
   std::vector<std::unique_ptr<ChainStage>> stages_;

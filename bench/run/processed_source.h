@@ -1,4 +1,5 @@
-// A camera whose pictures go through stages.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A camera whose pictures pass through stages.
 #pragma once
 
 #include <memory>
@@ -9,25 +10,25 @@
 
 namespace todbench {
 
-/// What the stages did so far.
+/// Record of the processing so far.
 struct ProcessingRecord {
   std::vector<double> frame_ms;  ///< of every complete frame, all stages together
-  std::size_t clipped = 0;       ///< pixels beyond the counts of the camera, which were cut off
-  cv::Mat1w picture;             ///< what was made of the frame with the number that was asked for
+  std::size_t clipped = 0;       ///< pixels clipped at the range of the camera's counts
+  cv::Mat1w picture;             ///< output for the requested frame number
 };
 
-/// What becomes of the answers of the stages.
+/// Destination of the output of the stages.
 enum class ProcessedAs {
-  judged,  ///< Frame::judged: plate, contrast, noise and corrections are found in the counts as they came
-  counts,  ///< Frame::counts, as if the camera had sent them: stages of one sample a pixel
+  judged,  ///< Frame::judged; plate, contrast, noise and corrections are found in the original counts
+  counts,  ///< Frame::counts, as if the camera had sent them, and Frame::judged; for stages with one sample per pixel
 };
 
-/// Samples per pixel and axis of what stages answer together.
+/// Samples per pixel and axis of the output of all stages.
 [[nodiscard]] int samples_per_pixel(const std::vector<std::unique_ptr<ChainStage>>& stages);
 
-/// `camera` with every complete frame through all stages, one after the other; answers are rounded to counts and cut
-/// off at the ends of their range. Frames that are not complete stay as they are. Errors of a stage are errors of
-/// next(). The picture of the record is that of the frame with number `picture_frame`, counted from 0.
+/// Returns `camera` with every complete frame passed through all stages in order; outputs are rounded to counts and
+/// clipped to their range. Incomplete frames stay as they are. next() returns the errors of a stage. The picture of the
+/// record is that of frame `picture_frame`, counted from 0.
 [[nodiscard]] std::unique_ptr<FrameSource> processed_source(std::unique_ptr<FrameSource> camera,
                                                             std::vector<std::unique_ptr<ChainStage>> stages,
                                                             ProcessedAs as, std::size_t picture_frame,

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/rebuild_report.h"
 
 #include <utility>
 
 #include "bench/report/report_csv.h"
 #include "bench/run/report_data.h"
+#include "bench/session/foreign_files.h"
 #include "bench/session/human_record.h"
 #include "bench/session/manifest.h"
 #include "bench/session/signature.h"
@@ -27,9 +29,12 @@ Result<ReportData> report_data_of(const Session& session, const std::filesystem:
 Result<ReportData> rebuild_report(const Session& session, const std::filesystem::path& folder,
                                   const PageWriter& write_pages) {
   if (auto open = require_unsigned(folder); !open) return tl::unexpected(open.error());
+  const bool vouched_for = session.accepted_changes.empty() && !session.cut_off;
+  // Accepting changed files includes added ones; links are never accepted.
+  auto own = vouched_for ? require_no_foreign_file(folder) : require_no_links(folder);
+  if (!own) return tl::unexpected(own.error());
   auto data = report_data_of(session, folder);
   if (!data) return data;
-  const bool vouched_for = session.accepted_changes.empty() && !session.cut_off;
   if (vouched_for && !session.verdict) {
     if (auto kept = keep_verdict(folder, *data->verdict); !kept) return tl::unexpected(kept.error());
     auto digest = manifest_digest(folder);
@@ -44,9 +49,12 @@ Result<ReportData> rebuild_report(const Session& session, const std::filesystem:
 }
 
 Result<ReportData> revise_report(const Session& session, const std::filesystem::path& folder, const std::string& reason,
-                                 const std::string& utc) {
+                                 const std::string& utc, const std::filesystem::path& secret_key,
+                                 const std::stop_token& stop) {
   auto revision = next_revision(folder, reason, utc);
   if (!revision) return tl::unexpected(revision.error());
+  if (auto own = require_no_foreign_file(folder); !own) return tl::unexpected(own.error());
+  if (auto key = require_key_of_session(folder, secret_key, stop); !key) return tl::unexpected(key.error());
   auto data = report_data_of(session, folder);
   if (!data) return data;
   data->revision = *revision;
@@ -58,7 +66,7 @@ Result<ReportData> revise_report(const Session& session, const std::filesystem::
     if (auto written = write_file_atomically(folder / pages.back(), text); !written)
       return tl::unexpected(written.error());
   }
-  if (auto kept = keep_revision(folder, *revision, pages); !kept) return tl::unexpected(kept.error());
+  if (auto kept = keep_revision(folder, *revision, pages, secret_key, stop); !kept) return tl::unexpected(kept.error());
   return data;
 }
 

@@ -1,36 +1,40 @@
-// The report of a session that was written before, made again into its folder.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rebuilds the report of an existing session in its folder.
 #pragma once
 
 #include <filesystem>
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/report/report.h"
 #include "bench/session/session_folder.h"
 
 namespace todbench {
 
-/// Writes pages of a report into a folder and names them, relative to it.
+/// Writes pages of a report into a folder and returns their names, relative to it.
 using PageWriter = std::function<Result<std::vector<std::string>>(const ReportData& data)>;
 
-/// What a report of the session says: report_data() with the answers of a person, where there are any. `session` comes
-/// from open_session(). Errors: as report_data(), read_human().
+/// Returns the content of a session's report: report_data() with the answers of a person, if there are any. `session`
+/// comes from open_session(). Errors: those of report_data() and read_human().
 [[nodiscard]] Result<ReportData> report_data_of(const Session& session, const std::filesystem::path& folder);
 
-/// Keeps a verdict that had to be made, lets `write_pages` write, and brings the manifest up to date with both. The
-/// A signed session is refused. The
-/// manifest of a session whose changed files were accepted stays as it is, so that it goes on telling of them. `io`
-/// with the path; errors of report_data_of() and of `write_pages`.
+/// Stores the verdict if it had to be made, calls `write_pages`, and updates the manifest with both. A signed session
+/// is refused. If changed files of a session were accepted, its manifest stays as it is, so that it keeps reporting
+/// them. Errors: `io` with the path; those of report_data_of() and `write_pages`.
 [[nodiscard]] Result<ReportData> rebuild_report(const Session& session, const std::filesystem::path& folder,
                                                 const PageWriter& write_pages);
-/// Of a signed session: the report as a revision of its own, in revisions/. `invalid_input`: as next_revision().
+/// Writes the report of a signed session as a revision in revisions/, signed with the key of the session. Errors:
+/// `invalid_input`: as next_revision(), a foreign file, or another key.
 [[nodiscard]] Result<ReportData> revise_report(const Session& session, const std::filesystem::path& folder,
-                                               const std::string& reason, const std::string& utc);
+                                               const std::string& reason, const std::string& utc,
+                                               const std::filesystem::path& secret_key,
+                                               const std::stop_token& stop = {});
 /// Writes report.html and report.csv.
 [[nodiscard]] PageWriter html_page(std::filesystem::path folder);
-/// The same with a letterhead, which the session keeps for every later report.
+/// The same with a letterhead, which the session stores for later reports.
 [[nodiscard]] PageWriter html_page_with(std::filesystem::path folder, Letterhead letterhead);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/reconnecting_source.h"
 
 #include <algorithm>
@@ -6,19 +7,19 @@
 #include <optional>
 #include <utility>
 
-#include "acquisition/core/background.h"
+#include "acquisition/base/background.h"
 
 namespace todbench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Read-only and different at every look, a matter of the connection, or told by the camera only when it streams: the
-/// dead pixels of a Seek are in its first frame.
+/// Features that vary between readings, belong to the connection, or are only reported while streaming: the dead pixels
+/// of a Seek are in its first frame.
 constexpr std::array volatile_settings{"DeviceTemperature", "SensorTemperature", "HousingTemperature",
                                        "SocketBufferBytes", "DeadPixels"};
 
-/// What a connection attempt came to, shared between it and who waits for it.
+/// Result of a connection attempt, shared between the attempt and the waiting thread.
 template <typename Value>
 struct Outcome {
   std::mutex mutex;
@@ -26,8 +27,8 @@ struct Outcome {
   std::optional<Value> value;
 };
 
-/// Runs `work` on a thread of its own and returns what it made, or nothing as soon as a stop is requested: then the
-/// work ends when it likes, before the program does, and what it made is destroyed there.
+/// Runs `work` on its own thread and returns its result, or an empty value as soon as a stop is requested. Then the
+/// work ends later, before the program does, and its result is destroyed there.
 template <typename Value, typename Work>
 std::optional<Value> unless_stopped(const std::stop_token& stop, Work work) {
   const auto outcome = std::make_shared<Outcome<Value>>();
@@ -46,10 +47,10 @@ std::string differing(const std::string& what, const std::string& before, const 
   return what + " was " + before + " and is " + now;
 }
 
-/// What of a camera must be as it was; empty when all is.
+/// Returns the differences in the properties of a camera that must stay; empty if there are none.
 std::string difference(const SourceInfo& before, const SourceInfo& now) {
-  // Nothing equals nothing, and another camera of the kind would too.
-  if (before.serial.empty() || now.serial.empty()) return "the camera has no serial number to be known by";
+  // Two empty serial numbers would match, and so would another camera of the model.
+  if (before.serial.empty() || now.serial.empty()) return "the camera has no serial number to identify it";
   if (now.serial != before.serial) return differing("the serial number", before.serial, now.serial);
   if (now.width != before.width || now.height != before.height) {
     return differing("the picture", std::to_string(before.width) + " x " + std::to_string(before.height),
@@ -78,7 +79,7 @@ Result<void> restore_settings(FrameSource& source, const std::map<std::string, s
     if (lost(done)) return done;
     if (!done) return fail(ErrorCode::not_found, "setting " + feature + " again: " + done.error().message);
   }
-  // What was changed while it was measured, or by the camera itself.
+  // Settings changed during the measurement, or by the camera itself.
   for (const auto& [feature, value] : before.settings) {
     const auto& now = source.info().settings;
     const auto found = now.find(feature);
@@ -87,7 +88,7 @@ Result<void> restore_settings(FrameSource& source, const std::map<std::string, s
     if (const auto done = source.set(feature, value); lost(done)) return done;
   }
   if (const auto what = difference(before, source.info()); !what.empty()) {
-    return fail(ErrorCode::not_found, "the camera came back different: " + what);
+    return fail(ErrorCode::not_found, "the camera differs after reconnection: " + what);
   }
   return {};
 }
@@ -207,7 +208,8 @@ Result<void> ReconnectingSource::recover(std::stop_token stop) {
   }
   if (state_ == LinkState::aborted) return fail(ErrorCode::interrupted, "stopped on request");
   if (state_ == LinkState::gave_up) {
-    return fail(ErrorCode::disconnected, "camera " + info_.id + " was lost and did not come back as it was" +
+    return fail(ErrorCode::disconnected, "camera " + info_.id +
+                                             " was lost and did not return with the same identity and settings" +
                                              (reason_.empty() ? "" : ": " + reason_));
   }
   sequence_offset_ = next_sequence_;

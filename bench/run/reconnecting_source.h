@@ -1,4 +1,5 @@
-// A camera that comes back: the same FrameSource over several connections to the same camera.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A camera that reconnects: one FrameSource over several connections to the same camera.
 #pragma once
 
 #include <chrono>
@@ -15,15 +16,15 @@
 namespace todbench {
 
 struct ReconnectionOptions {
-  std::chrono::milliseconds patience{60000};      ///< longer away than this is lost for good
+  std::chrono::milliseconds patience{60000};      ///< a camera away for longer is lost
   std::map<std::string, std::string> settings{};  ///< of the plan: written first
 };
 
-/// Opens the camera anew. Called on a thread that may outlive the source when it is aborted: owns what it needs.
+/// Reopens the camera. Called on a thread that may outlive an aborted source: the function owns all it needs.
 using ReopenCamera = std::function<Result<std::unique_ptr<FrameSource>>()>;
 
-/// Passes everything on to the present connection, whatever back end it comes from. Sequence numbers go on where the
-/// connection before left off. One thread at a time, except stop().
+/// Forwards all calls to the present connection, for every back end. Sequence numbers continue across connections. One
+/// thread at a time, except stop().
 class ReconnectingSource final : public FrameSource {
  public:
   ReconnectingSource(std::unique_ptr<FrameSource> source, ReopenCamera reopen, ReconnectionOptions options);
@@ -36,12 +37,12 @@ class ReconnectingSource final : public FrameSource {
   [[nodiscard]] Result<void> set(const std::string& feature, const std::string& value) override;
   [[nodiscard]] Result<void> correct_nonuniformity() override;
 
-  /// After `disconnected`: from releasing to registering. Returns when the camera with the same serial number streams
-  /// again with the same settings. Errors: `disconnected` (did not come back in time, or its settings, geometry or
-  /// scale are not what they were; a sentence says which), `interrupted` within 0.1 s of a stop request in every state.
-  /// A connection attempt that is under way then ends by itself on its own thread.
+  /// Reconnects after `disconnected`, from releasing to registering. Returns when the camera with the same serial
+  /// number streams again with the same settings. Errors: `disconnected` (not back in time, or settings, geometry or
+  /// scale differ; the message states which), `interrupted` within 0.1 s of a stop request in every state. A connection
+  /// attempt under way then ends on its own thread.
   [[nodiscard]] Result<void> recover(std::stop_token stop);
-  /// The plate was found where it was: the last step.
+  /// Confirms that the plate is at its former place: the last step.
   void confirm_registration();
 
   [[nodiscard]] LinkState state() const { return state_; }
@@ -59,7 +60,7 @@ class ReconnectingSource final : public FrameSource {
 
   ReopenCamera reopen_;
   ReconnectionOptions options_;
-  SourceInfo info_;  ///< of the first connection, settings as they were when it was lost
+  SourceInfo info_;  ///< of the first connection, with the settings at its loss
   LinkState state_ = LinkState::streaming;
   std::string reason_;
   mutable std::mutex mutex_;             ///< guards the pointer
@@ -68,8 +69,8 @@ class ReconnectingSource final : public FrameSource {
   std::uint64_t next_sequence_ = 0;
 };
 
-/// Writes every setting again and compares what the camera then is with what it was. Success: the camera is the same.
-/// Errors: `disconnected`, or `not_found` with what differs. Temperatures that the camera measures may differ.
+/// Writes all settings again and compares the camera with its former state. Success: it is the same. Errors:
+/// `disconnected`; `not_found` with the differences. Temperatures that the camera measures may differ.
 [[nodiscard]] Result<void> restore_settings(FrameSource& source, const std::map<std::string, std::string>& settings,
                                             const SourceInfo& before);
 

@@ -1,5 +1,6 @@
-// What happens between losing a camera and measuring with it again: the states, and what leads from one to the next.
-// A pure function; reconnecting_source.h acts on it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// States and transitions between losing a camera and measuring with it again. A pure function; reconnecting_source.h
+// acts on it.
 #pragma once
 
 #include <array>
@@ -10,22 +11,22 @@
 namespace todbench {
 
 enum class LinkState {
-  streaming,    ///< frames come
-  releasing,    ///< lost: everything that belongs to the old connection is destroyed
+  streaming,    ///< frames arrive
+  releasing,    ///< lost: all objects of the old connection are destroyed
   waiting,      ///< back-off before the next attempt
   opening,      ///< the camera with the same serial number is being opened
-  restoring,    ///< every setting is applied again and read back; the stream is started
-  registering,  ///< the plate is looked for where it was
-  gave_up,      ///< final: too long away, or not the same camera, settings or place any more
+  restoring,    ///< all settings are written and read back; the stream is started
+  registering,  ///< the plate is located at its former place
+  gave_up,      ///< final: away too long, or another camera, settings or place
   aborted,      ///< final: stopped on request
 };
 
 enum class LinkEvent {
-  done,         ///< what the state is about has succeeded
+  done,         ///< the task of the state succeeded
   lost,         ///< no frames, no answer
-  failed,       ///< the attempt did not succeed; the next one may
-  refused,      ///< the camera is there and is not what it was
-  out_of_time,  ///< longer away than is waited for
+  failed,       ///< the attempt failed; the next one may succeed
+  refused,      ///< the camera is there but differs from before
+  out_of_time,  ///< away longer than the patience
   abort,        ///< stopped on request
 };
 
@@ -37,7 +38,7 @@ inline constexpr std::array all_link_events{LinkEvent::done,    LinkEvent::lost,
 
 [[nodiscard]] std::string_view to_string(LinkState state);
 
-/// The state after an event; nothing where the event cannot happen in that state.
+/// Returns the state after an event; empty if the event cannot happen in that state.
 ///
 ///   streaming    lost -> releasing
 ///   releasing    done -> waiting
@@ -52,8 +53,8 @@ inline constexpr std::array all_link_events{LinkEvent::done,    LinkEvent::lost,
   return state == LinkState::gave_up || state == LinkState::aborted;
 }
 
-/// How long attempt number `attempt`, from 0, waits: 0.1 s, doubled every time, 3 s at most: the heartbeat after which
-/// a camera lets a vanished client go.
+/// Returns the wait before attempt `attempt`, from 0: 0.1 s, doubled each time, at most 3 s, the heartbeat after which
+/// a camera releases a vanished client.
 [[nodiscard]] std::chrono::milliseconds back_off(int attempt);
 
 }  // namespace todbench

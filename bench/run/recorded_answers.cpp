@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/recorded_answers.h"
 
 #include <charconv>
@@ -32,7 +33,7 @@ Json error_json(const Error& error) {
   return {{"code", static_cast<int>(error.code)}, {"message", error.message}};
 }
 
-/// A number that was none is none again.
+/// Converts an absent number back to NaN.
 double number_of(const JsonReader& reader) {
   return reader.optional_number().value_or(std::numeric_limits<double>::quiet_NaN());
 }
@@ -88,9 +89,9 @@ Reading target_answer(const TargetState& set, const Result<PresentedTarget>& sai
 }
 
 tl::unexpected<Error> RecordedAnswers::refuse(const std::string& expected, const std::string& found) {
-  disagreement_ = Error{ErrorCode::invalid_input, name_ + ": answer " + std::to_string(next_) + ": expected " +
-                                                      expected + ", found " + found +
-                                                      "; the session was measured by a version that asks otherwise"};
+  disagreement_ = Error{ErrorCode::invalid_input,
+                        name_ + ": answer " + std::to_string(next_) + ": expected " + expected + ", found " + found +
+                            ". Replay the session with the version of the program that measured it"};
   return tl::unexpected(*disagreement_);
 }
 
@@ -99,7 +100,7 @@ Result<std::string> RecordedAnswers::take(const std::string& tag) {
   if (next_ == readings_.size()) return fail(ErrorCode::disconnected, name_ + ": the recording ends here");
   const Reading& reading = readings_[next_++];
   if (reading.tag == tag) return reading.value;
-  return refuse("'" + tag + "'", reading.tag.empty() ? "a damaged one" : "'" + one_line(reading.tag) + "'");
+  return refuse("'" + tag + "'", reading.tag.empty() ? "a damaged answer" : "'" + one_line(reading.tag) + "'");
 }
 
 Result<std::int64_t> RecordedAnswers::take_whole(const std::string& tag) {
@@ -153,7 +154,7 @@ Result<PresentedTarget> RecordedAnswers::target(const TargetState& set) {
   } else {
     error = error_of(failed);
   }
-  if (const auto read = answer.finish(); !read) return refuse("what a target said", read.error().message);
+  if (const auto read = answer.finish(); !read) return refuse("a report of the target", read.error().message);
   if (then != set) return refuse("a target set to " + described(set), described(then));
   if (error) return tl::unexpected(*error);
   return said;

@@ -1,4 +1,5 @@
-// What a measurement was told beside its frames, as the recording keeps it: every answer with its question.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Answers that a measurement got besides its frames, as recorded: each with its question.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +10,12 @@
 #include <vector>
 
 #include "acquisition/recording/frame_stream.h"
-#include "tod/measurement/measurement_host.h"
+#include "tod/measurement/run_controller.h"
 #include "tod/presentation/target.h"
 
 namespace todbench {
 
-/// Of what a measurement asks and in which order it may ask it. A recording says which one it has; no other is
+/// Version of the questions of a measurement and their order. A recording states its version; another one is not
 /// replayed.
 inline constexpr std::string_view answers_format = "2";
 
@@ -24,31 +25,31 @@ inline constexpr std::string_view answers_format = "2";
 [[nodiscard]] Reading recovery_answer(const Result<void>& back);
 [[nodiscard]] Reading target_answer(const TargetState& set, const Result<PresentedTarget>& said);
 
-/// The answers of then, one after the other, to whoever asks the same questions in the same order. Another question
-/// than that of then is `invalid_input`, and so is every one after it; behind the last answer it is `disconnected`: the
+/// Replays the recorded answers in order, to the same questions in the same order. A question that differs from the
+/// recorded one is `invalid_input`, and so are all later ones; after the last answer it is `disconnected`, because the
 /// frames end there too. One thread at a time.
 class RecordedAnswers {
  public:
-  /// `name` is what messages call the recording.
+  /// `name`: name of the recording in messages.
   RecordedAnswers(std::string name, std::vector<Reading> readings)
       : name_(std::move(name)), readings_(std::move(readings)) {}
 
   [[nodiscard]] Result<std::int64_t> clock(Moment why);
   [[nodiscard]] Result<bool> rest();
   [[nodiscard]] Result<std::int64_t> calls();
-  /// The outcome of then.
+  /// The recorded outcome.
   [[nodiscard]] Result<void> recovery();
-  /// What the target said then. A target that was set otherwise then is another question: the frames show something
-  /// else.
+  /// The recorded report of the target. Errors: `invalid_input` if the target was set otherwise, because the frames
+  /// show another target.
   [[nodiscard]] Result<PresentedTarget> target(const TargetState& set);
 
-  /// Success while every question was that of then.
+  /// Succeeds if all questions so far were the recorded ones.
   [[nodiscard]] Result<void> agreed() const;
 
  private:
   [[nodiscard]] Result<std::string> take(const std::string& tag);
   [[nodiscard]] Result<std::int64_t> take_whole(const std::string& tag);
-  /// The answer just taken is not what was expected.
+  /// Reports an answer that differs from the expected kind.
   [[nodiscard]] tl::unexpected<Error> refuse(const std::string& expected, const std::string& found);
 
   std::string name_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/recorded_bench.h"
 
 #include <string>
@@ -16,18 +17,18 @@ constexpr const char* target_key = "target";
 constexpr const char* sets_shift_key = "target_sets_shift";
 constexpr const char* simulated_key = "simulated";
 constexpr const char* comes_back_key = "camera_comes_back";
-constexpr const char* frames_meanwhile_key = "frames_while_presenting";
+constexpr const char* frames_while_presenting_key = "frames_while_presenting";
 
 std::string yes_no(bool value) {
   return value ? "yes" : "no";
 }
 
-/// A recording that is written. An answer that the disk refuses ends it, and with it the next frame fails.
+/// A recording being written. If the disk rejects an answer, the recording ends and the next frame fails.
 using Stream = std::shared_ptr<FrameStreamWriter>;
 
-class RecordingHost final : public MeasurementHost {
+class RecordingHost final : public RunController {
  public:
-  RecordingHost(std::unique_ptr<MeasurementHost> host, Stream stream)
+  RecordingHost(std::unique_ptr<RunController> host, Stream stream)
       : host_(std::move(host)), stream_(std::move(stream)) {}
 
   [[nodiscard]] Result<std::int64_t> now_ns(Moment why) override {
@@ -40,7 +41,9 @@ class RecordingHost final : public MeasurementHost {
     if (rests) (void)stream_->append_reading(rest_answer(*rests));
     return rests;
   }
-  [[nodiscard]] FramesMeanwhile frames_while_presenting() const override { return host_->frames_while_presenting(); }
+  [[nodiscard]] FramesWhilePresenting frames_while_presenting() const override {
+    return host_->frames_while_presenting();
+  }
   [[nodiscard]] Result<std::int64_t> asked_while_presenting(std::int64_t calls) override {
     auto asked = host_->asked_while_presenting(calls);
     if (asked) (void)stream_->append_reading(calls_answer(*asked));
@@ -55,7 +58,7 @@ class RecordingHost final : public MeasurementHost {
   void resumed() override { host_->resumed(); }
 
  private:
-  std::unique_ptr<MeasurementHost> host_;
+  std::unique_ptr<RunController> host_;
   Stream stream_;
 };
 
@@ -75,9 +78,10 @@ class RecordingTarget final : public Target {
   Stream stream_;
 };
 
-class ReplayedHost final : public MeasurementHost {
+class ReplayedHost final : public RunController {
  public:
-  ReplayedHost(std::shared_ptr<RecordedAnswers> answers, FramesMeanwhile frames, bool recovers, const Pause* pause)
+  ReplayedHost(std::shared_ptr<RecordedAnswers> answers, FramesWhilePresenting frames, bool recovers,
+               const Pause* pause)
       : answers_(std::move(answers)), frames_(frames), recovers_(recovers), pause_(pause) {}
 
   [[nodiscard]] Result<std::int64_t> now_ns(Moment why) override { return answers_->clock(why); }
@@ -85,7 +89,7 @@ class ReplayedHost final : public MeasurementHost {
     while (pause_ != nullptr && !stop.stop_requested() && pause_->rest(stop)) continue;
     return answers_->rest();
   }
-  [[nodiscard]] FramesMeanwhile frames_while_presenting() const override { return frames_; }
+  [[nodiscard]] FramesWhilePresenting frames_while_presenting() const override { return frames_; }
   [[nodiscard]] Result<std::int64_t> asked_while_presenting(std::int64_t) override { return answers_->calls(); }
   [[nodiscard]] bool recovers() const override { return recovers_; }
   [[nodiscard]] Result<void> recover(std::stop_token) override { return answers_->recovery(); }
@@ -93,12 +97,12 @@ class ReplayedHost final : public MeasurementHost {
 
  private:
   std::shared_ptr<RecordedAnswers> answers_;
-  FramesMeanwhile frames_;
+  FramesWhilePresenting frames_;
   bool recovers_;
   const Pause* pause_;
 };
 
-/// Shows nothing: what it showed is in the frames. Says what it said.
+/// Shows no picture, because its effect is in the frames. Returns the recorded reports.
 class ReplayedTarget final : public Target {
  public:
   ReplayedTarget(std::shared_ptr<RecordedAnswers> answers, TargetCapabilities capabilities)
@@ -114,7 +118,7 @@ class ReplayedTarget final : public Target {
   TargetCapabilities capabilities_;
 };
 
-/// A recording whose answers this version understands. The first versions wrote answers without their questions.
+/// Checks that this version understands the recorded answers. The first versions wrote answers without their questions.
 Result<void> check_format(const std::filesystem::path& file, const std::map<std::string, std::string>& annotations) {
   if (!annotations.contains(sets_shift_key))
     return fail(ErrorCode::invalid_input, file.string() + ": not the recording of a measurement");
@@ -123,7 +127,7 @@ Result<void> check_format(const std::filesystem::path& file, const std::map<std:
   if (format == answers_format) return {};
   return fail(ErrorCode::invalid_input, file.string() + ": expected a measurement with answers in format " +
                                             std::string(answers_format) + ", found format " + one_line(format) +
-                                            ": measured by another version of the program, which can replay it");
+                                            ". Replay it with the version of the program that measured it");
 }
 
 }  // namespace
@@ -141,12 +145,13 @@ Result<std::shared_ptr<FrameStreamWriter>> record_bench(OpenedBench& bench, cons
   header.info = bench.camera->info();
   header.created_utc = utc_now();
   header.created_host_ns = monotonic_ns();
-  header.annotations = {{format_key, std::string(answers_format)},
-                        {target_key, bench.target->capabilities().description},
-                        {sets_shift_key, yes_no(bench.target->capabilities().sets_shift)},
-                        {simulated_key, yes_no(bench.simulated)},
-                        {comes_back_key, yes_no(bench.host->recovers())},
-                        {frames_meanwhile_key, yes_no(bench.host->frames_while_presenting() == FramesMeanwhile::take)}};
+  header.annotations = {
+      {format_key, std::string(answers_format)},
+      {target_key, bench.target->capabilities().description},
+      {sets_shift_key, yes_no(bench.target->capabilities().sets_shift)},
+      {simulated_key, yes_no(bench.simulated)},
+      {comes_back_key, yes_no(bench.host->recovers())},
+      {frames_while_presenting_key, yes_no(bench.host->frames_while_presenting() == FramesWhilePresenting::take)}};
   auto writer = FrameStreamWriter::create(file, header);
   if (!writer) return tl::unexpected(writer.error());
   const auto stream = std::make_shared<FrameStreamWriter>(*std::move(writer));
@@ -161,15 +166,16 @@ Result<RecordedBench> open_recorded_bench(const std::filesystem::path& session, 
   std::error_code problem;
   if (!std::filesystem::exists(file, problem)) {
     return fail(ErrorCode::invalid_input, session.string() +
-                                              ": no frames were recorded in this session ([measurement] "
-                                              "record_frames or --record-frames)");
+                                              ": this session has no recorded frames. Measure with [measurement] "
+                                              "record_frames or --record-frames");
   }
   auto stream = open_frame_stream(file);
   if (!stream) return tl::unexpected(stream.error());
   auto& annotations = stream->header.annotations;
   if (auto known = check_format(file, annotations); !known) return tl::unexpected(known.error());
   const auto answers = std::make_shared<RecordedAnswers>(file.string(), std::move(stream->readings));
-  const auto frames = annotations[frames_meanwhile_key] == "yes" ? FramesMeanwhile::repeat : FramesMeanwhile::leave;
+  const auto frames =
+      annotations[frames_while_presenting_key] == "yes" ? FramesWhilePresenting::repeat : FramesWhilePresenting::leave;
   RecordedBench out{.bench = {}, .answers = answers};
   out.bench.camera = recorded_source(std::move(stream->recording), Playback::replay);
   out.bench.target = std::make_unique<ReplayedTarget>(

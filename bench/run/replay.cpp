@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/replay.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace todbench {
 namespace {
 
-/// The trials as the columns of a file know them: an earlier version kept less of a trial.
+/// Reduces the trials to the columns of a file: earlier versions stored less of a trial.
 std::vector<Trial> in_columns_of(std::vector<Trial> trials, std::string_view header) {
   for (Trial& trial : trials) {
     if (header.find("saturated_pixels") == std::string_view::npos) trial.saturated_pixels = 0;
@@ -24,7 +25,7 @@ std::vector<Trial> in_columns_of(std::vector<Trial> trials, std::string_view hea
   return trials;
 }
 
-/// The same of files with other columns: what both know.
+/// Compares files with different columns by their common columns.
 Result<bool> same_as_far_as_known(const std::filesystem::path& then, std::string_view header,
                                   const std::filesystem::path& now, bool cut_off) {
   const auto old_trials = read_trials(then);
@@ -37,8 +38,8 @@ Result<bool> same_as_far_as_known(const std::filesystem::path& then, std::string
          std::equal(trials.begin(), trials.begin() + both, old_trials->begin());
 }
 
-/// Equal files; of a session that was cut off, in which frames and trials need not end together, equal as far as both
-/// go.
+/// Compares files of trials. Frames and trials of an interrupted session may end at different points: they are compared
+/// up to the earlier end.
 Result<bool> same_trials(const std::filesystem::path& session, const std::filesystem::path& replay, bool cut_off) {
   const auto then = read_text_file(session / "trials.csv");
   if (!then) return tl::unexpected(then.error());
@@ -50,7 +51,7 @@ Result<bool> same_trials(const std::filesystem::path& session, const std::filesy
   return *now == *then || (cut_off && (now->starts_with(*then) || then->starts_with(*now)));
 }
 
-/// A curve without what is said of it: a session of an earlier program knows no findings and no reasons.
+/// Returns a curve without findings and reasons, which sessions of earlier versions do not have.
 Json fits_of(TodCurve curve) {
   for (TodPoint& point : curve.points) {
     point.adequacy.reset();
@@ -60,8 +61,8 @@ Json fits_of(TodCurve curve) {
   return curve_record(curve);
 }
 
-/// Whether the intervals of a session were made by the same rule: graded answers whose trials do not say where they
-/// were in the picture have intervals without what set-ups share there.
+/// Whether the intervals of a session follow the present rule: for graded answers of trials without places in the
+/// picture, the intervals lack the share that set-ups have in common there.
 Result<bool> comparable_fits(const std::filesystem::path& session, const TodCurve& curve) {
   const bool of_set_ups = std::ranges::any_of(
       curve.points, [](const TodPoint& point) { return point.fit.interval == IntervalKind::set_ups; });
@@ -82,22 +83,30 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   auto recording = open_recorded_bench(session, options.host.pause);
   if (!recording) return tl::unexpected(recording.error());
   Plan plan = recorded->plan;
-  // Whoever made a session says in it what would run here.
+  // The author of a session chooses the programs that would run here.
   if (has_modules(plan, recorded->parts.sensor) && modules != RunModules::yes) {
-    return fail(ErrorCode::invalid_input,
-                session.string() + ": has a [[module]], a program that would run here: --run-modules lets it");
+    return fail(
+        ErrorCode::invalid_input,
+        session.string() +
+            ": the session has a [[module]], and the replay would run its program. Use --run-modules to allow it");
   }
   plan.measurement.record_frames = false;
-  plan.measures = {};  // a replay repeats the trials
+  // A replay repeats the trials: physical measures are not taken again, so nothing could be held against their limits.
+  const bool limits_left_out = !plan.limits.measures.empty() || !plan.limits.zones.empty();
+  plan.measures = {};
+  plan.limits.measures.clear();
+  plan.limits.zones.clear();
   const auto loaded = LoadedPlan::of(std::move(plan), recorded->parts);
   if (!loaded) return tl::unexpected(loaded.error());
   EffectPlanner planner;
   auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
   for (const std::string& file : recorded->accepted_changes)
-    inputs->warnings.push_back("replayed from a session that was changed after it had ended: " + file);
+    inputs->warnings.push_back("replayed from a session that was changed after its end: " + file);
+  if (limits_left_out)
+    inputs->warnings.emplace_back("limits on physical measures are left out: a replay repeats the trials");
   auto run = measure_on_bench(*loaded, *inputs, std::move(recording->bench), options, listener, std::move(stop));
-  // What was measured with answers to other questions is no replay.
+  // A measurement that asked other questions is not a replay.
   if (auto agreed = recording->answers->agreed(); !agreed) return tl::unexpected(agreed.error());
   if (!run) return tl::unexpected(run.error());
 

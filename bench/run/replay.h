@@ -1,4 +1,5 @@
-// A session measured again from its recorded frames.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures a session again from its recorded frames.
 #pragma once
 
 #include <optional>
@@ -11,23 +12,22 @@
 namespace todbench {
 
 struct ReplayOutcome {
-  ExperimentOutcome run;  ///< its session folder is a new one
+  ExperimentOutcome run;  ///< with a new session folder
   bool same_trials = false;
-  /// Of the measured curve; nothing where the session ended before it was fitted, or is of a version whose intervals of
-  /// graded answers knew no places in the picture.
+  /// Of the measured curve. Empty if the session ended before its fit, or if its version computed the intervals of
+  /// graded answers without places in the picture.
   std::optional<bool> same_fits;
-  std::vector<std::string> accepted_changes{};  ///< of the session that was replayed
+  std::vector<std::string> accepted_changes{};  ///< of the replayed session
 };
 
-/// Whether the programs that a session names are started here.
+/// Whether to start the programs that a session names.
 enum class RunModules { no, yes };
 
-/// Measures again with the plan of the session and the frames in it, simulates the twin again, and compares trials and
-/// fits byte for byte. A session that was cut off is replayed as far as its frames go, and compared as far as its
-/// trials go; `accept_changed` of `opening` takes files that were changed, and the new session says so. A loss that the
-/// run survived is replayed like everything else. Errors: `invalid_input` (not a session, no recording in it, modules
-/// that may not run, files that were changed since, a recording that another version of the program made and that this
-/// one would ask otherwise), those of measure_plan().
+/// Measures again with the plan and the frames of the session, simulates the twin again, and compares trials and fits
+/// byte for byte. An interrupted session is replayed to the end of its frames and compared to the end of its trials.
+/// Losses that the run survived are replayed too. `accept_changed` of `opening` accepts changed files, and the new
+/// session states it. Errors: `invalid_input` (not a session, no recording, modules that may not run, changed files, or
+/// a recording by a program version that asked other questions), those of measure_plan().
 [[nodiscard]] Result<ReplayOutcome> replay_session(const std::filesystem::path& session,
                                                    const ExperimentOptions& options, const ExperimentListener& listener,
                                                    std::stop_token stop, const Opening& opening = {},

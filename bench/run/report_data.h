@@ -1,4 +1,5 @@
-// A session as the report shows it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Report data of a session.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +10,11 @@
 
 namespace todbench {
 
-/// The name of a session: that of its folder, however the folder is referred to.
+/// Returns the name of a session: that of its folder, for every way to write the path.
 [[nodiscard]] std::string session_name(const std::filesystem::path& folder);
 
-/// Everything for render_report() from what the session folder holds. `name` is that of the session. `invalid_input`
-/// when a plate or sensor that the plan names cannot be read.
+/// Reads the data for render_report() from a session. `name`: of the session. Errors: `invalid_input` if a plate or
+/// sensor of the plan cannot be read.
 [[nodiscard]] Result<ReportData> report_data(const Session& session, const std::string& name);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/running_fit.h"
 
 #include <utility>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-/// Of answers so far: 1000 draws, whose error of 1 % joins theirs.
+/// Assumed error of the answers so far: 1000 draws, whose error of 1 % is added to theirs.
 constexpr double error_so_far = 0.05;
 
 }  // namespace
@@ -28,7 +29,7 @@ bool RunningFit::prepare(const std::stop_token& stop) {
 std::optional<TodCurve> RunningFit::curve_of(std::span<const Trial> trials, const std::stop_token& stop) {
   if (trials.empty() || !prepare(stop)) return std::nullopt;
   FitOptions options = fit_options(plan_);
-  options.with_posterior = false;  // only reports show it
+  options.with_posterior = false;  // only reports show the posterior
   auto curve = tod_curve(trials, options);
   if (!curve) return std::nullopt;
   fit_with_tables(*curve, trials, *functions_, options);

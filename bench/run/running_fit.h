@@ -1,4 +1,5 @@
-// Answers fitted while they come in.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fits answers while they arrive.
 #pragma once
 
 #include <map>
@@ -12,17 +13,17 @@
 
 namespace todbench {
 
-/// The curve of the answers so far, with the function that the result will be fitted with. Not for two threads at once.
+/// Fits the answers so far with the same function as the result. One thread at a time.
 class RunningFit {
  public:
   explicit RunningFit(Plan plan) : plan_(std::move(plan)) {}
 
-  /// Without posterior. The first one computes the functions of the simulated sensor at the set contrasts, from 1000
-  /// draws per size: a second of processor time. Nothing: no answers, none that make a curve, or stopped.
+  /// Returns the curve without a posterior. The first call computes the functions of the simulated sensor at the set
+  /// contrasts, from 1000 draws per size: a second of processor time. Empty: no answers, no curve, or stopped.
   [[nodiscard]] std::optional<TodCurve> curve_of(std::span<const Trial> trials, const std::stop_token& stop);
 
  private:
-  /// Whether it is done.
+  /// Returns whether the functions are complete.
   bool prepare(const std::stop_token& stop);
 
   Plan plan_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/simulated_responses.h"
 
 #include <cmath>
@@ -41,7 +42,7 @@ Result<std::map<std::string, double>> simulated_responses(const SensorModel& mod
                             .level = level_estimate(options.contrast_unit)},
                            stop);
   };
-  // A camera waits for them. Programs in place of the sensor run one after the other.
+  // In parallel, because a camera waits for them. Programs in place of the sensor run one after the other.
   std::vector<std::future<Result<double>>> made;
   for (const auto& plate : plates)
     made.push_back(std::async(by_module ? std::launch::deferred : std::launch::async, of_plate, std::cref(plate)));

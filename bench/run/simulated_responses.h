@@ -1,4 +1,5 @@
-// How the contrast estimate reads the plates of a plan through its simulated sensor.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Response of the contrast estimator for the plates of a plan, from the simulated sensor.
 #pragma once
 
 #include <map>
@@ -12,8 +13,8 @@
 
 namespace todbench {
 
-/// What the contrast estimate reads of 1 K on each plate, by name; the simulated sensor stands for the camera. Errors
-/// as contrast_response().
+/// Returns the response of the contrast estimator to 1 K on each plate, by name, with the simulated sensor in place of
+/// the camera. Errors: those of contrast_response().
 [[nodiscard]] Result<std::map<std::string, double>> simulated_responses(const SensorModel& model, const Plan& plan,
                                                                         const std::vector<TargetPlate>& plates,
                                                                         const MeasurementOptions& options,

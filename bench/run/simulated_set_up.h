@@ -1,4 +1,5 @@
-// A plan on its simulated sensor, ready to be measured.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plan with its simulated sensor, ready to be measured.
 #pragma once
 
 #include <map>
@@ -13,16 +14,16 @@
 
 namespace todbench {
 
-/// What measure() needs beside an observer, with the random streams of the plan's seed.
+/// Inputs of measure() except the observer, with the random streams of the plan's seed.
 struct SimulatedSetUp {
   MeasurementOptions options;
   OpenedBench bench;
   std::unique_ptr<TrialSchedule> schedule;
-  std::map<double, ProportionTable> functions{};  ///< that an adaptive schedule stops by (stopping_tables())
+  std::map<double, ProportionTable> functions{};  ///< for the stopping rule of an adaptive schedule (stopping_tables())
 };
 
-/// `shown_delta_t_k` and `source` as for simulated_bench(). `responses`: of simulated_responses() for the same sensor
-/// and kelvin, where they are known; empty: they are computed, half a second a plate. Errors as contrast_response().
+/// `shown_delta_t_k` and `source`: as for simulated_bench(). `responses`: those of simulated_responses() for the same
+/// sensor in kelvin; empty: they are computed, half a second per plate. Errors: those of contrast_response().
 [[nodiscard]] Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs& inputs,
                                                       std::map<double, double> shown_delta_t_k, std::stop_token stop,
                                                       const SimulatedSourceOptions& source = {},

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The operator at the terminal of the program.
 #pragma once
 
@@ -5,7 +6,7 @@
 
 namespace todbench {
 
-/// Writes requests to standard error and reads the answers from standard input; what a run without another host does.
+/// Writes requests to standard error and reads answers from standard input; the default of a run without another host.
 [[nodiscard]] AskOperator ask_at_terminal();
 
 }  // namespace todbench

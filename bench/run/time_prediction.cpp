@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/time_prediction.h"
 
 #include <algorithm>
@@ -17,18 +18,18 @@
 namespace todbench {
 namespace {
 
-constexpr double shapes_per_first_draw = 1.5;  // a first picture has two of three of the shapes of all mountings
-/// A function from chance to certainty over a direct estimate of as many draws: it has more sizes (predicted_time).
+constexpr double shapes_per_first_draw = 1.5;  // a first picture creates two of the three shapes of all mountings
+/// Time of a complete function over that of a direct estimate with as many draws: it has more sizes (predicted_time).
 constexpr double sizes_of_shape = 4.5;
 constexpr double fit_s = 0.01;  // of one contrast, both intervals
 
 /// Seconds of each kind of work on one plate.
 struct PlateSpeed {
-  double first_draw = 0;  ///< a picture with shapes and tables that were not there
-  double draw = 0;        ///< a picture at another place
-  double frame = 0;       ///< a frame of an unchanged scene, taken and added up
+  double first_draw = 0;  ///< a picture with new shapes and tables
+  double draw = 0;        ///< a picture at another position
+  double frame = 0;       ///< a frame of an unchanged scene, acquired and accumulated
   double registration = 0, contrast = 0;
-  double prepare = 0;  ///< the observer for all its sizes
+  double prepare = 0;  ///< observer preparation for all its sizes
   double answers = 0;  ///< all triangles of a frame
 };
 
@@ -39,14 +40,14 @@ double seconds_of(Work&& work) {
   return thread_seconds() - start;
 }
 
-/// How often a side does what.
+/// Numbers of operations on one side.
 struct Counts {
   double set_ups = 0;        ///< of one plate
   double presentations = 0;  ///< of one plate, over all contrasts
   double contrasts = 0;
 };
 
-/// The decisions on the pictures of a presentation, and what preparing for them takes.
+/// Times the decisions on the pictures of a presentation, and the preparation for them.
 Result<void> time_answers(const TargetPlate& plate, const Registration& registration, const cv::Mat1d& picture,
                           TemplateObserver& observer, const MeasurementOptions& options, double contrast_k,
                           PlateSpeed& speed) {
@@ -66,14 +67,14 @@ Result<void> time_answers(const TargetPlate& plate, const Registration& registra
         (void)(*prepared)->choose(patch, contrast_k, noise);
       }
     };
-    // The first graded answer makes what all others use.
+    // The first graded answer creates tables that all later ones use.
     if (options.answers == AnswerKind::graded) speed.prepare += seconds_of(answer);
     speed.answers += seconds_of(answer);
   }
   return {};
 }
 
-/// Of a presentation, over the contrasts.
+/// Mean frames per presentation, over the contrasts.
 double mean_frames(const MeasurementOptions& options) {
   double sum = 0;
   for (const auto& [contrast, frames] : options.frames_at_contrast) sum += frames;
@@ -119,13 +120,13 @@ Result<PlateSpeed> speed_on(const TargetPlate& plate, const std::shared_ptr<cons
   return speed;
 }
 
-/// The contrast estimate's response: four mountings at two phases.
+/// Time of the response of the contrast estimator: four mountings at two phases.
 double response_s(const PlateSpeed& speed) {
   return shapes_per_first_draw * (speed.first_draw - speed.draw) +
          8 * (speed.draw + speed.registration + speed.contrast);
 }
 
-/// What is computed while one plate is looked at, pictures excepted.
+/// Computing time for one plate, without its pictures.
 double looking_s(const PlateSpeed& speed, const Counts& counts, double frames_per_presentation) {
   return speed.prepare + counts.set_ups * speed.registration + counts.set_ups * counts.contrasts * speed.contrast +
          counts.presentations * frames_per_presentation * speed.answers;
@@ -142,14 +143,14 @@ Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {
                 .contrasts = static_cast<double>(plan.target.delta_t_k.size())};
   counts.presentations = counts.set_ups * counts.contrasts * phases;
   if (plan.schedule.kind == ScheduleKind::adaptive) {
-    // At most; where the answers suffice earlier it takes less.
+    // Upper limit; the schedule may stop earlier.
     counts.presentations = std::min(counts.presentations * 8, static_cast<double>(plan.schedule.max_presentations) /
                                                                   static_cast<double>(inputs.plates.size()));
   }
   return counts;
 }
 
-/// Of ln S75, of right and wrong answers on sizes a factor of two about it; nothing for graded ones.
+/// Standard error of ln S75 for binary answers at sizes within a factor of two around it; empty for graded ones.
 std::optional<double> expected_error(const Plan& plan, const ExperimentInputs& inputs, const Counts& counts) {
   if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded) return std::nullopt;
   double trials = 0;
@@ -182,7 +183,7 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
     out.simulation_s += response_s(*speed) + looking_s(*speed, simulated, frames) + drawing;
     out.measuring_s +=
         response_s(*speed) + looking_s(*speed, measured, frames) + frames_of(plan, measured, frames) * speed->frame;
-    // The twin sees what the camera saw, so many times.
+    // The twin judges the camera's presentations this many times.
     if (pairs_asked(plan, inputs.sensor) && !plan.camera.id.empty())
       out.measuring_s += measured.presentations * PairedTwinOptions::default_draws * speed->answers;
     if (plan.target.kind == TargetKind::scene) out.measuring_s += measured.presentations * speed->draw;
@@ -199,13 +200,13 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
     if (!seconds) return tl::unexpected(seconds.error());
     out.simulation_s += *seconds;
     if (!shaped) continue;
-    // Of the curve, and where there is a camera of its own: the same draws whatever tolerance is asked for.
+    // Function of the curve, and again for a separate camera: the same draws for every tolerance.
     const auto table_s = seconds_with(draws_of_twin_shape(expected_error(plan, inputs, simulated), inputs.accuracy));
     if (!table_s) return tl::unexpected(table_s.error());
     out.simulation_s += sizes_of_shape * *table_s;
     out.measuring_s += sizes_of_shape * *table_s;
     if (plan.schedule.kind != ScheduleKind::adaptive) continue;
-    // Those that the schedule stops by, of camera and twin (stopping_tables()).
+    // Functions of the stopping rule, for camera and twin (stopping_tables()).
     const auto stopping_s = seconds_with(draws_of_twin_shape(plan.schedule.half_width_percent / 196, inputs.accuracy));
     if (!stopping_s) return tl::unexpected(stopping_s.error());
     out.simulation_s += sizes_of_shape * *stopping_s;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/twin_shapes.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ std::vector<Trial> trials_at(std::span<const Trial> trials, double set_delta_t_k
   return own;
 }
 
-/// Gives a point the function; whether its fit is regular. Errors: fit_twin_shape().
+/// Fits a point with the function; returns whether its fit is regular. Errors: those of fit_twin_shape().
 Result<bool> give_function(TodPoint& point, std::span<const Trial> trials, const ProportionTable& table,
                            const FitOptions& fit) {
   const std::vector<GradedAnswer> answers = graded_answers(trials_at(trials, point.set_delta_t_k));
@@ -42,7 +43,7 @@ Result<bool> give_function(TodPoint& point, std::span<const Trial> trials, const
   if (!fitted) return tl::unexpected(fitted.error());
   if (!fitted->twin_shape) return false;
   point.fit = *std::move(fitted);
-  // Those of the Weibull function are no check of this one.
+  // The checks of the Weibull function do not apply to this one.
   point.free_lapse_fit.reset();
   point.lapse_warning = false;
   if (!fit.fixed_lapse) return true;
@@ -76,8 +77,8 @@ DirectEstimateOptions direct_options(const TodCurve& curve, const ExperimentInpu
 int draws_of_twin_shape(std::optional<double> se_ln_threshold, const Accuracy& accuracy) {
   const int most = std::max(accuracy.noise_draws, twin_shape_draws);
   if (!se_ln_threshold || !(*se_ln_threshold > 0)) return most;
-  // Of the threshold of a table, by seeds (needed_draws()): 0.331 over the root of the draws where noise of the sensor
-  // alone decides, less elsewhere.
+  // Error of the threshold of a table over seeds (needed_draws()): 0.331 over the root of the draws if only noise of
+  // the sensor decides, otherwise less.
   const double needed = std::pow(0.331 / (0.25 * *se_ln_threshold), 2);
   return static_cast<int>(std::clamp<double>(needed, least_twin_shape_draws, most));
 }
@@ -89,7 +90,7 @@ TwinShapesOutcome fit_twin_shapes(TodCurve& curve, std::span<const Trial> trials
   for (TodPoint& point : curve.points) {
     const std::optional<EstimatorReason> reason = point.estimator_reason;
     point.estimator_reason = EstimatorReason::no_function;
-    const std::string where = "at " + number_text(point.set_delta_t_k) + " K the function is a Weibull function: ";
+    const std::string where = "at " + number_text(point.set_delta_t_k) + " K a Weibull function is fitted: ";
     const auto table = table_at(point, inputs, observer, options, known);
     if (!table) {
       if (table.error().code == ErrorCode::interrupted) {
@@ -108,7 +109,8 @@ TwinShapesOutcome fit_twin_shapes(TodCurve& curve, std::span<const Trial> trials
     }
     if (!*regular) {
       point.estimator_reason = EstimatorReason::irregular;
-      outcome.notes.push_back(where + "its fit is not regular (" + std::string(to_string(point.fit.verdict)) + ")");
+      outcome.notes.push_back(where + "the fit with the twin's function is not regular (" +
+                              std::string(to_string(point.fit.verdict)) + ")");
       continue;
     }
     point.estimator_reason = reason;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/serve/live_page.h"
 
 namespace todbench {
@@ -60,8 +61,8 @@ std::string_view live_js() {
 const part = (id) => document.getElementById(id);
 let curve = 0, picture = 0, over = false;
 const say = (id, text) => { if (part(id).textContent !== text) part(id).textContent = text; };
-const words = {'running': 'running', 'settling': 'settling', 'plate-change': 'plate change', 'operator': 'the operator is needed',
-  'camera-lost': 'the camera is lost and waited for', 'finished': 'finished', 'stopped': 'stopped'};
+const words = {'running': 'running', 'settling': 'settling', 'plate-change': 'plate change', 'operator': 'operator needed',
+  'camera-lost': 'camera lost, waiting for it to return', 'finished': 'finished', 'stopped': 'stopped'};
 function show(state) {
   const word = words[state.state] || state.state;
   document.title = word + ' – ' + state.name + ' – todbench';
@@ -95,7 +96,7 @@ async function look() {
     show(await answer.json());
     say('link', '');
   } catch (error) {
-    say('link', over ? 'The run is over and the program has ended.' : 'The program does not answer.');
+    say('link', over ? 'The run is finished and the program has ended.' : 'The program does not answer.');
     if (over) return;
   }
   setTimeout(look, 1000);

@@ -1,11 +1,12 @@
-// The files of the live page. They ask for nothing from elsewhere.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files of the live page, without external resources.
 #pragma once
 
 #include <string_view>
 
 namespace todbench {
 
-/// The page; it names live.css, live.js, curve.svg, picture.png and state.json beside it.
+/// Returns the page; it refers to live.css, live.js, curve.svg, picture.png and state.json in the same folder.
 [[nodiscard]] std::string_view live_html();
 [[nodiscard]] std::string_view live_css();
 [[nodiscard]] std::string_view live_js();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/serve/live_run.h"
 
 #include <algorithm>
@@ -6,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "bench/picture_files/encoded_picture.h"
 #include "bench/report/svg.h"
 #include "bench/report/tod_figures.h"
-#include "bench/text/encoded_picture.h"
 #include "bench/text/json.h"
 
 namespace todbench {

@@ -1,4 +1,5 @@
-// A run as the live page shows it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// State of a run for the live page.
 #pragma once
 
 #include <condition_variable>
@@ -18,53 +19,53 @@
 
 namespace todbench {
 
-/// What a run is about, for who looks once in a while.
+/// Activity of a run, for an occasional observer.
 enum class LiveStatus {
   running,
-  settling,         ///< plate, mounting and place are there, the contrast is not
-  plate_change,     ///< the stage is on its way
-  operator_needed,  ///< somebody has to do the step
-  camera_lost,      ///< waited for
+  settling,         ///< plate, mounting and position are set, the contrast is not stable yet
+  plate_change,     ///< the stage is moving
+  operator_needed,  ///< the operator must do the step
+  camera_lost,      ///< waiting for the camera
   finished,
-  stopped,  ///< before its end, with the reason
+  stopped,  ///< ended early, with the reason
 };
-/// "running", "settling", "plate-change", "operator", "camera-lost", "finished", "stopped".
+/// Returns "running", "settling", "plate-change", "operator", "camera-lost", "finished" or "stopped".
 [[nodiscard]] std::string_view to_string(LiveStatus status);
 
-/// What state.json says: one object with these names, numbers and texts (`status` as "state"); `verdict` is null until
-/// there is one, `reason` unless the run stopped.
+/// Content of state.json: one object with these names, numbers and texts (`status` as "state"). `verdict` is null until
+/// it exists, `reason` is null unless the run stopped.
 struct LiveState {
   LiveStatus status = LiveStatus::running;
   std::string name, phase, waiting;
-  std::string step{};  ///< what the operator is asked to do, a line a step
+  std::string step{};  ///< request to the operator, one line per step
   std::uint64_t done = 0, planned = 0;
   std::optional<std::string> verdict{}, reason{};
-  std::uint64_t curve = 0, picture = 0;  ///< change with curve.svg and picture.png; 0: there is none
+  std::uint64_t curve = 0, picture = 0;  ///< change with curve.svg and picture.png; 0: absent
   bool over = false;
 };
 [[nodiscard]] std::string to_json(const LiveState& state);
 
-/// The picture of a frame in grey, from its 0.05 % to its 99.95 % quantile; empty where there are no pixels.
+/// Returns a frame as a grey PNG from its 0.05 % to its 99.95 % quantile; empty if the frame has no pixels.
 [[nodiscard]] std::string picture_of(const Frame& frame);
 
-/// Draws and encodes on a thread of its own, about twice a second. The functions of the run only leave values.
+/// Draws and encodes on its own thread, about twice a second. The functions of the run only store values.
 class LiveRun {
  public:
-  /// `server` and `curve` outlive it.
+  /// `server` and `curve` must outlive this object.
   LiveRun(LiveServer& server, const LiveCurve& curve, const Plan& plan);
 
-  /// `listener`, and the page beside it.
+  /// Returns a listener that calls `listener` and updates the page.
   [[nodiscard]] ExperimentListener listening(const ExperimentListener& listener);
-  /// What the operator is asked; empty: nothing any more.
+  /// Sets the request to the operator; empty: none.
   void ask(const std::string& step);
-  /// The last state: hands it over before it returns. `reason`: why the run stopped before its end.
+  /// Publishes the last state before it returns. `reason`: cause of an early end.
   void end(const std::string& phase, const std::optional<std::string>& verdict,
            const std::optional<std::string>& reason = std::nullopt);
 
  private:
   void work(const std::stop_token& stop);
   void render();
-  /// With the lock: what matters most of what goes on.
+  /// Sets the most important current status. Requires the lock.
   void set_status();
 
   LiveServer& server_;
@@ -73,13 +74,13 @@ class LiveRun {
   std::mutex mutex_;
   std::condition_variable_any wake_;
   LiveState state_;
-  LiveStatus target_ = LiveStatus::running;  ///< what the target is waited for
+  LiveStatus target_ = LiveStatus::running;  ///< status while waiting for the target
   bool lost_ = false;
   std::optional<Frame> frame_;
-  std::mutex rendering_;  ///< one at a time: the thread's or that of end()
+  std::mutex rendering_;  ///< held while rendering, by the worker or by end()
   std::string curve_svg_, picture_png_;
   std::uint64_t drawn_version_ = 0, pictures_ = 0;
-  std::jthread worker_;  // last: it uses everything above
+  std::jthread worker_;  // last member: it uses all others
 };
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/serve/live_server.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "bench/serve/guarded_server.h"
 #include "bench/serve/live_page.h"
 
 namespace todbench {
@@ -18,12 +20,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t server_threads = 4;
-constexpr int connection_timeout_s = 2;
 constexpr std::size_t longest_request = 1024;
 constexpr auto somebody_looks = std::chrono::seconds(5);
 
-/// Not of the experiment: nobody may guess it.
+/// Returns a token from the system's random source, not from the seed of the experiment: it must not be predictable.
 std::string random_token() {
   std::random_device device;
   std::string token;
@@ -31,7 +31,7 @@ std::string random_token() {
   return token;
 }
 
-/// Nothing from elsewhere, in no frame of others, and the address with the token is not told to anybody.
+/// Sets headers that forbid external resources, embedding in frames, and a referrer with the token.
 void guard(httplib::Response& response) {
   response.set_header("Content-Security-Policy",
                       "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
@@ -53,7 +53,7 @@ void answer(httplib::Response& response, std::string_view text, const char* type
 }  // namespace
 
 struct LiveServer::Serving {
-  httplib::Server server;
+  GuardedServer server;
   std::mutex mutex;
   std::condition_variable changed;
   std::shared_ptr<const LivePages> pages = std::make_shared<const LivePages>();
@@ -79,13 +79,10 @@ struct LiveServer::Serving {
   }
 
   void route(const std::string& token) {
-    server.new_task_queue = [] { return new httplib::ThreadPool(server_threads); };
-    server.set_read_timeout(connection_timeout_s);
-    server.set_write_timeout(connection_timeout_s);
-    server.set_keep_alive_timeout(connection_timeout_s);
+    server.new_task_queue = [] { return new BoundedQueue; };
     server.set_payload_max_length(longest_request);
     server.set_tcp_nodelay(true);
-    // Not SO_REUSEPORT, which the library sets: another program could listen on the same port.
+    // SO_REUSEADDR instead of the library's SO_REUSEPORT, with which another program could listen on the same port.
     server.set_socket_options([](socket_t socket) {
       const int on = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
@@ -117,8 +114,9 @@ Result<std::unique_ptr<LiveServer>> LiveServer::start(const ServeAddress& addres
                    : serving.server.bind_to_port(address.host, address.port) ? address.port
                                                                              : -1;
   if (port <= 0) {
-    return fail(ErrorCode::io, fmt::format("{}:{} cannot be listened on: it is in use or not of this computer",
-                                           address.host, address.port));
+    return fail(ErrorCode::io,
+                fmt::format("{}:{} cannot be used: the port is in use, or the address is not one of this computer",
+                            address.host, address.port));
   }
   const bool six = address.host.find(':') != std::string::npos;
   out->url_ = fmt::format("http://{}:{}/{}/", six ? "[" + address.host + "]" : address.host, port, token);
@@ -126,7 +124,7 @@ Result<std::unique_ptr<LiveServer>> LiveServer::start(const ServeAddress& addres
     serving.server.listen_after_bind();
     serving.ended = true;
   });
-  // A server that does not run yet cannot be stopped.
+  // A server that is not running yet cannot be stopped.
   while (!serving.server.is_running() && !serving.ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return out;
 }

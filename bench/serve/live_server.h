@@ -1,39 +1,40 @@
-// An HTTP server for the live page: read only, behind a token.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// HTTP server for the live page: read only, protected by a token.
 #pragma once
 
 #include <chrono>
 #include <memory>
 #include <string>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/serve/serve_address.h"
 
 namespace todbench {
 
-/// What the page shows now. Immutable once handed over.
+/// Current content of the page. Immutable after show().
 struct LivePages {
   std::string state_json;
-  std::string curve_svg;    ///< empty: there is none yet
-  std::string picture_png;  ///< empty: there is none yet
+  std::string curve_svg;    ///< empty: not available yet
+  std::string picture_png;  ///< empty: not available yet
 };
 
-/// Serves on threads of its own. What is handed over replaces what was there, so that a browser that reads slowly, or
-/// no more, delays nobody: show() waits for no connection.
+/// Serves on its own threads. New content replaces the old one, and show() waits for no connection, so a slow or
+/// stalled browser does not delay the run.
 class LiveServer {
  public:
-  /// Errors: `io` when the address cannot be listened on.
+  /// Starts the server. Errors: `io` (cannot listen on the address).
   [[nodiscard]] static Result<std::unique_ptr<LiveServer>> start(const ServeAddress& address);
-  /// Waits for connections that are open, two seconds each at most.
+  /// Waits at most four seconds for open connections. At most twenty are open.
   ~LiveServer();
   LiveServer(const LiveServer&) = delete;
   LiveServer& operator=(const LiveServer&) = delete;
 
-  /// "http://127.0.0.1:8080/TOKEN/": the only address with an answer. The token has 128 random bits.
+  /// Returns "http://127.0.0.1:8080/TOKEN/", the only address that is answered. The token has 128 random bits.
   [[nodiscard]] const std::string& url() const { return url_; }
-  /// Any thread.
+  /// Replaces the content. Any thread.
   void show(std::shared_ptr<const LivePages> pages);
-  /// Returns when somebody has asked for what was handed over last, at once when nobody has asked for anything in the
-  /// last five seconds, and after `patience` at the latest.
+  /// Waits until a client has requested the latest content. Returns at once if there was no request in the last five
+  /// seconds, and after `patience` at the latest.
   void wait_until_seen(std::chrono::milliseconds patience);
 
  private:

@@ -1,13 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/serve/serve_address.h"
 
 #include <charconv>
 
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/safe_text.h"
 
 namespace todbench {
 namespace {
 
-/// 127.0.0.0/8 in four plain numbers; other spellings are not taken for it.
+/// Returns whether the address is 127.0.0.0/8 as four plain numbers, "::1" or "localhost"; other spellings are
+/// rejected.
 bool is_loopback(std::string_view host) {
   if (host == "localhost" || host == "::1") return true;
   if (!host.starts_with("127.")) return false;
@@ -28,7 +30,8 @@ bool is_loopback(std::string_view host) {
 
 Result<ServeAddress> serve_address(std::string_view text, Reach reach) {
   const auto wrong = [&] {
-    return fail(ErrorCode::invalid_input, "expected HOST:PORT as in 127.0.0.1:8080, found '" + one_line(text) + "'");
+    return fail(ErrorCode::invalid_input,
+                "expected HOST:PORT, for example 127.0.0.1:8080, found '" + one_line(text) + "'");
   };
   const auto colon = text.rfind(':');
   if (colon == std::string_view::npos || colon == 0) return wrong();
@@ -50,9 +53,10 @@ Result<ServeAddress> serve_address(std::string_view text, Reach reach) {
   }
   if (host.empty()) return wrong();
   if (reach == Reach::this_computer && !is_loopback(host)) {
-    return fail(ErrorCode::invalid_input, "'" + std::string(host) +
-                                              "' can be reached from elsewhere: expected a loopback address as "
-                                              "127.0.0.1, or --serve-network beside it");
+    return fail(
+        ErrorCode::invalid_input,
+        "'" + std::string(host) +
+            "' can be reached from other computers: use a loopback address such as 127.0.0.1, or add --serve-network");
   }
   return address;
 }

@@ -1,26 +1,27 @@
-// Where the live page is served.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Address of the live page.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
 struct ServeAddress {
-  std::string host;  ///< of this computer: "127.0.0.1", "::1", "localhost", an address of a network card
-  int port = 0;      ///< 0: any that is free
+  std::string host;  ///< of this computer: "127.0.0.1", "::1", "localhost", or an address of a network card
+  int port = 0;      ///< 0: any free port
 };
 
-/// Who may reach the page.
+/// Computers that may reach the page.
 enum class Reach {
   this_computer,  ///< loopback addresses only
   network,
 };
 
-/// "HOST:PORT" or "[IPv6]:PORT". `invalid_input` for anything else, and for an address beyond loopback where only this
-/// computer may reach the page.
+/// Parses "HOST:PORT" or "[IPv6]:PORT". Errors: `invalid_input` (other text, or an address beyond loopback with
+/// Reach::this_computer).
 [[nodiscard]] Result<ServeAddress> serve_address(std::string_view text, Reach reach);
 
 }  // namespace todbench

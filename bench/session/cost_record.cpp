@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/cost_record.h"
 
 #include "bench/text/json_reader.h"

@@ -1,15 +1,16 @@
-// The measured frontier of accuracy and time as JSON: what `cost` prints and a session keeps.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measured frontier of accuracy and time as JSON, as printed by `cost` and kept in a session.
 #pragma once
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/session/json_output.h"
 #include "sim_devices/prediction/cost_frontier.h"
 
 namespace todbench {
 
-/// `cost PLAN --json`, and cost.json of a session.
+/// Returns the output of `cost PLAN --json` and the content of cost.json.
 [[nodiscard]] Json cost_json(const CostFrontier& frontier);
-/// `invalid_input`, naming the key, for a record that is not complete or of other types.
+/// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
 [[nodiscard]] Result<CostFrontier> cost_from(const Json& record);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/csv_fields.h"
 
 #include <algorithm>
@@ -8,8 +9,8 @@ namespace todbench {
 
 Result<void> check_columns(const CsvTable& table, std::span<const std::string_view> columns) {
   for (std::size_t i = 0; i < std::max(columns.size(), table.header.size()); ++i) {
-    const std::string found = i < table.header.size() ? "'" + one_line(table.header[i]) + "'" : "nothing";
-    const std::string expected = i < columns.size() ? std::string(columns[i]) : "nothing";
+    const std::string found = i < table.header.size() ? "'" + one_line(table.header[i]) + "'" : "no column";
+    const std::string expected = i < columns.size() ? std::string(columns[i]) : "no column";
     if (found != "'" + expected + "'")
       return table.wrong(1, "column " + std::to_string(i + 1) + ": expected " + expected + ", found " + found);
   }

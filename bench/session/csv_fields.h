@@ -1,4 +1,5 @@
-// Rows of the session's CSV files as values: a header that is what it must be, fields one after the other.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parsing of the session's CSV files: header check and typed fields.
 #pragma once
 
 #include <charconv>
@@ -14,11 +15,11 @@
 
 namespace todbench {
 
-/// Success when the header is exactly these columns in this order; `invalid_input` "NAME:1: ..." names the first that
-/// is not.
+/// Succeeds if the header has exactly these columns in this order. Errors: `invalid_input` "NAME:1: ..." with the first
+/// wrong column.
 [[nodiscard]] Result<void> check_columns(const CsvTable& table, std::span<const std::string_view> columns);
 
-/// "presentation,plate,..." with a line end.
+/// Returns "presentation,plate,..." with a line end.
 [[nodiscard]] std::string header_line(std::span<const std::string_view> columns);
 
 template <typename Whole>
@@ -29,8 +30,7 @@ template <typename Whole>
   return value;
 }
 
-/// Takes the fields of one row one after the other and remembers the first that is wrong. Borrows both; `columns` are
-/// their names.
+/// Reads the fields of a row in order and keeps the first error. Borrows both arguments; `columns` are the names.
 class FieldReader {
  public:
   FieldReader(std::span<const std::string> fields, std::span<const std::string_view> columns)
@@ -38,9 +38,9 @@ class FieldReader {
 
   [[nodiscard]] std::string text() { return fields_[position_++]; }
   [[nodiscard]] double number();
-  /// Nothing for an empty field.
+  /// Returns empty for an empty field.
   [[nodiscard]] std::optional<double> optional_number();
-  /// Nothing for an empty field.
+  /// Returns empty for an empty field.
   [[nodiscard]] std::optional<double> optional_probability();
   template <typename Whole>
   [[nodiscard]] Whole whole() {

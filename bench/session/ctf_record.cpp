@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/ctf_record.h"
 
 #include <fmt/format.h>
@@ -29,7 +30,7 @@ void add_ctf_lines(MeasureLines& out, const CtfMeasure& ctf) {
     const std::string name(to_string(axis));
     const std::string frames = fmt::format(
         "four bars at {:.4g} cycles per pitch, {:.4g} per mrad, '{}', {:.2f} degrees from the axis: "
-        "{} frames of plate {} at {:g} K, {} pixels, {} bars apart at best phase",
+        "{} frames of plate {} at {:g} K, {} pixels, {} bars separated at the best phase",
         group->frequency_per_pitch, group->frequency_per_pitch / ctf.pitch_mrad, group->group, group->angle_deg,
         ctf.frames, ctf.plate, ctf.said_delta_t_k, group->pixels, group->bars_separated_at_best);
     const auto add = [&](const std::string& phase, const Modulation& found) {

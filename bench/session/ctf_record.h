@@ -1,4 +1,5 @@
-// The contrast transfer in measures.json.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CTF in measures.json.
 #pragma once
 
 #include <optional>
@@ -10,12 +11,13 @@
 
 namespace todbench {
 
-/// "ctf_x" (best phase), "ctf_mean_x" and "ctf_worst_x" of the group nearest to the frequency of the plan, and of y.
+/// Adds "ctf_x" (best phase), "ctf_mean_x" and "ctf_worst_x" of the bar group nearest to the frequency of the plan, and
+/// the same for y.
 void add_ctf_lines(MeasureLines& out, const CtfMeasure& ctf);
 
 [[nodiscard]] Json ctf_json(const CtfMeasure& ctf);
 [[nodiscard]] CtfGroups ctf_from(const JsonReader& ctf);
-/// Without frequencies above 0 there is nothing that a figure can show.
+/// Returns whether a figure can be drawn: there are frequencies above 0.
 [[nodiscard]] bool ctf_drawable(const std::optional<MeasureLines>& side);
 
 }  // namespace todbench

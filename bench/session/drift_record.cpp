@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/drift_record.h"
 
 #include <fmt/format.h>
@@ -60,10 +61,10 @@ void add_drift_lines(MeasureLines& out, const DriftMeasure& measure) {
   const double per_minute = law.per_minute(1);
   const auto add = [&](const std::string& name, const DriftFit& fit) {
     const std::string conditions = fmt::format(
-        "{} of {} groups of {} frames and more, {:.1f} to {:.1f} s after a correction{}, contrast 0, kelvin of the "
+        "{} of {} groups of at least {} frames, {:.1f} to {:.1f} s after a correction{}, contrast 0, kelvin on the "
         "camera's scale; {}",
-        name == "drift" ? "mean" : "spatial noise without shading", measure.groups, measure.frames_each,
-        measure.first_s, measure.last_s, measure.ended_by_correction ? ", up to the next one" : "",
+        name == "drift" ? "mean" : "spatial noise (shading removed)", measure.groups, measure.frames_each,
+        measure.first_s, measure.last_s, measure.ended_by_correction ? ", until the next correction" : "",
         fit.shape == DriftShape::linear ? "linear" : "exponential approach");
     out.lines.push_back(
         {name + "_rate", "K/min", per_minute * fit.change_k, interval_of(fit.change_ci95, per_minute), conditions});

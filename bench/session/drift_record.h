@@ -1,4 +1,5 @@
-// Drift after a correction of a session: its lines and its part of measures.json.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Drift after a correction: lines of a session and part of measures.json.
 #pragma once
 
 #include <optional>
@@ -10,13 +11,13 @@
 
 namespace todbench {
 
-/// "drift_rate" and "drift_pattern_rate" over the time that was watched, and of an approach "drift_time_constant" and
-/// "drift_pattern_time_constant".
+/// Adds "drift_rate" and "drift_pattern_rate" over the observed time, and for an exponential approach
+/// "drift_time_constant" and "drift_pattern_time_constant".
 void add_drift_lines(MeasureLines& out, const DriftMeasure& measure);
 [[nodiscard]] Json drift_json(const DriftMeasure& measure);
-/// What a record says; mistakes stay with the reader.
+/// Parses a record; mistakes are recorded in the reader.
 [[nodiscard]] DriftLaw drift_from(const JsonReader& drift);
-/// There is a number for each group.
+/// Returns whether every group has a number.
 [[nodiscard]] bool drift_drawable(const std::optional<MeasureLines>& side);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/ending_reserve.h"
 
 #include <fcntl.h>
@@ -16,17 +17,19 @@ struct Piece {
   const char* name;
   off_t bytes;
 };
-// A manifest has some 200 bytes for each of some twenty files; provenance and verdict have 8 KiB together and are
-// written beside their earlier versions. Results may be larger than their room, a report always is: what does not fit
-// is left out. In pieces, because a limit of the file size may be smaller than the whole.
+// A manifest needs about 200 bytes for each of about twenty files. Provenance and verdict need 8 KiB together and are
+// written next to their earlier versions. Results may exceed their reserve, and a report always does; files that do not
+// fit are left out. The reserves are separate files, because a file size limit may be smaller than their sum.
 constexpr std::array pieces{Piece{EndingRoom::manifest, ".room-for-manifest", 8 * 1024},
                             Piece{EndingRoom::state, ".room-for-state", 16 * 1024},
                             Piece{EndingRoom::results, ".room-for-results-1", 16 * 1024},
                             Piece{EndingRoom::results, ".room-for-results-2", 16 * 1024}};
 
-/// 0 or the error number.
+/// Returns 0 or the error number.
 int take(const std::filesystem::path& file, off_t bytes) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  // Not make_empty_file(): the reserve has its name from the start, so that an abandoned one is found.
+  ::unlink(file.c_str());
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (descriptor < 0) return errno;
   const int problem = ::posix_fallocate(descriptor, 0, bytes);
   return ::close(descriptor) != 0 && problem == 0 ? errno : problem;
@@ -39,8 +42,8 @@ Result<void> take_ending_rooms(const std::filesystem::path& folder) {
     const int problem = take(folder / piece.name, piece.bytes);
     if (problem == 0) continue;
     free_ending_rooms(folder);
-    return fail(ErrorCode::io,
-                folder.string() + ": no room for the end of a session: " + std::generic_category().message(problem));
+    return fail(ErrorCode::io, folder.string() + ": the disk space to complete the session cannot be reserved: " +
+                                   std::generic_category().message(problem));
   }
   return {};
 }

@@ -1,25 +1,26 @@
-// Room on the disk for the end of a session, taken at its start: a run that fills the disk can still say so.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Disk space reserved at the start of a session for its end, so that a run that fills the disk can still record it.
 #pragma once
 
 #include <filesystem>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// What a session writes when it ends, in this order. What has no room of its own may take that of the one before, but
-/// not that of the next: whatever is large leaves the manifest possible.
+/// Files written at the end of a session, in this order. A file without its own reserve may use that of the previous
+/// step but not that of the next, so the manifest can always be written.
 enum class EndingRoom {
   results,   ///< curves and comparison
   state,     ///< log, provenance and verdict
-  manifest,  ///< after a report, which has no room of its own
+  manifest,  ///< after the report, which has no reserve
 };
 
-/// Takes the room: hidden files in the folder. `io` with the folder where a file system or a limit has none.
+/// Reserves the space with hidden files in the folder. Errors: `io` with the folder (no space, or a limit).
 [[nodiscard]] Result<void> take_ending_rooms(const std::filesystem::path& folder);
-/// Gives a room back; nothing where it was not taken.
+/// Releases a reserve; no effect if it does not exist.
 void free_ending_room(const std::filesystem::path& folder, EndingRoom room);
-/// All that are left, for a session that did not begin or did not end.
+/// Releases all remaining reserves, for a session that failed to start or to finish.
 void free_ending_rooms(const std::filesystem::path& folder);
 
 }  // namespace todbench

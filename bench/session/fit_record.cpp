@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/fit_record.h"
 
 #include <array>
@@ -68,6 +69,8 @@ Json fit_record(const PsychometricFit& fit) {
   json["trials"] = json_number(fit.trials);
   json["clusters"] = json_number(fit.clusters);
   json["variance_inflation"] = json_number(fit.variance_inflation);
+  json["joined_u"] = json_number(fit.joined_u);
+  json["contrast_u"] = json_number(fit.contrast_u);
   json["interval"] = to_string(fit.interval);
   json["dispersion"] = json_number(fit.dispersion);
   json["twin_shape"] = fit.twin_shape ? twin_shape_record(*fit.twin_shape) : Json(nullptr);
@@ -78,6 +81,8 @@ PsychometricFit read_fit(const JsonReader& reader) {
   PsychometricFit fit;
   fit.verdict = reader.at("verdict").named(fit_verdicts);
   fit.threshold = reader.at("threshold").optional_number();
+  // Earlier records hold a meaningless number here.
+  if (fit.verdict == FitVerdict::flat_or_decreasing) fit.threshold.reset();
   fit.ci95 = reader.at("ci95").interval();
   fit.ci90 = reader.at("ci90").interval();
   fit.slope = reader.at("slope").optional_number();
@@ -90,6 +95,8 @@ PsychometricFit read_fit(const JsonReader& reader) {
   fit.trials = reader.at("trials").number();
   fit.clusters = reader.at("clusters").number();
   fit.variance_inflation = reader.at("variance_inflation").number();
+  fit.joined_u = reader.at_if_there("joined_u").optional_number().value_or(0);
+  fit.contrast_u = reader.at_if_there("contrast_u").optional_number().value_or(0);
   if (const JsonReader kind = reader.at_if_there("interval"); !kind.is_null()) {
     fit.interval = kind.named(all_interval_kinds);
   } else if (fit.clusters > 0) {
@@ -212,6 +219,7 @@ Json comparison_record(const Comparison& comparison) {
     json["points"][i]["delta_t_a_k"] = json_number(point.delta_t_a_k);
     json["points"][i]["delta_t_b_k"] = json_number(point.delta_t_b_k);
     json["points"][i]["ratio_ci90"] = json_interval(point.ratio_ci90);
+    json["points"][i]["withheld"] = point.withheld;
   }
   return json;
 }
@@ -254,6 +262,11 @@ Result<Comparison> comparison_from(const Json& record) {
     point.p_equivalence = item.at("p_equivalence").optional_number();
     point.margin_percent = item.at("margin_percent").number();
     point.verdict = item.at("verdict").named(comparison_verdicts);
+    // Earlier records do not state the contrast of an unfit threshold: it may be any of their points.
+    if (const JsonReader withheld = item.at_if_there("withheld"); !withheld.is_null())
+      point.withheld = withheld.flag();
+    else
+      point.withheld = comparison.adequacy && !comparison.adequacy->adequate();
     if (const JsonReader paired = item.at_if_there("paired"); !paired.is_null()) point.paired = read_paired(paired);
     comparison.points.push_back(point);
   }

@@ -1,21 +1,22 @@
-// Curves and comparisons as complete JSON records: what is written can be read back as the same values.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Curves and comparisons as complete JSON records that read back to equal values.
 #pragma once
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/session/json_output.h"
 
 namespace todbench {
 
-/// Every field of a curve, counts per size included.
+/// Returns every field of a curve, including counts per size.
 [[nodiscard]] Json curve_record(const TodCurve& curve);
-/// `invalid_input`, naming the key, for a record that is not complete or of other types.
+/// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
 [[nodiscard]] Result<TodCurve> curve_from(const Json& record);
 
-/// Every field of a comparison; its keys contain those of comparison_json().
+/// Returns every field of a comparison; the keys include those of comparison_json().
 [[nodiscard]] Json comparison_record(const Comparison& comparison);
 [[nodiscard]] Result<Comparison> comparison_from(const Json& record);
 
-/// Every field of a plan of effects; the keys of effects_json().
+/// Parses a plan of effects with the keys of effects_json().
 [[nodiscard]] Result<SensorPlan> effects_from(const Json& effects);
 
 }  // namespace todbench

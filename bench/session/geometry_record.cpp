@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/geometry_record.h"
 
 #include <fmt/format.h>
@@ -5,12 +6,12 @@
 #include <cmath>
 #include <string>
 
-#include "acquisition/core/normal.h"
+#include "acquisition/base/normal.h"
 
 namespace todbench {
 namespace {
 
-/// Each side joined with a relative standard uncertainty.
+/// Joins each side with a relative standard uncertainty.
 Interval joined(const GeometryValue& found, double relative_u) {
   const double stated = normal_z95 * relative_u * found.value;
   return {.low = found.value - std::hypot(found.value - found.low, stated),
@@ -26,13 +27,13 @@ Json geometry_value_json(const GeometryValue& found) {
 void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
   const PlateGeometry& found = measure.geometry;
   const std::string conditions = fmt::format(
-      "{} triangles of plate {} at {:g} K, mean of {} frames, up to {:.0f} % of the way to the picture's corner",
+      "{} triangles of plate {} at {:g} K, mean of {} frames, up to {:.0f} % of the distance to the picture's corner",
       found.places.size(), measure.plate, measure.set_delta_t_k, measure.frames,
       100 * found.farthest_px / found.corner_px);
   std::string distance = fmt::format("{}, at a distance of {:g} m", conditions, measure.distance_m);
-  distance += measure.distance_relative_u ? fmt::format(", which the budget knows to {:.2g} % (95 %)",
+  distance += measure.distance_relative_u ? fmt::format(" with a budget uncertainty of {:.2g} % (95 %)",
                                                         100 * normal_z95 * *measure.distance_relative_u)
-                                          : ", of which no uncertainty is stated";
+                                          : " without a stated uncertainty";
   for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
     const GeometryValue ifov = measure.ifov_mrad(axis);
     MeasureLine line{"ifov_" + std::string(to_string(axis)), "mrad", ifov.value, {ifov.low, ifov.high}, distance};
@@ -42,7 +43,7 @@ void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
   const auto exact = [&](const char* name, const char* unit, double value, const char* what) {
     out.lines.push_back({name, unit, value, {value, value}, what});
   };
-  exact("ifov_stated", "mrad", measure.stated_ifov_mrad, "IFOV as the plan states it");
+  exact("ifov_stated", "mrad", measure.stated_ifov_mrad, "IFOV stated in the plan");
   if (measure.model_ifov_mrad) exact("ifov_model", "mrad", *measure.model_ifov_mrad, "IFOV of the sensor model");
   const auto line = [&](const char* name, const char* unit, const GeometryValue& value) {
     out.lines.push_back({name, unit, value.value, {value.low, value.high}, conditions});
@@ -52,7 +53,7 @@ void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
   line("keystone_y", "%", found.keystone_y_percent);
   line("distortion", "%", found.distortion_percent);
   if (measure.model_distortion_percent)
-    exact("distortion_model", "%", *measure.model_distortion_percent, "of the sensor model, both terms");
+    exact("distortion_model", "%", *measure.model_distortion_percent, "distortion of the sensor model, both terms");
   out.lines.push_back({"geometry_residual", "px", found.residual_px, {}, conditions});
   out.geometry = GeometryMap{measure.picture.width * 1.0, measure.picture.height * 1.0, found.places};
 }

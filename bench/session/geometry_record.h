@@ -1,4 +1,5 @@
-// IFOV and distortion of a session: their lines and their part of measures.json.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// IFOV and distortion: lines of a session and part of measures.json.
 #pragma once
 
 #include <optional>
@@ -10,13 +11,13 @@
 
 namespace todbench {
 
-/// "ifov_x", "ifov_y", "ifov_stated", "plate_rotation", "keystone_x", "keystone_y", "distortion", "geometry_residual";
-/// of a simulated sensor "ifov_model".
+/// Adds "ifov_x", "ifov_y", "ifov_stated", "plate_rotation", "keystone_x", "keystone_y", "distortion",
+/// "geometry_residual"; for a simulated sensor also "ifov_model".
 void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure);
 [[nodiscard]] Json geometry_json(const GeometryMeasure& measure);
-/// What a record says; mistakes stay with the reader.
+/// Parses a record; mistakes are recorded in the reader.
 [[nodiscard]] GeometryMap geometry_from(const JsonReader& geometry);
-/// A picture has a size.
+/// Returns whether the picture has a size.
 [[nodiscard]] bool geometry_drawable(const std::optional<MeasureLines>& side);
 
 }  // namespace todbench

@@ -1,4 +1,5 @@
-// Contrasts in grey levels, frame by frame, as CSV.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contrasts in grey levels by frame, as CSV.
 #pragma once
 
 #include <string>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// One row for every frame that was judged, in the order of the run, below a header with units.
+/// Returns one row per judged frame in the order of the run, below a header with units.
 [[nodiscard]] std::string grey_levels_csv(const std::vector<GreyFrame>& frames);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/human_record.h"
 
 #include <algorithm>
@@ -26,10 +27,10 @@ constexpr const char* shown_header =
     "answer_number,presentation,triangle,frame,truth,answer,response_s,limit_ms,magnification,black_k,white_k,rows,"
     "columns,kelvin,noise_k";
 constexpr std::size_t shown_columns = 15;
-/// Files of earlier versions end before these.
+/// Columns that files of earlier versions do not have.
 constexpr std::size_t later_shown_columns = 1;
 
-/// Samples row by row, separated by blanks; they read back exactly.
+/// Returns the samples row by row, separated by blanks, so that they read back exactly.
 std::string shown_text(const HumanRecord& record) {
   std::string text = std::string(shown_header) + "\n";
   for (std::size_t i = 0; i < record.shown.size(); ++i) {
@@ -48,7 +49,7 @@ std::string shown_text(const HumanRecord& record) {
   return text;
 }
 
-/// The samples of one patch; empty where they are not `rows` times `columns` numbers.
+/// Parses the samples of a patch; empty if the text is not `rows` times `columns` numbers.
 cv::Mat1f samples_from(const std::string& text, int rows, int columns) {
   cv::Mat1f kelvin(rows, columns);
   std::size_t begin = 0;
@@ -70,8 +71,7 @@ Result<std::vector<ShownPatch>> read_shown(const std::filesystem::path& file, st
   const bool has_noise = table->header.size() == shown_columns;
   if (!has_noise && table->header.size() + later_shown_columns != shown_columns)
     return table->wrong(1, "expected the columns " + std::string(shown_header));
-  if (table->rows.size() != trials)
-    return table->wrong(1, "expected one row for each of the trials of trials_human.csv");
+  if (table->rows.size() != trials) return table->wrong(1, "expected one row for each trial of trials_human.csv");
   std::vector<ShownPatch> out;
   for (const auto& row : table->rows) {
     const auto number = [&](std::size_t column) { return parse_number(row.fields[column]); };

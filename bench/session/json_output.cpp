@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/json_output.h"
 
 #include <cmath>
@@ -70,6 +71,8 @@ Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures&
   for (const TodPoint& point : curve.points) {
     Json json;
     json["delta_t_k"] = json_number(point.set_delta_t_k);
+    json["set_delta_t_k"] = json_number(point.set_delta_t_k);
+    json["seen_delta_t_k"] = json_number(point.delta_t_k);
     json["s75_mrad"] = json_number(point.fit.threshold);
     json["s75_ci95_mrad"] = json_interval(point.fit.ci95);
     json["s75_direct_mrad"] = json_number(point.direct_s75_mrad);
@@ -124,6 +127,8 @@ Json comparison_json(const Comparison& comparison) {
   for (const ComparisonPoint& point : comparison.points) {
     Json json;
     json["delta_t_k"] = json_number(point.set_delta_t_k);
+    json["set_delta_t_k"] = json_number(point.set_delta_t_k);
+    json["seen_delta_t_k"] = json_number(point.delta_t_a_k);
     json["ratio"] = json_number(point.ratio);
     json["ratio_ci95"] = json_interval(point.ratio_ci95);
     json["p_difference"] = json_number(point.p_difference);

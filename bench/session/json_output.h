@@ -1,4 +1,5 @@
-// The JSON objects that other programs rely on.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// JSON objects for other programs.
 #pragma once
 
 #include <cstdint>
@@ -14,36 +15,36 @@
 
 namespace todbench {
 
-/// The fit of `fit TRIALS.csv --json`.
+/// Returns the output of `fit TRIALS.csv --json`.
 [[nodiscard]] Json fit_json(const PsychometricFit& fit);
-/// {"adequate", "findings": [{"kind", "value", "limit", "sentence", "unfit"}]} of a fit, a point or a comparison; null
-/// where it was not examined.
+/// Returns {"adequate", "findings": [{"kind", "value", "limit", "sentence", "unfit"}]} of a fit, a point or a
+/// comparison; null if it was not tested.
 [[nodiscard]] Json adequacy_json(const std::optional<Adequacy>& adequacy);
 
-/// What `measure` and `simulate` say beside the curve.
+/// Figures of a run that `measure` and `simulate` report with the curve.
 struct RunFigures {
   double wall_s = 0;
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
 };
-/// "answers", "frames_per_presentation" and "answers_reason" of a point, null where nobody said.
+/// Adds "answers", "frames_per_presentation" and "answers_reason" of a point; null if unknown.
 void add_answers(Json& json, const TodPoint& point);
-/// `measure PLAN --json` and `simulate PLAN --json`; the plan of a measured curve has no effects.
+/// Returns the output of `measure PLAN --json` and `simulate PLAN --json`; the plan of a measured curve has no effects.
 [[nodiscard]] Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures& figures);
 
-/// `compare A B --json`.
+/// Returns the output of `compare A B --json`.
 [[nodiscard]] Json comparison_json(const Comparison& comparison);
 
-/// What `plan` predicts.
+/// Predictions of the command `plan`.
 struct PlanFigures {
   std::uint64_t trials = 0;
   std::optional<double> predicted_uncertainty_percent;
-  std::optional<double> predicted_s;                ///< of the simulation, on one core
-  std::optional<double> predicted_measurement_s{};  ///< of the camera; left out of the JSON where there is none
+  std::optional<double> predicted_s;                ///< of the simulation on one core
+  std::optional<double> predicted_measurement_s{};  ///< of the camera; omitted in the JSON if empty
 };
-/// `plan PLAN --json`.
+/// Returns the output of `plan PLAN --json`.
 [[nodiscard]] Json plan_json(const SensorPlan& plan, const PlanFigures& figures);
-/// The list of effects in both.
+/// Returns the list of effects in the JSON of curve and plan.
 [[nodiscard]] Json effects_json(const SensorPlan& plan);
 
 }  // namespace todbench

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/manifest.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 
+#include "bench/session/foreign_files.h"
 #include "bench/session/signature.h"
 #include "bench/text/files.h"
 #include "bench/text/json_reader.h"
@@ -25,12 +27,12 @@ constexpr std::string_view schema = "todbench-manifest-1";
 
 constexpr std::array<std::string_view, 3> report_pages{"report.csv", "report.html", "report.pdf"};
 
-/// Manifests of earlier versions carry no digest of themselves.
+/// Manifests of earlier versions have no digest of themselves.
 enum class OwnDigest { none, written };
 
 struct Manifest {
   ManifestEntries entries;
-  bool as_written = false;  ///< to the byte what write_manifest() makes of the entries
+  bool as_written = false;  ///< byte for byte as write_manifest() writes the entries
 };
 
 Result<ManifestEntry> entry_of(const std::filesystem::path& file) {
@@ -42,7 +44,7 @@ Result<ManifestEntry> entry_of(const std::filesystem::path& file) {
   return ManifestEntry{bytes, *std::move(sum)};
 }
 
-/// Of everything that the manifest says of every file.
+/// Returns the digest of all data in the manifest of all files.
 std::string digest_of_entries(const ManifestEntries& entries) {
   std::string lines;
   for (const auto& [path, entry] : entries)
@@ -86,20 +88,21 @@ Result<Manifest> read_manifest(const std::filesystem::path& folder) {
   return manifest;
 }
 
-/// One to go on with: a new digest over entries that somebody edited would vouch for them.
+/// Reads a manifest that may be updated. It must be as written, because a new digest over edited entries would confirm
+/// them.
 Result<Manifest> read_written_manifest(const std::filesystem::path& folder) {
   Result<Manifest> manifest = read_manifest(folder);
   if (!manifest || manifest->as_written) return manifest;
   return fail(ErrorCode::invalid_input, (folder / manifest_name).string() + ": changed since the session was written");
 }
 
-/// A link that leads nowhere has one, too.
+/// Returns true also for a dangling link.
 bool has_a_name(const std::filesystem::path& file) {
   std::error_code problem;
   return std::filesystem::exists(std::filesystem::symlink_status(file, problem));
 }
 
-/// Every path below the folder that is no folder itself, links as they are.
+/// Returns every path below the folder that is not a folder; links are not followed.
 std::vector<std::string> everything_in(const std::filesystem::path& folder) {
   std::vector<std::string> paths;
   std::error_code problem;
@@ -128,10 +131,21 @@ Result<void> check_entries(const std::filesystem::path& folder, const ManifestEn
   return {};
 }
 
-/// What comes after the manifest: its signature, and revisions of the report.
-bool is_of_a_signature(std::string_view path) {
-  return path == "signature.json" || path == "manifest.json.sig" || path == "manifest.json.minisig" ||
-         path.starts_with("revisions/");
+bool is_link(const std::filesystem::path& path) {
+  std::error_code problem;
+  return std::filesystem::is_symlink(std::filesystem::symlink_status(path, problem));
+}
+
+/// Returns the files that neither the manifest nor a signature lists.
+std::vector<std::string> not_listed(const std::filesystem::path& folder, const ManifestEntries& entries) {
+  const std::vector<std::string> signing = files_of_signature(folder);
+  std::vector<std::string> foreign;
+  for (std::string& path : everything_in(folder)) {
+    if (path != manifest_name && !entries.contains(path) &&
+        std::find(signing.begin(), signing.end(), path) == signing.end())
+      foreign.push_back(std::move(path));
+  }
+  return foreign;
 }
 
 }  // namespace
@@ -154,6 +168,7 @@ std::vector<std::string> session_files(const std::filesystem::path& folder) {
     if (std::filesystem::is_regular_file(folder / name, problem)) files.emplace_back(name);
   }
   for (const std::string_view name : known_folders) {
+    if (is_link(folder / name)) continue;
     auto entry = std::filesystem::recursive_directory_iterator(folder / name, problem);
     if (problem) continue;
     for (const auto end = std::filesystem::recursive_directory_iterator(); entry != end; entry.increment(problem)) {
@@ -175,8 +190,8 @@ Result<ManifestEntries> manifest_entries(const std::filesystem::path& folder) {
   return entries;
 }
 
-/// Of the lines that sha256sum would print. A page prints it, and no file can hold its own digest: so without the
-/// pages.
+/// Digest of lines in the format of sha256sum. Report pages are excluded: they print the digest, and a file cannot
+/// contain its own.
 std::string digest_of(const ManifestEntries& entries) {
   std::string lines;
   for (const auto& [path, entry] : entries) {
@@ -241,12 +256,32 @@ Result<ManifestCheck> check_manifest(const std::filesystem::path& folder) {
   check.manifest_sha256 = digest_of(manifest->entries);
   if (auto compared = check_entries(folder, manifest->entries, check); !compared)
     return tl::unexpected(compared.error());
-  for (std::string& path : everything_in(folder)) {
-    if (path != manifest_name && !is_of_a_signature(path) && !manifest->entries.contains(path))
-      check.foreign.push_back(std::move(path));
-  }
+  check.foreign = not_listed(folder, manifest->entries);
   std::sort(check.changed.begin(), check.changed.end());
   return check;
+}
+
+Result<void> require_no_links(const std::filesystem::path& folder) {
+  for (const std::string& path : everything_in(folder)) {
+    if (is_link(folder / path)) {
+      return fail(ErrorCode::invalid_input, folder.string() + ": the program does not write into this folder because " +
+                                                path + " is a symbolic link");
+    }
+  }
+  return {};
+}
+
+Result<void> require_no_foreign_file(const std::filesystem::path& folder) {
+  if (auto none = require_no_links(folder); !none) return none;
+  if (!has_a_name(folder / manifest_name)) return {};
+  const Result<Manifest> manifest = read_manifest(folder);
+  if (!manifest) return tl::unexpected(manifest.error());
+  const std::vector<std::string> foreign = not_listed(folder, manifest->entries);
+  if (foreign.empty()) return {};
+  return fail(ErrorCode::invalid_input, folder.string() + ": the program does not write into this folder because " +
+                                            foreign.front() + (foreign.size() == 1 ? " does" : " and other files do") +
+                                            " not belong to the session. Move " +
+                                            (foreign.size() == 1 ? "it" : "them") + " away first");
 }
 
 Result<std::vector<std::string>> verify_manifest(const std::filesystem::path& folder) {

@@ -1,4 +1,5 @@
-// SHA-256 of every file of a session folder, so that a later reader knows that nothing was changed.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Manifest: SHA-256 of every file of a session folder, to detect later changes.
 #pragma once
 
 #include <cstdint>
@@ -8,38 +9,40 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
 inline constexpr std::string_view manifest_name = "manifest.json";
 
-/// Files of a session, relative to its folder, sorted: the known ones on top and everything in inputs/, frames/ and
-/// pictures/. Foreign files beside them are left out. Without manifest.json itself.
+/// Returns the files of a session, relative to its folder, sorted: the known files in the folder and all files in
+/// inputs/, frames/ and pictures/. Foreign files and manifest.json itself are not included.
 [[nodiscard]] std::vector<std::string> session_files(const std::filesystem::path& folder);
-/// A path that session_files() would name: somebody reads such a file.
+/// Returns whether the path can be in session_files(), so that some reader may use the file.
 [[nodiscard]] bool is_session_file(std::string_view path);
-/// report.html and report.pdf: made from the other files, read by people and by nothing of the program.
+/// Returns whether the path is report.html, report.csv or report.pdf. They are made from the other files, and the
+/// program does not read them.
 [[nodiscard]] bool is_report_page(std::string_view path);
 
-/// What is in a folder against its manifest. Paths relative to the folder, sorted.
+/// Comparison of a folder with its manifest. Paths are relative to the folder, sorted.
 struct ManifestCheck {
-  /// Other content than listed. manifest.json itself where it is not what was written: no manifest, entries that its
-  /// own digest does not cover, or other bytes than those entries are written with.
+  /// Files that differ from their entries. Includes manifest.json if the program did not write it in this form: it is
+  /// unreadable, its own digest does not cover its entries, or its bytes differ from the canonical form of the entries.
   std::vector<std::string> changed;
-  std::vector<std::string> missing;  ///< listed and not there; manifest.json itself where there is none
-  std::vector<std::string> foreign;  ///< there and not listed, whatever it is; empty without a manifest to list them
-  /// The digest of the manifest, which a report prints: SHA-256 of one line "SHA256  PATH" for every file but the
-  /// report's pages, in the order of the manifest. Empty without a manifest.
+  std::vector<std::string> missing;  ///< listed but absent; includes manifest.json if absent
+  std::vector<std::string> foreign;  ///< present but not listed, of any type; empty without a manifest
+  /// Digest of the manifest, as printed in reports: SHA-256 of the lines "SHA256  PATH" of all files except the report
+  /// pages, in the order of the manifest. Empty without a manifest.
   std::string manifest_sha256;
   [[nodiscard]] bool intact() const { return changed.empty() && missing.empty() && foreign.empty(); }
 };
 
-/// Reads every file of the folder. `io` with the path when one cannot be read.
+/// Reads every file of the folder. Errors: `io` with the path of an unreadable file.
 [[nodiscard]] Result<ManifestCheck> check_manifest(const std::filesystem::path& folder);
-/// Whether the manifest vouches for this one file as it is; false also where there is no manifest. `io` with the path.
+/// Returns whether the manifest confirms the current content of this file; false without a manifest. Errors: `io` with
+/// the path.
 [[nodiscard]] Result<bool> is_listed(const std::filesystem::path& folder, const std::string& path);
-/// The digest of the manifest that is there. Errors: as refresh_manifest().
+/// Returns the digest of the existing manifest. Errors: as refresh_manifest().
 [[nodiscard]] Result<std::string> manifest_digest(const std::filesystem::path& folder);
 
 struct ManifestEntry {
@@ -47,25 +50,25 @@ struct ManifestEntry {
   std::string sha256;
   bool operator==(const ManifestEntry&) const = default;
 };
-/// By path. Recorded frames may be many gigabytes: what has read them once hands this on.
+/// Entries by path. Recorded frames may have many gigabytes, so code that has read a file once passes its entry on.
 using ManifestEntries = std::map<std::string, ManifestEntry>;
-/// Of the files that are there. Reads each. `io` with the path.
+/// Returns the entries of the existing files; reads each file. Errors: `io` with the path.
 [[nodiscard]] Result<ManifestEntries> manifest_entries(const std::filesystem::path& folder);
-/// The digest of a manifest with these entries.
+/// Returns the digest of a manifest with these entries.
 [[nodiscard]] std::string digest_of(const ManifestEntries& entries);
-/// Brings the entries of `files` up to date. `io` with the path.
+/// Updates the entries of `files`. Errors: `io` with the path.
 [[nodiscard]] Result<void> update_entries(const std::filesystem::path& folder, const std::vector<std::string>& files,
                                           ManifestEntries& entries);
 
-/// Writes manifest.json with these entries. `io` with the path.
+/// Writes manifest.json with these entries. Errors: `io` with the path.
 [[nodiscard]] Result<void> write_manifest(const std::filesystem::path& folder, const ManifestEntries& entries);
-/// The same for the files that are there.
+/// Writes manifest.json with the entries of the existing files.
 [[nodiscard]] Result<void> write_manifest(const std::filesystem::path& folder);
-/// Brings the entries of `files` up to date and leaves the others as they are: for a report that was rebuilt. `io`, or
-/// `invalid_input` when there is no manifest or not the one that was written.
+/// Updates the entries of `files` in manifest.json and keeps the others, for example after a report is rebuilt. Errors:
+/// `io`; `invalid_input` (no manifest, or not the one that was written).
 [[nodiscard]] Result<void> refresh_manifest(const std::filesystem::path& folder, const std::vector<std::string>& files);
-/// One sentence for every file of the session that is missing, changed or not listed; none when they are as they were
-/// written. `invalid_input` when there is no readable manifest (a run that was cut off writes none).
+/// Returns one sentence for each file that is missing, changed or not listed; empty if the session is intact. Errors:
+/// `invalid_input` (no readable manifest; a run that was cut off has none).
 [[nodiscard]] Result<std::vector<std::string>> verify_manifest(const std::filesystem::path& folder);
 
 }  // namespace todbench

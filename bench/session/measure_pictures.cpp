@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/measure_pictures.h"
 
 #include <algorithm>
@@ -16,12 +17,12 @@ namespace {
 
 constexpr std::string_view png_ending = ".png";
 constexpr std::string_view png_signature = "\x89PNG\r\n\x1a\n";
-/// Keys of the pictures of a plate, and what their files are called.
+/// Keys of the pictures of a plate, and parts of their file names.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> panel_keys{
     {{"seen_png", "plate-seen"}, {"expected_png", "plate-expected"}, {"difference_png", "plate-difference"}}};
 constexpr std::array<std::string_view, 2> side_keys{"main", "twin"};
 
-/// Calls `with` for every picture: the object that has it, its key, and a name for it. False ends the list's element.
+/// Calls `with` for every picture with its object, key and name. If it returns false, the list element is removed.
 template <typename Function>
 void for_each_picture(Json& measures, const Function& with) {
   for (const std::string_view side : side_keys) {
@@ -51,7 +52,7 @@ bool names_a_file(const Json& object, const std::string& key) {
   return value != object.end() && value->is_string() && value->get_ref<const std::string&>().ends_with(png_ending);
 }
 
-/// "pictures/NAME.png" with a name of letters, digits, hyphens and underscores.
+/// Returns whether the path is "pictures/NAME.png" with letters, digits, hyphens and underscores in NAME.
 bool is_picture_name(std::string_view name) {
   if (!name.starts_with(pictures_folder)) return false;
   name.remove_prefix(pictures_folder.size());
@@ -63,7 +64,7 @@ bool is_picture_name(std::string_view name) {
   });
 }
 
-/// Takes out what has no picture any more.
+/// Removes objects that have lost their picture.
 void drop_incomplete(Json& measures) {
   for (const std::string_view key : side_keys) {
     const auto side = measures.find(std::string(key));

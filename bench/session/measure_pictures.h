@@ -1,4 +1,5 @@
-// The PNG files of measures.json: in the folder pictures/ of a session, referred to by name.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// PNG files of measures.json, stored in pictures/ of a session and referred to by name.
 #pragma once
 
 #include <filesystem>
@@ -6,25 +7,25 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/text/json.h"
 
 namespace todbench {
 
-/// Of a session folder.
+/// Relative to the session folder.
 inline constexpr std::string_view pictures_folder = "pictures";
 
 struct MeasurePicture {
-  std::string file;  ///< below the session folder: "pictures/main-temporal_noise.png"
+  std::string file;  ///< relative to the session folder: "pictures/main-temporal_noise.png"
   std::string png;   ///< bytes
 };
 
-/// Puts names of files where measures_json() has pictures as base64, and hands the pictures out.
+/// Replaces the base64 pictures in a record of measures_json() by file names and returns the pictures.
 [[nodiscard]] std::vector<MeasurePicture> take_pictures(Json& measures);
 
-/// The other way: where a record names files, reads them from the session folder. A record of an older version has the
-/// pictures itself and stays as it is; a picture that is missing leaves the record without it, and with a reason.
-/// `invalid_input` for a name that take_pictures() does not make, or a file that is no PNG or cannot be read.
+/// Inverse of take_pictures(): replaces file names by the pictures in the session folder. Records of older versions
+/// contain the pictures and stay unchanged. A missing picture is removed from the record and a reason is added. Errors:
+/// `invalid_input` (name not made by take_pictures(), file unreadable or not a PNG).
 [[nodiscard]] Result<Json> with_pictures(Json measures, const std::filesystem::path& folder);
 
 }  // namespace todbench

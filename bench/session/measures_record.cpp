@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/measures_record.h"
 
 #include <fmt/format.h>
@@ -6,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "bench/session/ctf_record.h"
 #include "bench/session/drift_record.h"
 #include "bench/session/geometry_record.h"
@@ -23,7 +24,7 @@ double root(double variance) {
   return std::sqrt(std::max(0.0, variance));
 }
 
-/// A standard deviation from a variance that may be negative.
+/// Returns a standard deviation from a variance that may be negative.
 MeasureLine deviation(std::string name, const ComponentEstimate& estimate, const std::string& conditions) {
   return {std::move(name), "K", root(estimate.variance), {root(estimate.low), root(estimate.high)}, conditions};
 }
@@ -32,9 +33,9 @@ std::string conditions_of(const NoiseMeasure& noise) {
   std::string text = fmt::format("{} frames of {} x {} pixels, contrast 0, {:.2f} K", noise.frames, noise.columns,
                                  noise.rows, noise.mean_k);
   if (noise.since_correction_s) text += fmt::format(", up to {:.1f} s after a correction", *noise.since_correction_s);
-  text += ", kelvin of the camera's scale, surface of second order taken out";
+  text += ", kelvin on the camera's scale, second-order surface removed";
   if (noise.table.pixel_memory != 0)
-    text += fmt::format(", a correlation of {:.2f} in time allowed for", noise.table.pixel_memory);
+    text += fmt::format(", corrected for a temporal correlation of {:.2f}", noise.table.pixel_memory);
   return text;
 }
 
@@ -48,39 +49,43 @@ void add_noise(MeasureLines& out, const CameraMeasures& measures) {
   out.lines.push_back({"shading_range", "K", noise.shading_range_k, {}, conditions});
   if (noise.noise_counts) out.lines.push_back({"noise_counts", "counts", noise.noise_counts, {}, conditions});
   if (too_coarse(noise)) {
-    out.reasons.push_back(
-        fmt::format("noise: {:.2f} counts are too few for a number, the scale is too coarse", *noise.noise_counts));
+    out.reasons.push_back(fmt::format(
+        "noise: not measured, because the scale is too coarse: the noise is {:.2f} counts", *noise.noise_counts));
     return;
   }
   out.lines.push_back(deviation("temporal_noise", *measures.temporal_variance_k2(), conditions));
   out.lines.push_back({"lag1_correlation", "1", noise.lag1_correlation, {}, conditions});
   if (noise.table.pixel_memory == 0 && noise.lag1_correlation.value_or(0) > 0.9)
     out.reasons.push_back(
-        fmt::format("noise: {} frames do not tell noise that remembers so long (correlation {:.2f}) from drift: the "
-                    "temporal noise is too small, the fixed pattern too large",
+        fmt::format("noise: {} frames cannot separate noise with such a long correlation ({:.2f}) from drift: the "
+                    "temporal noise is underestimated and the fixed pattern overestimated",
                     noise.frames, *noise.lag1_correlation));
   if (const auto netd = measures.netd_k()) {
     const double half = *netd * measures.netd_relative_half_width().value_or(0);
-    out.lines.push_back({"netd", "K", netd, {*netd - half, *netd + half}, "temporal noise over the signal transfer"});
+    out.lines.push_back({"netd",
+                         "K",
+                         netd,
+                         {*netd - half, *netd + half},
+                         "temporal noise divided by the slope of the signal transfer"});
   }
   if (measures.netd_model_k)
     out.lines.push_back({"netd_model",
                          "K",
                          measures.netd_model_k,
                          {},
-                         "closed form of the sensor model, of a scale that is right and any number of frames"});
+                         "closed form of the sensor model, for a correct temperature scale and any number of frames"});
   for (const NoiseComponent component : noise_components)
     out.lines.push_back(
         deviation("noise_" + std::string(to_string(component)), estimate_of(noise.table, component), conditions));
 }
 
-/// "bad_pixels" of the whole frame, "bad_pixels (NAME)" of a zone. What was not seen may hold more.
+/// Adds "bad_pixels" for the whole frame and "bad_pixels (NAME)" for a zone. Unobserved parts may contain more.
 void add_pixels(MeasureLines& out, const PixelMeasure& pixels) {
   for (const PixelMeasure::Zone& zone : pixels.zones) {
     const ZoneCount& count = zone.count;
     const std::string name = zone.area.name == "whole" ? "" : " (" + zone.area.name + ")";
     const std::string conditions =
-        fmt::format("zone '{}': {} of its {} pixels were seen, in {} frames at a contrast of 0", zone.area.name,
+        fmt::format("zone '{}': {} of its {} pixels were observed, in {} frames at a contrast of 0", zone.area.name,
                     count.measured, count.pixels, pixels.defects.frames);
     const auto line = [&](const char* measure, int found) {
       Interval most{.low = found, .high = found};
@@ -99,9 +104,9 @@ void add_pixels(MeasureLines& out, const PixelMeasure& pixels) {
     const auto found = static_cast<double>(cv::countNonZero(pixels.defects.of(kind)));
     const std::string seen =
         kind == PixelDefect::unresponsive
-            ? fmt::format("of the {} pixels whose response was seen in the middle of triangles",
+            ? fmt::format("of the {} pixels whose response was observed inside triangles",
                           pixels.defects.response_tested)
-            : fmt::format("of the {} x {} pixels that were seen", pixels.field.width, pixels.field.height);
+            : fmt::format("of the {} x {} observed pixels", pixels.field.width, pixels.field.height);
     out.lines.push_back({"pixels_" + std::string(to_string(kind)), "1", found, {found, found}, seen});
   }
   for (const std::string& sentence : pixels.defects.not_tested) out.reasons.push_back("pixels: " + sentence);
@@ -111,24 +116,28 @@ void add_transfer(MeasureLines& out, const TransferMeasure& transfer) {
   const SignalTransfer& line = transfer.line;
   const double half = transfer.slope_half_width();
   const std::string conditions =
-      fmt::format("{} steps of {} frames, seen over said by the target", transfer.steps.size(), transfer.frames_each);
+      fmt::format("{} steps of {} frames, observed contrast over the contrast reported by the target",
+                  transfer.steps.size(), transfer.frames_each);
   out.lines.push_back({"transfer_slope", "K/K", line.slope, {line.slope - half, line.slope + half}, conditions});
   out.lines.push_back({"transfer_offset", "K", line.offset, {}, conditions});
   out.lines.push_back({"transfer_nonlinearity", "%", line.nonlinearity_percent, {}, conditions});
   out.transfer = TransferCurve{transfer.steps, line.slope, line.offset};
 }
 
-/// "mtf_x" of the most central rectangle, "mtf_x (NAME)" of any other.
+/// Returns the interval; a lower end of 0 means unknown.
+Interval mtf_interval(double low, double high) {
+  return {low > 0 ? std::optional(low) : std::nullopt, high};
+}
+
+/// Adds "mtf_x" for the rectangle nearest to the centre, "mtf_x (NAME)" for the others.
 void add_edge(MeasureLines& out, const MtfMeasure& mtf, const EdgeMtf& edge, const std::string& name) {
   const double f = mtf.frequency_per_pitch;
+  const Interval interval = mtf_interval(edge.low_at(f), edge.high_at(f));
   const std::string axis(to_string(edge.axis));
   const std::string frames = fmt::format("{} frames of plate {} at {:g} K, {} {} of '{}', {:.2f} degrees from the axis",
                                          mtf.frames, mtf.plate, mtf.said_delta_t_k, edge.sides,
                                          edge.sides == 1 ? "side" : "opposite sides", edge.place, edge.angle_deg);
-  out.lines.push_back({"mtf_" + axis + name,
-                       "1",
-                       edge.at(f),
-                       {edge.low_at(f), edge.high_at(f)},
+  out.lines.push_back({"mtf_" + axis + name, "1", edge.at(f), interval,
                        fmt::format("at {:g} cycles per pitch, {:.4g} per mrad: {}", f, f / mtf.pitch_mrad, frames)});
   if (edge.mtf50_per_pitch)
     out.lines.push_back({"mtf50_" + axis + name, "1/mrad", *edge.mtf50_per_pitch / mtf.pitch_mrad, {}, frames});
@@ -153,7 +162,7 @@ PlatePanels panels_of(const PlatePicture& picture) {
   PlatePanels panels;
   panels.width = seen.cols, panels.height = seen.rows;
   cv::minMaxLoc(picture.expected_k, &panels.black_k, &panels.white_k);
-  constexpr double shown = 4;  // standard deviations of the residual to either side
+  constexpr double shown = 4;  // standard deviations of the residual on either side
   panels.difference_k = std::max(shown * picture.residual_k, 1e-9);
   panels.seen = grey_png(seen, panels.black_k, panels.white_k);
   panels.expected = grey_png(picture.expected_k, panels.black_k, panels.white_k);
@@ -168,7 +177,7 @@ PlatePanels panels_of(const PlatePicture& picture) {
 void add_picture(MeasureLines& out, const PlatePicture& picture) {
   const std::string conditions = fmt::format(
       "mean of {} frames of {} x {} pixels of the plate at {:g} K against the sensor model without noise; "
-      "fitted: contrast {:.4g} K, level, rotation, scale and place, moved by {:.3f} pixels",
+      "fitted: contrast ({:.4g} K), level, rotation, scale and position (shift {:.3f} pixels)",
       picture.seen.frames, picture.seen.kelvin.cols, picture.seen.kelvin.rows, picture.seen.set_delta_t_k,
       picture.contrast_k, picture.moved_px);
   const double relative = 1.96 / std::sqrt(2.0 * static_cast<double>(picture.seen.kelvin.total()));
@@ -222,7 +231,7 @@ Json mtf_json(const MtfMeasure& mtf) {
   for (const EdgeMtf& edge : mtf.edges) {
     Json intervals = Json::array();
     for (std::size_t i = 0; i < edge.mtf.size(); ++i)
-      intervals.push_back({json_number(edge.low[i]), json_number(edge.high[i])});
+      intervals.push_back(json_interval(mtf_interval(edge.low[i], edge.high[i])));
     std::vector<double> per_mrad = edge.frequency_per_pitch;
     for (double& f : per_mrad) f /= mtf.pitch_mrad;
     edges.push_back({{"place", edge.place},
@@ -235,6 +244,8 @@ Json mtf_json(const MtfMeasure& mtf) {
                      {"frequency_per_mrad", list_json(per_mrad)},
                      {"mtf", list_json(edge.mtf)},
                      {"mtf_ci95", intervals},
+                     {"widest_halo_pitch", json_number(edge.widest_halo_pitch)},
+                     {"halo_allowance", json_number(edge.halo_allowance)},
                      {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
                      {"model", edge.model.empty() ? Json() : list_json(edge.model)}});
   }
@@ -338,7 +349,7 @@ Json side_json(const std::optional<CameraMeasures>& measures) {
           {"reasons", found.reasons}};
 }
 
-/// Each edge has a number at each frequency.
+/// Returns whether each edge has a number at each frequency.
 bool complete(const std::optional<MeasureLines>& side) {
   if (!side || !side->mtf) return true;
   const auto whole = [](const EdgeMtf& edge) {
@@ -349,7 +360,7 @@ bool complete(const std::optional<MeasureLines>& side) {
   return side->mtf->pitch_mrad > 0 && std::all_of(side->mtf->edges.begin(), side->mtf->edges.end(), whole);
 }
 
-/// What a page shows as it is has to be what it says.
+/// Returns whether all pictures that a page shows are valid.
 bool drawable(const std::optional<MeasureLines>& side) {
   if (side && !drawable(side->maps)) return false;
   if (!side || !side->picture) return true;
@@ -426,15 +437,15 @@ Result<SessionMeasures> measures_from(const Json& record) {
   SessionMeasures measures{side_from(reader.at("main")), side_from(reader.at("twin"))};
   if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
   if (!drawable(measures.main) || !drawable(measures.twin))
-    return fail(ErrorCode::invalid_input, "'picture': expected three PNG files as base64 of one size");
+    return fail(ErrorCode::invalid_input, "'picture': expected three PNG files of the same size as base64");
   if (!complete(measures.main) || !complete(measures.twin))
-    return fail(ErrorCode::invalid_input, "'mtf.edges': expected lists of one length and a pitch above 0");
+    return fail(ErrorCode::invalid_input, "'mtf.edges': expected lists of the same length and a pitch above 0");
   if (!ctf_drawable(measures.main) || !ctf_drawable(measures.twin))
     return fail(ErrorCode::invalid_input, "'ctf.groups': expected frequencies and a pitch above 0");
   if (!geometry_drawable(measures.main) || !geometry_drawable(measures.twin))
     return fail(ErrorCode::invalid_input, "'geometry.picture_px': expected numbers above 0");
   if (!drift_drawable(measures.main) || !drift_drawable(measures.twin))
-    return fail(ErrorCode::invalid_input, "'drift': expected lists of one length");
+    return fail(ErrorCode::invalid_input, "'drift': expected lists of the same length");
   return measures;
 }
 

@@ -1,11 +1,12 @@
-// Physical measures of a session: measures.json, and the key "measures" on standard output.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Physical measures of a session: measures.json, and key "measures" of the JSON output.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/judgement/verdict.h"
 #include "bench/session/pixel_record.h"
 #include "bench/text/json.h"
@@ -13,24 +14,24 @@
 
 namespace todbench {
 
-/// One number with what has to stand beside it.
+/// Value of a measure with its interval and conditions.
 struct MeasureLine {
   std::string measure;  ///< "netd", "noise_tvh", "transfer_slope", ...
   std::string unit;
   std::optional<double> value{};
   Interval ci95{};
   std::string conditions{};
-  /// With what the budget states of the bench; nothing: the budget states nothing of it, or it is not this measure's.
+  /// Interval with the budget; empty if the budget has no row that applies to this measure.
   std::optional<Interval> expanded{};
 };
 
-/// The MTF of every edge, for figures.
+/// MTF of every edge, for figures.
 struct MtfCurves {
   double pitch_mrad = 0;
   std::vector<EdgeMtf> edges;
 };
 
-/// The CTF of every group of bars, for figures.
+/// CTF of every bar group, for figures.
 struct CtfGroups {
   double pitch_mrad = 0;
   std::vector<BarsCtf> groups;
@@ -42,29 +43,29 @@ struct TransferCurve {
   double slope = 0, offset_k = 0;
 };
 
-/// What is left of steps of the target, for figures.
+/// Remaining part of steps of the target over time, for figures.
 struct ResponseCurve {
   double time_constant_s = 0;
   std::vector<StepPoint> points;
 };
 
-/// Where the triangles lie beside the fitted lens, for figures.
+/// Positions of the triangles relative to the fitted lens, for figures.
 struct GeometryMap {
   double width = 0, height = 0;  ///< of the picture, in pixels
   std::vector<GeometryPlace> places;
 };
 
-/// The plate as it was seen, as the sensor model makes it, and the difference: grey PNG files as base64, of the same
+/// Observed plate, plate according to the sensor model, and their difference: grey PNG files in base64, all of the same
 /// part of the picture.
 struct PlatePanels {
-  int width = 0, height = 0;  ///< pixels of each
+  int width = 0, height = 0;  ///< of each picture, in pixels
   std::string seen, expected, difference;
-  double black_k = 0, white_k = 0;  ///< of the first two
-  double difference_k = 0;          ///< of the third: black at minus, white at plus this
-  std::vector<Polygon> outlines;    ///< of what was found, in pixels of the panels, centres at whole numbers
+  double black_k = 0, white_k = 0;  ///< grey scale of the first two
+  double difference_k = 0;          ///< grey scale of the third: black at minus this, white at plus this
+  std::vector<Polygon> outlines;    ///< of the detected shapes, in pixels of the panels (pixel centres at integers)
 };
 
-/// Everything that was measured of one camera, and why something was not.
+/// All measures of one camera, and the reasons for missing ones.
 struct MeasureLines {
   std::vector<MeasureLine> lines;
   std::optional<MtfCurves> mtf{};
@@ -79,22 +80,22 @@ struct MeasureLines {
 };
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
 
-/// As judge() takes them.
+/// Returns the quantities as input of judge().
 [[nodiscard]] std::vector<MeasuredQuantity> quantities_of(const MeasureLines& lines);
 
-/// Those of a session: of the camera (or of the simulated sensor alone) and of the twin.
+/// Measures of a session: of the camera (or of the simulated sensor alone) and of the twin.
 struct SessionMeasures {
   std::optional<MeasureLines> main;
   std::optional<MeasureLines> twin;
 };
 
-/// {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "drift": {...}, "response":
-/// {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "maps": [...], "picture": {...}, "reasons": [...]}, "twin": the
-/// same or null}
+/// Returns {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "drift": {...},
+/// "response": {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "maps": [...], "picture": {...}, "reasons": [...]},
+/// "twin": the same or null}.
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
-/// Of numbers, maps and reasons alone.
+/// Returns the same with numbers, maps and reasons only.
 [[nodiscard]] Json measures_json(const MeasureLines& main);
-/// `invalid_input`, naming the key, for a record that is not complete or of other types.
+/// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);
 
 }  // namespace todbench

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/open_session.h"
-#include "bench/session/signature.h"
 
 #include <algorithm>
 #include <iterator>
 
+#include "bench/session/foreign_files.h"
+#include "bench/session/signature.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 
@@ -12,7 +14,7 @@ namespace {
 
 constexpr std::size_t files_in_a_sentence = 4;
 
-/// The state that provenance.json states, whatever else is wrong with it.
+/// Returns whether provenance.json states the state running, even if the file is otherwise invalid.
 bool says_running(const std::filesystem::path& folder) {
   const Result<std::string> text = read_text_file(folder / "provenance.json");
   if (!text) return false;
@@ -20,7 +22,7 @@ bool says_running(const std::filesystem::path& folder) {
   return json.is_object() && json.contains("state") && json["state"] == to_string(SessionState::running);
 }
 
-/// "a, b and 3 more".
+/// Returns "a, b and 3 more".
 std::string listed(const std::vector<std::string>& files) {
   std::string text;
   for (std::size_t i = 0; i < std::min(files.size(), files_in_a_sentence); ++i) text += (i == 0 ? "" : ", ") + files[i];
@@ -31,7 +33,7 @@ std::string listed(const std::vector<std::string>& files) {
 
 struct Kind {
   std::vector<std::string> files;
-  std::string_view one, more;  ///< what happened to them, for one and for several
+  std::string_view one, more;  ///< event in singular and plural
 };
 
 std::string sentence_of(const std::vector<Kind>& kinds) {
@@ -69,7 +71,7 @@ Result<SessionCheck> check_session(const std::filesystem::path& folder) {
   if (!is_there(folder / manifest_name) && says_running(folder)) {
     check.condition = SessionCondition::cut_off;
     check.not_vouched_for = check.files.missing;
-    check.sentence = "the run goes on or was cut off: there is no manifest, so nothing vouches for the files";
+    check.sentence = "the run is not finished or was cut off. There is no manifest, so the files cannot be verified";
     return check;
   }
   Kind changed{check.files.changed, "was changed", "were changed"};
@@ -95,7 +97,7 @@ Result<Session> open_session(const std::filesystem::path& folder, const Opening&
   const bool taken = vouched_for || opening.accept_changed || (cut_off && opening.accept_cut_off);
   if (!taken) {
     return fail(ErrorCode::invalid_input, folder.string() + ": " + (cut_off ? "" : "the session was changed: ") +
-                                              check->sentence + " (--accept-changed reads it nevertheless)");
+                                              check->sentence + " (use --accept-changed to read it anyway)");
   }
   Result<Session> session = read_session(folder);
   if (!session) return session;
@@ -108,7 +110,10 @@ Result<Session> open_session(const std::filesystem::path& folder, const Opening&
 Result<void> require_intact(const std::filesystem::path& folder) {
   const Result<SessionCheck> check = check_session(folder);
   if (!check) return tl::unexpected(check.error());
-  if (check->not_vouched_for.empty()) return require_unsigned(folder);
+  if (check->not_vouched_for.empty()) {
+    if (auto own = require_no_foreign_file(folder); !own) return own;
+    return require_unsigned(folder);
+  }
   return fail(ErrorCode::invalid_input, folder.string() + ": the session was changed: " + check->sentence);
 }
 

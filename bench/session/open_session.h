@@ -1,4 +1,5 @@
-// The one way to a session that was written before: nothing of it is believed that its manifest does not vouch for.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opens an existing session and rejects content that its manifest does not confirm. All readers use this path.
 #pragma once
 
 #include <filesystem>
@@ -12,33 +13,33 @@
 namespace todbench {
 
 enum class SessionCondition {
-  intact,   ///< every file is what the run wrote, and there is no other
-  changed,  ///< files were changed, removed or added after the session ended
-  cut_off,  ///< no manifest, and provenance.json says that the run goes on: it does, or it was cut off
+  intact,   ///< all files are as the run wrote them, and there are no others
+  changed,  ///< files were changed, removed or added after the end of the session
+  cut_off,  ///< no manifest and state running: the run is in progress or was cut off
 };
 [[nodiscard]] std::string_view to_string(SessionCondition condition);
 
 struct SessionCheck {
   SessionCondition condition = SessionCondition::intact;
   ManifestCheck files;
-  /// What a reader would believe and the manifest does not vouch for, sorted: files changed, missing or added. Neither
-  /// a report page that is missing nor a foreign file that nobody reads.
+  /// Files that a reader would use but the manifest does not confirm, sorted: changed, missing or added. Missing report
+  /// pages and foreign files that no reader uses are not included.
   std::vector<std::string> not_vouched_for;
-  std::string sentence;  ///< what `not_vouched_for` or `cut_off` means; empty where there is neither
+  std::string sentence;  ///< explains `not_vouched_for` or `cut_off`; empty if neither applies
 };
-/// Reads every file. `invalid_input`: not a session folder. `io` with the path.
+/// Reads every file. Errors: `invalid_input` (not a session folder), `io` with the path.
 [[nodiscard]] Result<SessionCheck> check_session(const std::filesystem::path& folder);
 
-/// What a reader of a session takes. Whoever shows anything of a session shows its `accepted_changes` and `cut_off`.
+/// Sessions that a reader accepts. Code that presents a session must show its `accepted_changes` and `cut_off`.
 struct Opening {
-  bool accept_changed = false;  ///< also sessions whose files are not those that the run wrote
+  bool accept_changed = false;  ///< also sessions with files that the run did not write in this form
   bool accept_cut_off = false;  ///< also runs that were cut off, which have no manifest
 };
 
-/// read_session() after check_session(). `invalid_input`: as these, and a session that `opening` does not take, with
-/// the sentence that says why.
+/// Calls check_session() and read_session(). Errors: those of both, and `invalid_input` with the reason for a session
+/// that `opening` does not accept.
 [[nodiscard]] Result<Session> open_session(const std::filesystem::path& folder, const Opening& opening);
-/// Success when open_session() would take the folder as intact: before something is written into it.
+/// Succeeds if open_session() would accept the folder as intact. Call it before writing to a session.
 [[nodiscard]] Result<void> require_intact(const std::filesystem::path& folder);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/pixel_record.h"
 
 #include <fmt/format.h>
@@ -5,8 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "bench/picture_files/encoded_picture.h"
 #include "bench/text/base64.h"
-#include "bench/text/encoded_picture.h"
 #include "tod/measures/medians.h"
 
 namespace todbench {
@@ -18,7 +19,7 @@ std::string png_text(const cv::Mat& picture) {
   return base64(png_of(picture).value_or(std::string()));
 }
 
-/// Four standard deviations to both sides of the median, as normal values would have them.
+/// Returns the median plus and minus four standard deviations, estimated as for normally distributed values.
 std::pair<double, double> grey_range(const cv::Mat1d& values) {
   constexpr double shown = 4;
   const double middle = median_of(values), reach = std::max(shown * 1.4826 * median_deviation_of(values), 1e-6);
@@ -30,7 +31,7 @@ PixelMap grey_map(std::string name, const cv::Mat1d& values, std::pair<double, d
           range.first,     range.second, grey_png(values, range.first, range.second)};
 }
 
-/// A pixel is drawn with those round it, so that it is seen on paper.
+/// Draws the map of defects. The neighbours of a pixel are drawn too, so that it is visible on paper.
 PixelMap defect_map(const PixelMeasure& pixels) {
   cv::Mat3b picture(pixels.frame, cv::Vec3b(160, 160, 160));
   picture(pixels.field).setTo(cv::Scalar(255, 255, 255));
@@ -51,7 +52,7 @@ PixelMap triangle_map(const TriangleStrip& strip) {
   double low = 0, high = 0;
   cv::minMaxLoc(strip.kelvin, &low, &high);
   PixelMap map = grey_map("triangles", strip.kelvin, {low, high});
-  map.note = fmt::format("at {:g} K, mean of {} frames, {:.1f} to {:.1f} pixels large", strip.set_delta_t_k,
+  map.note = fmt::format("at {:g} K, mean of {} frames, sizes from {:.1f} to {:.1f} pixels", strip.set_delta_t_k,
                          strip.frames, strip.size_px.front(), strip.size_px.back());
   return map;
 }
@@ -63,7 +64,7 @@ Json rectangle_json(const cv::Rect& rectangle) {
 }  // namespace
 
 const std::array<DefectColour, pixel_defect_kinds.size()>& defect_colours() {
-  // Okabe and Ito 2008.
+  // Palette of Okabe and Ito (2008).
   static constexpr std::array<DefectColour, pixel_defect_kinds.size()> colours{
       DefectColour{PixelDefect::offset, "dead or hot by level: vermilion", 213, 94, 0},
       DefectColour{PixelDefect::unresponsive, "dead by response: yellow", 240, 200, 0},

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/provenance.h"
 
 #include <unistd.h>
@@ -137,7 +138,7 @@ RunRecord read_run(const JsonReader& reader) {
   for (const JsonReader& set_up : reader.at("set_ups").elements()) run.set_ups.push_back(read_set_up(set_up));
   run.notes = reader.at("notes").texts();
   for (const auto& [key, value] : reader.items()) {
-    if (key != "interruptions") continue;  // folders of earlier versions have none
+    if (key != "interruptions") continue;  // absent in folders of earlier versions
     for (const JsonReader& interruption : value.elements()) {
       run.interruptions.push_back({.presentation = interruption.at("first_presentation").whole(),
                                    .away_s = interruption.at("away_s").number(),
@@ -177,6 +178,45 @@ Json modules_json(const std::vector<ModuleRecord>& modules) {
                     {"files", object_of(module.files)}});
   }
   return list;
+}
+
+/// Names and members of the record, in the order of the file.
+template <typename Record>
+auto optics_numbers(Record& r) {
+  using Number = std::pair<const char*, decltype(&r.chi2)>;
+  return std::array{Number{"aberration_sigma_pitch", &r.aberration_sigma_pitch},
+                    Number{"aberration_se_pitch", &r.aberration_se_pitch},
+                    Number{"f_number_ratio", &r.f_number_ratio},
+                    Number{"f_number_ratio_se", &r.f_number_ratio_se},
+                    Number{"chi2", &r.chi2},
+                    Number{"chi2_limit", &r.chi2_limit},
+                    Number{"degrees_of_freedom", &r.degrees_of_freedom},
+                    Number{"netd_k", &r.netd_k},
+                    Number{"row_noise_k", &r.row_noise_k},
+                    Number{"column_noise_k", &r.column_noise_k},
+                    Number{"fixed_pattern_k", &r.fixed_pattern_k},
+                    Number{"noise_correlation", &r.noise_correlation}};
+}
+
+Json optics_json(const CameraOpticsRecord& optics) {
+  Json json;
+  for (const auto& [name, value] : optics_numbers(optics)) json[name] = json_number(*value);
+  json["samples_per_pitch"] = optics.samples_per_pitch;
+  json["refused"] = optics.refused;
+  json["surrogate_taken"] = optics.surrogate_taken;
+  json["contrast_response"] = object_of(optics.contrast_response);
+  return json;
+}
+
+CameraOpticsRecord read_optics(const JsonReader& reader) {
+  CameraOpticsRecord optics;
+  for (const auto& [name, value] : optics_numbers(optics)) *value = reader.at(name).optional_number().value_or(0);
+  optics.samples_per_pitch = static_cast<int>(reader.at("samples_per_pitch").whole());
+  optics.refused = reader.at("refused").flag();
+  optics.surrogate_taken = reader.at("surrogate_taken").flag();
+  for (const auto& [plate, response] : reader.at("contrast_response").items())
+    optics.contrast_response[plate] = response.number();
+  return optics;
 }
 
 }  // namespace
@@ -264,6 +304,7 @@ Json provenance_json(const Provenance& provenance) {
   json["effects"] = effects_json(provenance.effects);
   json["run"] = provenance.run ? run_json(*provenance.run) : Json(nullptr);
   json["twin_run"] = provenance.twin_run ? run_json(*provenance.twin_run) : Json(nullptr);
+  if (provenance.camera_optics) json["camera_optics"] = optics_json(*provenance.camera_optics);
   return json;
 }
 
@@ -287,7 +328,7 @@ Result<Provenance> provenance_from(const Json& json) {
   }
   if (const JsonReader run = reader.at("run"); !run.is_null()) provenance.run = read_run(run);
   if (const JsonReader run = reader.at("twin_run"); !run.is_null()) provenance.twin_run = read_run(run);
-  // Folders of earlier versions have none.
+  // Absent in folders of earlier versions.
   if (json.is_object() && json.contains("modules")) {
     for (const JsonReader& item : reader.at("modules").elements()) {
       provenance.modules.push_back({item.at("place").text(), item.at("command").text(), item.at("version").text(),
@@ -296,6 +337,8 @@ Result<Provenance> provenance_from(const Json& json) {
   }
   if (json.is_object() && json.contains("clock_jump_s"))
     provenance.clock_jump_s = reader.at("clock_jump_s").optional_number().value_or(0);
+  if (const JsonReader optics = reader.at_if_there("camera_optics"); !optics.is_null())
+    provenance.camera_optics = read_optics(optics);
   if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
   if (!json.contains("effects")) return fail(ErrorCode::invalid_input, "missing key 'effects'");
   const Result<SensorPlan> effects = effects_from(json["effects"]);

@@ -1,4 +1,5 @@
-// Where a session comes from: program, host, camera, instruments, what happened on the way.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Provenance of a session: program, host, camera, instruments and events of the run.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +16,13 @@
 namespace todbench {
 
 enum class SessionState {
-  running,  ///< still being written, or cut off by a crash
+  running,  ///< in progress, or cut off by a crash
   complete,
   interrupted,  ///< stopped on request or by an error; the trials so far are valid
 };
 [[nodiscard]] std::string_view to_string(SessionState state);
 
-/// The camera as it was read back.
+/// Camera properties as read back.
 struct CameraRecord {
   std::string id, vendor, model, serial, firmware, transport, pixel_format;
   int width = 0, height = 0, significant_bits = 0;
@@ -33,7 +34,7 @@ struct CameraRecord {
 };
 [[nodiscard]] CameraRecord camera_record(const SourceInfo& info);
 
-/// What one run left behind besides its trials.
+/// Result of a run except its trials.
 struct RunRecord {
   double wall_s = 0;
   std::uint64_t frames_used = 0;
@@ -42,43 +43,57 @@ struct RunRecord {
   double temporal_noise_k = 0;  ///< 0: not measured
   std::vector<SetUpRecord> set_ups;
   std::vector<std::string> notes;
-  std::vector<Interruption> interruptions;  ///< losses of the camera that the run survived
-  std::string ended_by;                     ///< why it stopped early; empty: it did not
+  std::vector<Interruption> interruptions;  ///< camera losses that the run survived
+  std::string ended_by;                     ///< reason of an early end; empty: complete
 };
 [[nodiscard]] RunRecord run_record(const MeasurementResult& result, double wall_s);
 [[nodiscard]] RunFigures figures_of(const RunRecord& run);
+
+/// Optics and noise of the camera as estimated from its own frames (bench/run/camera_surrogate.h).
+struct CameraOpticsRecord {
+  double aberration_sigma_pitch = 0, aberration_se_pitch = 0;
+  double f_number_ratio = 1, f_number_ratio_se = 0;  ///< relative to the sensor file
+  int samples_per_pitch = 1;
+  double chi2 = 0, chi2_limit = 0, degrees_of_freedom = 0;
+  double netd_k = 0, row_noise_k = 0, column_noise_k = 0, fixed_pattern_k = 0, noise_correlation = 0;
+  bool refused = false;                               ///< chi2 exceeds its limit
+  bool surrogate_taken = false;                       ///< the camera's fit uses the function of the surrogate
+  std::map<std::string, double> contrast_response{};  ///< by plate; contrasts were divided by it
+  bool operator==(const CameraOpticsRecord&) const = default;
+};
 
 struct Provenance {
   std::string program_version, git_commit, compiler;
   std::string host;
   std::string started_utc;  ///< ISO 8601 with Z
-  std::string ended_utc;    ///< the start, and what passed by a clock that is never set; empty: not yet
-  double clock_jump_s = 0;  ///< by how much the clock of the host was set ahead meanwhile
+  std::string ended_utc;    ///< start plus time by the monotonic clock; empty: still running
+  double clock_jump_s = 0;  ///< forward jump of the host's clock during the run
   SessionState state = SessionState::running;
-  Side side = Side::measured;  ///< what trials.csv holds
+  Side side = Side::measured;  ///< side of trials.csv
   std::map<std::string, std::uint64_t> seeds;
-  std::optional<CameraRecord> camera;  ///< nothing for a simulated curve
+  std::optional<CameraRecord> camera;  ///< empty for a simulated curve
   std::string target;                  ///< instruments in words, with serial numbers
   std::vector<InstrumentPlan> instruments;
-  std::vector<ModuleRecord> modules{};  ///< behind camera or twin, the observer last
+  std::vector<ModuleRecord> modules{};  ///< behind camera or twin; the observer last
   SensorPlan effects;                   ///< of the simulated curve
   std::optional<RunRecord> run;         ///< of trials.csv
   std::optional<RunRecord> twin_run;    ///< of trials_simulated.csv
+  std::optional<CameraOpticsRecord> camera_optics{};
 };
 
-/// The parts between losses of the camera; 1: it was never lost.
+/// Returns the number of parts between camera losses; 1: the camera was never lost.
 [[nodiscard]] std::size_t segments(const Provenance& provenance);
-/// Ended early, or the camera was lost on the way and came back: nobody may take it for a run in one piece. `state`
-/// says whether it has all its trials.
+/// Returns whether the run ended early or the camera was lost and came back, so that it is not one continuous run.
+/// `state` states whether it has all its trials.
 [[nodiscard]] bool was_interrupted(const Provenance& provenance);
 
-/// Program, host, start and the seed and instruments of the plan filled in; state running.
+/// Returns the provenance with program, host, start time, seed and instruments of the plan; state running.
 [[nodiscard]] Provenance begin_provenance(const Plan& plan, Side side);
-/// Now, as "2026-01-31T12:34:56Z".
+/// Returns the current time as "2026-01-31T12:34:56Z".
 [[nodiscard]] std::string utc_now();
 
 [[nodiscard]] Json provenance_json(const Provenance& provenance);
-/// `invalid_input` naming the key.
+/// Parses a record. Errors: `invalid_input` with the key.
 [[nodiscard]] Result<Provenance> provenance_from(const Json& json);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/response_record.h"
 
 #include <fmt/format.h>
@@ -25,9 +26,9 @@ Json time_constant_json(const std::optional<StepTimeConstant>& found) {
 
 void add_response_lines(MeasureLines& out, const ResponseMeasure& measure) {
   const std::string settling =
-      measure.settling_s > 0 ? fmt::format(", settling of the target {:g} ms", ms_of_s * measure.settling_s) : "";
+      measure.settling_s > 0 ? fmt::format(", settling time of the target {:g} ms", ms_of_s * measure.settling_s) : "";
   const std::string conditions =
-      fmt::format("time constant of first order; {} steps of {:g} K, {} frames of {:.4g} ms behind them, {} pixels{}",
+      fmt::format("first-order time constant; {} steps of {:g} K, {} frames of {:.4g} ms after each, {} pixels{}",
                   measure.response.both.steps, measure.delta_t_k, measure.response.samples, ms_of_s * measure.frame_s,
                   measure.bright_pixels, settling);
   const auto add = [&](const char* name, const std::optional<StepTimeConstant>& found) {

@@ -1,4 +1,5 @@
-// Response time of a session: its lines and its part of measures.json.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Response time: lines of a session and part of measures.json.
 #pragma once
 
 #include <optional>
@@ -10,10 +11,10 @@
 
 namespace todbench {
 
-/// "response_time", and "response_time_rise" and "response_time_fall" where they can be told.
+/// Adds "response_time", and "response_time_rise" and "response_time_fall" if they can be distinguished.
 void add_response_lines(MeasureLines& out, const ResponseMeasure& measure);
 [[nodiscard]] Json response_json(const ResponseMeasure& measure);
-/// What a record says; mistakes stay with the reader.
+/// Parses a record; mistakes are recorded in the reader.
 [[nodiscard]] ResponseCurve response_from(const JsonReader& response);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/session_clock.h"
 
 #include <fmt/format.h>
@@ -53,8 +54,8 @@ double SessionClock::jump_s() const {
 
 std::string jump_sentence(double jump_s) {
   return fmt::format(
-      "the clock of the host was set while the session ran: it is {:.1f} s {} now; the times of the session count from "
-      "its start by a clock that cannot be set",
+      "the clock of the host was changed during the session and is now {:.1f} s {}. The times of the session come from "
+      "a clock that cannot be set",
       std::abs(jump_s), jump_s > 0 ? "ahead" : "behind");
 }
 

@@ -1,4 +1,5 @@
-// The time of a session: when it began by the clock on the wall, and how long ago that was by one that nobody sets.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Clock of a session: the start by the wall clock, and the elapsed time by a monotonic clock.
 #pragma once
 
 #include <chrono>
@@ -10,28 +11,28 @@ namespace todbench {
 /// Clocks of the host. Any thread.
 struct HostClocks {
   using Wall = std::chrono::system_clock::time_point;
-  /// UTC. May be set, by hand or from the network, while a session runs.
+  /// UTC; may be set manually or by the network during a session.
   std::function<Wall()> wall;
-  /// Since some moment, never set; goes on while the host sleeps.
+  /// Monotonic, of arbitrary origin; continues while the host sleeps.
   std::function<std::chrono::nanoseconds()> monotonic;
 };
-/// CLOCK_REALTIME and CLOCK_BOOTTIME.
+/// Returns CLOCK_REALTIME and CLOCK_BOOTTIME.
 [[nodiscard]] HostClocks host_clocks();
 
-/// ISO 8601 in whole seconds: "2026-01-31T12:34:56Z".
+/// Returns ISO 8601 in whole seconds: "2026-01-31T12:34:56Z".
 [[nodiscard]] std::string utc_text(HostClocks::Wall time);
 
-/// Begins when it is made. Every duration and every time it tells comes from the monotonic clock.
+/// Starts at construction. All durations and later times follow from the monotonic clock.
 class SessionClock {
  public:
   explicit SessionClock(HostClocks clocks = host_clocks());
 
   [[nodiscard]] std::string started_utc() const { return utc_text(started_); }
   [[nodiscard]] double passed_s() const;
-  /// The start, and what has passed since.
+  /// Returns start time plus elapsed time.
   [[nodiscard]] std::string now_utc() const;
-  /// By how much the clock on the wall is ahead of that; 0 within what slewing does to it, 1 s and 0.1 % of what has
-  /// passed (NTP slews by at most 0.05 %).
+  /// Returns the lead of the wall clock over now_utc(). Returns 0 within the tolerance for slewing: 1 s plus 0.1 % of
+  /// the elapsed time (NTP slews by at most 0.05 %).
   [[nodiscard]] double jump_s() const;
 
  private:
@@ -41,7 +42,7 @@ class SessionClock {
   std::chrono::nanoseconds began_;
 };
 
-/// What a report says of a jump.
+/// Returns the sentence of the report about a jump.
 [[nodiscard]] std::string jump_sentence(double jump_s);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/session_comparison.h"
 
 #include <algorithm>
@@ -10,20 +11,22 @@
 namespace todbench {
 namespace {
 
-/// The same exposure of the same triangle: scores of two exposures differ in their last digits at least.
+/// Returns whether both are the same exposure of the same triangle: scores of different exposures differ at least in
+/// their last digits.
 bool same_trial(const Trial& a, const Trial& b) {
   return a.plate == b.plate && a.mounting == b.mounting && a.triangle == b.triangle &&
          a.set_delta_t_k == b.set_delta_t_k && a.size_mrad == b.size_mrad && a.answer == b.answer &&
          a.scores == b.scores;
 }
 
-/// All trials of the shorter session are the first of the other: the same folder, a copy, a replay, the same seed.
+/// Returns whether the trials of the shorter session are the first of the other: same folder, copy, replay or same
+/// seed.
 bool same_trials(const std::vector<Trial>& a, const std::vector<Trial>& b) {
   const std::size_t both = std::min(a.size(), b.size());
   return both > 0 && std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(both), b.begin(), same_trial);
 }
 
-/// Whether the function of a twin was fitted, or would have been where the answers had been better.
+/// Returns whether the function of a twin was fitted, or would have been fitted to better answers.
 bool by_twin(const TodCurve& curve) {
   return std::ranges::any_of(curve.points, [](const TodPoint& point) {
     const auto& reason = point.estimator_reason;
@@ -40,7 +43,7 @@ std::string in_words(const Session& session) {
          (fit.fixed_lapse ? "a lapse of " + number_text(*fit.fixed_lapse) : std::string("a free lapse"));
 }
 
-/// What was fitted counts, not how the plan came to it.
+/// Returns whether the fits agree. The fitted function counts, not the reason for its choice.
 bool fitted_alike(const Session& a, const Session& b) {
   return a.plan.fit.form == b.plan.fit.form && a.plan.fit.lapse == b.plan.fit.lapse &&
          by_twin(*a.curve) == by_twin(*b.curve);
@@ -54,7 +57,7 @@ bool same_shape(const TargetPlate& a, const TargetPlate& b) {
          std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), b.triangles.end(), same);
 }
 
-/// What differs between the plates of two sessions, in words; empty where nothing does.
+/// Returns the differences between the plates of two sessions in words; empty if there are none.
 std::string difference_of_plates(std::vector<TargetPlate> a, std::vector<TargetPlate> b) {
   const auto by_name = [](const TargetPlate& x, const TargetPlate& y) { return x.name < y.name; };
   std::sort(a.begin(), a.end(), by_name);
@@ -64,19 +67,19 @@ std::string difference_of_plates(std::vector<TargetPlate> a, std::vector<TargetP
     for (const TargetPlate& plate : plates) text += (text.empty() ? "" : ", ") + plate.name;
     return text;
   };
-  if (names(a) != names(b)) return "the triangles were shown on other plates (" + names(a) + " and " + names(b) + ")";
+  if (names(a) != names(b)) return "the sessions used different plates (" + names(a) + " and " + names(b) + ")";
   for (std::size_t i = 0; i < a.size(); ++i)
-    if (!same_shape(a[i], b[i])) return "both sessions have a plate " + a[i].name + ", but with other triangles";
+    if (!same_shape(a[i], b[i])) return "both sessions have a plate " + a[i].name + ", but its triangles differ";
   return "";
 }
 
 Result<void> check_comparable(const Session& a, const Session& b) {
   if (!a.curve || !b.curve)
     return fail(ErrorCode::invalid_input,
-                std::string("the ") + (a.curve ? "second" : "first") + " session holds no curve");
+                std::string("the ") + (a.curve ? "second" : "first") + " session has no curve");
   if (same_trials(a.trials, b.trials))
     return fail(ErrorCode::invalid_input,
-                "both sessions hold the same trials: comparing a session with itself shows nothing");
+                "both sessions contain the same trials: a session cannot be compared with itself");
   if (!fitted_alike(a, b))
     return fail(ErrorCode::invalid_input,
                 "the curves were fitted differently: " + in_words(a) + ", and " + in_words(b));
@@ -105,25 +108,21 @@ TodCurve examined(const Session& session) {
   return curve;
 }
 
-/// Where both were paired with the same twin, at the same contrasts.
+/// Adds ratios over the twin if both sessions were paired with the same twin at the same contrasts.
 void add_ratios_over_twin(Comparison& comparison, const Session& a, const Session& b) {
   if (!a.comparison || !b.comparison || !(a.parts.sensor == b.parts.sensor)) return;
-  const auto paired_at = [](const Session& session, double set_delta_t_k) -> const RatioOfPairs* {
+  const auto paired_at = [](const Session& session, double set_delta_t_k) -> const ComparisonPoint* {
     for (const ComparisonPoint& point : session.comparison->points)
-      if (point.paired && same_contrast(point.set_delta_t_k, set_delta_t_k)) return &*point.paired;
+      if (point.paired && same_contrast(point.set_delta_t_k, set_delta_t_k)) return &point;
     return nullptr;
   };
   for (std::size_t i = 0; i < comparison.points.size(); ++i) {
     const ComparisonPoint& point = comparison.points[i];
-    const RatioOfPairs *of_a = paired_at(a, point.set_delta_t_k), *of_b = paired_at(b, point.set_delta_t_k);
+    const ComparisonPoint *of_a = paired_at(a, point.set_delta_t_k), *of_b = paired_at(b, point.set_delta_t_k);
     if (of_a == nullptr || of_b == nullptr) continue;
-    RatioOfPairs ratio = ratio_of_paired(*of_a, *of_b, point.margin_percent);
-    // Of a number that is not fit for a decision, whatever the margin of its session was.
-    const auto unfit = [&](const TodCurve& curve) {
-      const TodPoint* found = point_at(curve, point.set_delta_t_k);
-      return found != nullptr && found->adequacy && !found->adequacy->adequate();
-    };
-    if (unfit(*a.curve) || unfit(*b.curve)) ratio.verdict = ComparisonVerdict::inconclusive;
+    RatioOfPairs ratio = ratio_of_paired(*of_a->paired, *of_b->paired, point.margin_percent);
+    // The threshold of the twin may be unfit although both cameras' are fit.
+    if (of_a->withheld || of_b->withheld) ratio.verdict = ComparisonVerdict::inconclusive;
     add_paired(comparison, i, ratio);
   }
 }
@@ -140,9 +139,9 @@ Result<SessionComparison> compare_sessions(const Session& a, const Session& b, s
   result.comparison = *std::move(comparison);
   add_ratios_over_twin(result.comparison, a, b);
   if (const std::string difference = difference_of_plates(a.parts.plates, b.parts.plates); !difference.empty()) {
-    add_finding(
-        result.comparison,
-        {.kind = FindingKind::identity, .sentence = difference + ": what differs may be the plates", .unfit = true});
+    add_finding(result.comparison, {.kind = FindingKind::identity,
+                                    .sentence = difference + ": the plates may cause the difference",
+                                    .unfit = true});
   }
   return result;
 }

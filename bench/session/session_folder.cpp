@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/session_folder.h"
 
 #include <algorithm>
@@ -6,12 +7,14 @@
 #include <set>
 #include <system_error>
 
+#include "acquisition/base/safe_file.h"
 #include "bench/judgement/verdict_record.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/session/cost_record.h"
 #include "bench/session/ending_reserve.h"
 #include "bench/session/fit_record.h"
+#include "bench/session/foreign_files.h"
 #include "bench/session/grey_levels_csv.h"
 #include "bench/session/measure_pictures.h"
 #include "bench/session/signature.h"
@@ -34,6 +37,23 @@ std::filesystem::path targets_file(const std::filesystem::path& folder, SessionC
   return folder / (which == SessionCurve::main ? "targets.csv" : "targets_simulated.csv");
 }
 
+/// Removes temporary files of a program that was killed.
+Result<void> remove_parts(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> parts;
+  std::error_code problem;
+  for (const char* within : {"", "inputs", "pictures", "frames"}) {
+    for (auto entry = std::filesystem::directory_iterator(folder / within, problem);
+         !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
+      if (is_name_of_a_part(entry->path())) parts.push_back(entry->path());
+    }
+  }
+  for (const std::filesystem::path& part : parts) {
+    if (!std::filesystem::remove(part, problem) && problem)
+      return fail(ErrorCode::io, part.string() + ": cannot be removed: " + problem.message());
+  }
+  return {};
+}
+
 Result<void> remove_session_files(const std::filesystem::path& folder) {
   free_ending_rooms(folder);
   std::vector<std::string> files = session_files(folder);
@@ -43,15 +63,15 @@ Result<void> remove_session_files(const std::filesystem::path& folder) {
     std::filesystem::remove(folder / file, problem);
     if (problem) return fail(ErrorCode::io, (folder / file).string() + ": cannot be removed: " + problem.message());
   }
-  return {};
+  return remove_parts(folder);
 }
 
-/// Copies of descriptions in inputs/, each under a name of its own.
+/// Copies of descriptions in inputs/, each with a unique name.
 class InputCopies {
  public:
   explicit InputCopies(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Copies a description; the result is the reference to be written into session.toml.
+  /// Copies a description and returns the reference for session.toml.
   Result<std::string> copy(ResourceKind kind, const std::string& reference, const std::string& text) {
     const std::string stem = std::string(to_string(kind)) + "-" + std::filesystem::path(reference).stem().string();
     std::string name = stem + ".toml";
@@ -75,7 +95,7 @@ std::string csv_number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? number_text(*value) : "";
 }
 
-/// The last columns: expanded intervals and standard uncertainty of ln acuity.
+/// Appends the last columns: expanded intervals and standard uncertainty of ln acuity.
 void add_expanded(std::string& text, const PointUncertainty* found) {
   if (found == nullptr) {
     text += ",,,,,";
@@ -89,7 +109,7 @@ void add_expanded(std::string& text, const PointUncertainty* found) {
   }
 }
 
-/// Of the curve that has no budget of its own `uncertainty` is one without points.
+/// Appends the rows of a curve. For a curve without a budget `uncertainty` has no points.
 void add_rows(std::string& text, const TodCurve& curve, Side side, const std::optional<CurveUncertainty>& uncertainty) {
   for (const TodPoint& point : curve.points) {
     const Interval acuity = acuity_interval(point.fit.ci95);
@@ -115,7 +135,7 @@ Result<Json> read_json(const std::filesystem::path& file) {
   return json;
 }
 
-/// A record that need not be there.
+/// Reads an optional record.
 template <typename T>
 Result<std::optional<T>> read_record(const std::filesystem::path& file, Result<T> (*from)(const Json&)) {
   if (!is_there(file)) return std::nullopt;
@@ -126,7 +146,7 @@ Result<std::optional<T>> read_record(const std::filesystem::path& file, Result<T
   return *std::move(record);
 }
 
-/// measures.json with its pictures.
+/// Reads measures.json with its pictures.
 Result<std::optional<SessionMeasures>> read_measures(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "measures.json";
   if (!is_there(file)) return std::nullopt;
@@ -196,7 +216,7 @@ Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder,
   if (existing == ExistingFolder::number) return create_numbered(folder, clocks);
   std::error_code problem;
   if (std::filesystem::exists(folder, problem) && !std::filesystem::is_directory(folder, problem)) {
-    return fail(ErrorCode::invalid_input, folder.string() + ": is a file, expected a folder");
+    return fail(ErrorCode::invalid_input, folder.string() + ": expected a folder, found a file");
   }
   if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
   auto claim = claim_folder(folder);
@@ -205,9 +225,10 @@ Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder,
   if (problem) return fail(code_of_path(problem), folder.string() + ": cannot be read: " + problem.message());
   if (!empty && existing == ExistingFolder::refuse) {
     return fail(ErrorCode::invalid_input,
-                folder.string() + ": the folder is not empty; choose another or allow overwriting (--force)");
+                folder.string() + ": the folder is not empty. Choose another one or overwrite it with --force");
   }
   if (auto open = require_unsigned(folder); !open) return tl::unexpected(open.error());
+  if (auto none = require_no_links(folder); !none) return tl::unexpected(none.error());
   if (const Result<void> removed = remove_session_files(folder); !removed) return tl::unexpected(removed.error());
   return SessionFolder(folder, clocks, *std::move(claim));
 }
@@ -216,7 +237,7 @@ Result<SessionFolder> SessionFolder::create_numbered(const std::filesystem::path
   std::filesystem::path name = folder;
   for (int number = 2;; ++number) {
     std::error_code problem;
-    // Only one of several programs creates a folder.
+    // create_directory succeeds in only one of several programs.
     if (std::filesystem::create_directory(name, problem)) {
       auto claim = claim_folder(name);
       if (!claim) return tl::unexpected(claim.error());
@@ -346,8 +367,8 @@ std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin,
 
 namespace {
 
-/// What an earlier version did where its plan says nothing, for there was no choice: right and wrong answers, each to
-/// one frame, and a Weibull function. Of an adaptive schedule that left its answers open they are those of its trials.
+/// Sets the options that an earlier version did not have to its fixed behaviour: binary answers to one frame each and a
+/// Weibull function. An adaptive schedule with automatic answers gets the kind found in its trials.
 Result<void> keep_as_it_was(Plan& plan, std::span<const Trial> trials, const std::filesystem::path& file) {
   const auto text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
@@ -364,7 +385,7 @@ Result<void> keep_as_it_was(Plan& plan, std::span<const Trial> trials, const std
   if (!schedule.has("frames_per_presentation"))
     frames = {1};
   else if (plan.schedule.answers != AnswersChoice::binary)
-    std::ranges::replace(frames, 0, frames_of_graded_answers);  // what a session has where they were not chosen
+    std::ranges::replace(frames, 0, frames_of_graded_answers);  // value in a session without a chosen number
   return {};
 }
 

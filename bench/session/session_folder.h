@@ -1,5 +1,5 @@
-// A session: the folder that a run leaves behind, written so that it is valid at every moment, and read back into
-// values.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Session folder of a run: valid on disk at every moment, and readable into values.
 #pragma once
 
 #include <filesystem>
@@ -25,61 +25,62 @@
 
 namespace todbench {
 
-/// What to do with a folder that is not empty.
+/// Treatment of a folder that is not empty.
 enum class ExistingFolder {
   refuse,
-  overwrite,  ///< removes the files of an earlier session, never anything else
-  number,     ///< takes a new folder beside it, with -2, -3, ... behind the name
+  overwrite,  ///< removes the files of an earlier session, never other files
+  number,     ///< creates a sibling folder with suffix -2, -3 ...
 };
 
-/// "session-20260131T123456Z-NAME" with the time of now; a second one within the same second needs a number.
+/// Returns "session-20260131T123456Z-NAME" with the current time; a second session within the same second needs a
+/// number.
 [[nodiscard]] std::string session_folder_name(const std::string& plan_name);
 
-/// Which of the two curves of a session: the one that the session is about, or its simulated twin.
+/// Curve of a session: main curve or simulated twin.
 enum class SessionCurve { main, twin };
 
-/// Writes a session. Everything but trials, targets and log is written atomically. One thread at a time. Nobody else
-/// begins a session in the folder until the last copy of this value is gone.
-/// Every function fails with `io` and the path when the disk refuses.
+/// Writes a session. All files except trials, targets and log are written atomically. One thread at a time. Other
+/// programs cannot start a session in the folder until the last copy of this object is destroyed. Errors of every
+/// function: `io` with the path.
 class SessionFolder {
  public:
-  /// Creates the folder with its parents; the session begins now. `invalid_input` when it exists, is not empty and may
-  /// not be overwritten, when another session is being written into it, or when it is a file or below one. `io` when it
-  /// cannot be created or written to.
+  /// Creates the folder with its parents; the session starts now. Errors: `invalid_input` (folder not empty and not to
+  /// be overwritten, another session is being written to it, the path or a parent is a file), `io` (cannot be created
+  /// or written).
   [[nodiscard]] static Result<SessionFolder> create(const std::filesystem::path& folder, ExistingFolder existing,
                                                     const HostClocks& clocks = host_clocks());
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] const SessionClock& clock() const { return clock_; }
-  /// session.toml; the plates, sensor, observer and letterhead used are copied to inputs/, and references to files
-  /// point there. References to built-in descriptions stay names.
+  /// Writes session.toml. Copies the plates, sensor, observer and letterhead to inputs/ and redirects file references
+  /// to the copies. References to built-in descriptions remain names.
   [[nodiscard]] Result<void> write_plan(const LoadedPlan& loaded);
-  /// provenance.json. Written with state running at the start and again whenever more is known.
+  /// Writes provenance.json: with state running at the start, and again when more is known.
   [[nodiscard]] Result<void> write_provenance(const Provenance& provenance);
-  /// trials.csv or trials_simulated.csv.
+  /// Opens trials.csv or trials_simulated.csv.
   [[nodiscard]] Result<TrialsWriter> open_trials(SessionCurve which);
-  /// targets.csv or targets_simulated.csv.
+  /// Opens targets.csv or targets_simulated.csv.
   [[nodiscard]] Result<TargetsWriter> open_targets(SessionCurve which);
-  /// fits.json, curve.csv and, with a budget of the main curve, uncertainty.json.
+  /// Writes fits.json, curve.csv and, if the main curve has a budget, uncertainty.json.
   [[nodiscard]] Result<void> write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side,
                                           const std::optional<CurveUncertainty>& uncertainty = {});
-  /// comparison.json.
+  /// Writes comparison.json.
   [[nodiscard]] Result<void> write_comparison(const Comparison& comparison);
-  /// grey-levels.csv: contrast and signal transfer of every frame that was judged.
+  /// Writes grey-levels.csv: contrast and signal transfer of every judged frame.
   [[nodiscard]] Result<void> write_grey_levels(const std::vector<GreyFrame>& frames);
-  /// measures.json, and its pictures in pictures/.
+  /// Writes measures.json and its pictures in pictures/.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);
-  /// The same of a record as measures_json() makes it.
+  /// The same for a record of measures_json().
   [[nodiscard]] Result<void> write_measures(Json record);
-  /// verdict.json.
+  /// Writes verdict.json.
   [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);
-  /// report.html.
+  /// Writes report.html.
   [[nodiscard]] Result<void> write_report(std::string_view html);
-  /// One line in log.txt, with the time of the session's clock.
+  /// Appends a line to log.txt with the time of the session clock.
   [[nodiscard]] Result<void> log(std::string_view sentence);
-  /// Writes provenance with `state` and, where it has no end yet, the time, then the manifest. To be called last, also
-  /// when interrupted.
+  /// Writes the provenance with `state` and, if absent, the end time, then the manifest. Call it last, also after an
+  /// interruption.
   [[nodiscard]] Result<void> finish(Provenance provenance, SessionState state);
 
  private:
@@ -92,44 +93,43 @@ class SessionFolder {
   std::shared_ptr<const FolderClaim> claim_;
 };
 
-/// A session as values.
+/// Session as values.
 struct Session {
   Plan plan;
-  PlanParts parts;  ///< what the plan names
+  PlanParts parts;  ///< descriptions that the plan names
   Provenance provenance;
   std::vector<Trial> trials;  ///< of the main curve
   std::vector<Trial> twin_trials;
-  std::vector<Presentation> presentations;  ///< those of `trials`; empty in a session without targets.csv
+  std::vector<Presentation> presentations;  ///< of `trials`; empty in a session without targets.csv
   std::vector<Presentation> twin_presentations;
-  std::optional<TodCurve> curve;  ///< as it was fitted; nothing where the run ended before
+  std::optional<TodCurve> curve;  ///< as fitted; empty if the run ended before the fit
   std::optional<TodCurve> twin;
   std::optional<Comparison> comparison;
-  std::optional<SessionMeasures> measures;      ///< physical; nothing where none was asked for
-  std::optional<CurveUncertainty> uncertainty;  ///< of `curve`; nothing where the plan has no budget
-  std::optional<Verdict> verdict;    ///< as it was stored; nothing in an old session, or where the run was cut off
-  std::optional<CostFrontier> cost;  ///< what accuracy costs, where it was measured for this session
-  /// Of the manifest that vouches for these values (ManifestCheck); empty where none does.
+  std::optional<SessionMeasures> measures;      ///< physical measures; empty if not requested
+  std::optional<CurveUncertainty> uncertainty;  ///< of `curve`; empty if the plan has no budget
+  std::optional<Verdict> verdict;               ///< as stored; empty if old or cut off
+  std::optional<CostFrontier> cost;             ///< accuracy against cost, if measured for this session
+  /// Digest of the manifest that confirms these values (ManifestCheck); empty if none does.
   std::string manifest_sha256;
-  /// Files that are not those that the run wrote and were read nevertheless, because somebody asked for it.
+  /// Files that the run did not write in this form and that were read because the caller accepted changes.
   std::vector<std::string> accepted_changes;
-  bool cut_off = false;  ///< no manifest: nothing vouches for these values
-  /// False when the run was interrupted or cut off.
+  bool cut_off = false;  ///< no manifest: the values are unconfirmed
+  /// Returns false for a run that was interrupted or cut off.
   [[nodiscard]] bool complete() const { return provenance.state == SessionState::complete; }
 };
 
-/// The files as they are. For a session that is being written; every other reader has to know whether they are those
-/// that the run wrote, so it takes open_session(). `invalid_input`: not a session folder, or a file in it that cannot
-/// be read, with its path and line or key.
+/// Reads the files without a check against the manifest, for a session that is being written. All other readers use
+/// open_session(). Errors: `invalid_input` (not a session folder; unreadable file, with path and line or key).
 [[nodiscard]] Result<Session> read_session(const std::filesystem::path& folder);
-/// Why the run of a session ended early; nothing when it came to its end.
+/// Returns the reason of an early end of the run; empty if it was complete.
 [[nodiscard]] std::optional<std::string> ended_early(const Session& session);
-/// The verdict to show: the stored one. A session without one is judged, and the verdict says so.
+/// Returns the stored verdict. A session without one is judged now, and the verdict states this.
 [[nodiscard]] Verdict verdict_of(const Session& session);
-/// Stores a verdict that was made afterwards, and lists it in the manifest. A run that was cut off has no manifest and
-/// stays as it is. `io` with the path.
+/// Stores a verdict that was made later, and lists it in the manifest. A run that was cut off has no manifest and stays
+/// unchanged. Errors: `io` with the path.
 [[nodiscard]] Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict);
 
-/// curve.csv. With a budget the expanded intervals of the main curve stand in columns of their own, the last ones.
+/// Returns curve.csv. With a budget, the last columns are the expanded intervals of the main curve.
 [[nodiscard]] std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin, Side side,
                                     const std::optional<CurveUncertainty>& uncertainty = {});
 

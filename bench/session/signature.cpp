@@ -1,32 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/signature.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <system_error>
 
+#include "acquisition/base/process.h"
 #include "bench/session/manifest.h"
 #include "bench/session/open_session.h"
 #include "bench/text/files.h"
 #include "bench/text/json.h"
 #include "bench/text/json_reader.h"
-#include "bench/text/program.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
 
 constexpr std::string_view signature_record = "signature.json";
-constexpr std::string_view signature_schema = "todbench-signature-1";
+/// The first schema does not sign signature.json, so its stated time is not signed.
+constexpr std::string_view signature_schema = "todbench-signature-2", signature_schema_1 = "todbench-signature-1";
+constexpr std::string_view revisions_folder = "revisions/";
 constexpr std::string_view revisions_record = "revisions/revisions.json";
-constexpr std::string_view revisions_schema = "todbench-revisions-1";
+constexpr std::string_view revisions_schema = "todbench-revisions-2";
 
-std::string_view signature_file(SigningProgram program) {
-  return program == SigningProgram::minisign ? "manifest.json.minisig" : "manifest.json.sig";
+/// Returns the name of the detached signature of a file.
+std::string signature_of(std::string_view file, SigningProgram program) {
+  return std::string(file) + (program == SigningProgram::minisign ? ".minisig" : ".sig");
 }
 
-/// A file of this program alone, removed in the end.
+/// Private temporary file of this process, removed at the end.
 class OwnFile {
  public:
   OwnFile() {
@@ -49,7 +54,7 @@ class OwnFile {
   std::filesystem::path path_;
 };
 
-/// A relative path may begin with a hyphen, which a program would take for an option.
+/// A relative path may begin with a hyphen, which a program would read as an option.
 std::string argument(const std::filesystem::path& path) {
   std::error_code problem;
   const auto absolute = std::filesystem::absolute(path, problem);
@@ -59,22 +64,24 @@ std::string argument(const std::filesystem::path& path) {
 Result<void> require_file(const std::filesystem::path& file) {
   std::error_code problem;
   if (std::filesystem::is_regular_file(file, problem)) return {};
-  return fail(ErrorCode::invalid_input, file.string() + ": no such key");
+  return fail(ErrorCode::invalid_input, file.string() + ": there is no such key file");
 }
 
-/// Success, or the last line that the program said.
-Result<void> run_well(const std::vector<std::string>& words, ProgramOutput output) {
-  const auto run = run_program(words, output);
+/// Runs a program. On failure the message is the last line of its output.
+Result<void> run_well(const std::vector<std::string>& words, ProgramOutput output, const std::stop_token& stop = {}) {
+  const auto run = run_program(words, output, stop);
   if (!run) return tl::unexpected(run.error());
+  if (stop.stop_requested() || run->exit_code == 128 + SIGINT)
+    return fail(ErrorCode::interrupted, words.front() + " was interrupted");
   if (run->exit_code == 0) return {};
   std::string said = run->output;
   while (!said.empty() && said.back() == '\n') said.pop_back();
   const std::size_t line = said.find_last_of('\n');
   if (line != std::string::npos) said = said.substr(line + 1);
-  return fail(ErrorCode::invalid_input, words.front() + " refuses" + (said.empty() ? "" : ": " + one_line(said)));
+  return fail(ErrorCode::invalid_input, words.front() + " failed" + (said.empty() ? "" : ": " + one_line(said)));
 }
 
-/// With a digest, or, for keys that sign a text as a whole (Ed25519), without one.
+/// Signs with a digest, or without one for keys that sign the whole text (Ed25519).
 Result<void> openssl_sign(const std::string& key, const std::string& file, const std::string& signature) {
   const auto digest =
       run_well({"openssl", "dgst", "-sha256", "-sign", key, "-out", signature, file}, ProgramOutput::kept);
@@ -93,9 +100,9 @@ Result<void> openssl_verify(const std::string& key, const std::string& file, con
 }
 
 Result<void> sign_file(SigningProgram with, const std::string& key, const std::string& file,
-                       const std::string& signature) {
+                       const std::string& signature, const std::stop_token& stop) {
   if (with == SigningProgram::openssl) return openssl_sign(key, file, signature);
-  return run_well({"minisign", "-S", "-s", key, "-m", file, "-x", signature}, ProgramOutput::shown);
+  return run_well({"minisign", "-S", "-s", key, "-m", file, "-x", signature}, ProgramOutput::shown, stop);
 }
 
 Result<void> verify_file(SigningProgram with, const std::string& key, const std::string& file,
@@ -104,19 +111,50 @@ Result<void> verify_file(SigningProgram with, const std::string& key, const std:
   return run_well({"minisign", "-V", "-q", "-p", key, "-m", file, "-x", signature}, ProgramOutput::kept);
 }
 
-/// The public key of a secret one, as its program writes it.
-Result<std::string> public_key_of(SigningProgram with, const std::string& secret_key) {
+/// Returns the detached signature of a text.
+Result<std::string> signature_over(std::string_view text, SigningProgram with, const std::filesystem::path& key,
+                                   const std::stop_token& stop) {
+  const OwnFile file, signature;
+  if (file.path().empty() || signature.path().empty()) return fail(ErrorCode::io, "no temporary file can be created");
+  if (auto written = write_file_atomically(file.path(), text); !written) return tl::unexpected(written.error());
+  if (auto done = sign_file(with, argument(key), file.path().string(), signature.path().string(), stop); !done)
+    return tl::unexpected(done.error());
+  return read_text_file(signature.path());
+}
+
+/// Writes the detached signature of a session file next to it. The current content is signed.
+Result<void> sign_in(const std::filesystem::path& folder, std::string_view file, SigningProgram with,
+                     const std::filesystem::path& key, const std::stop_token& stop) {
+  const auto text = read_text_file(folder / file);
+  if (!text) return tl::unexpected(text.error());
+  const auto signature = signature_over(*text, with, key, stop);
+  if (!signature) return tl::unexpected(signature.error());
+  return write_file_atomically(folder / signature_of(file, with), *signature);
+}
+
+/// Returns whether the detached signature next to a session file matches the file and the key.
+Result<bool> is_signed_in(const std::filesystem::path& folder, std::string_view file, SigningProgram with,
+                          const std::string& key) {
+  const auto signature = folder / signature_of(file, with);
+  if (!is_there(signature)) return false;
+  const auto verified = verify_file(with, key, argument(folder / file), argument(signature));
+  if (!verified && verified.error().code != ErrorCode::invalid_input) return tl::unexpected(verified.error());
+  return verified.has_value();
+}
+
+/// Returns the public key of a secret one, in the format of its program.
+Result<std::string> public_key_of(SigningProgram with, const std::string& secret_key, const std::stop_token& stop) {
   const OwnFile file;
   const std::string out = file.path().string();
   if (out.empty()) return fail(ErrorCode::io, "no temporary file can be created");
   if (with == SigningProgram::minisign) {
-    // It does not write over a file.
+    // The program does not overwrite a file.
     std::error_code problem;
     std::filesystem::remove(out, problem);
   }
   const auto made = with == SigningProgram::openssl
                         ? run_well({"openssl", "pkey", "-in", secret_key, "-pubout", "-out", out}, ProgramOutput::kept)
-                        : run_well({"minisign", "-R", "-s", secret_key, "-p", out}, ProgramOutput::shown);
+                        : run_well({"minisign", "-R", "-s", secret_key, "-p", out}, ProgramOutput::shown, stop);
   if (!made) return tl::unexpected(made.error());
   return read_text_file(out);
 }
@@ -134,8 +172,12 @@ Result<SessionSignature> read_signature(const std::filesystem::path& folder) {
   const auto json = read_record_file(file);
   if (!json) return tl::unexpected(json.error());
   const JsonReader reader(*json);
-  reader.at("schema").expect(signature_schema);
   SessionSignature signature;
+  signature.signs_time = reader.at("schema").text() != signature_schema_1;
+  if (signature.signs_time) {
+    reader.at("schema").expect(signature_schema);
+    signature.manifest_file_sha256 = reader.at("manifest_file_sha256").text();
+  }
   signature.with = reader.at("with").named(signing_programs);
   signature.signed_utc = reader.at("signed_utc").text();
   signature.manifest_sha256 = reader.at("manifest_sha256").text();
@@ -149,23 +191,51 @@ Result<Json> revisions_of(const std::filesystem::path& folder) {
   auto json = read_record_file(folder / revisions_record);
   if (!json) return json;
   if (!json->is_object() || !json->contains("revisions") || !(*json)["revisions"].is_array())
-    return fail(ErrorCode::invalid_input, (folder / revisions_record).string() + ": not a list of revisions");
+    return fail(ErrorCode::invalid_input, (folder / revisions_record).string() + ": expected a list of revisions");
   return json;
 }
 
-/// The first page of a revision that is not what was written; empty where there is none.
-Result<std::string> changed_revision(const std::filesystem::path& folder) {
+/// Returns whether the path is a file directly in the folder of revisions.
+bool is_revision_page(std::string_view path) {
+  return path.starts_with(revisions_folder) && path.find('/', revisions_folder.size()) == std::string_view::npos;
+}
+
+/// Returns pages and digests of a list of revisions.
+Result<std::vector<std::pair<std::string, std::string>>> pages_of(const Json& json) {
+  std::vector<std::pair<std::string, std::string>> pages;
+  const JsonReader reader(json);
+  for (const JsonReader& revision : reader.at("revisions").elements()) {
+    for (const JsonReader& page : revision.at("pages").elements())
+      pages.emplace_back(page.at("path").text(), page.at("sha256").text());
+  }
+  if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
+  return pages;
+}
+
+bool has_signed_revisions(const std::filesystem::path& folder, SigningProgram with) {
+  return is_there(folder / revisions_record) && is_there(folder / signature_of(revisions_record, with));
+}
+
+/// Returns the reason why the list of revisions is invalid; empty if it is valid. An unsigned list confirms no files:
+/// they are foreign.
+Result<std::string> wrong_revision(const std::filesystem::path& folder, SigningProgram with, const std::string& key) {
+  if (!has_signed_revisions(folder, with)) return std::string();
+  const auto holds = is_signed_in(folder, revisions_record, with, key);
+  if (!holds) return tl::unexpected(holds.error());
+  if (!*holds) return "the signature does not belong to " + std::string(revisions_record) + " and this key";
   const auto json = revisions_of(folder);
   if (!json) return tl::unexpected(json.error());
-  const JsonReader reader(*json);
-  for (const JsonReader& revision : reader.at("revisions").elements()) {
-    for (const JsonReader& page : revision.at("pages").elements()) {
-      const std::string path = page.at("path").text();
-      const auto digest = sha256_of_file(folder / path);
-      if (!digest || *digest != page.at("sha256").text()) return path;
-    }
+  const auto manifest = sha256_of_file(folder / manifest_name);
+  if (!manifest) return tl::unexpected(manifest.error());
+  if (json->value("manifest_file_sha256", Json()) != Json(*manifest))
+    return std::string(revisions_record) + " belongs to another session";
+  const auto pages = pages_of(*json);
+  if (!pages) return fail((folder / revisions_record).string(), pages.error());
+  for (const auto& [path, expected] : *pages) {
+    const auto digest = sha256_of_file(folder / path);
+    if (!is_revision_page(path) || !digest || *digest != expected)
+      return path + " was changed after the revision was written";
   }
-  if (auto finished = reader.finish(); !finished) return fail((folder / revisions_record).string(), finished.error());
   return std::string();
 }
 
@@ -174,7 +244,7 @@ Result<void> require_whole(const std::filesystem::path& folder) {
   if (!check) return tl::unexpected(check.error());
   if (check->condition == SessionCondition::intact) return {};
   return fail(ErrorCode::invalid_input,
-              folder.string() + ": not intact, so nothing to sign: " +
+              folder.string() + ": a session that is not intact cannot be signed: " +
                   (check->sentence.empty() ? "files are missing or foreign" : check->sentence));
 }
 
@@ -196,34 +266,41 @@ Result<void> require_unsigned(const std::filesystem::path& folder) {
   if (!is_signed(folder)) return {};
   return fail(ErrorCode::invalid_input,
               folder.string() +
-                  ": the session is signed, nothing of it is written again; a revision of its report is made by "
-                  "todbench report --reason TEXT");
+                  ": the session is signed and cannot be changed. To add a revision of its report, use "
+                  "todbench report --reason TEXT --key FILE");
 }
 
 Result<SessionSignature> sign_session(const std::filesystem::path& folder, SigningProgram with,
-                                      const std::filesystem::path& secret_key, const std::string& signed_utc) {
-  if (is_signed(folder)) return fail(ErrorCode::invalid_input, folder.string() + ": the session is signed already");
+                                      const std::filesystem::path& secret_key, const std::string& signed_utc,
+                                      const std::stop_token& stop) {
+  if (is_signed(folder)) return fail(ErrorCode::invalid_input, folder.string() + ": the session is already signed");
   if (auto found = require_file(secret_key); !found) return tl::unexpected(found.error());
   if (auto whole = require_whole(folder); !whole) return tl::unexpected(whole.error());
-  const std::string file = argument(folder / manifest_name), signature = argument(folder / signature_file(with));
-  const std::string key = argument(secret_key);
-  SessionSignature made{.with = with, .signed_utc = signed_utc, .manifest_sha256 = {}, .public_key = {}};
+  SessionSignature made{.with = with, .signed_utc = signed_utc};
   auto digest = manifest_digest(folder);
   if (!digest) return tl::unexpected(digest.error());
   made.manifest_sha256 = *std::move(digest);
-  auto public_key = public_key_of(with, key);
+  auto file_digest = sha256_of_file(folder / manifest_name);
+  if (!file_digest) return tl::unexpected(file_digest.error());
+  made.manifest_file_sha256 = *std::move(file_digest);
+  auto public_key = public_key_of(with, argument(secret_key), stop);
   if (!public_key) return tl::unexpected(public_key.error());
   made.public_key = *std::move(public_key);
-  auto done = sign_file(with, key, file, signature);
-  if (done) {
-    const Json record{{"schema", signature_schema},      {"with", to_string(with)},
-                      {"signed_utc", made.signed_utc},   {"manifest_sha256", made.manifest_sha256},
-                      {"key_sha256", made.key_sha256()}, {"public_key", made.public_key}};
-    done = write_file_atomically(folder / signature_record, to_page(record));
-  }
+  const Json record{{"schema", signature_schema},
+                    {"with", to_string(with)},
+                    {"signed_utc", made.signed_utc},
+                    {"manifest_sha256", made.manifest_sha256},
+                    {"manifest_file_sha256", made.manifest_file_sha256},
+                    {"key_sha256", made.key_sha256()},
+                    {"public_key", made.public_key}};
+  auto done = sign_in(folder, manifest_name, with, secret_key, stop);
+  if (done) done = write_file_atomically(folder / signature_record, to_page(record));
+  if (done) done = sign_in(folder, signature_record, with, secret_key, stop);
   if (!done) {
     std::error_code problem;
-    std::filesystem::remove(signature, problem);
+    for (const std::string& file :
+         {signature_of(manifest_name, with), std::string(signature_record), signature_of(signature_record, with)})
+      std::filesystem::remove(folder / file, problem);
     return tl::unexpected(done.error());
   }
   return made;
@@ -234,7 +311,7 @@ Result<std::optional<SignatureCheck>> check_signature(const std::filesystem::pat
   if (!is_signed(folder)) return std::nullopt;
   auto signature = read_signature(folder);
   if (!signature) return tl::unexpected(signature.error());
-  SignatureCheck check{.signature = *std::move(signature), .own_key = !public_key, .sentence = {}};
+  SignatureCheck check{.signature = *std::move(signature), .own_key = !public_key, .sentence = {}, .covers = {}};
   const OwnFile own;
   std::string key = own.path().string();
   if (public_key) {
@@ -244,19 +321,32 @@ Result<std::optional<SignatureCheck>> check_signature(const std::filesystem::pat
     return tl::unexpected(written.error());
   }
   const SigningProgram with = check.signature.with;
-  const auto verified =
-      verify_file(with, key, argument(folder / manifest_name), argument(folder / signature_file(with)));
-  if (!verified && verified.error().code != ErrorCode::invalid_input) return tl::unexpected(verified.error());
-  if (!verified) {
+  const auto manifest_holds = is_signed_in(folder, manifest_name, with, key);
+  if (!manifest_holds) return tl::unexpected(manifest_holds.error());
+  if (!*manifest_holds) {
     check.sentence = "the signature does not belong to this manifest and key";
     return check;
   }
-  const auto changed = changed_revision(folder);
-  if (!changed) return tl::unexpected(changed.error());
-  if (!changed->empty()) {
-    check.sentence = *changed + " is not the revision that was written";
+  check.covers.emplace_back(manifest_name);
+  if (check.signature.signs_time) {
+    const auto time_holds = is_signed_in(folder, signature_record, with, key);
+    if (!time_holds) return tl::unexpected(time_holds.error());
+    const auto digest = sha256_of_file(folder / manifest_name);
+    if (!digest) return tl::unexpected(digest.error());
+    if (!*time_holds || *digest != check.signature.manifest_file_sha256) {
+      check.sentence = "the time of signing was changed: the signature does not belong to " +
+                       std::string(signature_record) + " and this key";
+      return check;
+    }
+    check.covers.emplace_back("signed_utc");
+  }
+  const auto wrong = wrong_revision(folder, with, key);
+  if (!wrong) return tl::unexpected(wrong.error());
+  if (!wrong->empty()) {
+    check.sentence = *wrong;
     return check;
   }
+  if (has_signed_revisions(folder, with)) check.covers.emplace_back("revisions");
   check.valid = true;
   return check;
 }
@@ -264,12 +354,28 @@ Result<std::optional<SignatureCheck>> check_signature(const std::filesystem::pat
 Result<ReportRevision> next_revision(const std::filesystem::path& folder, const std::string& reason,
                                      const std::string& utc) {
   if (!is_signed(folder))
-    return fail(ErrorCode::invalid_input, folder.string() + ": not signed: its report is rebuilt without a reason");
+    return fail(ErrorCode::invalid_input,
+                folder.string() + ": the session is not signed, so its report is rebuilt without a reason");
   if (reason.find_first_not_of(" \t\n") == std::string::npos)
     return fail(ErrorCode::invalid_input, folder.string() + ": a revision of a signed report needs a reason");
+  const auto check = check_signature(folder, std::nullopt);
+  if (!check) return tl::unexpected(check.error());
+  if (*check && !(*check)->valid)
+    return fail(ErrorCode::invalid_input, folder.string() + ": the revision was not added: " + (*check)->sentence);
   const auto json = revisions_of(folder);
   if (!json) return tl::unexpected(json.error());
   return ReportRevision{static_cast<int>((*json)["revisions"].size()) + 2, utc, one_line(reason)};
+}
+
+Result<void> require_key_of_session(const std::filesystem::path& folder, const std::filesystem::path& secret_key,
+                                    const std::stop_token& stop) {
+  if (auto found = require_file(secret_key); !found) return found;
+  const auto signature = read_signature(folder);
+  if (!signature) return tl::unexpected(signature.error());
+  const auto key = public_key_of(signature->with, argument(secret_key), stop);
+  if (!key) return tl::unexpected(key.error());
+  if (*key == signature->public_key) return {};
+  return fail(ErrorCode::invalid_input, secret_key.string() + ": this key did not sign the session");
 }
 
 std::string revision_page(const ReportRevision& revision, std::string_view extension) {
@@ -277,9 +383,17 @@ std::string revision_page(const ReportRevision& revision, std::string_view exten
 }
 
 Result<void> keep_revision(const std::filesystem::path& folder, const ReportRevision& revision,
-                           const std::vector<std::string>& pages) {
+                           const std::vector<std::string>& pages, const std::filesystem::path& secret_key,
+                           const std::stop_token& stop) {
+  if (auto found = require_file(secret_key); !found) return found;
   auto json = revisions_of(folder);
   if (!json) return tl::unexpected(json.error());
+  const auto signature = read_signature(folder);
+  if (!signature) return tl::unexpected(signature.error());
+  const auto manifest = sha256_of_file(folder / manifest_name);
+  if (!manifest) return tl::unexpected(manifest.error());
+  (*json)["schema"] = revisions_schema;
+  (*json)["manifest_file_sha256"] = *manifest;
   Json listed = Json::array();
   for (const std::string& page : pages) {
     const auto digest = sha256_of_file(folder / page);
@@ -288,7 +402,25 @@ Result<void> keep_revision(const std::filesystem::path& folder, const ReportRevi
   }
   (*json)["revisions"].push_back(
       {{"number", revision.number}, {"utc", revision.utc}, {"reason", revision.reason}, {"pages", listed}});
-  return write_file_atomically(folder / revisions_record, to_page(*json));
+  if (auto written = write_file_atomically(folder / revisions_record, to_page(*json)); !written) return written;
+  return sign_in(folder, revisions_record, signature->with, secret_key, stop);
+}
+
+std::vector<std::string> files_of_signature(const std::filesystem::path& folder) {
+  if (!is_signed(folder)) return {};
+  const auto signature = read_signature(folder);
+  if (!signature) return {std::string(signature_record)};
+  const SigningProgram with = signature->with;
+  std::vector<std::string> files{std::string(signature_record), signature_of(manifest_name, with)};
+  if (signature->signs_time) files.push_back(signature_of(signature_record, with));
+  if (!has_signed_revisions(folder, with)) return files;
+  files.emplace_back(revisions_record);
+  files.push_back(signature_of(revisions_record, with));
+  const auto json = revisions_of(folder);
+  const auto pages = json ? pages_of(*json) : tl::unexpected(json.error());
+  if (!pages) return files;
+  for (const auto& [path, digest] : *pages) files.push_back(path);
+  return files;
 }
 
 }  // namespace todbench

@@ -1,15 +1,16 @@
-// A session that its responsible signed: a detached signature over manifest.json, made and checked by ordinary programs
-// with keys of their user.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Signed sessions: a detached signature of manifest.json, made and verified by standard programs with the user's keys.
 #pragma once
 
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
@@ -17,27 +18,30 @@ enum class SigningProgram { minisign, openssl };
 inline constexpr std::array signing_programs{SigningProgram::minisign, SigningProgram::openssl};
 [[nodiscard]] std::string_view to_string(SigningProgram program);
 
-/// signature.json of a session. The signature itself is manifest.json.minisig or manifest.json.sig.
+/// Content of signature.json. The signature itself is manifest.json.minisig or manifest.json.sig.
 struct SessionSignature {
   SigningProgram with = SigningProgram::openssl;
   std::string signed_utc;
-  std::string manifest_sha256;  ///< digest of the manifest that was signed
-  std::string public_key;       ///< as its program writes it
+  std::string manifest_sha256{};       ///< digest of the signed manifest
+  std::string manifest_file_sha256{};  ///< SHA-256 of the file manifest.json; empty if the time is not signed
+  std::string public_key{};            ///< in the format of its program
+  bool signs_time = true;              ///< signature.json is signed too; false in sessions of earlier versions
   [[nodiscard]] std::string key_sha256() const;
 };
 
 [[nodiscard]] bool is_signed(const std::filesystem::path& folder);
-/// `invalid_input` with what to do where the session is signed: nothing of it is written again.
+/// Fails if the session is signed, because a signed session is never modified. Errors: `invalid_input` with the action
+/// to take.
 [[nodiscard]] Result<void> require_unsigned(const std::filesystem::path& folder);
 
-/// Signs an intact session with a secret key; `signed_utc` is the time to be stated. The program asks for a passphrase
-/// on the terminal. `invalid_input`: not intact, signed already, there is no such key, or the
-/// program refuses it, with its words. `not_found`: no such program.
+/// Signs an intact session with a secret key; `signed_utc` is the stated time. The program asks for a passphrase on the
+/// terminal; a stop request ends it. Errors: `invalid_input` (not intact, already signed, no such key, or rejected by
+/// the program, with its message), `not_found` (no such program), `interrupted`.
 [[nodiscard]] Result<SessionSignature> sign_session(const std::filesystem::path& folder, SigningProgram with,
                                                     const std::filesystem::path& secret_key,
-                                                    const std::string& signed_utc);
+                                                    const std::string& signed_utc, const std::stop_token& stop = {});
 
-/// A revision of the report of a signed session, which itself stays as it is and is the first.
+/// Revision of the report of a signed session. The session stays unchanged and counts as revision 1.
 struct ReportRevision {
   int number = 2;
   std::string utc, reason;
@@ -46,22 +50,34 @@ struct ReportRevision {
 struct SignatureCheck {
   SessionSignature signature;
   bool valid = false;
-  bool own_key = true;   ///< checked with the key that came with the folder: it does not say whose it is
-  std::string sentence;  ///< why it is not valid
+  bool own_key = true;   ///< verified with the key in the folder, which does not prove its owner
+  std::string sentence;  ///< reason if not valid
+  /// Contents confirmed by valid signatures: "manifest.json", "signed_utc" and "revisions".
+  std::vector<std::string> covers;
 };
-/// Nothing: the session is not signed. Checks the signature of manifest.json and the digests of revisions; whether the
-/// files are those of the manifest is check_session(). `invalid_input`:
-/// no such key. `not_found`: no such program.
+/// Verifies the signatures of manifest.json, signature.json and the list of revisions, and the digests of the
+/// revisions; empty if the session is not signed. check_session() compares the files with the manifest. Errors:
+/// `invalid_input` (no such key), `not_found` (no such program).
 [[nodiscard]] Result<std::optional<SignatureCheck>> check_signature(
     const std::filesystem::path& folder, const std::optional<std::filesystem::path>& public_key);
 
-/// The next revision. `invalid_input`: not signed, no reason, or a list of revisions that cannot be read.
+/// Returns the next revision. Errors: `invalid_input` (not signed, no reason given, unreadable list of revisions).
 [[nodiscard]] Result<ReportRevision> next_revision(const std::filesystem::path& folder, const std::string& reason,
                                                    const std::string& utc);
-/// The folder of revisions, and the file of one: "revisions/report-2.html".
+/// Returns the path of a page of a revision: "revisions/report-2.html".
 [[nodiscard]] std::string revision_page(const ReportRevision& revision, std::string_view extension);
-/// Lists a revision whose pages are written, with their digests. `io` with the path.
+/// Adds a revision to the list, with the digests of its pages, which must exist, and signs the list with the secret key
+/// of the session. Errors: `invalid_input` (no such key, or rejected by the program), `io` with the path.
 [[nodiscard]] Result<void> keep_revision(const std::filesystem::path& folder, const ReportRevision& revision,
-                                         const std::vector<std::string>& pages);
+                                         const std::vector<std::string>& pages, const std::filesystem::path& secret_key,
+                                         const std::stop_token& stop = {});
+/// Succeeds if the secret key is the one that signed the session. Errors: those of sign_session().
+[[nodiscard]] Result<void> require_key_of_session(const std::filesystem::path& folder,
+                                                  const std::filesystem::path& secret_key,
+                                                  const std::stop_token& stop = {});
+
+/// Returns the files that a signature adds to a session, relative to its folder: the signature and the listed and
+/// signed revisions. Their validity is not checked. Empty if the session is not signed.
+[[nodiscard]] std::vector<std::string> files_of_signature(const std::filesystem::path& folder);
 
 }  // namespace todbench

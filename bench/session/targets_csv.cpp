@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/targets_csv.h"
 
 #include <array>
@@ -12,7 +13,7 @@
 namespace todbench {
 namespace {
 
-constexpr std::array<std::string_view, 19> target_columns{"presentation",
+constexpr std::array<std::string_view, 24> target_columns{"presentation",
                                                           "plate",
                                                           "mounting",
                                                           "set_delta_t_k",
@@ -30,7 +31,12 @@ constexpr std::array<std::string_view, 19> target_columns{"presentation",
                                                           "reached_shift_y_mm",
                                                           "air_transmittance",
                                                           "delta_t_se_k",
-                                                          "reference_triangles"};
+                                                          "reference_triangles",
+                                                          "asked_x_px",
+                                                          "asked_y_px",
+                                                          "seen_x_px",
+                                                          "seen_y_px",
+                                                          "seen_error_px"};
 
 std::string number_field(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? number_text(*value) : std::string();
@@ -58,14 +64,20 @@ std::string target_line(const Presentation& shown) {
   add(number_field(shown.air_transmittance));
   add(number_field(shown.delta_t_se_k));
   add(shown.reference_triangles > 0 ? std::to_string(shown.reference_triangles) : std::string());
+  for (const auto& place : {shown.asked_px, shown.seen_px}) {
+    add(place ? number_text(place->x) : std::string());
+    add(place ? number_text(place->y) : std::string());
+  }
+  add(number_field(shown.seen_error_px));
   return line + "\n";
 }
 
-/// How many columns sessions have had: without the air, without the error of the contrast.
-constexpr std::size_t without_air = 16, without_error = 17;
+/// Column counts of earlier files: without the air, without the error of the contrast, without the position in the
+/// picture.
+constexpr std::size_t without_air = 16, without_error = 17, without_place = 19;
 
 Presentation read_target(FieldReader& fields, std::size_t columns) {
-  // What an instrument said that was no number.
+  // A non-finite number from the instrument.
   const auto said = [&fields] { return fields.optional_number().value_or(std::nan("")); };
   Presentation shown;
   shown.presentation = fields.whole<std::int64_t>();
@@ -89,6 +101,13 @@ Presentation read_target(FieldReader& fields, std::size_t columns) {
     shown.delta_t_se_k = fields.optional_number();
     shown.reference_triangles = fields.optional_whole<int>().value_or(0);
   }
+  if (columns > without_place) {
+    for (auto* place : {&shown.asked_px, &shown.seen_px}) {
+      const auto x = fields.optional_number(), y = fields.optional_number();
+      if (x && y) *place = cv::Point2d(*x, *y);
+    }
+    shown.seen_error_px = fields.optional_number();
+  }
   return shown;
 }
 
@@ -110,7 +129,7 @@ Result<void> TargetsWriter::append(const Presentation& shown) {
                                          " has a set-point that is not finite");
   }
   if (names.find_first_of("\r\n") != std::string::npos)
-    return fail(ErrorCode::internal, file_.path().string() + ": a name with a line end: " + one_line(names));
+    return fail(ErrorCode::internal, file_.path().string() + ": a name contains a line end: " + one_line(names));
   return file_.append(target_line(shown));
 }
 
@@ -120,8 +139,9 @@ Result<std::vector<Presentation>> read_targets(const std::filesystem::path& file
   const Result<CsvTable> table = parse_csv(*text, file.string());
   if (!table) return tl::unexpected(table.error());
   const std::size_t had = table->header.size();
-  const std::span columns(target_columns.data(),
-                          had == without_air || had == without_error ? had : target_columns.size());
+  const std::span columns(target_columns.data(), had == without_air || had == without_error || had == without_place
+                                                     ? had
+                                                     : target_columns.size());
   if (const Result<void> as_expected = check_columns(*table, columns); !as_expected)
     return tl::unexpected(as_expected.error());
   std::vector<Presentation> presentations;

@@ -1,25 +1,27 @@
-// What the target said at every presentation, as CSV (RFC 4180, dot decimal, UTF-8, a header with units).
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Target read-back of every presentation as CSV (RFC 4180, dot decimal, UTF-8, header with units).
 #pragma once
 
 #include <filesystem>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/text/files.h"
 #include "tod/presentation/presentation.h"
 
 namespace todbench {
 
-/// Writes presentations as they happen: each is handed to the system before append() returns. One thread at a time.
+/// Writes presentations as they occur; append() passes each to the operating system before it returns. One thread at a
+/// time.
 class TargetsWriter {
  public:
-  /// Creates the file with its header. `io` with the path.
+  /// Creates the file with its header. Errors: `io` with the path.
   [[nodiscard]] static Result<TargetsWriter> create(const std::filesystem::path& file);
-  /// `io` with the path when the disk refuses (the file then ends with the row before); `internal` for a set-point that
-  /// is not finite or a name with a line end, neither of which a measurement produces. A number that an instrument
-  /// says and that is not finite is an empty field.
+  /// Appends a presentation. A non-finite number from an instrument becomes an empty field. Errors: `io` with the path
+  /// (the file then ends with the previous row); `internal` (non-finite set-point or name with a line end, which a
+  /// measurement never produces).
   [[nodiscard]] Result<void> append(const Presentation& presentation);
-  /// Waits until everything is on the disk.
+  /// Waits until all data are on the disk.
   [[nodiscard]] Result<void> sync() { return file_.sync(); }
 
  private:
@@ -27,8 +29,7 @@ class TargetsWriter {
   AppendFile file_;
 };
 
-/// Reads what TargetsWriter wrote, every number exactly as it was. `invalid_input` "FILE:LINE: ..." for anything else
-/// than such a file.
+/// Reads a file of TargetsWriter, every number exactly. Errors: `invalid_input` "FILE:LINE: ..." for any other content.
 [[nodiscard]] Result<std::vector<Presentation>> read_targets(const std::filesystem::path& file);
 
 }  // namespace todbench

@@ -1,4 +1,5 @@
-// Signal transfer of a session: its part of measures.json.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Signal transfer of a session: part of measures.json.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@
 namespace todbench {
 
 [[nodiscard]] Json transfer_json(const TransferMeasure& transfer);
-/// What a record says; mistakes stay with the reader.
+/// Parses a record; mistakes are recorded in the reader.
 [[nodiscard]] TransferCurve transfer_from(const JsonReader& transfer);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/trials_csv.h"
 
 #include <algorithm>
@@ -42,7 +43,7 @@ constexpr std::array<std::string_view, 26> trial_columns{"presentation",
                                                          "centroid_x_px",
                                                          "centroid_y_px"};
 
-/// Files of earlier versions end before saturated_pixels, before probability_correct, or before centroid_x_px.
+/// Files of earlier versions end before saturated_pixels, probability_correct or centroid_x_px.
 constexpr std::array<std::size_t, 3> earlier_columns{21, 22, 24};
 
 Trial read_trial(FieldReader& fields, std::size_t columns) {
@@ -134,7 +135,7 @@ Result<LevelColumns> level_columns(const CsvTable& table) {
                                 nearest_name_hint(table.header[i], known) + " expected size,correct,total");
     }
     auto& place = places[static_cast<std::size_t>(found - known.begin())];
-    if (place) return table.wrong(1, "column '" + *found + "' is there twice");
+    if (place) return table.wrong(1, "column '" + *found + "' occurs twice");
     place = i;
   }
   for (std::size_t k = 0; k < 3; ++k) {
@@ -185,7 +186,7 @@ Result<void> TrialsWriter::append(const Trial& trial) {
   }
   if ((trial.plate + trial.triangle).find_first_of("\r\n") != std::string::npos) {
     return fail(ErrorCode::internal,
-                file_.path().string() + ": a name with a line end: " + one_line(trial.plate + trial.triangle));
+                file_.path().string() + ": a name contains a line end: " + one_line(trial.plate + trial.triangle));
   }
   return file_.append(trial_line(trial));
 }

@@ -1,17 +1,18 @@
-// The budget of a session applied to its curve: uncertainty.json, and the key "uncertainty" on standard output.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Budget of a session applied to its curve: uncertainty.json, and key "uncertainty" of the JSON output.
 #pragma once
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/judgement/acuity_uncertainty.h"
 #include "bench/text/json.h"
 
 namespace todbench {
 
 [[nodiscard]] Json uncertainty_json(const CurveUncertainty& uncertainty);
-/// `invalid_input`, naming the key, for a record that is not complete or of other types.
+/// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
 [[nodiscard]] Result<CurveUncertainty> uncertainty_from(const Json& record);
 
-/// Adds to the points of curve_json() their expanded intervals, and the whole under "uncertainty".
+/// Adds the expanded intervals to the points of curve_json(), and the complete record as "uncertainty".
 void add_uncertainty(Json& curve, const CurveUncertainty& uncertainty);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/cost_study.h"
 
 #include <algorithm>
@@ -16,13 +17,13 @@
 namespace todbench {
 namespace {
 
-/// The standard error behind a 95 % interval of a threshold, taken as normal in the logarithm.
+/// Standard error for a 95 % interval of a threshold, assumed normal in the logarithm.
 std::optional<double> standard_error(const PsychometricFit& fit) {
   if (!fit.threshold || !fit.ci95.low || !fit.ci95.high || !(*fit.ci95.low > 0)) return std::nullopt;
   return *fit.threshold * std::log(*fit.ci95.high / *fit.ci95.low) / (2 * 1.96);
 }
 
-/// The plan measured on its simulated sensor from nothing, as `simulate` does it.
+/// Measures the plan on its simulated sensor from the start, like `simulate`.
 Result<std::vector<ThresholdEstimate>> from_trials(const Plan& plan, const ExperimentInputs& inputs,
                                                    std::stop_token stop) {
   auto set_up = simulated_set_up(plan, inputs, {}, stop);
@@ -116,7 +117,7 @@ Result<CostFrontier> cost_of_plan(const LoadedPlan& loaded, double budget_s, con
   EffectPlanner planner;
   const auto inputs = experiment_inputs(loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
-  // Says in a sentence what a plan cannot reach, before anything is measured.
+  // Reports in a sentence if the plan cannot be met, before anything is measured.
   if (const auto prediction = predict_plan(plan, *inputs); !prediction) return tl::unexpected(prediction.error());
   if (inputs->outlooks.empty()) {
     CostFrontier nothing;

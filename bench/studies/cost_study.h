@@ -1,4 +1,5 @@
-// What accuracy costs in time for a plan: the frontier of its simulated sensor, planner's choices and trials included.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Time against accuracy for a plan: the frontier of its simulated sensor, with planner's choices and trials.
 #pragma once
 
 #include <stop_token>
@@ -8,11 +9,11 @@
 
 namespace todbench {
 
-/// Measures cost_frontier() for a plan. Planner's choices: what the plan asks for (chosen), the effects and accuracy of
-/// tolerances from 0.5 to 5 %, and the named levels with the effects of the plan. Trials: the plan's own measurement on
-/// its simulated sensor with 1, 2, 4, ... of its phases (adaptive: presentations), registration, contrast and
-/// psychometric fit included. Errors: as LoadedPlan::load(), check_simulated_geometry() and cost_frontier();
-/// `invalid_input` where the tolerance of the plan cannot be met.
+/// Measures cost_frontier() for a plan. Planner's choices: the request of the plan (chosen), the effects and accuracy
+/// for tolerances from 0.5 to 5 %, and the named levels with the effects of the plan. Trials: the plan's own
+/// measurement on its simulated sensor with 1, 2, 4, ... of its phases (adaptive: presentations), including
+/// registration, contrast and psychometric fit. Errors: those of LoadedPlan::load(), check_simulated_geometry() and
+/// cost_frontier(); `invalid_input` if the tolerance of the plan cannot be met.
 [[nodiscard]] Result<CostFrontier> cost_of_plan(const LoadedPlan& loaded, double budget_s, const CostListener& listener,
                                                 std::stop_token stop);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/eo_vista.h"
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ using namespace eo_vista;
 constexpr double published_r75_m = 450;
 constexpr double published_m75 = 5.1;
 
-/// Done in any order by several threads; each writes its own result.
+/// Runs tasks in any order on several threads; each writes its own result.
 Result<void> run_all(const std::vector<std::function<Result<void>()>>& tasks) {
   std::vector<Result<void>> results(tasks.size());
   std::atomic<std::size_t> next = 0;
@@ -64,13 +65,13 @@ Result<std::vector<ReproducedThreshold>> simulated(const SensorSpec& sensor, con
                           point.delta_t_k,
                           acuity,
                           {acuity * std::exp(-reach), acuity * std::exp(reach)},
-                          "phase-averaged proportion correct, no psychometric form"});
+                          "direct estimate: phase-averaged proportion correct, no psychometric form"});
   }
   return thresholds;
 }
 
-/// Ten sizes, each 1.19 times the one before: 160 answers of the paper were given to ten sizes. From well below the
-/// super-resolved threshold of the better observer to well above the single picture's of the other.
+/// Ten sizes in steps of a factor 1.19, because the paper distributes 160 answers over ten sizes. They extend from well
+/// below the super-resolved threshold of the better observer to well above the single-picture threshold of the other.
 std::vector<double> sizes_for(double contrast_k) {
   std::vector<double> sizes;
   double size = contrast_k < 1 ? 1.0 : 0.55;
@@ -83,8 +84,8 @@ struct CameraPart {
   CameraTrialRecord record;
 };
 
-/// The function with which graded answers are fitted: of the simulated sensor as it is for single pictures, and with
-/// microscan, whose sampling super-resolution comes near to, for the others.
+/// Returns the function for fits of graded answers: that of the simulated sensor for single pictures, and with
+/// microscan for super-resolved ones, whose sampling is similar.
 Result<ProportionTable> function_of(const SensorSpec& sensor, TemplateObserver& observer, double contrast_k,
                                     const EoVistaOptions& options) {
   DirectEstimateOptions direct{.samples_per_pitch = sensor.microscan,
@@ -97,7 +98,7 @@ Result<ProportionTable> function_of(const SensorSpec& sensor, TemplateObserver& 
   return table_of(curves->front(), sensor.ifov_mrad());
 }
 
-/// Adds the threshold of the same answers, graded. One without a regular fit has none.
+/// Adds the threshold of the same answers, graded. Without a regular fit it has none.
 Result<void> add_graded(ReproducedThreshold& threshold, const PictureAnswers& answers, const ProportionTable& function,
                         const char* of_sensor) {
   const auto weibull = fit_graded(answers.graded, {.with_posterior = false});
@@ -109,12 +110,12 @@ Result<void> add_graded(ReproducedThreshold& threshold, const PictureAnswers& an
   threshold.graded_ci95 = acuity_interval(fit->ci95);
   threshold.graded_method =
       fmt::format("{} graded answers, function of {}{}, {}", answers.graded.size(), of_sensor,
-                  fit->twin_shape->slope_fitted ? " with a slope of their own" : "", to_string(fit->verdict));
+                  fit->twin_shape->slope_fitted ? " with a fitted slope" : "", to_string(fit->verdict));
   return {};
 }
 
-/// The emulated camera at one contrast: both observers, still and super-resolved; of exact half pitches only the
-/// latter, since its single pictures are the same.
+/// Runs the emulated camera at one contrast: both observers, still and super-resolved. For exact half pitches only
+/// super-resolved, because the single pictures are the same.
 Result<CameraPart> camera(const SensorSpec& sensor, const std::vector<TemplateObserverSpec>& specs, double contrast_k,
                           FrameDisplacements displacements, const EoVistaOptions& options) {
   std::vector<std::unique_ptr<TemplateObserver>> observers;
@@ -167,7 +168,7 @@ std::vector<TodThreshold> tod_of(const std::vector<ReproducedThreshold>& thresho
   return tod;
 }
 
-/// The craft of the paper as far as it can be known, and the ranges at which it is identified.
+/// The craft of the paper, as far as known, and the ranges at which it is identified.
 struct Ranges {
   double size_m = 0;
   std::vector<ReproducedRange> ranges;
@@ -193,26 +194,25 @@ Result<Ranges> ranges_of(const std::vector<ReproducedThreshold>& thresholds) {
 
 std::vector<std::string> assumptions(const EoVistaOptions& options, double size_m) {
   return {
-      "The people of the paper (one observer) are represented by human-like-1, the HVS model by hvs-1. Both were tuned "
-      "to figures of this paper (microscan gain at high contrast; the two differences between people and model on the "
-      "sensor without microscan): those rows show that a fit succeeded, the others are predictions.",
-      "The real camera is the emulated one: the simulated SC2000 with noise and 14-bit counts, byte for byte the "
-      "frames that it sends over its emulated GigE link. Disagreement between real and simulated can therefore only "
-      "come from "
-      "the method. With a camera on the bench, todbench measure takes its place.",
+      "human-like-1 represents the one human observer of the paper, hvs-1 its HVS model. Both were tuned to figures of "
+      "this paper: the microscan gain at high contrast and the two differences between people and model on the sensor "
+      "without microscan. Those rows show that the fit succeeded; the others are predictions.",
+      "The real camera is the emulated one: the simulated SC2000 with noise and 14-bit counts. Its frames are byte for "
+      "byte those of the emulated GigE link. A difference between real and simulated can therefore only come from the "
+      "method. For a camera on the bench, use todbench measure.",
       "DSR2: " + std::to_string(options.dsr_frames) +
-          " frames, displaced against each other by up to half a pitch in x and y, registered by their content and "
-          "averaged on a grid of half the pitch. The paper states neither the number of frames nor the algorithm; the "
-          "number moves the gain at low contrast only. Four large triangles of the same contrast stand in the picture "
-          "as edges to register on.",
-      "Lens aberration, fixed pattern and the camera's internal processing are not in the paper's table of parameters "
-      "and are left out.",
-      "Size and contrast of the craft are taken from a picture that the paper does not give in numbers. Its size was "
+          " frames, displaced against each other by up to half a pitch in x and y. They are registered by their "
+          "content and averaged on a grid of half the pitch. The paper states neither the number of frames nor the "
+          "algorithm; the number affects only the gain at low contrast. The picture contains four large triangles of "
+          "the same contrast, whose edges are used for the registration.",
+      "Lens aberration, fixed pattern and the internal processing of the camera are not in the paper's table of "
+      "parameters. They are not simulated.",
+      "The paper shows the craft in a picture only and does not state its size or contrast in numbers. The size was "
       "chosen so that the 75 % range of the SC2000 with the HVS model is the published 450 m at 16.9 K without "
       "extinction: " +
           number_text(std::round(100 * size_m) / 100) + " m.",
-      "A threshold of the paper from 160 or 210 answers has a standard error of 3 to 5 %; a ratio of two about 5 to 6 "
-      "%.",
+      "A threshold of the paper from 160 or 210 answers has a standard error of 3 to 5 %. A ratio of two thresholds "
+      "has about 5 to 6 %.",
   };
 }
 
@@ -241,7 +241,7 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
   CameraPart exact;
   std::vector<std::vector<ReproducedThreshold>> found(4);
   std::vector<std::function<Result<void>()>> tasks;
-  // The longest first.
+  // The longest tasks first.
   for (std::size_t i = 0; i < parts.size(); ++i) {
     tasks.emplace_back([&, i]() -> Result<void> {
       auto part = camera(*sensor, observers, eo_vista_contrasts_k[i], FrameDisplacements::anywhere, options);
@@ -269,8 +269,7 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
   reproduction.title = "Reproduction of the EO-VISTA experiment";
   reproduction.source =
       "P. Bijl, M.A. Hogervorst and W.K. Vos, Modular Target Acquisition model & visualization tool (EO-VISTA), "
-      "sections "
-      "4.1 and 4.2";
+      "sections 4.1 and 4.2";
   reproduction.model_observer = hvs;
   reproduction.simulated_sensors = {normal, microscan};
   reproduction.cameras = {still, dsr2};
@@ -291,7 +290,7 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
       {"noise draws of the direct estimate, per size", std::to_string(options.accuracy.noise_draws)},
       {"pictures of the emulated camera, per contrast", std::to_string(options.presentations)},
       {"frames averaged by DSR2", std::to_string(options.dsr_frames)},
-      {"of these registered, by contrast",
+      {"registered frames of these, by contrast",
        joined(
            parts, [](const CameraTrialRecord& r) { return r.frames_registered; }, 1)},
       {"frames per sample of the fine grid, by contrast",

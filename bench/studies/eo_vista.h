@@ -1,11 +1,12 @@
-// The experiment of the EO-VISTA paper (Bijl, Hogervorst and Vos), sections 4.1 and 4.2, with this program's sensor and
-// observers.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reproduces the experiment of the EO-VISTA paper (Bijl, Hogervorst and Vos), sections 4.1 and 4.2, with this program's
+// sensor and observers.
 #pragma once
 
 #include <cstdint>
 #include <stop_token>
 
-#include "acquisition/core/accuracy.h"
+#include "acquisition/base/accuracy.h"
 #include "bench/report/reproduction_page.h"
 
 namespace todbench {
@@ -19,7 +20,7 @@ struct EoVistaOptions {
 };
 
 /// Runs on as many threads as there are processors, at most eight; the result does not depend on their number. Errors:
-/// `interrupted`, and whatever a part of it has.
+/// `interrupted`, and those of its parts.
 [[nodiscard]] Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options);
 
 }  // namespace todbench

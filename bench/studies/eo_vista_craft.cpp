@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/eo_vista_craft.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double normal_range_m = 400, microscan_range_m = 640;
 constexpr double shown_m = 13.5;  ///< side of every picture, to the next even number of pitches
-constexpr double raised_m = 1;    ///< of the water line above its middle: the sky stays out of it
+constexpr double raised_m = 1;    ///< height of the water line above the picture's centre: keeps the sky out
 
 Result<ScenePictures> craft_seen(const FieldScene& scene, SensorSpec sensor, int microscan, double range_m,
                                  Accuracy accuracy, std::uint64_t seed) {
@@ -32,7 +33,7 @@ Result<ScenePictures> craft_seen(const FieldScene& scene, SensorSpec sensor, int
 
 Result<std::vector<CraftPicture>> eo_vista_craft(Accuracy accuracy, std::uint64_t seed) {
   const auto scene = load_scene("craft-at-sea", [](const std::string& path) -> Result<StoredPicture> {
-    return fail(ErrorCode::invalid_input, path + ": not a scene of polygons");
+    return fail(ErrorCode::invalid_input, path + ": expected a scene of polygons");
   });
   if (!scene) return tl::unexpected(scene.error());
   const auto sensor = load_sensor("sc2000");
@@ -43,14 +44,15 @@ Result<std::vector<CraftPicture>> eo_vista_craft(Accuracy accuracy, std::uint64_
   if (!finer) return tl::unexpected(finer.error());
   const auto display = [](const ScenePictures& pictures) { return pictures.stages[5].kelvin; };
   const double low = std::min(normal->grey_low_k, finer->grey_low_k);
-  // Half of the warmest spot: the hull would else be next to black.
+  // Half of the warmest spot; otherwise the hull would be almost black.
   const double high = 0.5 * std::max(normal->grey_high_k, finer->grey_high_k);
-  const std::string scale = fmt::format("Black {:.2g} K, white {:.2g} K and more above the water.", low, high);
+  const std::string scale =
+      fmt::format("Black: {:.2g} K above the water. White: at least {:.2g} K above it.", low, high);
   return std::vector<CraftPicture>{
-      {"figure-12-scene", "The craft at the sensor", "craft-01, side view, before any camera. " + scale, 0,
+      {"figure-12-scene", "The craft at the sensor", "craft-01, side view, without a camera. " + scale, 0,
        normal->stages.front().kelvin, low, high},
-      {"figure-12-sc2000", "SC2000 at 400 m", "as displayed. " + scale, normal_range_m, display(*normal), low, high},
-      {"figure-12-microscan", "SC2000 with 2 x 2 microscan at 640 m", "as displayed. " + scale, microscan_range_m,
+      {"figure-12-sc2000", "SC2000 at 400 m", "As displayed. " + scale, normal_range_m, display(*normal), low, high},
+      {"figure-12-microscan", "SC2000 with 2 x 2 microscan at 640 m", "As displayed. " + scale, microscan_range_m,
        display(*finer), low, high}};
 }
 

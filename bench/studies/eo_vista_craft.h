@@ -1,4 +1,5 @@
-// Figure 12 of the EO-VISTA paper: a small craft by the SC2000 at 400 m and with microscan at 640 m.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figure 12 of the EO-VISTA paper: a small craft observed by the SC2000 at 400 m, and with microscan at 640 m.
 #pragma once
 
 #include <string>
@@ -17,8 +18,8 @@ struct CraftPicture {
   double grey_low_k = 0, grey_high_k = 1;
 };
 
-/// The scene at the sensor (as at 400 m), then what both sensors display, on one grey scale; every picture shows the
-/// same metres. The craft is `craft-01` of this program: that of the paper is not published in numbers.
+/// Returns the scene at the sensor (as at 400 m), then the displays of both sensors, on one grey scale; all pictures
+/// show the same field in metres. The craft is `craft-01`, because the paper does not publish the numbers of its own.
 [[nodiscard]] Result<std::vector<CraftPicture>> eo_vista_craft(Accuracy accuracy, std::uint64_t seed);
 
 }  // namespace todbench

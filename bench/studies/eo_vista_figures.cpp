@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/eo_vista_figures.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ std::string at_contrast(double contrast_k) {
   return text({" at ", number_text(contrast_k), " K"});
 }
 
-/// (ratio - 1) in per cent.
+/// (ratio - 1) in percent.
 ReproducedFigure gain(std::string quantity, const AcuityRatio& ratio) {
   const auto percent = [](std::optional<double> r) { return r ? std::optional(100 * (*r - 1)) : std::nullopt; };
   ReproducedFigure figure;
@@ -51,20 +52,21 @@ ReproducedFigure with(ReproducedFigure figure, std::string published, std::optio
 }
 
 const char* const paper_error =
-    "Two thresholds of 210 answers leave a gain uncertain by about 10 points (95 %), so 55 and 60 % cannot be told "
-    "apart.";
+    "A gain from two thresholds of 210 answers has a 95 % uncertainty of about 10 percentage points. It cannot "
+    "separate 55 from 60 %.";
 
 const char* const human_medium =
-    "Not constant here: human-like-1 sees the sensor's noise 1.75 times larger and with microscan leaves its asymptote "
-    "between 16.9 and 1.93 K; the paper does not see that within its 10 points (95 %).";
+    "Not constant here: for human-like-1 the sensor's noise is 1.75 times larger. With microscan it leaves its "
+    "asymptote between 16.9 and 1.93 K. The paper cannot show this within its 10 points (95 %).";
 
 void microscan_gains(const std::vector<ReproducedThreshold>& t, std::vector<ReproducedFigure>& out) {
   for (const double c : eo_vista_contrasts_k) {
     const std::string remark =
         c == eo_vista_contrasts_k[0]
             ? "A fit, not a confirmation: blur and internal noise of hvs-1 were tuned to this gain."
-        : c == eo_vista_contrasts_k[1] ? "Not tuned: follows from the gain at high contrast, both lie on the asymptote."
-                                       : "Not tuned: sensor noise limits here, and more samples help by averaging it.";
+        : c == eo_vista_contrasts_k[1]
+            ? "Not tuned: follows from the gain at high contrast, because both lie on the asymptote."
+            : "Not tuned: sensor noise is the limit here, and more samples average it.";
     out.push_back(with(gain(text({"Microscan gain, HVS model", at_contrast(c)}),
                             acuity_ratio(at(t, microscan, hvs, c), at(t, normal, hvs, c))),
                        "55 %, roughly constant", 55, remark));
@@ -83,21 +85,22 @@ void super_resolution_gains(const std::vector<ReproducedThreshold>& t, std::vect
   };
   out.push_back(
       with(gain(text({"DSR2 gain, human (human-like-1)", at_contrast(high)}), ratio(human, high)), "50 %", 50,
-           "Lower, because samples go into the nearest cell of the fine grid, up to a quarter of a pitch from their "
-           "place: the next row has the same camera and observer without that. The paper does not describe its DSR2; "
-           "its gain lies between the two."));
-  out.push_back(with(gain(text({"The same with frames displaced by exact half pitches", at_contrast(high)}),
-                          acuity_ratio(at(t, dsr2_exact, human, high), at(t, still, human, high))),
-                     "", std::nullopt,
-                     "Every sample lies on the fine grid: the gain of microscan. What is missing above is the price of "
-                     "displacements that nobody controls."));
+           "Lower, because a sample goes into the nearest cell of the fine grid, up to a quarter of a pitch from its "
+           "position. The next row has the same camera and observer without this error. The paper does not describe "
+           "its DSR2; its gain lies between the two."));
+  out.push_back(with(
+      gain(text({"The same with frames displaced by exact half pitches", at_contrast(high)}),
+           acuity_ratio(at(t, dsr2_exact, human, high), at(t, still, human, high))),
+      "", std::nullopt,
+      "Every sample lies on the fine grid, so this is the gain of microscan. The difference to the row above is the "
+      "cost of uncontrolled displacements."));
   out.push_back(with(gain(text({"DSR2 gain, human (human-like-1)", at_contrast(low)}), ratio(human, low)),
                      "larger than with microscan, no figure", std::nullopt,
-                     "The different behaviour at low contrast: averaging lowers the noise, microscan does not. The "
-                     "size of it depends on the number of frames, which the paper does not state."));
+                     "Low contrast differs: averaging lowers the noise, microscan does not. The amount depends on "
+                     "the number of frames, which the paper does not state."));
   for (const double c : eo_vista_contrasts_k) {
     out.push_back(with(gain(text({"DSR2 gain, HVS model", at_contrast(c)}), ratio(hvs, c)), "", std::nullopt,
-                       "A cell of Table 2 that was left for the future: the real sensor judged by the HVS model."));
+                       "A cell that Table 2 leaves to future work: the real sensor judged by the HVS model."));
   }
 }
 
@@ -109,16 +112,17 @@ void observers_compared(const std::vector<ReproducedThreshold>& t, std::vector<R
                        "18 % on average over sensors", 18,
                        sensor == std::string(normal)
                            ? "A fit: human-like-1 was tuned to this figure on this sensor."
-                           : "Not tuned: says whether the difference is the same for both sensors."));
+                           : "Not tuned: shows whether the difference is the same for both sensors."));
   }
   for (const char* sensor : {normal, microscan}) {
-    out.push_back(with(
-        gain(text({"HVS model better than human, ", sensor, at_contrast(low)}),
-             acuity_ratio(at(t, sensor, hvs, low), at(t, sensor, human, low))),
-        "35 % on average over sensors", 35,
-        sensor == std::string(normal)
-            ? "human-like-1 was tuned to 35 % on this sensor; the difference is how far its fixed parameters miss it."
-            : "Not tuned. More samples average more noise, which helps the noise-limited observer more."));
+    out.push_back(
+        with(gain(text({"HVS model better than human, ", sensor, at_contrast(low)}),
+                  acuity_ratio(at(t, sensor, hvs, low), at(t, sensor, human, low))),
+             "35 % on average over sensors", 35,
+             sensor == std::string(normal)
+                 ? "human-like-1 was tuned to 35 % on this sensor. The difference is the remaining error of its fixed "
+                   "parameters."
+                 : "Not tuned. More samples average more noise, which helps the noise-limited observer more."));
   }
 }
 
@@ -129,9 +133,9 @@ void sensors_compared(const std::vector<ReproducedThreshold>& t, std::vector<Rep
       out.push_back(with(gain(text({"Real against simulated, still, ", observer, at_contrast(c)}),
                               acuity_ratio(at(t, still, observer, c), at(t, normal, observer, c))),
                          published ? "no significant difference" : "", std::nullopt,
-                         published ? "The real camera is an emulated one with the table's parameters, so this tests "
-                                     "the method (answers and a fit against a direct estimate), not a camera."
-                                   : "A cell of Table 2 that was left for the future."));
+                         published ? "The real camera is an emulated one with the table's parameters. This row tests "
+                                     "the method (a fit to answers against a direct estimate), not a camera."
+                                   : "A cell that Table 2 leaves to future work."));
     }
   }
 }
@@ -153,9 +157,9 @@ void range_figures(const std::vector<ReproducedRange>& ranges, std::vector<Repro
     out.push_back(figure);
   };
   row("75 % range, SC2000", normal, "450 m", 450,
-      "Fixed, not found: the paper does not state the craft's size; it was chosen to give this range.");
+      "Fixed, not predicted: the paper does not state the size of the craft. It was chosen to give this range.");
   row("75 % range, SC2000 + microscan", microscan, "700 m", 700,
-      "The same craft. The ratio of the ranges is that of the acuities at high contrast, 1.556 in the paper.");
+      "The same craft. The ratio of the ranges equals the ratio of the acuities at high contrast, 1.556 in the paper.");
   row("75 % range, emulated camera, still", still, "", std::nullopt, "The real sensor judged by the HVS model.");
   row("75 % range, emulated camera + DSR2", dsr2, "", std::nullopt, "The real sensor judged by the HVS model.");
   const auto fraction = [&](const char* sensor, double range_m, const std::string& published) {
@@ -166,8 +170,8 @@ void range_figures(const std::vector<ReproducedRange>& ranges, std::vector<Repro
     figure.published = published;
     figure.published_value = 80;
     figure.remark =
-        "Depends on the function that joins range and probability, which the paper does not state; here the "
-        "target transfer probability function.";
+        "Depends on the probability as a function of range, which the paper does not state. Here it is the target "
+        "transfer probability function.";
     for (const auto& range : ranges) {
       if (range.sensor != sensor || range.observer != hvs || !range.prediction.r75_m) continue;
       const auto percent = [&](std::optional<double> r75) {
@@ -185,7 +189,7 @@ void range_figures(const std::vector<ReproducedRange>& ranges, std::vector<Repro
   criterion.published = std::string("5.1");
   criterion.published_value = 5.1;
   criterion.value = m75_from_v50(8.5);
-  criterion.remark = "One published pair fixes the factor of 0.6; it is not tested by it.";
+  criterion.remark = "One published pair determines the factor of 0.6, so this row does not test it.";
   out.push_back(criterion);
 }
 
@@ -231,7 +235,7 @@ std::vector<ReproducedFigure> eo_vista_figures(const std::vector<ReproducedThres
   std::vector<ReproducedFigure> figures = all_figures(thresholds, ranges);
   const std::vector<ReproducedFigure> graded = all_figures(by_graded_answers(thresholds), graded_ranges);
   for (std::size_t i = 0; i < figures.size(); ++i) {
-    // Where no camera is behind a figure there is nothing else to say.
+    // Figures without a camera have the same value.
     if (!graded[i].value || graded[i].value == figures[i].value) continue;
     figures[i].graded_value = graded[i].value;
     figures[i].graded_ci95 = graded[i].ci95;

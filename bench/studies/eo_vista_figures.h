@@ -1,4 +1,5 @@
-// What the EO-VISTA paper found, beside thresholds found here.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Results of the EO-VISTA paper compared with thresholds of this program.
 #pragma once
 
 #include <array>
@@ -23,16 +24,16 @@ inline constexpr const char* hvs = "hvs-1";
 inline constexpr const char* human = "human-like-1";
 }  // namespace eo_vista
 
-/// Every figure of sections 4.1 and 4.2, from the thresholds of all sensors and observers and the ranges of `hvs`;
-/// `graded_ranges` are those of by_graded_answers().
+/// Returns every figure of sections 4.1 and 4.2, from the thresholds of all sensors and observers and the ranges of
+/// `hvs`; `graded_ranges`: those of by_graded_answers().
 [[nodiscard]] std::vector<ReproducedFigure> eo_vista_figures(const std::vector<ReproducedThreshold>& thresholds,
                                                              const std::vector<ReproducedRange>& ranges,
                                                              const std::vector<ReproducedRange>& graded_ranges = {});
 
-/// The same thresholds with graded answers in the place of right and wrong ones where there are any.
+/// Returns the thresholds with graded answers instead of binary ones if available.
 [[nodiscard]] std::vector<ReproducedThreshold> by_graded_answers(std::vector<ReproducedThreshold> thresholds);
 
-/// The ratio a / b of two acuities and its 95 % interval, their errors independent and taken on the logarithmic scale.
+/// Ratio a / b of two acuities with its 95 % interval; independent errors, on the logarithmic scale.
 struct AcuityRatio {
   std::optional<double> value;
   Interval ci95;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/identification_study.h"
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@ namespace {
 constexpr double wanted = 0.75;
 constexpr int resamples = 1000;
 
-/// Not increasing any more: neighbours out of order become their mean (pool adjacent violators).
+/// Returns a non-increasing version: neighbours out of order become their mean (pool adjacent violators).
 std::vector<double> not_increasing(const std::vector<double>& values) {
   struct Pool {
     double sum = 0;
@@ -51,7 +52,7 @@ SetCriterion range_of_75_percent(const IdentificationStudyTask& task, const std:
   for (std::size_t d = 0; d < draws.size(); ++d) draws[d] = d;
   SetCriterion out;
   out.value = crossing_of_75_percent(task.ranges_m, proportions(draws)).at;
-  // Draws are what is independent: targets, sides and ranges share them.
+  // Draws are the independent units: targets, aspects and ranges share them.
   std::vector<double> found;
   const RandomStream numbers(task.seed, "identification.resample");
   for (std::uint64_t r = 0; r < resamples; ++r) {
@@ -69,12 +70,12 @@ SetCriterion range_of_75_percent(const IdentificationStudyTask& task, const std:
   return out;
 }
 
-/// The curve between the contrasts that the set shows at its nearest and at its farthest range.
+/// Returns the curve between the contrasts of the set at its nearest and farthest range.
 Result<std::vector<TodThreshold>> tod_curve_for(const IdentificationStudyTask& task, double dt_k, double least_tau,
                                                 std::vector<std::string>& notes) {
   TemplateObserver observer(task.observer, triangle_alternatives());
   SensorSpec sensor = task.sensor;
-  if (task.cn2_m_minus_2_3 > 0) sensor.turbulence_cn2_m_minus_2_3 = 0;  // its paths come later
+  if (task.cn2_m_minus_2_3 > 0) sensor.turbulence_cn2_m_minus_2_3 = 0;  // the turbulence of the paths is added later
   const SensorPlan plan = full_plan(sensor, {}, {});
   const double least = dt_k * least_tau / 1.1;
   std::vector<TodThreshold> curve;
@@ -93,7 +94,7 @@ Result<std::vector<TodThreshold>> tod_curve_for(const IdentificationStudyTask& t
   return curve;
 }
 
-/// M of the set at a range, by the curve behind the turbulence of that path where there is one.
+/// M of the set at a range, by the curve behind the turbulence of that path if there is any.
 std::optional<double> m_at(const IdentificationStudyTask& task, const IdentificationStudy& study,
                            const std::optional<TurbulentSources>& turbulent, std::optional<double> range_m) {
   if (!range_m || study.tod.empty()) return std::nullopt;
@@ -106,7 +107,7 @@ std::optional<double> m_at(const IdentificationStudyTask& task, const Identifica
   return 1e3 * study.size_m / *range_m * *acuity;
 }
 
-/// The sensor before the turbulence of a range.
+/// Returns the sensor with the turbulence of a range.
 SensorSpec turbulent_sensor(const IdentificationStudyTask& task, double range_m) {
   SensorSpec spec = task.sensor;
   if (task.cn2_m_minus_2_3 > 0) {
@@ -116,7 +117,7 @@ SensorSpec turbulent_sensor(const IdentificationStudyTask& task, double range_m)
   return spec;
 }
 
-/// The curve of the study at the paths of the experiment and of the range that it predicts without turbulence.
+/// Returns the curve of the study at the paths of the experiment and of its predicted range without turbulence.
 Result<TurbulentSources> behind_turbulence(const IdentificationStudyTask& task, const IdentificationStudy& study,
                                            const RangeTask& question) {
   const auto still = predict_range(study.tod, question);
@@ -131,9 +132,9 @@ Result<void> check_ranges(const IdentificationStudyTask& task) {
   for (std::size_t i = 0; i < task.ranges_m.size(); ++i) {
     const double range_m = task.ranges_m[i];
     if (!(range_m > 0) || (i > 0 && range_m <= task.ranges_m[i - 1]))
-      return fail(ErrorCode::invalid_input, "ranges are above 0 m and increase");
+      return fail(ErrorCode::invalid_input, "ranges must be above 0 m and increase from one to the next");
     if (!task.air.air.at(range_m)) {
-      return fail(ErrorCode::invalid_input, fmt::format("the air's table ends at {:g} m: nothing is known of {:g} m",
+      return fail(ErrorCode::invalid_input, fmt::format("the air's table ends at {:g} m and does not cover {:g} m",
                                                         task.air.air.end_m(), range_m));
     }
   }

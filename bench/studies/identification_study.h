@@ -1,4 +1,5 @@
-// What an identification experiment says of a set of targets, and whether the TOD curve would have said it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simulates an identification experiment with a set of targets, and compares it with the prediction of the TOD curve.
 #pragma once
 
 #include <optional>
@@ -20,21 +21,21 @@ struct IdentificationStudyTask {
   std::vector<double> ranges_m;  ///< at least two, increasing
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
   TargetCues cues = TargetCues::all;
-  int decisions = 2000;        ///< for every target at every range
-  double m75 = 5.1;            ///< of the range that is predicted
-  double cn2_m_minus_2_3 = 0;  ///< of turbulence along the path of each range; 0: as the sensor has it
+  int decisions = 2000;        ///< per target and range
+  double m75 = 5.1;            ///< for the predicted range
+  double cn2_m_minus_2_3 = 0;  ///< of turbulence along the path of each range; 0: that of the sensor
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
 
-/// A number with its interval; nothing where the ranges of the experiment do not enclose 75 %.
+/// A value with its interval; empty if the ranges of the experiment do not enclose 75 %.
 struct SetCriterion {
   std::optional<double> value;
   Interval ci95;
 };
 
-/// Where proportions over something that rises pass 75 %, made monotone (pool adjacent violators), linear in its
-/// logarithm; nothing beyond either end.
+/// Position at which rising proportions cross 75 %, made monotone (pool adjacent violators), linear in the logarithm of
+/// the position; empty beyond either end.
 struct Crossing75 {
   std::optional<double> at;
   bool beyond_last = false;  ///< at least 75 % everywhere
@@ -43,21 +44,21 @@ struct Crossing75 {
 
 struct IdentificationStudy {
   std::vector<IdentificationPoint> points;
-  double chance = 0;                         ///< one over the number of targets
-  double size_m = 0;                         ///< mean over targets and sides
-  double dt_rss_k = 0;                       ///< the same, before the air
-  SetCriterion r75_m;                        ///< where 75 % are right; the interval by resampling the draws of noise
+  double chance = 0;                         ///< 1 / number of targets
+  double size_m = 0;                         ///< mean over targets and aspects
+  double dt_rss_k = 0;                       ///< mean over targets and aspects, before the air
+  SetCriterion r75_m;                        ///< range with 75 % right; the interval by resampling the draws of noise
   SetCriterion m75, v50;                     ///< of the set: M at r75_m on the TOD curve; M75 / 0.6
   std::vector<TodThreshold> tod;             ///< of the same sensor and observer
-  std::optional<RangePrediction> predicted;  ///< by the TOD curve with the m75 of the task; nothing: no curve
+  std::optional<RangePrediction> predicted;  ///< by the TOD curve with the m75 of the task; empty: no curve
   std::vector<std::string> notes;
 };
 
-/// The experiment of a study: views, ranges with their air. Errors as study_identification().
+/// Returns the experiment of a study: views, ranges with their air. Errors: those of study_identification().
 [[nodiscard]] Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task);
 
-/// The proportion over range is made monotone (pool adjacent violators) and taken as linear in ln range.
-/// `invalid_input`: ranges that do not increase or lie beyond the air's table, and what identify() refuses;
+/// Runs the study. The proportion over range is made monotone (pool adjacent violators) and interpolated linearly in ln
+/// range. Errors: `invalid_input` (ranges that do not increase or exceed the air's table; those of identify()),
 /// `interrupted`.
 [[nodiscard]] Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task);
 

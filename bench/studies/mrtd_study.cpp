@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/mrtd_study.h"
 
 #include <fmt/format.h>
@@ -5,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/normal.h"
+#include "acquisition/base/normal.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 
@@ -17,14 +18,14 @@ std::string_view axis_title(BarAxis axis) {
 }
 
 std::string no_mrtd_reason(const VirtualMrtdPoint& point, BarCriterion criterion) {
-  if (criterion == BarCriterion::detection) return "detection of a pattern is no MRTD";
+  if (criterion == BarCriterion::detection) return "detection of a pattern is not an MRTD";
   if (!point.threshold_k) {
-    return fmt::format("no contrast up to {:.3g} K is judged 75 % right ({:.0f} % there)", point.highest_k,
+    return fmt::format("no contrast up to {:.3g} K reaches 75 % correct ({:.0f} % at that contrast)", point.highest_k,
                        100 * point.proportion_at_most);
   }
   if (point.frequency_over_nyquist > 1 + 1e-9)
-    return "beyond Nyquist: cut by rule, the observer tells alias patterns apart";
-  if (point.share_of_four == 0) return "no phase shows four bars: the observer tells alias patterns apart";
+    return "beyond Nyquist: the MRTD is cut there, because the observer discriminates alias patterns";
+  if (point.share_of_four == 0) return "no phase shows four bars: the observer discriminates alias patterns";
   return {};
 }
 
@@ -48,18 +49,19 @@ PlotSeries series(const std::string& label, PlotTone tone, PlotMarker marker, Pl
 std::string criterion_text(BarCriterion criterion) {
   switch (criterion) {
     case BarCriterion::four_or_five:
-      return "two intervals, four bars in one and five in the other, 75 % right: free of bias";
+      return "two intervals, four bars in one and five in the other, 75 % correct; free of response bias";
     case BarCriterion::bars_resolved:
-      return "yes or no, every gap lower than the bars beside it: 75 % yes where 5 % of empty pictures get a yes";
+      return "yes if every gap is lower than the bars beside it, otherwise no; 75 % yes, with 5 % yes for empty "
+             "pictures";
     case BarCriterion::detection:
       break;
   }
-  return "two intervals, four bars in one, nothing in the other, 75 % right: detection, no MRTD";
+  return "two intervals, four bars in one and no bars in the other, 75 % correct; a detection threshold, not an MRTD";
 }
 
 Table axis_table(const MrtdAxisCurve& curve) {
   Table table;
-  table.caption = fmt::format("Bars that the {} axis resolves", axis_title(curve.axis));
+  table.caption = fmt::format("Bars resolved along the {} axis", axis_title(curve.axis));
   table.header = {"f (cycles/mrad)",        "f / Nyquist",          "MRTD (K), 95 %", "Threshold (K)",
                   "Best phase (K)",         "Worst phase (K)",      "Formula (K)",    "Ideal (K)",
                   "Modulation best, worst", "Phases with four bars"};
@@ -71,7 +73,7 @@ Table axis_table(const MrtdAxisCurve& curve) {
     table.rows.push_back({plain(significant(f.frequency_per_mrad, 3)), plain(significant(f.frequency_over_nyquist, 3)),
                           interval_or_missing(p.mrtd_k, p.mrtd_k ? p.threshold_ci95_k : Interval{}, p.reason),
                           number(f.threshold_k, "none"), number(f.best_phase_k, "none"),
-                          number(f.worst_phase_k, "not at every phase"), number(p.formula_k, "beyond Nyquist"),
+                          number(f.worst_phase_k, "not reached at every phase"), number(p.formula_k, "beyond Nyquist"),
                           plain(significant(f.ideal_k, 3)),
                           plain(significant(f.modulation_best, 2) + ", " + significant(f.modulation_worst, 2)),
                           plain(fmt::format("{:.0f} %", 100 * f.share_of_four))});
@@ -79,7 +81,7 @@ Table axis_table(const MrtdAxisCurve& curve) {
   return table;
 }
 
-/// With the contrasts that bars must have for the camera to see those of `point`.
+/// Converts the contrasts at the camera to those of the bars before the air.
 VirtualMrtdPoint before_the_air(VirtualMrtdPoint point, double transmittance) {
   for (auto* contrast_k : {&point.threshold_k, &point.best_phase_k, &point.worst_phase_k}) {
     if (*contrast_k) **contrast_k /= transmittance;
@@ -94,11 +96,11 @@ VirtualMrtdPoint before_the_air(VirtualMrtdPoint point, double transmittance) {
 Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task) {
   const auto tau = task.air.air.at(task.range_m);
   if (!tau) {
-    return fail(ErrorCode::invalid_input, fmt::format("the air's table ends at {:g} m: nothing is known of {:g} m",
+    return fail(ErrorCode::invalid_input, fmt::format("the air's table ends at {:g} m and does not cover {:g} m",
                                                       task.air.air.end_m(), task.range_m));
   }
   if (!(*tau > 0))
-    return fail(ErrorCode::invalid_input, fmt::format("nothing is left of a contrast over {:g} m", task.range_m));
+    return fail(ErrorCode::invalid_input, fmt::format("the air transmits no contrast over {:g} m", task.range_m));
   const auto formula = mrtd_curves(task.trial.sensor, task.formula);
   if (!formula) return tl::unexpected(formula.error());
   MrtdStudy study;
@@ -125,8 +127,8 @@ Plot mrtd_plot(const MrtdStudyTask& task, const MrtdStudy& study) {
   plot.id = "mrtd";
   plot.title = "MRTD against frequency";
   plot.description =
-      "Contrast for 75 % right answers over the frequency of the bars; beside it the best phase, the formula and an "
-      "ideal observer.";
+      "Contrast for 75 % correct answers over the frequency of the bars, with the best phase, the formula and an ideal "
+      "observer.";
   double low = 1e300, high = 0, farthest = study.nyquist_per_mrad;
   const auto add = [&](PlotSeries& to, double f, const std::optional<double>& y, const Interval& interval = {}) {
     to.points.push_back({.x = f, .y = y, .x_interval = {}, .y_interval = interval});
@@ -175,26 +177,27 @@ Document mrtd_page(const MrtdStudyTask& task, const MrtdStudy& study) {
   document.heading = "Virtual MRTD";
   document.subtitle = trial.sensor.name + ", observer " + trial.observer.name;
   document.page_label = "Virtual MRTD, " + trial.sensor.name;
-  Section section{"Four bars before the observer of the triangles", {}};
+  Section section{"Four-bar targets judged by the observer of the triangles", {}};
   section.blocks.emplace_back(Paragraph{plain("Criterion: " + criterion_text(trial.criterion) + ".")});
   if (task.range_m > 0) {
     section.blocks.emplace_back(Paragraph{plain(
-        fmt::format("Bars at {:g} m, contrasts are their own; transmittance {}, {}.", task.range_m,
+        fmt::format("Bars at {:g} m; contrasts are those at the bars; transmittance {}, {}.", task.range_m,
                     significant(study.transmittance, 4), task.air.source.empty() ? task.air.name : task.air.source))});
   }
-  section.blocks.emplace_back(
-      Figure{drawn(mrtd_plot(task, study)),
-             "Contrast for 75 % at random phase with its 95 % interval. Grey marks: thresholds that are no MRTD."});
+  section.blocks.emplace_back(Figure{
+      drawn(mrtd_plot(task, study)),
+      "Contrast for 75 % correct at random phase, with 95 % interval. Grey marks: thresholds that are not an MRTD."});
   for (const auto& curve : study.curves) section.blocks.emplace_back(axis_table(curve));
   section.blocks.emplace_back(list_of(std::vector<std::string>{
-      fmt::format("{} draws of noise, seed {}; eight phases across the bars, two along them.", trial.draws, trial.seed),
-      fmt::format("Nyquist frequency of the samples: {} cycles/mrad. An MRTD is cut there by rule.",
+      fmt::format("{} noise draws, seed {}; eight phases across the bars, two along them.", trial.draws, trial.seed),
+      fmt::format("Nyquist frequency of the samples: {} cycles/mrad. The MRTD is cut there.",
                   significant(study.nyquist_per_mrad, 3)),
-      fmt::format("Formula: structure after FLIR92, SNR {} and {} s set its scale; no output of that program.",
-                  stated(task.formula.snr_threshold), stated(task.formula.eye_integration_s)),
-      "Ideal: knows the phase, white noise of the camera alone, the same two intervals (detection and bars-resolved: "
-      "four bars against a uniform square). A bound.",
-      "The observer is a model of the eye's answers to triangles; people were not asked."}));
+      fmt::format(
+          "Formula: structure after FLIR92, scaled by an SNR threshold of {} and {} s; not computed by that program.",
+          stated(task.formula.snr_threshold), stated(task.formula.eye_integration_s)),
+      "Ideal: an observer that knows the phase and is limited only by the camera's white noise, in the same two "
+      "intervals (for detection and bars-resolved: four bars against a uniform square). It is a bound.",
+      "The observer is a model of human answers to triangles. No people took part."}));
   document.sections.push_back(std::move(section));
   return document;
 }

@@ -1,4 +1,5 @@
-// The MRTD of a simulated camera by the observer of the triangles, beside the one by formula: numbers and page.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// MRTD of a simulated camera with the observer of the triangles, compared with the MRTD by formula: numbers and page.
 #pragma once
 
 #include <optional>
@@ -18,17 +19,17 @@ struct MrtdStudyTask {
   std::vector<BarAxis> axes;  ///< at least one
   FormulaConditions formula{};
   Atmosphere air{};
-  double range_m = 0;  ///< from the camera to the bars; 0: no air between them
+  double range_m = 0;  ///< from the camera to the bars; 0: no air
 };
 
-/// One frequency of one axis.
+/// Result at one frequency of one axis.
 struct MrtdStudyPoint {
   VirtualMrtdPoint found;
   Interval threshold_ci95_k;  ///< of the threshold, from the draws
-  /// The MRTD: the threshold where it may be called so.
+  /// The MRTD: the threshold if it qualifies as one.
   std::optional<double> mrtd_k;
-  std::string reason;               ///< why there is no MRTD; empty where there is one
-  std::optional<double> formula_k;  ///< MRTD after the structure of FLIR92; nothing beyond Nyquist
+  std::string reason;               ///< reason of a missing MRTD; empty if there is one
+  std::optional<double> formula_k;  ///< MRTD after the structure of FLIR92; empty beyond Nyquist
 };
 
 struct MrtdAxisCurve {
@@ -42,14 +43,14 @@ struct MrtdStudy {
   std::vector<MrtdAxisCurve> curves;
 };
 
-/// Contrasts are those of the bars, of which the air leaves the camera the share of the transmittance: what the camera
-/// needs over it. `invalid_input`: a range beyond the air's table, or at which nothing is left.
+/// Runs the study. Contrasts are those of the bars: the contrast that the camera needs, divided by the transmittance.
+/// Errors: `invalid_input` (a range beyond the air's table, or with no transmittance), those of virtual_mrtd().
 ///
-/// A threshold is no MRTD beyond Nyquist, where no phase shows four bars, and by the criterion `detection`: a machine
-/// goes on telling alias patterns apart where no person sees four bars. Errors as virtual_mrtd().
+/// A threshold is not an MRTD beyond Nyquist, where no phase shows four bars, nor by the criterion `detection`: a
+/// machine still distinguishes alias patterns when no person sees four bars.
 [[nodiscard]] Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task);
 
-/// Kelvin over cycles/mrad: found with its interval, best phase, formula, ideal observer.
+/// Plots kelvin over cycles/mrad: the threshold with its interval, best phase, formula, ideal observer.
 [[nodiscard]] Plot mrtd_plot(const MrtdStudyTask& task, const MrtdStudy& study);
 [[nodiscard]] Document mrtd_page(const MrtdStudyTask& task, const MrtdStudy& study);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/person_experiment.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/report/tod_figures.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
@@ -20,13 +21,13 @@ constexpr int icon_width = 96, icon_height = 64;
 constexpr int contrasts_of_bars = 6;
 constexpr double first_over_ideal = 2, step_of_contrasts = 1.6, step_of_resolved = 2;
 constexpr int bars_for_an_empty_frame = 3;
-/// Share of yes to nothing above which yes means little.
+/// Share of yes answers to empty frames above which yes answers mean little.
 constexpr double most_false_alarms = 0.25;
 constexpr std::size_t phases_of_bars = 16;
 constexpr int gap_samples = 4;
 constexpr int resamples_of_answers = 1000;
 
-/// The target alone, hot white and cold black, as large as fits.
+/// Draws the target alone, hot white and cold black, as large as fits.
 cv::Mat1d icon_of(const FieldScene& scene) {
   constexpr int fine = 4;
   cv::Mat1d icon(icon_height * fine, icon_width * fine, 0.5);
@@ -49,7 +50,7 @@ cv::Mat1d icon_of(const FieldScene& scene) {
     for (const cv::Point2d& corner : region.outline_m)
       outline.emplace_back(cvRound((corner.x - middle.x) * scale + icon.cols / 2.0),
                            cvRound((corner.y - middle.y) * scale + icon.rows / 2.0));
-    // A region that is as warm as the background is still part of the shape.
+    // A region as warm as the background is still part of the shape.
     const double relative = (region.temperature_k - scene.background_k) / most_k;
     cv::fillPoly(icon, std::vector{outline}, 0.5 + 0.35 * relative + (relative < 0 ? -0.15 : 0.15));
   }
@@ -58,7 +59,7 @@ cv::Mat1d icon_of(const FieldScene& scene) {
   return small;
 }
 
-/// So many bars in a square.
+/// Draws `bars` bars in a square.
 void draw_bars(cv::Mat1d& icon, int bars, int x0) {
   constexpr int width = 36;
   const double unit = static_cast<double>(width) / (2 * bars - 1);
@@ -67,7 +68,7 @@ void draw_bars(cv::Mat1d& icon, int bars, int x0) {
         .rowRange((icon_height - width) / 2, (icon_height + width) / 2) = 0.9;
 }
 
-/// What the alternatives of a criterion look like; 0 bars: nothing.
+/// Icon of the alternatives of a criterion; 0 bars: empty.
 cv::Mat1d icon_of_two(int left, int right) {
   cv::Mat1d icon(icon_height, icon_width, 0.5);
   if (left > 0) draw_bars(icon, left, 6);
@@ -81,7 +82,7 @@ cv::Mat1d icon_of_one(int bars) {
   return icon;
 }
 
-/// Half of the span: wide enough for the contrast and for the noise.
+/// Half of the span covers both the contrast and the noise.
 GreyScale grey_about(double contrast_k, double noise_k) {
   const double half = std::max(1.5 * contrast_k, 3 * noise_k);
   return {-half, half};
@@ -112,7 +113,7 @@ Result<PersonExperiment> PersonExperiment::of_set(const IdentificationStudyTask&
   PersonExperiment out;
   out.task_ = PersonTask::identify;
   const std::size_t aspects = task.set.azimuths_deg.size(), targets = experiment->targets.size();
-  // People know the targets from the side that shows most of them, which is nearest to 90 degrees.
+  // People know the targets from their broadest aspect, the one nearest to 90 degrees.
   std::size_t known = 0;
   for (std::size_t a = 1; a < aspects; ++a) {
     if (std::abs(task.set.azimuths_deg[a] - 90) < std::abs(task.set.azimuths_deg[known] - 90)) known = a;
@@ -228,9 +229,9 @@ bool yes_or_no(const PersonExperiment& experiment) {
   return experiment.task() == PersonTask::bars && experiment.criterion() == BarCriterion::bars_resolved;
 }
 
-/// Of trials that were answered, right or wrong, by condition; without frames that show nothing.
+/// Answered trials, right or wrong, by condition; without empty frames.
 std::vector<std::vector<bool>> right_by_condition(const PersonExperiment& experiment,
-                                                  const std::vector<PersonAnswer>& answers) {
+                                                  const std::vector<ExperimentAnswer>& answers) {
   std::vector<std::vector<bool>> right(experiment.conditions().size());
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const PersonTrial& trial = experiment.trials()[i];
@@ -246,8 +247,9 @@ PersonShare share_of(int right, int shown) {
           .ci95 = shown == 0 ? Interval{} : wilson_interval(static_cast<double>(right), static_cast<double>(shown))};
 }
 
-/// Of every frequency, how often bars were seen where there were none.
-std::vector<PersonShare> false_alarms_of(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers) {
+/// False alarms by frequency.
+std::vector<PersonShare> false_alarms_of(const PersonExperiment& experiment,
+                                         const std::vector<ExperimentAnswer>& answers) {
   std::vector<std::pair<int, int>> counts(experiment.conditions().size() / contrasts_of_bars);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const PersonTrial& trial = experiment.trials()[i];
@@ -262,7 +264,7 @@ std::vector<PersonShare> false_alarms_of(const PersonExperiment& experiment, con
   return out;
 }
 
-/// Where the shares of some conditions, the easiest first, pass 75 %; `at` rises from one to the next.
+/// Crossing of 75 % by the shares of some conditions, the easiest first; `at` increases.
 SetCriterion passing_of(const std::vector<double>& at, const std::vector<std::vector<bool>>& right,
                         std::uint64_t seed) {
   std::vector<double> shares;
@@ -306,7 +308,7 @@ Json share_json(const PersonShare& share) {
           {"ci95", json_interval(share.ci95)}};
 }
 
-Json person_json(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers, bool complete) {
+Json person_json(const PersonExperiment& experiment, const std::vector<ExperimentAnswer>& answers, bool complete) {
   const PersonResult result = person_result(experiment, answers);
   Json json{{"schema", "todbench-person-1"},
             {"task", to_string(experiment.task())},
@@ -358,7 +360,7 @@ Json person_json(const PersonExperiment& experiment, const std::vector<PersonAns
   return json;
 }
 
-std::string answers_csv(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers) {
+std::string answers_csv(const PersonExperiment& experiment, const std::vector<ExperimentAnswer>& answers) {
   std::string csv =
       "number,range_m,frequency_per_mrad,contrast_k,shown,answered,aspect,phase,draw,response_s,limit_ms,black_k,"
       "white_k\n";
@@ -380,7 +382,7 @@ std::string answers_csv(const PersonExperiment& experiment, const std::vector<Pe
 
 }  // namespace
 
-PersonResult person_result(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers) {
+PersonResult person_result(const PersonExperiment& experiment, const std::vector<ExperimentAnswer>& answers) {
   const auto right = right_by_condition(experiment, answers);
   const std::size_t alternatives = experiment.alternatives().size();
   PersonResult out;
@@ -401,7 +403,7 @@ PersonResult person_result(const PersonExperiment& experiment, const std::vector
     return out;
   }
   if (yes_or_no(experiment)) out.false_alarms = false_alarms_of(experiment, answers);
-  // The contrasts of a frequency, from the highest: its inverse rises as a range does.
+  // Contrasts of a frequency from the highest: the inverse increases like a range.
   for (std::size_t first = 0; first < right.size(); first += contrasts_of_bars) {
     std::vector<std::vector<bool>> own;
     at.clear();
@@ -422,7 +424,7 @@ PersonResult person_result(const PersonExperiment& experiment, const std::vector
 }
 
 Result<void> write_person(const std::filesystem::path& folder, const PersonExperiment& experiment,
-                          const std::vector<PersonAnswer>& answers, bool complete) {
+                          const std::vector<ExperimentAnswer>& answers, bool complete) {
   if (is_there(folder)) return fail(ErrorCode::invalid_input, folder.string() + ": exists");
   if (auto made = make_folder(folder); !made) return made;
   if (auto written = write_file_atomically(folder / "answers.csv", answers_csv(experiment, answers)); !written)

@@ -1,5 +1,5 @@
-// A person in place of the observer of `identify` or `mrtd`: the same frames, one after the other, each with the
-// alternatives that it can be.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A person in place of the observer of `identify` or `mrtd`: the same frames in sequence, each with its alternatives.
 #pragma once
 
 #include <cstdint>
@@ -17,25 +17,26 @@ namespace todbench {
 
 enum class PersonTask {
   identify,  ///< one picture: which target of the set is it?
-  bars       ///< by BarCriterion: which of two pictures has the four bars? Or yes or no of one: are they resolved?
+  bars  ///< by BarCriterion: which of two pictures has the four bars, or: are the bars of one picture resolved (yes or
+        ///< no)?
 };
 [[nodiscard]] std::string_view to_string(PersonTask task);
 
-/// What is the same for some of the trials.
+/// Properties that several trials share.
 struct PersonCondition {
   double range_m = 0, transmittance = 1;  ///< identify
   double frequency_per_mrad = 0;          ///< bars
   double contrast_k = 0;                  ///< of the bars, or the mean dT_RSS of the set behind the air
-  std::size_t place = 0;                  ///< of range or frequency in the task
+  std::size_t place = 0;                  ///< index of range or frequency in the task
 };
 
-/// One question. Everything that its picture is made of: the task with its seed makes it again.
+/// One question. The task with its seed reproduces its picture.
 struct PersonTrial {
   std::size_t condition = 0;
-  std::size_t truth = 0;   ///< of the alternatives; of `bars_resolved` 1 where nothing is shown
+  std::size_t truth = 0;   ///< index of the alternative; for `bars_resolved` 1 if no bars are shown
   std::size_t aspect = 0;  ///< identify
-  std::size_t phase = 0;   ///< bars; of identify the draw says it
-  std::uint64_t draw = 0;  ///< of noise; bars: of the left interval, the right one has the next
+  std::size_t phase = 0;   ///< bars; for identify it follows from the draw
+  std::uint64_t draw = 0;  ///< of noise; bars: of the left interval, the right one has the next number
 };
 
 /// Ends of the grey scale, kelvin above the background.
@@ -45,26 +46,25 @@ struct GreyScale {
 
 class PersonExperiment {
  public:
-  /// Every target `per_target` times at every range, each time from one of its sides and with noise of its own, all in
-  /// random order. Errors: experiment_of(), IdentificationFrames::of().
+  /// Shows every target `per_target` times at every range, each time from one of its aspects and with its own noise, in
+  /// random order. Errors: those of experiment_of() and IdentificationFrames::of().
   [[nodiscard]] static Result<PersonExperiment> of_set(const IdentificationStudyTask& task, int per_target);
-  /// By the criterion of the task. Six contrasts, `per_contrast` times each, from twice the threshold of an ideal
-  /// observer in steps of 1.6; of `bars_resolved` in steps of 2, and for every three frames of a contrast one with
-  /// nothing in it, on the same grey scale. Errors: BarFrames::of().
+  /// Uses the criterion of the task. Six contrasts, `per_contrast` times each, from twice the threshold of an ideal
+  /// observer in steps of 1.6. For `bars_resolved` in steps of 2, and for every three frames of a contrast one without
+  /// bars, on the same grey scale. Errors: those of BarFrames::of().
   [[nodiscard]] static Result<PersonExperiment> of_bars(const VirtualMrtdTask& task, int per_contrast);
 
   [[nodiscard]] PersonTask task() const { return task_; }
-  /// Of bars.
+  /// For bars only.
   [[nodiscard]] BarCriterion criterion() const { return criterion_; }
   [[nodiscard]] const std::vector<std::string>& alternatives() const { return alternatives_; }
   /// A small picture of every alternative, 0 black to 1 white.
   [[nodiscard]] const std::vector<cv::Mat1d>& icons() const { return icons_; }
   [[nodiscard]] const std::vector<PersonCondition>& conditions() const { return conditions_; }
   [[nodiscard]] const std::vector<PersonTrial>& trials() const { return trials_; }
-  /// What is shown, kelvin above the background; of bars both intervals, a strip of background between them, where
-  /// there are two.
+  /// The shown picture, kelvin above the background; for two intervals both, separated by a strip of background.
   [[nodiscard]] cv::Mat1f picture_k(const PersonTrial& trial) const;
-  /// The same for all trials of a condition: nothing depends on the answer.
+  /// The same for all trials of a condition: it does not depend on the answer.
   [[nodiscard]] GreyScale grey(const PersonTrial& trial) const { return grey_[trial.condition]; }
   /// Sensor, set or axis, seed, for the record.
   [[nodiscard]] const Json& description() const { return description_; }
@@ -85,36 +85,37 @@ class PersonExperiment {
   Json description_;
 };
 
-struct PersonAnswer {
+struct ExperimentAnswer {
   std::size_t answer = 0;
-  double response_s = 0;  ///< from showing to answering
+  double response_s = 0;  ///< from display to answer
   std::optional<int> limit_ms{};
 };
 
-/// Right answers of one condition, with Wilson's 95 % interval; of `bars_resolved` to frames with bars only.
+/// Right answers of one condition, with Wilson's 95 % interval; for `bars_resolved` only frames with bars.
 struct PersonShare {
   int shown = 0, right = 0;
   Interval ci95;
 };
 
-/// What the answers say. 75 % is where proportions, made monotone, pass it, linear in the logarithm; the interval by
-/// resampling the answers of every condition.
+/// Evaluation of the answers. 75 % is the crossing of the proportions, made monotone, linear in the logarithm; the
+/// interval by resampling the answers of every condition.
 struct PersonResult {
   std::vector<PersonShare> conditions;                   ///< in their order
   std::vector<std::vector<std::vector<int>>> confusion;  ///< [condition][shown][answered]
   SetCriterion r75_m;                                    ///< identify
-  /// Bars: of every frequency. Nothing by `bars_resolved` where bars were seen in more than a quarter of the frames
-  /// without any: whoever says yes to everything has no threshold.
+  /// Bars: of every frequency. For `bars_resolved` empty if bars were reported in more than a quarter of the frames
+  /// without bars: a person who always says yes has no threshold.
   std::vector<SetCriterion> thresholds_k;
-  /// `bars_resolved`: of every frequency, how many frames without bars there were and in how many bars were seen.
+  /// `bars_resolved`: for every frequency, the frames without bars and how many of them were answered with yes.
   std::vector<PersonShare> false_alarms;
 };
-/// Of the first answers.size() trials.
-[[nodiscard]] PersonResult person_result(const PersonExperiment& experiment, const std::vector<PersonAnswer>& answers);
+/// Evaluates the first answers.size() trials.
+[[nodiscard]] PersonResult person_result(const PersonExperiment& experiment,
+                                         const std::vector<ExperimentAnswer>& answers);
 
-/// person.json (the keys of `identify` or `mrtd` where they mean the same) and answers.csv into a new folder.
-/// `invalid_input` where it exists; `io` with the path.
+/// Writes person.json (with the keys of `identify` or `mrtd` of the same meaning) and answers.csv into a new folder.
+/// Errors: `invalid_input` if it exists; `io` with the path.
 [[nodiscard]] Result<void> write_person(const std::filesystem::path& folder, const PersonExperiment& experiment,
-                                        const std::vector<PersonAnswer>& answers, bool complete);
+                                        const std::vector<ExperimentAnswer>& answers, bool complete);
 
 }  // namespace todbench

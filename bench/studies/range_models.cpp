@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/range_models.h"
 
 #include <fmt/format.h>
@@ -9,17 +10,19 @@
 #include <string>
 #include <utility>
 
-#include "acquisition/core/normal.h"
+#include "acquisition/base/normal.h"
 
 namespace todbench {
 namespace {
 
-/// A model with everything but the range.
+/// A model prepared for all inputs except the range.
 struct Prepared {
   ModelRange head;
   CriterionTarget target;
   Criterion criterion;
-  ResolvedPerMrad resolved;  ///< empty: `head.reason` says why
+  ResolvedPerMrad resolved;  ///< empty: see `head.reason`
+  /// `resolved` with all thresholds of the curve divided by this factor; empty: use a target contrast multiplied by it.
+  std::function<ResolvedPerMrad(double factor)> with_thresholds_over{};
 };
 
 std::string formula_words(const RangeQuestion& question) {
@@ -27,12 +30,12 @@ std::string formula_words(const RangeQuestion& question) {
                      question.formula.eye_integration_s);
 }
 
-/// The contrast that a model asks its curve for.
+/// The contrast at which a model reads its curve.
 double contrast_for(RangeModel which, const RangeSources& sources, const RangeQuestion& question) {
   if (which == RangeModel::tod) return contrast_on_curve(sources.thresholds, question.delta_t_k);
   if (which != RangeModel::ttp) return std::abs(question.delta_t_k);
   const double on_display = std::abs(question.delta_t_k) / (2 * question.formula.scene_contrast_k);
-  return std::min(1.0, question.target_contrast.value_or(on_display));
+  return question.target_contrast.value_or(on_display);
 }
 
 Prepared prepared_tod(const RangeSources& sources, const RangeQuestion& question) {
@@ -55,12 +58,11 @@ Prepared prepared_tod(const RangeSources& sources, const RangeQuestion& question
   return model;
 }
 
-/// Curves of an axis each, or one for both.
+/// Returns one curve per axis, or one for both.
 Result<AxisCurves> cycle_curves(RangeModel which, const RangeSources& sources, const RangeQuestion& question) {
   const auto& given = which == RangeModel::acquire ? sources.mrtd : sources.mtdp;
   if (given) return AxisCurves{*given, *given};
-  if (!sources.sensor)
-    return fail(ErrorCode::invalid_input, "there is neither a curve nor a sensor to compute it from");
+  if (!sources.sensor) return fail(ErrorCode::invalid_input, "there is no curve, and no sensor to compute one from");
   return which == RangeModel::acquire ? mrtd_curves(*sources.sensor, question.formula)
                                       : mtdp_like_curves(*sources.sensor, question.formula);
 }
@@ -84,7 +86,8 @@ Prepared prepared_cycles(RangeModel which, const RangeSources& sources, const Ra
   }
   if (!acquire) {
     model.head.notes.emplace_back(
-        "no form of P is published for cycles of an MTDP: that of Johnson's cycles is assumed beside 50 %");
+        "no probability function is published for cycles of an MTDP: away from 50 % that of Johnson's cycles is "
+        "assumed");
   }
   const auto curves = cycle_curves(which, sources, question);
   if (!curves) {
@@ -108,15 +111,15 @@ Prepared prepared_ttp(const RangeSources& sources, const RangeQuestion& question
       .probability_form = std::string(to_string(ProbabilityForm::ttp_2004)),
       .reads = sources.ctf
                    ? "the given CTF"
-                   : fmt::format("CTF of eye, display and sensor, cut at Nyquist; {:g} cd/m2, a sample "
-                                 "under {:g} mrad, {:g} K for the mean luminance",
+                   : fmt::format("CTF of eye, display and sensor, cut at Nyquist; {:g} cd/m2, {:g} mrad "
+                                 "per sample at the eye, {:g} K for the mean luminance",
                                  viewing.eye.luminance_cd_m2, viewing.sample_at_eye_mrad, viewing.scene_contrast_k)};
-  double contrast = question.target_contrast.value_or(std::abs(question.delta_t_k) / (2 * viewing.scene_contrast_k));
+  const double contrast = contrast_for(RangeModel::ttp, sources, question);
   if (contrast > 1) {
-    model.head.notes.push_back(fmt::format("a contrast of {:.3g} does not fit on the display: 1 is taken", contrast));
-    contrast = 1;
+    model.head.notes.push_back(fmt::format(
+        "the contrast of {:.3g} at the target exceeds the display: after the air it is limited to 1", contrast));
   }
-  Result<LogLinearCurve> ctf = fail(ErrorCode::invalid_input, "there is neither a CTF nor a sensor to compute it from");
+  Result<LogLinearCurve> ctf = fail(ErrorCode::invalid_input, "there is no CTF, and no sensor to compute one from");
   if (sources.ctf) {
     ctf = *sources.ctf;
   } else if (sources.sensor) {
@@ -126,15 +129,19 @@ Prepared prepared_ttp(const RangeSources& sources, const RangeQuestion& question
     model.head.reason = ctf.error().message;
     return model;
   }
-  if (sources.ctf && ctf->points().back().value < contrast) {
+  if (sources.ctf && ctf->points().back().value < std::min(1.0, contrast)) {
     model.head.notes.push_back(
-        fmt::format("the CTF ends at {:g} cycles/mrad below the target's contrast: nothing is "
-                    "counted beyond",
+        fmt::format("the CTF ends at {:g} cycles/mrad, below the target's contrast: higher "
+                    "frequencies are not counted",
                     ctf->points().back().frequency));
   }
   model.target = {question.size_m, contrast};
   model.criterion = {question.v50, ProbabilityForm::ttp_2004};
-  model.resolved = resolved_values(*std::move(ctf));
+  // The air reduces the contrast first, then the display clips it.
+  model.with_thresholds_over = [values = resolved_values(*std::move(ctf))](double factor) -> ResolvedPerMrad {
+    return [values, factor](double apparent) { return values(factor * std::min(1.0, apparent)); };
+  };
+  model.resolved = model.with_thresholds_over(1);
   return model;
 }
 
@@ -148,7 +155,7 @@ std::optional<double> range_at(const Prepared& model, const Transmittance& air, 
   return range_for_probability(model.resolved, model.target, air, model.criterion, probability).range_m;
 }
 
-/// Both sides of an interval with those of the air joined, in logarithms.
+/// Both ends of an interval combined with those of the air, in logarithms.
 Interval joined_with_air(const Prepared& model, const RangeQuestion& question, double r75, const Interval& of_curve) {
   if (question.extinction_u_percent <= 0) return of_curve;
   const double reach = 1.96 * question.extinction_u_percent / 100;
@@ -161,18 +168,21 @@ Interval joined_with_air(const Prepared& model, const RangeQuestion& question, d
   return {side(1 + reach, of_curve.low), side(1 - reach, of_curve.high)};
 }
 
-/// R75 with every threshold of the curve changed, which is the contrast changed the other way.
+/// R75 for changed thresholds of the curve, which equals the inverse change of the contrast.
 Interval interval_of_curve(const Prepared& model, const RangeQuestion& question) {
   const double factor = std::exp(normal_z95 * std::hypot(question.curve_u_percent, question.scale_u_percent) / 100);
   const auto changed = [&](double times) {
     Prepared other = model;
-    other.target.contrast *= times;
+    if (other.with_thresholds_over)
+      other.resolved = other.with_thresholds_over(times);
+    else
+      other.target.contrast *= times;
     return range_at(other, question.air.air, 0.75);
   };
   return {changed(1 / factor), changed(factor)};
 }
 
-/// Every frequency of the curve is that of the pixel's angle, so the range goes with one over it.
+/// All frequencies of the curve scale with the pixel's angle, so the range is inversely proportional to it.
 Interval joined_with_ifov(const Interval& interval, double r75, double ifov_u_percent) {
   const auto side = [&](const std::optional<double>& bound, double direction) -> std::optional<double> {
     if (!bound || ifov_u_percent <= 0) return bound;
@@ -181,7 +191,7 @@ Interval joined_with_ifov(const Interval& interval, double r75, double ifov_u_pe
   return {side(interval.low, -1), side(interval.high, 1)};
 }
 
-/// TOD keeps the numbers of the one prediction that the rest of the program uses.
+/// TOD uses the same prediction as the rest of the program.
 Result<void> predict_tod(Prepared& model, const RangeSources& sources, const RangeQuestion& question) {
   RangeTask task{
       .size_m = question.size_m, .delta_t_k = question.delta_t_k, .m75 = question.m75, .air = question.air.air};
@@ -209,19 +219,20 @@ Result<void> answer(Prepared& model, const RangeSources& sources, const RangeQue
   model.head.r75_m = found.range_m;
   model.head.reason = found.reason;
   if (found.at_least_m) model.head.r75_ci95_m.low = found.at_least_m;
-  // The curve is a formula without an error of its own; what is stated of it and what the air does are known.
+  // The formula of the curve has no error of its own; the stated errors of the curve and of the air are known.
   const bool curve_known = std::hypot(question.curve_u_percent, question.scale_u_percent) > 0;
   if (found.range_m && (question.extinction_u_percent > 0 || curve_known || question.ifov_u_percent > 0)) {
     model.head.r75_ci95_m =
         joined_with_ifov(joined_with_air(model, question, *found.range_m, interval_of_curve(model, question)),
                          *found.range_m, question.ifov_u_percent);
     if (question.scale_u_percent > 0 || question.ifov_u_percent > 0) {
-      model.head.notes.push_back(
-          fmt::format("the interval has the session's budget: {:.2g} % of kelvin, {:.2g} % of the IFOV",
-                      question.scale_u_percent, question.ifov_u_percent));
+      model.head.notes.push_back(fmt::format(
+          "the interval includes the budget of the session: {:.2g} % of the temperature scale, {:.2g} % of the IFOV",
+          question.scale_u_percent, question.ifov_u_percent));
     }
     if (!curve_known && question.ifov_u_percent <= 0)
-      model.head.notes.emplace_back("the interval is that of the air alone: the curve has no stated uncertainty");
+      model.head.notes.emplace_back(
+          "the interval includes only the uncertainty of the air: the curve has no stated uncertainty");
   }
   return {};
 }
@@ -301,9 +312,9 @@ Result<std::vector<RangeGrid>> range_grid(std::span<const RangeModel> asked, con
   const std::size_t targets = axes.sizes_m.size() * axes.contrasts_k.size();
   if (targets == 0) return fail(ErrorCode::invalid_input, "a grid needs at least one size and one contrast");
   if (targets * std::max<std::size_t>(axes.ranges_m.size(), 1) > most)
-    return fail(ErrorCode::invalid_input, fmt::format("a grid has at most {} probabilities", most));
+    return fail(ErrorCode::invalid_input, fmt::format("a grid can have at most {} probabilities", most));
   for (const double range_m : axes.ranges_m) {
-    if (!(std::isfinite(range_m) && range_m > 0)) return fail(ErrorCode::invalid_input, "ranges are above 0 m");
+    if (!(std::isfinite(range_m) && range_m > 0)) return fail(ErrorCode::invalid_input, "ranges must be above 0 m");
   }
   std::vector<RangeGrid> grids;
   for (const RangeModel which : asked) {

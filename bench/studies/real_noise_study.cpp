@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/real_noise_study.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "hvs/observer/share_won.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tod/plate/test_pattern.h"
@@ -22,7 +23,7 @@ constexpr int smallest_index = -16, largest_index = 40;  ///< 0.29 to 21.7 pitch
 constexpr int phases_per_axis = 4;
 constexpr int alternatives = 4;
 
-/// Proportion correct of each block (or part of the picture), and how many windows it is from.
+/// Proportion correct of each block (or part of the picture), with its number of windows.
 struct BlockProportions {
   std::vector<double> correct, total;
   [[nodiscard]] double without(std::size_t left_out) const {
@@ -42,7 +43,7 @@ double transformed(double p) {
   return std::log((inside - 0.25) / (1 - inside));
 }
 
-/// A window of noise: its scores, the block it counts for, and internal noise of the observer to go with it.
+/// A window of noise: its scores, its block, and the observer's internal noise for it.
 struct Draw {
   std::vector<float> noise, internal;
   std::size_t block = 0;
@@ -59,7 +60,7 @@ class SizeStudy {
     }
   }
 
-  /// Windows at even distances in the list of all that lie side by side in the frames.
+  /// Draws windows at equal distances in the list of all windows side by side in the frames.
   void draw(const RecordedNoise& noise, const RealNoiseOptions& options, std::uint64_t index) {
     const int side = bank_->window_samples();
     const auto corners = usable_corners(noise, side);
@@ -171,12 +172,11 @@ class Ladder {
       slot->draw(noise_, options_, static_cast<std::uint64_t>(index - smallest_index));
     }
     if (!slot->drawn())
-      return fail(ErrorCode::invalid_input,
-                  "no window of the recording is free of pixels that are left out, at this size");
+      return fail(ErrorCode::invalid_input, "every window of this size in the recording contains excluded pixels");
     return slot.get();
   }
 
-  /// Where P rises through 75 %, the first crossing from above, straight between neighbouring sizes.
+  /// Crossing of P = 75 %, the first from above, linear between neighbouring sizes.
   [[nodiscard]] Result<SizeEstimate> s75(double noise, double internal) {
     std::optional<BlockProportions> above;
     for (int index = 10; index <= largest_index; index += 5) {
@@ -194,7 +194,7 @@ class Ladder {
       }
       break;
     }
-    return fail(ErrorCode::invalid_input, "the contrast has no threshold between 0.3 and 21 pitches");
+    return fail(ErrorCode::invalid_input, "at this contrast there is no threshold between 0.3 and 21 pitches");
   }
 
  private:
@@ -223,7 +223,7 @@ class Ladder {
   std::map<int, std::unique_ptr<SizeStudy>> sizes_;
 };
 
-/// Row sums and column sums of the template differences: what rows and columns that move as one do to the decisions.
+/// Uses row and column sums of the template differences: the effect of common row and column noise on the decisions.
 void explain(NoiseAcuity& point, const TemplateBank& bank, const ThreeDNoise& c) {
   double norm = 0, rows = 0, columns = 0;
   for (int a = 0; a < alternatives; ++a) {
@@ -264,7 +264,7 @@ Result<std::vector<NoiseAcuity>> real_noise_study(const RecordedNoise& noise, co
     NoiseAcuity point;
     point.contrast_over_noise = contrast;
     const double q = 1 / contrast;
-    // An observer of limited efficiency adds white noise of its own in proportion to the sensor's strength.
+    // An observer of limited efficiency adds white noise in proportion to the sensor's.
     const double internal =
         std::hypot(spec.internal_noise, q * std::sqrt(spec.sensor_noise_factor * spec.sensor_noise_factor - 1));
     const auto under_real = real.s75(q, internal);

@@ -1,4 +1,5 @@
-// The observer's acuity under the noise of a recording, beside its acuity under white noise of the same strength.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The observer's acuity under the noise of a recording, compared with that under white noise of the same strength.
 #pragma once
 
 #include <cstdint>
@@ -14,67 +15,66 @@
 
 namespace todbench {
 
-/// Noise that a recording holds: each pixel without its mean over a block of successive frames, which takes scene,
-/// fixed pattern and drift out. In the unit of the frames, and scaled so that the variance is that of single frames.
-/// Noise that remembers loses with the mean what is slower than a block; tod/measures/temporal_noise.h says how much
-/// that is.
+/// Noise of a recording: each pixel minus its mean over a block of successive frames, which removes scene, fixed
+/// pattern and drift. In the unit of the frames, scaled to the variance of single frames. For noise correlated in time,
+/// the mean also removes variation slower than a block; tod/measures/temporal_noise.h quantifies it.
 struct RecordedNoise {
   std::vector<cv::Mat1f> frames;
   std::vector<int> block_of_frame;
   int blocks = 0;
-  cv::Mat1b usable;           ///< as given, or 0 where the scene moved: temporal noise above twice the median pixel's
+  cv::Mat1b usable;           ///< as given, or 0 if the scene moved: temporal noise above twice the median pixel's
   double usable_share = 0;    ///< of the pixels
-  double temporal_noise = 0;  ///< standard deviation over usable pixels, of what a block holds
-  double correlation_x = 0, correlation_y = 0;  ///< of neighbours in a row and in a column, whole-frame changes removed
-  ThreeDNoise components;                       ///< of usable pixels; mean of the blocks' variances; fixed components
-                                                ///< contain the scene
+  double temporal_noise = 0;  ///< standard deviation over usable pixels, within a block
+  double correlation_x = 0, correlation_y = 0;  ///< of neighbours in a row and in a column, without whole-frame changes
+  /// Of usable pixels, mean of the blocks' variances; the fixed components contain the scene.
+  ThreeDNoise components;
 };
 
-/// Blocks of `block_frames` frames (at least 2; what is left over at the end is not used). `invalid_input`: fewer
-/// frames than that, frames of different sizes, or no noise at all. `usable`: the pixels to take
-/// (TemporalNoise::usable); empty: they are found here.
+/// Uses blocks of `block_frames` frames (at least 2); incomplete blocks are ignored. `usable`: the pixels to use
+/// (TemporalNoise::usable); empty: they are found here. Errors: `invalid_input` (fewer frames than a block, frames of
+/// different sizes, no noise).
 [[nodiscard]] Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames,
                                                    const cv::Mat1b& usable = {});
 
-/// White noise in the same frames and blocks, with the same standard deviation in every pixel.
+/// Returns white noise in the same frames and blocks, with the same standard deviation in every pixel.
 [[nodiscard]] RecordedNoise white_like(const RecordedNoise& noise, std::uint64_t seed);
 
 struct RealNoiseOptions {
   std::vector<double> contrast_over_noise{1.6, 3.3, 8, 28};  ///< 3.3: 0.23 K at a NETD of 0.07 K
-  /// Noise of a whole frame over that of successive frames (TemporalNoise::whole_to_successive): what the observer
-  /// suffers of noise that remembers.
+  /// Noise of a whole frame over that of successive frames (TemporalNoise::whole_to_successive): the effect of noise
+  /// correlated in time on the observer.
   double whole_to_successive = 1;
-  int draws = 2000;  ///< noise windows per size, spread over the recording; all phases and orientations share them
+  int draws = 2000;  ///< noise windows per size, spread over the recording and common to all phases and orientations
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
 
 struct SizeEstimate {
   double s75_pitch = 0;
-  double se_ln = 0;  ///< by leaving out one block at a time (jackknife)
+  double se_ln = 0;  ///< jackknife over the blocks
 };
 
-/// One contrast.
+/// Result at one contrast.
 struct NoiseAcuity {
   double contrast_over_noise = 0;
   SizeEstimate real, white;
   double acuity_ratio = 0;  ///< under real noise / under white noise of the same standard deviation
   Interval ratio_ci95;      ///< Student's t with blocks - 1 degrees of freedom
   /// Standard deviation of the noise in the differences of the templates, relative to white noise of the same strength:
-  /// what the observer's decisions see of it. Below 1 the noise disturbs less than its NETD says.
+  /// the part that affects the observer's decisions. Below 1 the noise disturbs less than its NETD suggests.
   double template_noise_ratio = 1;
   double predicted_ratio = 1;  ///< of acuities, from white noise of template_noise_ratio times the strength
-  /// Acuity under white noise of the strength of a whole frame / of that which successive frames show, the latter taken
-  /// as the unit of the contrast; nothing: the stronger noise leaves no threshold.
+  /// Acuity under white noise of the strength of a whole frame / of the strength shown by successive frames; the latter
+  /// is the unit of the contrast. Empty: the stronger noise leaves no threshold.
   std::optional<double> memory_acuity_ratio;
-  /// Shares of template_noise_ratio^2: pixel noise, rows, columns from the 3D components, and what they leave over,
-  /// which is noise correlated over neighbouring pixels (positive: low frequencies).
+  /// Shares of template_noise_ratio^2: pixel noise, rows and columns from the 3D components, and the remainder: noise
+  /// correlated over neighbouring pixels (positive: low frequencies).
   double pixel_share = 1, row_share = 0, column_share = 0, correlated_share = 0;
 };
 
-/// Degraded triangles of `sensor` (pitches of the recording's pixels) are added to noise windows of the recording; the
-/// observer answers. `invalid_input` when a contrast has no threshold or no window is free of moving scene; too few
-/// blocks (below 4) are replaced by 16 parts of the picture as what the intervals are made from.
+/// Adds degraded triangles of `sensor` (pitches of the recording's pixels) to noise windows of the recording; the
+/// observer answers. With fewer than 4 blocks, the intervals come from 16 parts of the picture instead. Errors:
+/// `invalid_input` if a contrast has no threshold or every window contains a moving scene.
 [[nodiscard]] Result<std::vector<NoiseAcuity>> real_noise_study(const RecordedNoise& noise, const SensorSpec& sensor,
                                                                 TemplateObserver& observer,
                                                                 const RealNoiseOptions& options);

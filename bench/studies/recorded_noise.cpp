@@ -1,21 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <opencv2/imgproc.hpp>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/studies/real_noise_study.h"
 
 namespace todbench {
 namespace {
 
-/// Each pixel without its mean over the block, with the variance of single frames.
+/// Adds each pixel minus its mean over the block, scaled to the variance of single frames.
 void add_residuals(std::span<const cv::Mat1f> block, int index, RecordedNoise& noise) {
   cv::Mat1d mean(block[0].size(), 0.0);
   for (const auto& frame : block) cv::accumulate(frame, mean);
   mean /= static_cast<double>(block.size());
   const double scale = std::sqrt(static_cast<double>(block.size()) / static_cast<double>(block.size() - 1));
-  // Of two frames the second residual is the first with its sign changed: it tells nothing more.
+  // With two frames the second residual is the negative of the first and adds no information.
   const std::size_t count = block.size() == 2 ? 1 : block.size();
   for (std::size_t k = 0; k < count; ++k) {
     cv::Mat1d residual;
@@ -33,8 +34,8 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// A pixel counts as moving scene when its noise is above twice the median pixel's. With a single residual frame there
-/// is no noise of a pixel; then none is left out.
+/// A pixel counts as moving scene if its noise is above twice the median pixel's. A single residual frame has no noise
+/// per pixel: then all pixels are used.
 void find_usable(RecordedNoise& noise, const cv::Mat1b& usable) {
   cv::Mat1d squares(noise.frames[0].size(), 0.0);
   for (const auto& frame : noise.frames) cv::accumulateSquare(frame, squares);
@@ -80,7 +81,7 @@ Result<ThreeDNoise> mean_components(std::span<const cv::Mat1f> frames, int block
   return sum;
 }
 
-/// The frames with pixels that are not usable held at the mean of the others in the block.
+/// Returns the frames with unusable pixels set to the mean of the others in the block.
 std::vector<cv::Mat1f> usable_alone(std::span<const cv::Mat1f> frames, const RecordedNoise& noise, int block_frames) {
   std::vector<cv::Mat1f> held;
   const auto size = static_cast<std::size_t>(block_frames);
@@ -96,9 +97,9 @@ std::vector<cv::Mat1f> usable_alone(std::span<const cv::Mat1f> frames, const Rec
   return held;
 }
 
-/// What the components of the usable pixels are where those of all were found with the others held, if these are spread
-/// over the picture: of a share p, effects of rows, columns and frames shrink to p of themselves, and what the pixels
-/// of one row differ by, p (1 - p) of its variance, is among the pixels.
+/// Converts the components of the frames with unusable pixels held to those of the usable pixels alone, if these are
+/// spread over the picture. With a share p, effects of rows, columns and frames shrink to p of themselves; p (1 - p) of
+/// their variance appears as variance between pixels.
 ThreeDNoise of_usable(ThreeDNoise held, double p) {
   const auto pixels = [&](double sum, std::initializer_list<double> effects) {
     double squares = sum * sum;
@@ -115,7 +116,7 @@ ThreeDNoise of_usable(ThreeDNoise held, double p) {
 
 Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames, const cv::Mat1b& usable) {
   if (block_frames < 2 || frames.size() < static_cast<std::size_t>(block_frames)) {
-    return fail(ErrorCode::invalid_input, "the recording holds " + std::to_string(frames.size()) +
+    return fail(ErrorCode::invalid_input, "the recording has " + std::to_string(frames.size()) +
                                               " frames; a block needs " + std::to_string(std::max(2, block_frames)));
   }
   RecordedNoise noise;
@@ -125,9 +126,9 @@ Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int bloc
     add_residuals(frames.subspan(static_cast<std::size_t>(b) * size, size), b, noise);
   }
   find_usable(noise, usable);
-  // Below a millionth of the level it is the rounding of the mean.
+  // Below a millionth of the level it is rounding of the mean.
   if (!(noise.temporal_noise > 1e-6 * cv::norm(frames[0], cv::NORM_INF)))
-    return fail(ErrorCode::invalid_input, "the recording holds no noise: all frames are the same");
+    return fail(ErrorCode::invalid_input, "the recording contains no noise: all frames are the same");
   find_correlations(noise);
   auto components = mean_components(usable_alone(frames, noise, block_frames), block_frames, noise.blocks);
   if (!components) return tl::unexpected(components.error());
@@ -142,7 +143,7 @@ RecordedNoise white_like(const RecordedNoise& noise, std::uint64_t seed) {
   for (auto& frame : white.frames) {
     cv::Mat1f drawn(frame.size());
     stream.sub(index++).fill_normal(std::span(drawn.ptr<float>(), drawn.total()));
-    // A picture of its own: assigning the expression would write into the pixels shared with `noise`.
+    // Needs a new matrix: assigning the expression would write into the pixels shared with `noise`.
     const cv::Mat1f scaled = drawn * noise.temporal_noise;
     frame = scaled;
   }

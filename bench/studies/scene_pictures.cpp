@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/scene_pictures.h"
 
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ SensorPlan with_decision(SensorPlan plan, Effect effect, Decision decision) {
   return plan;
 }
 
-/// Side of the shown square in pitches, even.
+/// Side of the displayed square in pitches, even.
 int field_of(const ScenePicturesTask& task, const SensorSpec& spec) {
   const int most = std::max(2, std::min(spec.width, spec.height) / 2 * 2);
   if (task.field_pitch > 0) return std::min(task.field_pitch + task.field_pitch % 2, most);
@@ -39,13 +40,13 @@ int field_of(const ScenePicturesTask& task, const SensorSpec& spec) {
   return std::min(2 * static_cast<int>(std::ceil(std::clamp(pitches, 16.0, 1e6) / 2)), most);
 }
 
-/// The middle `field` pitches of a picture of all detectors.
+/// The central `field` pitches of a picture of all detectors.
 cv::Rect field_rect(const SensorSpec& spec, int field, int per_pitch) {
   return {(spec.width - field) / 2 * per_pitch, (spec.height - field) / 2 * per_pitch, field * per_pitch,
           field * per_pitch};
 }
 
-/// The scene alone on a fine grid: polygons as means over its cells, pictures by the nearest element.
+/// Draws the scene alone on a fine grid: polygons as means over its cells, pictures by the nearest element.
 cv::Mat1d bare_scene(const ScenePicturesTask& task, const SensorSpec& fine, const RadianceScale& scale,
                      const SceneView& view, cv::Size size) {
   if (!task.scene.picture) return SceneImager::means(edges_in_samples(task.scene, scale, fine, view, size), size);
@@ -72,7 +73,7 @@ cv::Mat1f as_float(const cv::Mat1d& picture, double factor) {
   return out;
 }
 
-/// Largest contrast that matters: that of the target, or the largest of the scene.
+/// Contrast of the target, or the largest of the scene.
 double contrast_of(const std::optional<TargetSignature>& signature, const cv::Mat1d& signal) {
   if (signature && signature->dt_rss_k() > 0) return signature->dt_rss_k();
   double low = 0, high = 0;
@@ -88,12 +89,11 @@ EffectPlan planned(const ScenePicturesTask& task, double contrast_k) {
   }
   EffectPlan all;
   all.plan = full_plan(task.sensor, task.effects.skip, task.effects.force);
-  all.warnings.push_back(
-      fmt::format("at {:.3g} K no size of triangle has a threshold: every effect is simulated", contrast_k));
+  all.warnings.push_back(fmt::format("at {:.3g} K there is no threshold size: every effect is simulated", contrast_k));
   return all;
 }
 
-/// What the samples see, exposure by exposure where the air lets them dance.
+/// The signal of the samples, exposure by exposure if the air moves the image.
 Result<cv::Mat1d> danced_signal_k(const SceneImager& imager, const SensorSpec& spec, const ScenePicturesTask& task,
                                   const RadianceScale& scale, SceneView view, cv::Size size,
                                   const std::vector<cv::Point2d>& displacements_pitch) {
@@ -115,15 +115,15 @@ std::vector<AirDecision> air_decisions(const ScenePicturesTask& task, const Scen
   const bool thin = lost_percent == 0;
   decisions.push_back(
       {"transmittance", thin ? Decision::skip : Decision::simulate,
-       thin ? "the air takes nothing of the contrast"
+       thin ? "the air does not reduce the contrast"
             : fmt::format("{:.3g} % of the contrast is lost over {:g} m", lost_percent, task.view.range_m)});
   const bool clipped = reaches_an_end(task.sensor, out.apparent_dt_k, out.background_k);
   decisions.push_back(
       {"path_radiance", level_shift_k != 0 || clipped ? Decision::simulate : Decision::skip,
        level_shift_k != 0
-           ? fmt::format("moves scene and background alike by {:.3g} K, which places them among the counts{}",
-                         level_shift_k, clipped ? "; the contrast reaches an end of them" : "")
-           : "the path adds what it takes of the background: it drops out of the contrast"});
+           ? fmt::format("shifts scene and background by the same {:.3g} K, which sets their level in counts{}",
+                         level_shift_k, clipped ? "; the contrast reaches an end of the counts" : "")
+           : "the path adds as much radiance as it takes from the background: the contrast does not change"});
   for (const auto& d : out.effects.plan.decisions) {
     if (is_of_air(d.effect)) decisions.push_back({std::string(to_string(d.effect)), d.decision, d.reason});
   }
@@ -149,10 +149,10 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
                             task.sensor.scene_temperature_k};
   if (auto fine = validate(task.scene); !fine) return tl::unexpected(fine.error());
-  if (!(task.view.range_m > 0)) return fail(ErrorCode::invalid_input, "a range is above 0 m");
+  if (!(task.view.range_m > 0)) return fail(ErrorCode::invalid_input, "the range must be above 0 m");
   const auto tau = task.air.air.at(task.view.range_m);
   if (!tau) {
-    return fail(ErrorCode::invalid_input, fmt::format("the air's table ends at {:g} m: nothing is known of {:g} m",
+    return fail(ErrorCode::invalid_input, fmt::format("the air's table ends at {:g} m and does not cover {:g} m",
                                                       task.air.air.end_m(), task.view.range_m));
   }
   ScenePictures out;
@@ -163,7 +163,7 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   const double seen = *tau * radiance + path_radiance(scale.band, air_k, *tau);
   out.background_k = scale.calibration_k + scale.kelvin(seen - band_radiance(scale.band, scale.calibration_k));
 
-  // At the contrast that is left; the scene is imaged with every effect that the plan keeps.
+  // Planned for the contrast behind the air; the scene is imaged with every planned effect.
   cv::Mat1d levels;
   if (task.scene.picture) {
     levels = picture_levels_k(task.scene, scale);
@@ -172,7 +172,7 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   }
   out.apparent_dt_k = *tau * contrast_of(out.signature, levels);
   out.effects = planned(task, out.apparent_dt_k);
-  if (distorts(task.sensor)) out.effects.warnings.emplace_back("the scene is drawn without the distortion of the lens");
+  if (distorts(task.sensor)) out.effects.warnings.emplace_back("the pictures do not show the distortion of the lens");
   out.air = air_decisions(task, out, scale.kelvin(seen - radiance));
   out.turbulence = turbulence_seen(task.sensor);
   const SensorPlan& plan = out.effects.plan;
@@ -189,14 +189,14 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   const int field = field_of(task, spec);
   const int n = spec.samples_per_pitch();
   const cv::Rect samples = field_rect(spec, field, n);
-  // The same place on a fine grid: cells of an even number to a pitch.
+  // The same place on a fine grid, with an even number of cells per pitch.
   const int fine_per_pitch = std::clamp(1024 / field / 2 * 2, 2, 16);
   SensorSpec fine = spec;
   fine.microscan = fine_per_pitch;
   fine.super_resolution_frames = 0;
   const cv::Size fine_size(field * fine_per_pitch, field * fine_per_pitch);
   SceneView fine_view = task.view;
-  // The middle of the shown field against that of the frame.
+  // Centre of the displayed field relative to that of the frame.
   fine_view.centre_pitch += cv::Point2d((spec.width - field) % 2, (spec.height - field) % 2) / 2;
   const auto filtered_scene = [&](const SensorPlan& filters) {
     return danced_signal_k(SceneImager(fine, filters, task.accuracy), fine, task, scale, fine_view, fine_size,
@@ -217,24 +217,24 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   cv::resize(out.frame(samples), shown, {}, display_factor, display_factor, cv::INTER_NEAREST);
   cv::GaussianBlur(shown, seen_by_observer, {}, task.observer.blur_sigma_samples * display_factor, 0,
                    cv::BORDER_REFLECT_101);
-  const std::string air_note = fmt::format("behind {:.0f} m of air, transmittance {:.3f}", task.view.range_m, *tau);
+  const std::string air_note = fmt::format("after {:.0f} m of air, transmittance {:.3f}", task.view.range_m, *tau);
   out.stages = {
       {"1-scene", "At the sensor", air_note, as_float(bare_scene(task, fine, scale, fine_view, fine_size), *tau),
        static_cast<double>(fine_per_pitch)},
       {"2-optics", "Behind the optics",
-       plan.simulates(Effect::turbulence) ? "turbulence of the air, diffraction, and aberration where it matters"
-                                          : "diffraction, and aberration where it matters",
+       plan.simulates(Effect::turbulence) ? "turbulence, diffraction, and aberration if it is simulated"
+                                          : "diffraction, and aberration if it is simulated",
        as_float(*behind_optics, *tau), static_cast<double>(fine_per_pitch)},
-      {"3-detector", "On the detectors", "the mean over the sensitive area round every place",
+      {"3-detector", "On the detectors", "mean over the sensitive area around each position",
        as_float(*behind_detector, *tau), static_cast<double>(fine_per_pitch)},
-      {"4-sampled", "Sampled", fmt::format("{} {} a pitch and axis", n, n == 1 ? "sample" : "samples"),
+      {"4-sampled", "Sampled", fmt::format("{} {} per pitch and axis", n, n == 1 ? "sample" : "samples"),
        unit(samples).clone(), static_cast<double>(n)},
       {"5-noise", "With noise",
-       fmt::format("temporal noise {:.3g} K a sample, and what else the sensor has", spec.netd_k),
+       fmt::format("temporal noise of {:.3g} K per sample and the other noise of the sensor", spec.netd_k),
        noisy(samples).clone(), static_cast<double>(n)},
-      {"6-display", "On the display", "in whole counts, as the display makes a picture of samples", shown,
+      {"6-display", "On the display", "in whole counts, samples reconstructed by the display", shown,
        static_cast<double>(n * display_factor)},
-      {"7-observer", "As the observer's filter sees it",
+      {"7-observer", "After the observer's filter",
        fmt::format("blur of display and eye, sigma {:g} samples", task.observer.blur_sigma_samples), seen_by_observer,
        static_cast<double>(n * display_factor)}};
   double low = 0, high = 0;

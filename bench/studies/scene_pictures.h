@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A scene on its way through air, camera and eye: the picture after every stage.
 #pragma once
 
@@ -6,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/accuracy.h"
+#include "acquisition/base/accuracy.h"
 #include "bench/plan/atmospheres.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/atmosphere/turbulence.h"
@@ -25,10 +26,10 @@ struct ScenePicturesTask {
   Accuracy accuracy{};
   EffectPlannerOptions effects{};
   std::uint64_t seed = 1;
-  int field_pitch = 0;  ///< side of the square that is shown, in pitches; 0: the target with room round it
+  int field_pitch = 0;  ///< side of the displayed square, in pitches; 0: the target with a margin
 };
 
-/// One stage. All of a task show the same field.
+/// One stage. All stages of a task show the same field.
 struct SceneStage {
   std::string name;         ///< of its files: "1-scene"
   std::string title, note;  ///< for people
@@ -36,45 +37,45 @@ struct SceneStage {
   double pixels_per_pitch = 1;
 };
 
-/// What of the scene and its air was simulated, and why.
+/// Decision of the planner about one part of scene and air, with its reason.
 struct AirDecision {
   std::string name;
   Decision decision = Decision::simulate;
   std::string reason;
 };
 
-/// Effects that are the air's: their decisions stand among those of the air.
+/// Effects of the air: their decisions are listed with those of the air.
 [[nodiscard]] constexpr bool is_of_air(Effect effect) {
   return effect == Effect::turbulence || effect == Effect::image_dance;
 }
 
-/// What turbulence does before this camera.
+/// Effect of turbulence on this camera.
 struct TurbulenceSeen {
   TurbulentPath path{};
-  double r0_m = 0;                             ///< Fried's coherence diameter, spherical wave
+  double r0_m = 0;                             ///< coherence diameter, spherical wave (Fried 1966)
   double mtf_at_nyquist = 1;                   ///< long exposure, at the Nyquist frequency of the samples
-  double tilt_sd_mrad = 0, tilt_sd_pitch = 0;  ///< of the dance of short frames, per axis; part of the long exposure
+  double tilt_sd_mrad = 0, tilt_sd_pitch = 0;  ///< image motion of short frames, per axis; part of the long exposure
 };
 
 struct ScenePictures {
   std::vector<SceneStage> stages;          ///< at the sensor, optics, detector, sampled, noise, display, observer
-  cv::Mat1f frame;                         ///< all of the camera's frame, as displayed
+  cv::Mat1f frame;                         ///< the camera's whole frame, as displayed
   double grey_low_k = 0, grey_high_k = 1;  ///< black and white of every picture, above the background
-  double background_k = 300;               ///< what the camera shows of the background: scene, air and one conversion
+  double background_k = 300;               ///< camera reading of the background: scene, air and one conversion
   double transmittance = 1;
   std::optional<TargetSignature> signature;  ///< before the air
-  double apparent_dt_k = 0;                  ///< contrast behind the air that effects were planned for
+  double apparent_dt_k = 0;                  ///< contrast behind the air, the input of the effect planner
   EffectPlan effects;
   std::vector<AirDecision> air;
-  std::optional<TurbulenceSeen> turbulence;  ///< nothing where there is none
+  std::optional<TurbulenceSeen> turbulence;  ///< empty if there is none
 };
 
-/// Stages 1 to 3 are drawn finer than the detectors, 4 and 5 a pixel a sample, 6 and 7 eight a sample. The effects that
-/// matter at the target's contrast are simulated; where no size has a threshold at it, all of them. `invalid_input`:
-/// a range beyond the air's table, and whatever scene_signal_k() refuses.
+/// Renders the stages. Stages 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, 6 and 7 eight per
+/// sample. The effects that matter at the target's contrast are simulated, or all of them if no size has a threshold at
+/// it. Errors: `invalid_input` (a range beyond the air's table), those of scene_signal_k().
 [[nodiscard]] Result<ScenePictures> scene_pictures(const ScenePicturesTask& task);
 
-/// 8 bits, black at low and white at high, larger by a whole factor until its longer side has `least_px`.
+/// Returns 8 bits, black at low and white at high, enlarged by an integer factor until the longer side has `least_px`.
 [[nodiscard]] cv::Mat1b grey_picture(const cv::Mat1f& kelvin, double low_k, double high_k, int least_px);
 
 }  // namespace todbench

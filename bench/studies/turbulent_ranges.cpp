@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/studies/turbulent_ranges.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ std::optional<double> simulated_s75_pitch(const SensorSpec& sensor, TemplateObse
   return survey.outlooks.front().s75_pitch;
 }
 
-/// Thresholds rise as the transfer falls, up to the frequency at which nothing is left.
+/// Thresholds rise with the inverse of the transfer function, up to the frequency at which it is zero.
 Result<std::optional<LogLinearCurve>> blurred(const std::optional<LogLinearCurve>& curve, const TurbulentPath& path) {
   if (!curve) return std::optional<LogLinearCurve>();
   std::vector<CurvePoint> points;
@@ -33,7 +34,7 @@ Result<std::optional<LogLinearCurve>> blurred(const std::optional<LogLinearCurve
     if (!std::isfinite(value)) break;
     points.push_back({point.frequency, value});
   }
-  auto out = LogLinearCurve::of(points, "curve behind turbulence");
+  auto out = LogLinearCurve::of(points, "curve with turbulence");
   if (!out) return tl::unexpected(out.error());
   return std::optional(*std::move(out));
 }
@@ -43,7 +44,7 @@ RangeModel model_named(const std::string& name) {
                        [&](RangeModel model) { return to_string(model) == name; });
 }
 
-/// P at the ranges of a curve, linear in the path between the two nearest of those for which curves are computed.
+/// P at the ranges of a curve, linear in the path between the two nearest computed paths.
 Result<std::vector<ModelRangePoint>> probabilities_behind(RangeModel which, const TurbulentSources& sources,
                                                           const RangeQuestion& question,
                                                           const std::vector<double>& ranges_m) {
@@ -71,7 +72,8 @@ Result<std::vector<ModelRangePoint>> probabilities_behind(RangeModel which, cons
 Result<TurbulentSources> TurbulentSources::of(RangeSources still, const std::optional<TemplateObserverSpec>& observer,
                                               double cn2, double longest_m) {
   if (!still.sensor)
-    return fail(ErrorCode::invalid_input, "turbulence blurs by the sensor's pitch: a sensor is needed");
+    return fail(ErrorCode::invalid_input,
+                "turbulence needs a sensor, because its blur is computed in units of the sensor's pitch");
   if (!(cn2 > 0) || !(longest_m > 0)) return fail(ErrorCode::invalid_input, "Cn2 and the path must be above 0");
   TurbulentSources out;
   out.still_ = std::move(still);
@@ -104,7 +106,7 @@ SensorSpec TurbulentSources::sensor_at(double path_m) const {
 
 std::optional<double> TurbulentSources::ln_factor(double delta_t_k, double path_m) const {
   if (path_m == 0 || leaves_tod_) return 0;
-  // The contrast of the table nearest to it: those of a curve and its twin differ by the scale of the camera.
+  // Uses the nearest contrast of the table: those of a curve and its twin differ by the scale of the camera.
   const auto nearest = std::min_element(ln_factors_.begin(), ln_factors_.end(), [&](const auto& a, const auto& b) {
     return std::abs(std::log(a.first / delta_t_k)) < std::abs(std::log(b.first / delta_t_k));
   });
@@ -118,7 +120,7 @@ std::optional<double> TurbulentSources::ln_factor(double delta_t_k, double path_
     before_m = paths_m_[i];
     before = here;
   }
-  // Rounding of the longest path; nothing is known beyond it.
+  // Tolerates rounding of the longest path; longer paths are unknown.
   return path_m <= longest_m_ * (1 + 1e-9) ? before : std::nullopt;
 }
 
@@ -141,7 +143,7 @@ RangeSources TurbulentSources::at(double path_m) const {
   if (!(path_m > 0)) return still_;
   RangeSources out{.thresholds = thresholds_at(still_.thresholds, path_m), .sensor = sensor_at(path_m)};
   const auto path = turbulent_path(*out.sensor);
-  // A curve of which fewer than two points are left is none: the model then has no sensor to fall back on.
+  // A curve with fewer than two remaining points is absent: the model then has no sensor to fall back on.
   const auto put = [&](const std::optional<LogLinearCurve>& from, std::optional<LogLinearCurve>& into) {
     if (!from) return;
     if (auto curve = blurred(from, *path)) into = *std::move(curve);
@@ -154,7 +156,7 @@ RangeSources TurbulentSources::at(double path_m) const {
 
 std::optional<double> self_consistent_range(double still_m,
                                             const std::function<std::optional<double>(double path_m)>& range_behind) {
-  // f(R) - R falls from above 0 at 0 to below 0 at the range without turbulence: regula falsi after Illinois.
+  // f(R) - R falls from above 0 at 0 to below 0 at the range without turbulence: regula falsi, Illinois variant.
   double near = 0, far = still_m, above = still_m;
   const auto last = range_behind(far);
   if (!last) return std::nullopt;
@@ -185,7 +187,8 @@ std::optional<double> self_consistent_range(double still_m,
 
 TurbulenceDecision decide_turbulence(const SensorSpec& sensor, double cn2, const RangeQuestion& question,
                                      std::optional<double> still_r75_m, double tolerance_percent) {
-  if (!still_r75_m) return {true, 0, "simulated: without turbulence the TOD curve has no 75 % range to judge it at"};
+  if (!still_r75_m)
+    return {true, 0, "simulated: without turbulence the TOD curve has no 75 % range at which to judge it"};
   SensorSpec behind = sensor;
   behind.turbulence_cn2_m_minus_2_3 = cn2;
   behind.turbulence_path_m = *still_r75_m;
@@ -196,14 +199,14 @@ TurbulenceDecision decide_turbulence(const SensorSpec& sensor, double cn2, const
   out.reason =
       out.simulated
           ? fmt::format("simulated: it may change the acuity by {:.3g} % at {:.4g} m", out.bound_percent, *still_r75_m)
-          : fmt::format("left out of the TOD model: it changes the acuity by at most {:.2g} % at {:.4g} m",
+          : fmt::format("not simulated in the TOD model: it changes the acuity by at most {:.2g} % at {:.4g} m",
                         out.bound_percent, *still_r75_m);
   return out;
 }
 
 namespace {
 
-/// One model: its ranges each with the curve behind their own path.
+/// One model: each of its ranges with the curve behind its own path.
 Result<ModelRange> turbulent_model(RangeModel which, const TurbulentSources& sources, const RangeQuestion& question) {
   const auto behind = [&](double path_m) -> Result<ModelRange> {
     auto found = range_models(std::array{which}, sources.at(path_m), question);
@@ -225,7 +228,8 @@ Result<ModelRange> turbulent_model(RangeModel which, const TurbulentSources& sou
   if (!r75_m) {
     ModelRange none = *std::move(still);
     if (none.r75_m)
-      none.reason = fmt::format("behind the turbulence of {:.4g} m and less the model knows no range", *none.r75_m);
+      none.reason =
+          fmt::format("with the turbulence of a path of {:.4g} m or less the model has no range", *none.r75_m);
     none.r50_m.reset();
     none.r75_m.reset();
     none.r75_ci95_m = {};
@@ -283,7 +287,7 @@ Result<RangePrediction> turbulent_prediction(const TurbulentSources& sources, st
   };
   const auto r75_m = solved([](const RangePrediction& one) { return one.r75_m; });
   if (!r75_m) {
-    if (plain->r75_m) plain->reason = "behind the turbulence of the path the TOD curve knows no range";
+    if (plain->r75_m) plain->reason = "with the turbulence of the path the TOD curve has no range";
     plain->r75_m.reset();
     plain->r75_ci95_m = {};
     plain->curve.clear();

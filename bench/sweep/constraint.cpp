@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/constraint.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace todbench {
 
 using Values = std::function<std::optional<double>(std::string_view name)>;
 
-/// Truth is 1 or 0; NaN is what is not known and makes every comparison false.
+/// True is 1, false is 0; an unknown value is NaN and makes every comparison false.
 struct Constraint::Node {
   std::string operation;  ///< empty: a number or a name
   std::string name;
@@ -38,7 +39,7 @@ struct Constraint::Node {
   }
 };
 
-/// Recursive descent, each level of binding a function; parentheses are limited so that a hostile text ends.
+/// Recursive descent parser, one function per precedence level; the depth of parentheses is limited.
 class ConstraintParser {
  public:
   using Pointer = std::shared_ptr<const Constraint::Node>;
@@ -74,7 +75,7 @@ class ConstraintParser {
   }
   static bool in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
 
-  /// The operator of this level that comes next, taken.
+  /// Consumes the next operator of this level.
   std::string_view taken(std::size_t at_level) {
     skip_blanks();
     for (const std::string_view word : levels[at_level]) {
@@ -99,7 +100,7 @@ class ConstraintParser {
       node.left = left;
       node.right = level(at_level + 1);
       left = std::make_shared<const Constraint::Node>(std::move(node));
-      if (++operators_ > 1000) note("too long a condition");
+      if (++operators_ > 1000) note("the condition is too long");
     }
     return left;
   }

@@ -1,7 +1,6 @@
-// Tasks in processes side by side: what crashes or is killed takes no other task with it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs tasks in parallel processes: a crashed or killed task does not affect the others.
 #pragma once
-
-#include <sys/types.h>
 
 #include <cstddef>
 #include <functional>
@@ -9,28 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// Where a child's standard output goes.
-enum class ChildOutput { ours, nowhere };
-/// Starts a program by name or path with no signal blocked. `not_found` with the name.
-[[nodiscard]] Result<pid_t> spawned(std::vector<std::string> words, ChildOutput output);
-/// Its exit code, or 128 + the signal that ended it. `internal` where it is no child.
-[[nodiscard]] Result<int> ended(pid_t process);
-/// This program's file.
-[[nodiscard]] std::string own_program();
-
 struct ProcessPool {
   std::size_t tasks = 0, jobs = 1;
-  std::size_t chunk = 1;  ///< tasks a process
-  /// The command for tasks `first` to `last`, both included.
+  std::size_t chunk = 1;  ///< tasks per process
+  /// Returns the command for tasks `first` to `last`, both included.
   std::function<std::vector<std::string>(std::size_t first, std::size_t last)> command{};  ///< any thread
   std::function<void(std::size_t done)> on_progress{};  ///< any thread, one call at a time
 };
-/// Runs all tasks, `jobs` processes at a time, each awaited by a thread that sleeps until then; the worst exit code.
-/// When asked to stop it ends its children with SIGTERM, waits for them and returns 130.
+/// Runs all tasks in `jobs` parallel processes, each awaited by a sleeping thread. Returns the worst exit code. On a
+/// stop request it ends its children with SIGTERM, waits for them and returns 130.
 [[nodiscard]] Result<int> run_pool(const ProcessPool& pool, std::stop_token stop);
 
 }  // namespace todbench

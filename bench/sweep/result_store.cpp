@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/result_store.h"
 
 #include <fcntl.h>
@@ -22,7 +23,7 @@ namespace todbench {
 namespace {
 
 constexpr std::size_t tasks_a_folder = 1000;
-/// A lock of another host whose process cannot be asked.
+/// Age limit for a lock of another host, whose process cannot be queried.
 constexpr auto patience_with_hosts = std::chrono::hours(24);
 
 std::filesystem::path folder_of(const Sweep& sweep, std::size_t index) {
@@ -34,7 +35,7 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : "unknown";
 }
 
-/// This process as an element of a job that Slurm starts again when its node is lost or it is preempted.
+/// This process as an element of a Slurm job, which Slurm restarts after node failure or preemption.
 struct SlurmElement {
   std::string job;
   double restarts = 0;
@@ -49,8 +50,7 @@ std::optional<SlurmElement> slurm_element() {
   return SlurmElement{job, parse_number(variable("SLURM_RESTART_COUNT")).value_or(0)};
 }
 
-/// Whether the lock is of this very element before Slurm started it again: the process that held it is gone, on
-/// whatever host it was.
+/// Whether the lock belongs to this element before a restart by Slurm: the process that held it has ended, on any host.
 bool is_of_earlier_start(const std::vector<std::string>& lock) {
   const auto element = slurm_element();
   if (!element || lock.size() < 4) return false;
@@ -58,11 +58,11 @@ bool is_of_earlier_start(const std::vector<std::string>& lock) {
   return lock[2] == element->job && restarts && *restarts < element->restarts;
 }
 
-/// Held while a task runs; made with O_EXCL, which network file systems keep too.
+/// Held while a task runs; created with O_EXCL, which network file systems support too.
 class Lock {
  public:
   static std::optional<Lock> taken(const std::filesystem::path& file) {
-    const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
+    const int descriptor = ::open(file.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_WRONLY | O_CLOEXEC, 0644);
     if (descriptor < 0) return std::nullopt;
     std::string text = fmt::format("{}\n{}\n", host_name(), ::getpid());
     if (const auto element = slurm_element()) text += fmt::format("{}\n{}\n", element->job, element->restarts);
@@ -100,7 +100,7 @@ bool is_younger_than(const std::filesystem::path& file, std::chrono::seconds age
   return !problem && std::filesystem::file_time_type::clock::now() - written < age;
 }
 
-/// Whether this host runs the process; one that has ended and that nobody has waited for is not running.
+/// Whether this host runs the process; a zombie is not running.
 bool is_running(pid_t process) {
   if (::kill(process, 0) != 0 && errno != EPERM) return false;
   const auto stat = read_text_file(fmt::format("/proc/{}/stat", process));
@@ -108,13 +108,13 @@ bool is_running(pid_t process) {
   return name_end == std::string::npos || name_end + 2 >= stat->size() || (*stat)[name_end + 2] != 'Z';
 }
 
-/// Whether the one who wrote the lock may still be at work.
+/// Whether the owner of the lock may still be running.
 bool is_alive(const std::filesystem::path& lock) {
   const auto text = read_text_file(lock);
   if (!text) return false;
   const auto lines = lines_of_lock(*text);
   const auto process = lines.size() < 2 ? std::nullopt : parse_number(lines[1]);
-  // Just being written, or by a process that was killed then.
+  // Just being written, or its process was killed while writing.
   if (!process) return is_younger_than(lock, std::chrono::seconds(10));
   if (is_of_earlier_start(lines)) return false;
   if (lines[0] == host_name()) return is_running(static_cast<pid_t>(*process));
@@ -140,7 +140,7 @@ Json result_json(const RunnableSweep& runnable, const SweepTask& task, const Jso
           {"points", answer["points"]}};
 }
 
-/// Results of this index by another hash.
+/// Returns a result of this index with another hash.
 std::optional<std::string> foreign_result(const std::filesystem::path& folder, const SweepTask& task) {
   const std::string prefix = task.name.substr(0, task.name.find('-') + 1);
   std::error_code problem;
@@ -156,7 +156,7 @@ TaskOutcome failed(Error error) {
   return {.kind = TaskOutcome::Kind::failed, .error = std::move(error)};
 }
 
-/// The lock of the task; a stale one is taken away first.
+/// Takes the lock of the task, after removing a stale one.
 std::optional<Lock> lock_of(const std::filesystem::path& result) {
   const auto file = with_ending(result, ".lock");
   if (auto lock = Lock::taken(file)) return lock;
@@ -192,7 +192,7 @@ std::string SweepStatus::open_list() const {
 SweepStatus sweep_status(const Sweep& sweep) {
   SweepStatus status{std::vector<TaskState>(sweep.count(), TaskState::missing)};
   for (std::size_t begin = 0; begin < sweep.count(); begin += tasks_a_folder) {
-    // What stands in the folder by index: the name without its ending, and the endings.
+    // Content of the folder by index: the name without its extension, and the extensions.
     std::error_code problem;
     const auto folder = folder_of(sweep, begin);
     for (auto entry = std::filesystem::directory_iterator(folder, problem);
@@ -225,12 +225,12 @@ TaskOutcome run_and_store(const RunnableSweep& runnable, std::size_t index, std:
   if (auto made = make_folder(file.parent_path()); !made) return failed(made.error());
   if (const auto foreign = foreign_result(file.parent_path(), task)) {
     return failed({ErrorCode::invalid_input, file.parent_path().string() + "/" + *foreign +
-                                                 ": is the result of another sweep at this index; name another folder "
-                                                 "with results = \"...\" or remove it"});
+                                                 ": this result belongs to another sweep. Name another folder with "
+                                                 "results = \"...\" or remove the file"});
   }
   const auto lock = lock_of(file);
   if (!lock) return {.kind = TaskOutcome::Kind::locked};
-  // Between the look and the lock another process may have come to its end.
+  // Another process may have finished between the check and the lock.
   if (std::filesystem::exists(file, problem)) return {.kind = TaskOutcome::Kind::already_done};
   const auto answer = run_task(runnable, task, with_ending(file, ".scratch"), stop);
   const auto failure = with_ending(file, ".failed");

@@ -1,4 +1,5 @@
-// Results of tasks on disk: one file each, whole or not there; nothing is shared between tasks.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Results of tasks on disk: one file each, complete or absent; tasks share no files.
 #pragma once
 
 #include <chrono>
@@ -12,16 +13,16 @@
 
 namespace todbench {
 
-/// Where the file of a task is: a folder for each thousand, "RESULTS/000/i000123-HASH.json".
+/// Returns the path of a task's result: a folder for each thousand, "RESULTS/000/i000123-HASH.json".
 [[nodiscard]] std::filesystem::path result_file(const Sweep& sweep, const SweepTask& task);
 
-/// How a task stands, from the names of files alone.
+/// State of a task, from file names alone.
 enum class TaskState {
   missing,
-  done,     ///< its result is there
-  failed,   ///< "NAME.failed" says why; a new run tries again
-  running,  ///< "NAME.lock" of a process that is alive, or of another host within the last hours
-  stale,    ///< a lock that nobody holds any more
+  done,     ///< its result exists
+  failed,   ///< "NAME.failed" contains the reason; a new run tries again
+  running,  ///< "NAME.lock" of a live process, or of another host within the last hours
+  stale,    ///< a lock whose process has ended
   foreign,  ///< a result of the same index with another hash: of another sweep file
 };
 struct SweepStatus {
@@ -30,18 +31,18 @@ struct SweepStatus {
   /// "3,17-20": indices that are not done.
   [[nodiscard]] std::string open_list() const;
 };
-/// Reads folders, no files but locks.
+/// Reads folders, and no files except locks.
 [[nodiscard]] SweepStatus sweep_status(const Sweep& sweep);
-/// Why a task failed.
+/// Returns why a task failed.
 [[nodiscard]] std::string failure_of(const Sweep& sweep, std::size_t index);
 
-/// What came of one task.
+/// Outcome of one task.
 struct TaskOutcome {
   enum class Kind { done, already_done, failed, locked } kind = Kind::done;
   std::optional<Error> error{};
 };
-/// Runs a task unless its result is there: idempotent, and atomic (written beside and renamed). A failure is kept as a
-/// file. A result of the same index with another hash is refused with `invalid_input`. `interrupted` leaves nothing.
+/// Runs a task unless its result exists: idempotent, and atomic (written to a temporary file and renamed). A failure is
+/// stored as a file. Errors: `invalid_input` (same index, another hash); `interrupted`, which leaves no file.
 [[nodiscard]] TaskOutcome run_and_store(const RunnableSweep& runnable, std::size_t index, std::stop_token stop);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/schedulers.h"
 
 #include <fmt/format.h>
@@ -28,7 +29,7 @@ std::string range_of(const JobList& jobs, std::size_t job) {
   return fmt::format("--range {}-{}", first, last);
 }
 
-/// One thread a task: processes side by side win.
+/// One thread per task, because parallel processes are more efficient.
 constexpr std::string_view one_thread = "export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1\n";
 
 std::string parallel_text(const JobList& jobs) {
@@ -57,7 +58,7 @@ std::string snakemake_text(const JobList& jobs) {
 
 std::string make_text(const JobList& jobs) {
   std::string name = command(jobs);
-  // A dollar sign is make's own.
+  // Escapes the dollar sign for make.
   for (std::size_t i = 0; (i = name.find('$', i)) != std::string::npos; i += 2) name.insert(i, 1, '$');
   return fmt::format(
       "jobs := $(shell seq 0 {})\nall: $(jobs:%=sweep-jobs/%.done)\nsweep-jobs/%.done:\n\tmkdir -p sweep-jobs\n\t{} "
@@ -129,8 +130,9 @@ Result<std::vector<std::string>> site_options_from(std::string_view text, std::s
     while (!option.empty() && (option.front() == ' ' || option.front() == '\t')) option.remove_prefix(1);
     if (option.empty() || option.front() == '#') continue;
     if (option.front() != '-') {
-      return fail(ErrorCode::invalid_input, fmt::format("{}:{}: expected an option as in --partition=short, found '{}'",
-                                                        file, line, one_line(option)));
+      return fail(
+          ErrorCode::invalid_input,
+          fmt::format("{}:{}: expected an option such as --partition=short, found '{}'", file, line, one_line(option)));
     }
     options.emplace_back(option);
   }
@@ -148,7 +150,7 @@ Result<EnvironmentIndex> index_from_environment() {
     if (const auto value = whole(std::getenv(variable)); value && *value >= first)
       return EnvironmentIndex{variable, *value - first};
   }
-  return fail(ErrorCode::not_found, "no index in the environment");
+  return fail(ErrorCode::not_found, "the environment contains no task index");
 }
 
 }  // namespace todbench

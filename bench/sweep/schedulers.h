@@ -1,4 +1,5 @@
-// The task list of a sweep for what laboratories schedule with: text only; nothing is submitted here.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The task list of a sweep for job schedulers, as text; does not submit it.
 #pragma once
 
 #include <array>
@@ -7,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
@@ -17,28 +18,28 @@ inline constexpr std::array all_schedulers{Scheduler::parallel, Scheduler::slurm
 [[nodiscard]] std::string_view to_string(Scheduler scheduler);
 
 struct JobList {
-  std::string program = "todbench";  ///< as it is called where the tasks run
-  std::string sweep_file;            ///< as it is called there
+  std::string program = "todbench";  ///< its command where the tasks run
+  std::string sweep_file;            ///< its path where the tasks run
   std::size_t tasks = 0;
-  std::size_t chunk = 1;  ///< tasks a job
+  std::size_t chunk = 1;  ///< tasks per job
   [[nodiscard]] std::size_t jobs() const { return (tasks + chunk - 1) / chunk; }
 };
 
-/// GNU parallel: a command a line, always all of them and in one order, as `--resume` compares line numbers; Slurm and
-/// Grid Engine: a script of an array job; Snakemake and make: a file of rules. `site_options`: lines of the site, put
-/// in front with the scheduler's own mark ("#SBATCH --partition=short").
+/// Returns the job text. GNU parallel: one command per line, always all of them in the same order, because `--resume`
+/// compares line numbers. Slurm and Grid Engine: a script of an array job. Snakemake and make: a file of rules.
+/// `site_options`: options of the site, placed in front with the scheduler's prefix ("#SBATCH --partition=short").
 [[nodiscard]] std::string job_text(Scheduler scheduler, const JobList& jobs,
                                    const std::vector<std::string>& site_options);
 
-/// Lines of a file of site options: one option a line, "--partition=short"; empty lines and remarks (#) are skipped.
-/// `invalid_input` for a line that is no option.
+/// Reads a file of site options: one option per line, "--partition=short"; empty lines and comments (#) are skipped.
+/// Errors: `invalid_input` for a line that is not an option.
 [[nodiscard]] Result<std::vector<std::string>> site_options_from(std::string_view text, std::string_view file);
 
-/// A word for a shell, in single quotes where it needs them.
+/// Returns a word for a shell, in single quotes if necessary.
 [[nodiscard]] std::string shell_word(std::string_view text);
 
-/// The index of a job from the environment of a scheduler: SLURM_ARRAY_TASK_ID, SGE_TASK_ID (from 1; "undefined"
-/// outside arrays), PBS_ARRAY_INDEX, PARALLEL_SEQ (from 1), OMPI_COMM_WORLD_RANK, in this order; from 0 here.
+/// Index of a job from the environment of a scheduler: SLURM_ARRAY_TASK_ID, SGE_TASK_ID (from 1; "undefined" outside
+/// arrays), PBS_ARRAY_INDEX, PARALLEL_SEQ (from 1), OMPI_COMM_WORLD_RANK, in this order. Starts at 0 here.
 struct EnvironmentIndex {
   std::string variable;
   std::size_t index = 0;

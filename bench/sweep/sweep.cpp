@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/sweep.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 constexpr std::size_t most_combinations = 10'000'000;
 
-/// The parameters in the order of their names, so that the order of the file decides nothing.
+/// Sorts the parameters by name, so that the order in the file has no effect.
 std::string canonical(std::vector<SweepParameter> parameters) {
   std::sort(parameters.begin(), parameters.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
   std::string text;
@@ -26,7 +27,7 @@ std::string canonical(std::vector<SweepParameter> parameters) {
   return text;
 }
 
-/// 53 bits of a hash, which JSON and every plan can hold.
+/// Takes 53 bits of a hash, which JSON and every plan can store.
 std::uint64_t number_from(const std::string& hexadecimal) {
   return std::stoull(hexadecimal.substr(0, 13), nullptr, 16);
 }
@@ -50,8 +51,7 @@ std::vector<std::vector<double>> sobol(std::size_t n, std::size_t dimensions, st
   std::vector<std::vector<double>> rows(n, std::vector<double>(dimensions));
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t d = 0; d < dimensions; ++d) {
-      // The engine leaves out the origin, without which 2^m draws are no net: one cell would be empty, another have
-      // two.
+      // The engine omits the origin. Without it 2^m draws are not a net: one cell would be empty, another have two.
       const std::uint64_t bits = i == 0 ? 0 : engine() >> 11;
       const auto shift = static_cast<std::uint64_t>(std::ldexp(shifts.uniform(d), 53));
       rows[i][d] = std::clamp(std::ldexp(static_cast<double>(bits ^ shift), -53), 1e-16, 1 - 1e-16);
@@ -60,7 +60,7 @@ std::vector<std::vector<double>> sobol(std::size_t n, std::size_t dimensions, st
   return rows;
 }
 
-/// The members of every draw one after the other, so that more draws are added at the end.
+/// Lists the members of every draw in sequence, so that more draws are added at the end.
 std::vector<std::vector<double>> total_design(std::size_t n, std::size_t dimensions, std::uint64_t seed) {
   std::vector<std::vector<double>> rows;
   rows.reserve(n * (dimensions + 2));
@@ -100,7 +100,7 @@ void Sweep::draw() {
   for (auto& row : sample_) {
     for (std::size_t d = 0; d < row.size(); ++d) {
       const auto& [key, low, high] = file_.sample[d];
-      // Ten digits: the text of a parameter is what a task is known by.
+      // Ten digits: the text of a parameter identifies the task.
       row[d] = parse_number(fmt::format("{:.10g}", low + (high - low) * row[d])).value_or(low);
     }
   }
@@ -149,7 +149,7 @@ Result<Sweep> Sweep::expand(SweepFile file, std::string fingerprint, const Numbe
       const bool known = std::find(keys.begin(), keys.end(), name) != keys.end() || number_of(name).has_value();
       if (!known)
         return fail(ErrorCode::invalid_input,
-                    fmt::format("condition '{}': '{}' is no number that is known", constraint.text(), one_line(name)));
+                    fmt::format("condition '{}': '{}' is not a known number", constraint.text(), one_line(name)));
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -168,7 +168,7 @@ Result<Sweep> Sweep::expand(SweepFile file, std::string fingerprint, const Numbe
     if (accepted) sweep.combinations_.push_back(i);
   }
   sweep.refused_ = count - sweep.combinations_.size();
-  if (sweep.combinations_.empty()) return fail(ErrorCode::invalid_input, "every combination is refused by a condition");
+  if (sweep.combinations_.empty()) return fail(ErrorCode::invalid_input, "the conditions reject every combination");
   sweep.hash_ = sha256_of(fmt::format("{}seed={} paired={}\n", sweep.base_text_, sweep.file_.seed, sweep.file_.paired));
   return sweep;
 }

@@ -1,4 +1,5 @@
-// A sweep expanded: a task is a pure function of (file, index).
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An expanded sweep: a task is a pure function of (file, index).
 #pragma once
 
 #include <cstdint>
@@ -8,41 +9,41 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/sweep/sweep_file.h"
 
 namespace todbench {
 
-/// One task. Parameters are those that vary, in the order of the file; the base comes beside.
+/// One task. `parameters` are those that vary, in the order of the file, without the base.
 struct SweepTask {
   std::size_t index = 0;
   std::vector<SweepParameter> parameters;
   std::size_t repeat = 0;
   std::uint64_t seed = 1;  ///< of all randomness of the task
-  std::string name;        ///< "i000123-HASH": index and hash of everything that decides the result
+  std::string name;        ///< "i000123-HASH": index and hash of all inputs that affect the result
 };
 
-/// A number that a name has where a task does not say it: the sensor's.
+/// Returns the number of a name that a task does not set: that of the sensor.
 using NumberOfName = std::function<std::optional<double>(std::string_view name)>;
 
-/// All tasks of a sweep. Seeds depend on content (the sweep's seed, the parameters, the repeat), not on the index: a
-/// value that is added or moved leaves the numbers of every other task as they were. With `paired` they depend on the
-/// repeat alone. Immutable, thread-safe.
+/// All tasks of a sweep. Seeds depend on content (the sweep's seed, the parameters, the repeat), not on the index:
+/// adding or moving a value keeps the numbers of all other tasks. With `paired` they depend on the repeat alone.
+/// Immutable, thread-safe.
 class Sweep {
  public:
-  /// `fingerprint`: whatever else decides results (contents of files that are named); part of the hash of a task.
-  /// `invalid_input`: nothing to do, more than 10 million combinations, a condition whose name nobody knows.
+  /// `fingerprint`: other inputs that affect results (contents of named files), part of the hash of a task. Errors:
+  /// `invalid_input` (no tasks, more than 10 million combinations, an unknown name in a condition).
   [[nodiscard]] static Result<Sweep> expand(SweepFile file, std::string fingerprint, const NumberOfName& number_of);
 
   [[nodiscard]] const SweepFile& file() const { return file_; }
   [[nodiscard]] std::size_t count() const { return combinations_.size() * file_.repeats; }
   /// Precondition: index < count().
   [[nodiscard]] SweepTask task(std::size_t index) const;
-  /// Combinations that a condition refuses.
+  /// Combinations rejected by a condition.
   [[nodiscard]] std::size_t refused() const { return refused_; }
-  /// Of everything that decides any result of this sweep.
+  /// Hash of all inputs that affect any result of this sweep.
   [[nodiscard]] const std::string& hash() const { return hash_; }
-  /// Combinations that make one draw: 1, with sample_total A, B and A with each parameter of B, in this order.
+  /// Combinations per draw: 1, or with sample_total A, B and A with each parameter of B, in this order.
   [[nodiscard]] std::size_t members() const { return file_.sample_total ? file_.sample.size() + 2 : 1; }
   /// The keys that vary, in the order of the file.
   [[nodiscard]] std::vector<std::string> keys() const;
@@ -55,13 +56,13 @@ class Sweep {
   SweepFile file_;
   std::string base_text_, hash_;
   std::vector<std::vector<double>> sample_;  ///< per draw, or member of one, one number for each range
-  std::vector<std::size_t> combinations_;    ///< those that no condition refuses
+  std::vector<std::size_t> combinations_;    ///< those that satisfy all conditions
   std::size_t refused_ = 0;
 };
 
-/// Draws in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) from its origin
-/// on, with a digital shift by the seed: of 2^m draws one is in each of 2^m equal parts of every axis. `n` rows of
-/// `dimensions` numbers in (0, 1).
+/// Draws in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) from its origin,
+/// with a digital shift by the seed: of 2^m draws, each of 2^m equal parts of every axis contains one. Returns `n` rows
+/// of `dimensions` numbers in (0, 1).
 [[nodiscard]] std::vector<std::vector<double>> unit_sample(SampleKind kind, std::size_t n, std::size_t dimensions,
                                                            std::uint64_t seed);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/sweep_effects.h"
 
 #include <Eigen/QR>
@@ -8,13 +9,13 @@
 #include <set>
 #include <utility>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
 
-/// One row of the table that has the response.
+/// One row of the table with a response.
 struct Observation {
   std::vector<std::string> values;  ///< by parameter
   std::size_t repeat = 0;
@@ -34,7 +35,7 @@ std::string text_of(const Json& cell) {
   return cell.is_number() ? number_text(cell.get<double>()) : "";
 }
 
-/// By contrast.
+/// Observations by contrast.
 std::map<double, Observations> observations_of(const std::vector<std::string>& keys, const SweepTable& table,
                                                std::size_t response) {
   std::vector<std::size_t> columns;
@@ -59,7 +60,7 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Student's interval of the mean; open with fewer than two.
+/// Student's interval of the mean; open with fewer than two values.
 Interval interval_of(const std::vector<double>& values) {
   if (values.size() < 2) return {};
   const double m = mean(values), n = static_cast<double>(values.size());
@@ -70,7 +71,7 @@ Interval interval_of(const std::vector<double>& values) {
   return {m - half, m + half};
 }
 
-/// Variance of the group means, each weighted by its rows, over that of all.
+/// Variance of the group means, weighted by their rows, over the total variance.
 template <typename Group>
 std::optional<double> explained(const Observations& rows, const Group& group_of) {
   std::map<std::string, std::pair<double, double>> sums;
@@ -110,8 +111,8 @@ std::map<std::string, std::string> classes_of(const Observations& rows, std::siz
   return names;
 }
 
-/// What scatters between repeats of the same parameters, but for what all of a repeat have in common (its random
-/// numbers, where tasks are paired); 0 where there are none.
+/// Variance between repeats of the same parameters, without the effect common to all tasks of a repeat (its random
+/// numbers, if tasks are paired); 0 without repeats.
 double variance_of_repeats(const std::map<std::size_t, Observations>& by_repeat) {
   std::map<std::string, std::vector<double>> same;
   for (const auto& [repeat, rows] : by_repeat) {
@@ -129,9 +130,9 @@ double variance_of_repeats(const std::map<std::size_t, Observations>& by_repeat)
   return freedom > 0 ? squares / freedom : 0;
 }
 
-/// The correlation ratio less what so many classes explain of nothing. Of independent draws that is
-/// 1 - (1 - eta^2) (n - 1) / (n - classes). A Sobol sequence has the other parameters alike in all classes, so that
-/// only the scatter of repeats explains something by chance.
+/// Correlation ratio minus the share that this number of classes explains by chance. For independent draws that is 1 -
+/// (1 - eta^2) (n - 1) / (n - classes). In a Sobol sequence all classes have the same other parameters, so that only
+/// the scatter of repeats contributes by chance.
 std::optional<double> sampled_first_order(const Observations& rows, std::size_t parameter, SampleKind kind,
                                           double repeat_variance) {
   const auto classes = classes_of(rows, parameter);
@@ -167,10 +168,10 @@ void add_indices(ParameterEffect& effect, const std::map<std::size_t, Observatio
   effect.total_ci95 = interval_of(total);
 }
 
-/// Responses of the members of a draw, averaged over what repeats have in common.
+/// Responses of the members of one draw in one repeat.
 using Draw = std::vector<double>;
 
-/// The whole draws of a repeat.
+/// The complete draws of a repeat.
 std::map<std::size_t, Draw> draws_of(const Observations& rows, const Sweep& sweep) {
   std::map<std::size_t, std::map<std::size_t, double>> found;
   for (const auto& row : rows) {
@@ -185,9 +186,9 @@ std::map<std::size_t, Draw> draws_of(const Observations& rows, const Sweep& swee
   return draws;
 }
 
-/// A ratio of means over draws with Student's interval from its linearisation, summed in eight to fifteen blocks of 2^m
-/// successive draws (one by one below sixteen): each is a net of its own, which scatters less than independent draws
-/// do. Blocks of one net complete each other, so that the interval is rather too wide.
+/// A ratio of means over draws, with Student's interval from its linearisation. Differences are summed in eight to
+/// fifteen blocks of 2^m successive draws (single draws below sixteen): each block is a net and scatters less than
+/// independent draws. Blocks of one net complete each other, so the interval is conservative.
 struct RatioOfMeans {
   double value = 0;
   Interval ci95;
@@ -208,13 +209,13 @@ RatioOfMeans ratio_of_means(const std::vector<double>& above, const std::vector<
   return {value, {value - half, value + half}};
 }
 
-/// First-order index S = <f(B) (f(AB_k) - f(A))> / V (Saltelli et al. 2010, table 2 b), total one T = <(f(A) -
-/// f(AB_k))^2> / 2 V (Jansen 1999; ibid. f), V = <(f(A) - m)^2 + (f(B) - m)^2> / 2; the scatter of repeats, which is
-/// nobody's share, is taken off T where every task has its own random numbers. Each draw is one, with the means over
+/// First-order index S = <f(B) (f(AB_k) - f(A))> / V (Saltelli et al. 2010, table 2 b), total index
+/// T = <(f(A) - f(AB_k))^2> / 2 V (Jansen 1999; ibid. f), V = <(f(A) - m)^2 + (f(B) - m)^2> / 2. The variance of
+/// repeats is subtracted from T if every task has its own random numbers. Each draw counts once, with the means over
 /// its repeats. Returns the number of draws.
 std::size_t add_total_indices(std::vector<ParameterEffect>& effects,
                               const std::map<std::size_t, Observations>& by_repeat, const Sweep& sweep) {
-  // Numbers that tasks share cancel in a difference.
+  // Common random numbers cancel in a difference.
   const double noise = sweep.file().paired ? 0 : variance_of_repeats(by_repeat);
   const std::size_t parameters = effects.size();
   std::map<std::size_t, std::vector<std::pair<double, Draw>>> by_draw;  // with the mean of the repeat
@@ -251,7 +252,7 @@ std::size_t add_total_indices(std::vector<ParameterEffect>& effects,
   return by_draw.size();
 }
 
-/// Means at each value, their intervals over the repeats.
+/// Means at each value, with intervals over the repeats.
 std::vector<EffectLevel> levels_of(const Observations& rows, std::size_t parameter) {
   std::vector<std::string> order;
   std::map<std::string, std::map<std::size_t, std::vector<double>>> by_value;
@@ -294,8 +295,8 @@ std::vector<EffectLevel> class_levels(const Observations& rows, std::size_t para
   return levels;
 }
 
-/// Least squares of the response over drawn parameters, each from -1 to 1 over its range: the mean, then half of what
-/// each changes from end to end. Nothing with fewer rows than unknowns.
+/// Least-squares plane of the response over drawn parameters, each scaled to -1 to 1: the mean, then half of the change
+/// from end to end of each. Empty with fewer rows than unknowns.
 std::optional<std::vector<double>> plane_of(const Observations& rows, const std::vector<SweepRange>& ranges,
                                             std::size_t first_parameter) {
   const auto unknowns = static_cast<Eigen::Index>(ranges.size() + 1), n = static_cast<Eigen::Index>(rows.size());
@@ -358,7 +359,7 @@ std::vector<ResponseEffects> sweep_effects(const Sweep& sweep, const SweepTable&
     for (std::size_t i = 0; i < keys.size(); ++i) {
       ParameterEffect effect{.key = keys[i]};
       effect.levels = i < fixed ? levels_of(rows, i) : class_levels(rows, i);
-      // Beside a grid the plane would have to hold the grid as well.
+      // With a grid, the plane would have to include the grid.
       if (i >= fixed && fixed == 0) effect.ends = ends_of(by_repeat, sweep.file().sample, fixed, i - fixed);
       if (!sweep.file().sample_total)
         add_indices(effect, by_repeat, i,

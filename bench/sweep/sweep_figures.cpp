@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/sweep_figures.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 namespace todbench {
 namespace {
 
-/// Ends of an axis that hold all values with room at the ends.
+/// Returns an axis that contains all values with a margin.
 PlotAxis axis_for(const std::string& label, const std::vector<double>& values, double room) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   double width = *high - *low;
@@ -45,7 +46,7 @@ std::vector<Swing> swings_of(const ResponseEffects& effects) {
   return swings;
 }
 
-/// The values at the ends of a bar, short enough to stand beside it.
+/// Values at the ends of a bar, short enough for a label next to it.
 std::string end_text(const std::string& value) {
   const auto number = parse_number(value);
   return number ? significant(*number, 3) : value.substr(0, 14);
@@ -72,7 +73,7 @@ std::optional<double> number_of(const Json& cell) {
   return cell.is_string() ? parse_number(cell.get<std::string>()) : std::nullopt;
 }
 
-/// Those that explain most first.
+/// Sorts parameters by their share, the largest first.
 std::vector<std::string> by_share(const std::vector<std::string>& names, const ResponseEffects& effects) {
   std::vector<std::pair<double, std::string>> keys;
   for (const auto& name : names) {
@@ -86,7 +87,7 @@ std::vector<std::string> by_share(const std::vector<std::string>& names, const R
   return sorted;
 }
 
-/// Keys of [grid] that have two numbers or more.
+/// Keys of [grid] with two numbers or more.
 std::vector<std::string> grid_keys(const Sweep& sweep, const ResponseEffects& effects) {
   std::vector<std::string> names;
   for (const auto& axis : sweep.file().grid) {
@@ -108,7 +109,7 @@ std::vector<PlacedResponse> placed_responses(const Sweep& sweep, const SweepTabl
   const auto x = place_of(table.columns, of_x.key), y = place_of(table.columns, of_y.key),
              response = place_of(table.columns, effects.response), contrast = place_of(table.columns, "delta_t_k"),
              index = place_of(table.columns, "index");
-  // Repeats of a draw are one; of total = true A and B are independent, the others repeat their places.
+  // Repeats of a draw are merged; with total = true A and B are independent, the other members repeat their places.
   std::map<std::size_t, std::pair<PlacedResponse, double>> draws;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto& row = table.rows[i];
@@ -129,11 +130,11 @@ std::vector<PlacedResponse> placed_responses(const Sweep& sweep, const SweepTabl
   return placed;
 }
 
-/// Means over side x side squares; nothing where they say too little.
+/// Means over side x side squares; empty if they are too uncertain.
 std::optional<ResponseGrid> square_means(const std::vector<PlacedResponse>& placed, std::size_t side,
                                          const SweepRange& of_x, const SweepRange& of_y) {
   constexpr std::size_t least_draws = 8;
-  constexpr double least_range = 8;  // standard errors; 64 means of nothing but chance span 4.7 of them
+  constexpr double least_range = 8;  // standard errors; 64 means of pure noise span 4.7 of them
   std::vector<std::vector<std::vector<double>>> cells(side, std::vector<std::vector<double>>(side));
   const double squares = static_cast<double>(side);
   const auto cell_of = [&](double u) {
@@ -179,16 +180,16 @@ Result<ResponseGrid> drawn_grid(const Sweep& sweep, const SweepTable& table, con
     if (auto grid = square_means(placed, side, x, y)) return *std::move(grid);
   }
   return fail(ErrorCode::not_identifiable,
-              std::to_string(placed.size()) + " draws are too few for contours over " + x.key + " and " + y.key);
+              std::to_string(placed.size()) + " draws are not enough for contours over " + x.key + " and " + y.key);
 }
 
-/// Where the height lies between two corners.
+/// Position of the height between two corners.
 Place crossing(Place a, double at_a, Place b, double at_b, double height) {
   const double t = (height - at_a) / (at_b - at_a);
   return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
 }
 
-/// The stretches in one cell; corners go round it.
+/// Adds the segments of one cell; the corners are in cyclic order.
 void add_cell(std::vector<ContourStretch>& stretches, const std::array<Place, 4>& corner,
               const std::array<double, 4>& value, double height) {
   std::vector<Place> crossings;
@@ -199,7 +200,7 @@ void add_cell(std::vector<ContourStretch>& stretches, const std::array<Place, 4>
   }
   if (crossings.size() == 2) stretches.push_back({crossings[0], crossings[1]});
   if (crossings.size() != 4) return;
-  // A saddle: the middle belongs to the corners on its side, so the lines cut off the others.
+  // Saddle: the centre belongs to the corners on its side, so the lines cut off the others.
   const bool middle_low = (value[0] + value[1] + value[2] + value[3]) / 4 < height;
   const bool first_alone = (value[0] < height) != middle_low;
   if (first_alone) {
@@ -215,7 +216,7 @@ void add_cell(std::vector<ContourStretch>& stretches, const std::array<Place, 4>
 
 Result<Drawing> tornado(const ResponseEffects& effects, const std::string& id) {
   const auto swings = swings_of(effects);
-  if (swings.empty()) return fail(ErrorCode::not_identifiable, "no parameter has two values");
+  if (swings.empty()) return fail(ErrorCode::not_identifiable, "no parameter has at least two values");
   std::vector<double> ends;
   for (const auto& swing : swings) ends.insert(ends.end(), {swing.low, swing.high});
   const PlotAxis axis = axis_for(response_label(effects), ends, 0.18);
@@ -225,7 +226,7 @@ Result<Drawing> tornado(const ResponseEffects& effects, const std::string& id) {
   const auto x = [&](double value) { return left + (value - axis.low) / (axis.high - axis.low) * (right - left); };
   Drawing drawing{.id = id,
                   .title = "Range of the mean response by parameter",
-                  .description = "A bar for each parameter, the longest first: " + swings.front().key + ".",
+                  .description = "One bar per parameter, longest first: " + swings.front().key + ".",
                   .width = width,
                   .height = bottom + 52,
                   .frame = {left, top, right - left, bottom - top},
@@ -251,17 +252,17 @@ Result<Drawing> response_curve(const ResponseEffects& effects, const ParameterEf
   std::vector<double> x, y;
   for (const auto& level : parameter.levels) {
     const auto number = parse_number(level.value);
-    if (!number) return fail(ErrorCode::invalid_input, "values of " + parameter.key + " are no numbers");
+    if (!number) return fail(ErrorCode::invalid_input, "the values of " + parameter.key + " are not numbers");
     series.points.push_back({*number, level.mean, {}, level.ci95});
     x.push_back(*number);
     y.push_back(level.mean);
     if (level.ci95.low && level.ci95.high) y.insert(y.end(), {*level.ci95.low, *level.ci95.high});
   }
-  if (x.size() < 2) return fail(ErrorCode::not_identifiable, parameter.key + " has one value");
+  if (x.size() < 2) return fail(ErrorCode::not_identifiable, parameter.key + " has only one value");
   std::sort(series.points.begin(), series.points.end(), [](const auto& a, const auto& b) { return *a.x < *b.x; });
   Plot plot{.id = id,
             .title = "Mean response against " + parameter.key,
-            .description = "The mean over all other parameters at each value.",
+            .description = "Mean over all other parameters at each value.",
             .width = 430,
             .height = 300,
             .x = axis_for(parameter.key, x, 0.06),
@@ -277,7 +278,7 @@ Result<ResponseGrid> response_grid(const Sweep& sweep, const SweepTable& table, 
   if (keys.size() < 2 && sweep.file().sample.size() > 1) return drawn_grid(sweep, table, effects);
   if (keys.size() < 2)
     return fail(ErrorCode::not_identifiable,
-                "contours need two parameters of [grid] with two numbers each, or two that are drawn");
+                "contours need two parameters of [grid] with at least two numbers each, or two parameters of [sample]");
   ResponseGrid grid{.x_key = keys[0], .y_key = keys[1], .x = {}, .y = {}, .mean = {}};
   const auto x = place_of(table.columns, grid.x_key), y = place_of(table.columns, grid.y_key),
              response = place_of(table.columns, effects.response), contrast = place_of(table.columns, "delta_t_k");
@@ -331,8 +332,8 @@ Result<Drawing> contour_plot(const ResponseGrid& grid, const ResponseEffects& ef
   Plot plot{.id = id,
             .title = "Contours of the response over " + grid.x_key + " and " + grid.y_key,
             .description = grid.points > 0
-                               ? "Lines of equal mean response; a square is the middle of those that are averaged."
-                               : "Lines of equal mean response; a square is a combination that was computed.",
+                               ? "Lines of equal mean response. Each square marks the centre of the averaged draws."
+                               : "Lines of equal mean response. Each square marks a computed combination.",
             .x = axis_for(grid.x_key, grid.x, 0.04),
             .y = axis_for(grid.y_key, grid.y, 0.06),
             .bands = {},
@@ -358,7 +359,7 @@ Result<Drawing> contour_plot(const ResponseGrid& grid, const ResponseEffects& ef
     plot.series.push_back(std::move(series));
   }
   PlotSeries computed{
-      .label = response_label(effects) + (grid.points > 0 ? " at these lines; means" : " at these lines; computed"),
+      .label = response_label(effects) + (grid.points > 0 ? " on the lines; mean" : " on the lines; computed"),
       .tone = PlotTone::muted,
       .marker = PlotMarker::square,
       .points = {}};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Drawings of a sweep: tornado, response curves, contours.
 #pragma once
 
@@ -7,11 +8,11 @@
 
 namespace todbench {
 
-/// A bar a parameter from its lowest to its highest mean response (of a drawn one between the ends of its range), the
-/// longest first, with the values at its ends. `not_identifiable` where no parameter has two values.
+/// Draws one bar per parameter from its lowest to its highest mean response (for a drawn one between the ends of its
+/// range), the longest first, with the values at its ends. Errors: `not_identifiable` if no parameter has two values.
 [[nodiscard]] Result<Drawing> tornado(const ResponseEffects& effects, const std::string& id);
 
-/// Mean response at each value with its interval; `invalid_input` for values that are no numbers.
+/// Draws the mean response at each value with its interval. Errors: `invalid_input` for values that are not numbers.
 [[nodiscard]] Result<Drawing> response_curve(const ResponseEffects& effects, const ParameterEffect& parameter,
                                              const std::string& id);
 
@@ -22,14 +23,14 @@ struct ResponseGrid {
   std::vector<std::vector<double>> mean;
   std::size_t points = 0, least = 0;  ///< of drawn parameters: draws in all squares and in the emptiest
 };
-/// Of the two parameters of [grid] that explain most, each with two numbers or more; without [grid] of two drawn ones:
-/// means over equal squares, as many (8 x 8 to 3 x 3) as leave eight draws or more in each and means whose range is
-/// eight times the largest standard error of one. `not_identifiable` where there are none, cells without a task, or too
-/// few draws.
+/// Computes the grid of the two parameters of [grid] that explain most, each with two numbers or more. Without [grid],
+/// of two drawn parameters: means over equal squares, as many (8 x 8 to 3 x 3) as leave at least eight draws in each
+/// and a range of means of at least eight times their largest standard error. Errors: `not_identifiable` (no such
+/// parameters, cells without a task, or too few draws).
 [[nodiscard]] Result<ResponseGrid> response_grid(const Sweep& sweep, const SweepTable& table,
                                                  const ResponseEffects& effects);
-/// Where a bilinear surface through the grid has this height: stretches of straight lines, each from edge to edge of a
-/// cell (marching squares; a saddle is decided by the mean of its corners).
+/// Contour line of a bilinear surface through the grid at one height: straight segments from edge to edge of a cell
+/// (marching squares; a saddle is decided by the mean of its corners).
 struct ContourStretch {
   Place from, to;
 };

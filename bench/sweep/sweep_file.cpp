@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/sweep_file.h"
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_values = 1'000'000;
 
-/// The first mistake, with its line.
+/// Stores the first error with its line.
 class Reading {
  public:
   explicit Reading(std::string file) : file_(std::move(file)) {}
@@ -30,7 +31,7 @@ class Reading {
   std::optional<std::string> mistake_;
 };
 
-/// Keys and values of a table in the order of the file.
+/// Returns keys and values of a table in the order of the file.
 std::vector<std::pair<std::string, const toml::node*>> in_order(const toml::table& table) {
   std::vector<std::pair<std::string, const toml::node*>> entries;
   for (const auto& [key, node] : table) entries.emplace_back(std::string(key.str()), &node);
@@ -43,7 +44,7 @@ std::vector<std::pair<std::string, const toml::node*>> in_order(const toml::tabl
   return entries;
 }
 
-/// The text of a number, a word, yes or no, or a list of these.
+/// Returns the text of a number, a word, a boolean, or a list of these.
 std::string text_of(const toml::node& node, Reading& reading) {
   if (const auto* value = node.as_floating_point(); value != nullptr && std::isfinite(value->get()))
     return number_text(value->get());
@@ -65,7 +66,7 @@ std::optional<double> number_of(const toml::node* node) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// "{ from, to, steps }" as its values.
+/// Expands "{ from, to, steps }" to its values.
 std::vector<std::string> steps_of(const toml::table& table, Reading& reading) {
   const auto from = number_of(table.get("from")), to = number_of(table.get("to"));
   const auto steps = table["steps"].value<std::int64_t>();
@@ -89,11 +90,11 @@ std::vector<std::string> values_of(const toml::node& node, Reading& reading) {
   std::vector<std::string> values;
   for (const auto& element : *list) values.push_back(text_of(element, reading));
   if (std::set<std::string>(values.begin(), values.end()).size() != values.size())
-    reading.wrong(node, "a value stands there twice");
+    reading.wrong(node, "a value occurs twice");
   return values;
 }
 
-/// A table whose keys may have dots, "simulation.accuracy", which TOML reads as tables in tables.
+/// Visits a table whose keys may have dots, "simulation.accuracy", which TOML reads as nested tables.
 template <typename Use>
 void each_key(const toml::table& table, const std::string& before, const Use& use, int depth = 0) {
   for (const auto& [key, node] : in_order(table)) {
@@ -127,7 +128,7 @@ void read_sample(const toml::table& table, Reading& reading, SweepFile& sweep) {
   sweep.sample_seed = static_cast<std::uint64_t>(std::max<std::int64_t>(seed, 0));
   if (const auto* total = table.get("total")) {
     if (!total->is_boolean() || (total->value_or(false) && kind != "sobol"))
-      reading.wrong(*total, "total: expected true or false, and true with kind = \"sobol\" alone");
+      reading.wrong(*total, "total: expected true or false; true needs kind = \"sobol\"");
     sweep.sample_total = total->value_or(false);
   }
   const auto* ranges = table["ranges"].as_table();
@@ -152,7 +153,7 @@ void read_where(const toml::node& node, Reading& reading, SweepFile& sweep) {
   if (const auto* list = node.as_array()) {
     for (const auto& element : *list) texts.push_back(element.value_or(std::string()));
   }
-  if (texts.empty()) reading.wrong(node, "expected a condition or a list of them");
+  if (texts.empty()) reading.wrong(node, "expected a condition or a list of conditions");
   for (const auto& text : texts) {
     auto constraint = Constraint::parse(text);
     if (!constraint) {
@@ -194,7 +195,7 @@ void read_section(const std::string& key, const toml::node& node, Reading& readi
     sweep.zip = axes_of(*table, reading);
     for (const auto& axis : sweep.zip) {
       if (axis.values.size() != sweep.zip.front().values.size())
-        reading.wrong(node, "the lists of [zip] must be of one length: '" + axis.key + "' is not");
+        reading.wrong(node, "the lists of [zip] must have the same length: '" + axis.key + "' has another length");
     }
   } else if (key == "sample") {
     read_sample(*table, reading, sweep);
@@ -232,7 +233,7 @@ void read_entry(const std::string& key, const toml::node& node, Reading& reading
   }
 }
 
-/// A parameter has one place.
+/// Returns a parameter that occurs twice.
 std::optional<std::string> named_twice(const SweepFile& sweep) {
   std::set<std::string> seen;
   std::vector<std::string> all;
@@ -267,7 +268,8 @@ Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path
   for (const auto& [key, node] : in_order(root)) read_entry(key, *node, reading, sweep);
   if (reading.mistake()) return fail(ErrorCode::invalid_input, *reading.mistake());
   if (sweep.sample_total && !(sweep.grid.empty() && sweep.zip.empty() && sweep.where.empty()))
-    return fail(ErrorCode::invalid_input, name + ": total indices need draws without conditions, [grid] and [zip]");
+    return fail(ErrorCode::invalid_input,
+                name + ": [sample] total = true cannot be combined with conditions, [grid] or [zip]");
   if (const auto key = named_twice(sweep))
     return fail(ErrorCode::invalid_input, name + ": the parameter '" + one_line(*key) + "' is stated twice");
   return sweep;

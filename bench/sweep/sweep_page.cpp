@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/sweep_page.h"
 
 #include <fmt/format.h>
@@ -21,22 +22,21 @@ RichText share(std::optional<double> value, const Interval& interval, std::strin
 
 Table index_table(const ResponseEffects& effects, bool drawn) {
   const std::string over =
-      effects.draws > 0 ? fmt::format("{} whole draws", effects.draws) : std::string("the repeats");
-  Table table{.caption = "Shares of the variance of " + effects.response + ", 95 % over " + over,
+      effects.draws > 0 ? fmt::format("{} complete draws", effects.draws) : std::string("the repeats");
+  Table table{.caption = "Shares of the variance of " + effects.response + ", with 95 % intervals over " + over,
               .header = {"Parameter", "First order", "Total"},
               .rows = {}};
   for (const auto& effect : effects.parameters) {
-    table.rows.push_back(
-        {plain(effect.key), share(effect.first_order, effect.first_order_ci95, "no variance"),
-         share(effect.total, effect.total_ci95,
-               drawn && effects.draws == 0 ? "not identifiable from a sample without total = true" : "no variance")});
+    table.rows.push_back({plain(effect.key), share(effect.first_order, effect.first_order_ci95, "no variance"),
+                          share(effect.total, effect.total_ci95,
+                                drawn && effects.draws == 0 ? "needs a sample with total = true" : "no variance")});
   }
   return table;
 }
 
 Table level_table(const ResponseEffects& effects) {
-  Table table{.caption = "Mean of " + effects.response + " at each value, over everything else",
-              .header = {"Parameter", "Value", "Mean, 95 % over the repeats", "Rows"},
+  Table table{.caption = "Mean of " + effects.response + " at each value, over all other parameters",
+              .header = {"Parameter", "Value", "Mean, 95 % interval over the repeats", "Rows"},
               .rows = {}};
   for (const auto& effect : effects.parameters) {
     for (const auto& level : effect.levels) {
@@ -56,9 +56,8 @@ Section response_section(const Sweep& sweep, const SweepTable& table, const Resp
   section.blocks.emplace_back(index_table(effects, drawn_sample));
   section.blocks.emplace_back(
       Figure{tornado(effects, id + "-tornado"),
-             drawn_sample ? "Main effects: the response at the ends of each range on the plane through all rows"
-                          : "Main effects: from the lowest to the highest mean response, with the values where they "
-                            "are"});
+             drawn_sample ? "Main effects: the response at both ends of each range, from a linear fit to all rows"
+                          : "Main effects: lowest and highest mean response, with the values of the parameter"});
   FigurePairs curves;
   for (std::size_t i = 0; i < effects.parameters.size(); ++i) {
     const auto& effect = effects.parameters[i];
@@ -70,11 +69,12 @@ Section response_section(const Sweep& sweep, const SweepTable& table, const Resp
   section.blocks.emplace_back(Figure{
       grid ? contour_plot(*grid, effects, id + "-contours") : Result<Drawing>(tl::unexpected(grid.error())),
       grid && grid->points > 0
-          ? fmt::format("Contours over the two drawn parameters that explain most: {} draws in {} x {} squares of "
-                        "{} or more, bilinear between the middles of their means",
-                        grid->points, grid->x.size(), grid->y.size(), grid->least)
-          : "Contours over the two parameters that explain most, means over everything else, bilinear between "
-            "the combinations"});
+          ? fmt::format(
+                "Contours over the two drawn parameters with the largest shares: {} draws in {} x {} squares of "
+                "at least {} draws, bilinear interpolation between their means",
+                grid->points, grid->x.size(), grid->y.size(), grid->least)
+          : "Contours over the two parameters with the largest shares: means over all other parameters, bilinear "
+            "interpolation between the combinations"});
   section.blocks.emplace_back(level_table(effects));
   return section;
 }
@@ -86,14 +86,14 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 Section identity_section(const Sweep& sweep, const SweepTable& table) {
-  ValueTable values{.caption = "Where the numbers come from", .values = {}};
+  ValueTable values{.caption = "Origin of the numbers", .values = {}};
   values.values = {{"Program", plain("todbench " + table.version + " (" + table.commit + ")")},
                    {"Sweep (SHA-256)", plain(sweep.hash())},
                    {"Tasks with a result", plain(fmt::format("{} of {}", table.tasks - table.missing, table.tasks))},
-                   {"Combinations that a condition refuses", plain(std::to_string(sweep.refused()))},
+                   {"Combinations rejected by a condition", plain(std::to_string(sweep.refused()))},
                    {"Parameters", plain(joined(sweep.keys()))},
-                   {"Random numbers", plain(sweep.file().paired ? "those of a repeat are the same for all tasks"
-                                                                : "every task has its own")}};
+                   {"Random numbers",
+                    plain(sweep.file().paired ? "the same for all tasks of a repeat" : "different for every task")}};
   return {"Record", {std::move(values)}};
 }
 
@@ -108,8 +108,8 @@ Document sweep_page(const Sweep& sweep, const SweepTable& table, const std::vect
                     .sections = {}};
   if (table.missing > 0)
     document.opening.emplace_back(Paragraph{
-        strong(fmt::format("{} tasks have no result: means and shares are those of the others.", table.missing))});
-  if (effects.empty()) document.opening.emplace_back(Paragraph{plain("The table has no numbers of this response.")});
+        strong(fmt::format("{} tasks have no result. Means and shares are computed from the others.", table.missing))});
+  if (effects.empty()) document.opening.emplace_back(Paragraph{plain("The table has no numbers for this response.")});
   for (std::size_t i = 0; i < effects.size(); ++i)
     document.sections.push_back(response_section(sweep, table, effects[i], i));
   document.sections.push_back(identity_section(sweep, table));

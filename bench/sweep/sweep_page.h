@@ -1,4 +1,5 @@
-// The answers of a sweep as a page.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The results of a sweep as a page.
 #pragma once
 
 #include "bench/report/document.h"
@@ -6,8 +7,8 @@
 
 namespace todbench {
 
-/// Response tables and curves, main effects as a tornado, shares of variance with their intervals, and the contours of
-/// the two parameters that matter most; for every contrast of `effects`. A pure function: no times, no hosts.
+/// Returns, for every contrast of `effects`, response tables and curves, main effects as a tornado, shares of variance
+/// with their intervals, and contours of the two most important parameters. A pure function: no times, no hosts.
 [[nodiscard]] Document sweep_page(const Sweep& sweep, const SweepTable& table,
                                   const std::vector<ResponseEffects>& effects);
 

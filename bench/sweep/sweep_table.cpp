@@ -1,13 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/sweep_table.h"
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "acquisition/base/safe_file.h"
 #include "bench/text/json_reader.h"
+#include "bench/text/spreadsheet.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -27,13 +31,13 @@ Result<Json> read_result(const std::filesystem::path& file) {
   return json;
 }
 
-/// A parameter as a number where it is one.
+/// Returns a parameter as a number if it is one.
 Json cell_of(const std::string& value) {
   if (const auto number = parse_number(value)) return *number;
   return value;
 }
 
-/// The cells of one point: what is a list becomes columns of its sides.
+/// Returns the cells of one point; a list becomes one column per element.
 std::vector<std::pair<std::string, Json>> cells_of(const Json& point) {
   std::vector<std::pair<std::string, Json>> cells;
   for (const auto& [key, value] : point.items()) {
@@ -69,26 +73,26 @@ Result<void> check_versions(const Sweep& sweep, const Json& result, SweepTable& 
   const auto text = [&](const char* key) { return result[key].get<std::string>(); };
   if (text("sweep_sha256") != sweep.hash())
     return fail(ErrorCode::invalid_input,
-                "result " + one_line(text("task")) + ": is of another version of the sweep file");
+                "result " + one_line(text("task")) + " belongs to another version of the sweep file");
   if (table.version.empty()) {
     table.version = text("version");
     table.commit = text("commit");
   }
   if (table.version == text("version") && table.commit == text("commit")) return {};
-  return fail(
-      ErrorCode::invalid_input,
-      fmt::format("the results are of several versions of the program: {} ({}) and, from {} on, {} ({})", table.version,
-                  table.commit, one_line(text("task")), one_line(text("version")), one_line(text("commit"))));
+  return fail(ErrorCode::invalid_input,
+              fmt::format("the results come from several versions of the program: {} ({}) and, from {} on, {} ({})",
+                          table.version, table.commit, one_line(text("task")), one_line(text("version")),
+                          one_line(text("commit"))));
 }
 
 std::string csv_cell(const Json& cell) {
   if (cell.is_null()) return "";
   if (cell.is_number_float()) return number_text(cell.get<double>());
-  if (cell.is_string()) return csv_field(cell.get<std::string>());
+  if (cell.is_string()) return spreadsheet_field(cell.get<std::string>());
   return cell.dump();
 }
 
-/// A database that is closed, and its statements, whatever happens.
+/// Closes a database and its statements in all cases.
 struct Closing {
   void operator()(sqlite3* database) const { sqlite3_close(database); }
   void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
@@ -143,13 +147,13 @@ Result<SweepTable> collected(const Sweep& sweep, MissingTasks missing) {
   const SweepStatus status = sweep_status(sweep);
   if (const auto foreign = status.count(TaskState::foreign); foreign > 0) {
     return fail(ErrorCode::invalid_input,
-                fmt::format("{} results in {} are of another sweep file", foreign, sweep.file().results.string()));
+                fmt::format("{} results in {} belong to another sweep file", foreign, sweep.file().results.string()));
   }
   table.missing = status.states.size() - status.count(TaskState::done);
   if (table.missing > 0 && missing == MissingTasks::refused) {
     return fail(
         ErrorCode::not_identifiable,
-        fmt::format("{} of {} tasks have no result yet (--partial leaves them out)", table.missing, table.tasks));
+        fmt::format("{} of {} tasks have no result yet (use --partial to leave them out)", table.missing, table.tasks));
   }
   std::vector<Json> results;
   for (std::size_t i = 0; i < status.states.size(); ++i) {
@@ -159,7 +163,7 @@ Result<SweepTable> collected(const Sweep& sweep, MissingTasks missing) {
     if (auto checked = check_versions(sweep, *result, table); !checked) return tl::unexpected(checked.error());
     add_rows(table, sweep, *result);
   }
-  // Rows before the first with a column that others do not have are shorter.
+  // Rows before the first occurrence of a column are shorter.
   for (auto& row : table.rows) {
     while (row.size() < table.columns.size()) row.push_back(nullptr);
   }
@@ -189,9 +193,11 @@ Json to_json(const SweepTable& table) {
 }
 
 Result<void> write_sqlite(const SweepTable& table, const std::filesystem::path& file) {
-  const std::filesystem::path beside = file.string() + ".new";
+  const auto part = make_file_beside(file);
+  if (!part) return tl::unexpected(part.error());
+  ::close(part->descriptor);
+  const std::filesystem::path& beside = part->path;
   std::error_code problem;
-  std::filesystem::remove(beside, problem);
   sqlite3* opened = nullptr;
   const int code = sqlite3_open(beside.c_str(), &opened);
   Database database(opened);
@@ -203,8 +209,10 @@ Result<void> write_sqlite(const SweepTable& table, const std::filesystem::path& 
   }
   database.reset();
   std::filesystem::rename(beside, file, problem);
-  if (problem) return fail(ErrorCode::io, file.string() + ": " + problem.message());
-  return {};
+  if (!problem) return {};
+  const std::string reason = problem.message();
+  std::filesystem::remove(beside, problem);
+  return fail(ErrorCode::io, file.string() + ": " + reason);
 }
 
 }  // namespace todbench

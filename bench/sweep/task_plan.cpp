@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/sweep/task_plan.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_keys.h"
 #include "bench/plan/plan_options.h"
@@ -22,14 +24,14 @@
 namespace todbench {
 namespace {
 
-/// The option of `todbench simulate` as a key: "--delta-t-k" is "delta_t_k".
+/// Converts an option of `todbench simulate` to a key: "--delta-t-k" to "delta_t_k".
 std::string key_of_option(std::string_view option) {
   std::string key(option.substr(2));
   std::replace(key.begin(), key.end(), '-', '_');
   return key;
 }
 
-/// The key of the plan that a name means; nothing for a name of the sensor.
+/// Returns the key of the plan for a name; empty for a name of the sensor.
 std::optional<std::string> plan_path(std::string_view name) {
   for (const auto& section : plan_sections()) {
     if (section.repeated()) continue;
@@ -72,7 +74,8 @@ Result<void> set_sensor(const SweepParameter& parameter, const SensorKey& key, S
       spec.*(*shown) = value;
       return {};
     }
-    return fail_at(ErrorCode::invalid_input, parameter.key, "'" + one_line(parameter.value) + "' is no display");
+    return fail_at(ErrorCode::invalid_input, parameter.key,
+                   "'" + one_line(parameter.value) + "' is not a display reconstruction");
   }
   const auto number = parse_number(parameter.value);
   const auto* whole = std::get_if<int SensorSpec::*>(&key.member);
@@ -105,7 +108,7 @@ Result<void> set_plan(const SweepParameter& parameter, const std::string& path, 
   return {};
 }
 
-/// Parameters one after the other: those of the plan, then, once the sensor is known, those of the sensor.
+/// Applies the parameters in order: those of the plan, then, for the resulting sensor, those of the sensor.
 Result<LoadedPlan> applied(const LoadedPlan& base, const std::vector<SweepParameter>& parameters,
                            const std::filesystem::path& folder, std::uint64_t seed) {
   Plan plan = base.plan();
@@ -135,7 +138,7 @@ Result<LoadedPlan> applied(const LoadedPlan& base, const std::vector<SweepParame
   return LoadedPlan::of(std::move(plan), std::move(parts));
 }
 
-/// The value of a base key, taken from the list.
+/// Removes a base key from the list and returns its value.
 std::optional<std::string> taken(std::vector<SweepParameter>& base, std::string_view key) {
   const auto found = std::find_if(base.begin(), base.end(), [&](const auto& p) { return p.key == key; });
   if (found == base.end()) return std::nullopt;
@@ -144,13 +147,13 @@ std::optional<std::string> taken(std::vector<SweepParameter>& base, std::string_
   return value;
 }
 
-/// Every value of every axis on top of the base: what does not go alone does not go at all.
+/// Checks every value of every axis with the base: a value that is invalid alone is always invalid.
 Result<void> check_values(const LoadedPlan& initial, const std::vector<SweepParameter>& base, const SweepFile& file) {
   const auto check = [&](const std::string& key, const std::string& value) -> Result<void> {
     std::vector<SweepParameter> parameters = base;
     parameters.push_back({key, value});
     const auto loaded = applied(initial, parameters, file.folder, 1);
-    // Two that limit each other may be changed together; the tasks say it where they do not go together.
+    // Two values that limit each other may change together; the tasks report invalid combinations.
     if (loaded || (plan_path(key) == std::nullopt && sensor_key(key) && loaded.error().key == std::nullopt)) return {};
     return tl::unexpected(loaded.error());
   };
@@ -198,8 +201,15 @@ Result<Json> simulated(const LoadedPlan& plan, const std::filesystem::path& scra
   std::filesystem::remove_all(scratch, ignored);
   if (!outcome) return tl::unexpected(outcome.error());
   if (outcome->ended_by) return tl::unexpected(*outcome->ended_by);
-  const Json curve = curve_json(outcome->curve, outcome->effects, {});
-  return Json{{"points", curve["points"]}};
+  Json points = curve_json(outcome->curve, outcome->effects, {})["points"];
+  // Tables have no column of exit codes: a number that a measurement would reject is left empty.
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const TodPoint& point = outcome->curve.points[i];
+    if (exit_code(point.fit, point.adequacy.value_or(Adequacy{})) == 0) continue;
+    points[i]["s75_mrad"] = points[i]["acuity_per_mrad"] = nullptr;
+    points[i]["s75_ci95_mrad"] = json_interval({});
+  }
+  return Json{{"points", points}};
 }
 
 }  // namespace
@@ -216,7 +226,7 @@ Result<RunnableSweep> load_sweep(const std::filesystem::path& path) {
   const auto loaded = applied(*initial, base, file->folder, initial->plan().seed);
   if (!loaded) return fail(path.string(), loaded.error());
   if (auto fine = check_values(*initial, base, *file); !fine) return fail(path.string(), fine.error());
-  // What files say that are named decides results as well.
+  // The contents of named files affect results as well.
   std::string fingerprint = "plan " + sha256_of(to_toml(loaded->plan())) + "\n";
   for (const auto& [name, source] : loaded->parts().sources) fingerprint += sha256_of(source.text) + "\n";
   for (const auto* modules : {&loaded->plan().modules, &loaded->sensor().modules}) {

@@ -1,4 +1,5 @@
-// Bytes as text (RFC 4648).
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Base64 (RFC 4648).
 #pragma once
 
 #include <optional>
@@ -7,11 +8,11 @@
 
 namespace todbench {
 
-/// With padding.
+/// Encodes with padding.
 [[nodiscard]] std::string base64(std::string_view bytes);
-/// Letters, digits, + and /, with padding at the end only: what base64() can have made.
+/// Returns whether the text can be a result of base64(): letters, digits, + and /, padding only at the end.
 [[nodiscard]] bool is_base64(std::string_view text);
-/// The bytes of what base64() made; nothing for any other text.
+/// Decodes a result of base64(); empty for any other text.
 [[nodiscard]] std::optional<std::string> from_base64(std::string_view text);
 
 }  // namespace todbench

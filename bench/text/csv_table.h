@@ -1,31 +1,31 @@
-// A CSV file as rows of fields with their line numbers.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CSV file as rows of fields with line numbers.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
 struct CsvRow {
-  int line = 0;  ///< counted from 1, header included
+  int line = 0;  ///< from 1, including the header
   std::vector<std::string> fields;
 };
 
 struct CsvTable {
-  std::string name;  ///< what messages call it
+  std::string name;  ///< name in messages
   std::vector<std::string> header;
   std::vector<CsvRow> rows;
 
-  /// "NAME:LINE: SENTENCE" as an error `invalid_input`.
+  /// Returns the error `invalid_input` "NAME:LINE: SENTENCE".
   [[nodiscard]] tl::unexpected<Error> wrong(int line, const std::string& sentence) const;
 };
 
-/// Splits a whole file; lines may end with CR LF, empty lines are skipped, blanks round fields without quotes are not
-/// kept. `invalid_input` with the line: no header, a row with another number of fields than the header, misplaced
-/// quotes.
+/// Parses a whole file. Lines may end with CR LF, empty lines are skipped, blanks around unquoted fields are removed.
+/// Errors: `invalid_input` with the line (no header, another number of fields than in the header, misplaced quotes).
 [[nodiscard]] Result<CsvTable> parse_csv(std::string_view text, std::string_view name);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/text/files.h"
 
 #include <fcntl.h>
@@ -8,10 +9,12 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <system_error>
 #include <utility>
+#include <vector>
+
+#include "acquisition/base/safe_file.h"
 
 namespace todbench {
 
@@ -20,18 +23,6 @@ namespace {
 tl::unexpected<Error> io_error(const std::filesystem::path& file, std::string_view doing, int number) {
   return fail(ErrorCode::io,
               file.string() + ": " + std::string(doing) + ": " + std::generic_category().message(number));
-}
-
-/// 0 or the error number; interrupted and partial writes are continued.
-int write_all(int descriptor, std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = ::write(descriptor, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    if (written == 0) return ENOSPC;
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return 0;
 }
 
 using DigestContext = std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)>;
@@ -58,15 +49,14 @@ std::string hexadecimal(EVP_MD_CTX* context) {
 }  // namespace
 
 Result<void> write_file_atomically(const std::filesystem::path& file, std::string_view content) {
-  const std::filesystem::path part = file.parent_path() / ("." + file.filename().string() + ".part");
-  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) return io_error(file, "cannot be created", errno);
-  int problem = write_all(descriptor, content);
-  if (problem == 0 && ::fsync(descriptor) != 0) problem = errno;
-  if (::close(descriptor) != 0 && problem == 0) problem = errno;
-  if (problem == 0 && std::rename(part.c_str(), file.c_str()) != 0) problem = errno;
+  const auto part = make_file_beside(file);
+  if (!part) return tl::unexpected(part.error());
+  int problem = write_all(part->descriptor, content);
+  if (problem == 0 && ::fsync(part->descriptor) != 0) problem = errno;
+  if (::close(part->descriptor) != 0 && problem == 0) problem = errno;
+  if (problem == 0 && std::rename(part->path.c_str(), file.c_str()) != 0) problem = errno;
   if (problem == 0) return {};
-  ::unlink(part.c_str());
+  ::unlink(part->path.c_str());
   return io_error(file, "cannot be written", problem);
 }
 
@@ -82,52 +72,41 @@ std::string sha256_of(std::string_view text) {
 }
 
 Result<std::string> sha256_of_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return fail(ErrorCode::io, file.string() + ": cannot be opened for reading");
+  const auto opened = open_to_read(file);
+  if (!opened) return tl::unexpected(opened.error());
   const DigestContext context = sha256_context();
-  std::array<char, 1 << 16> piece{};
-  while (stream) {
-    stream.read(piece.data(), piece.size());
-    EVP_DigestUpdate(context.get(), piece.data(), static_cast<std::size_t>(stream.gcount()));
+  std::vector<char> piece(std::size_t{1} << 16U);
+  ssize_t taken = 0;
+  while ((taken = ::read(*opened, piece.data(), piece.size())) > 0 || (taken < 0 && errno == EINTR)) {
+    if (taken > 0) EVP_DigestUpdate(context.get(), piece.data(), static_cast<std::size_t>(taken));
   }
-  if (stream.bad()) return fail(ErrorCode::io, file.string() + ": cannot be read");
+  const int problem = errno;
+  ::close(*opened);
+  if (taken < 0) return io_error(file, "cannot be read", problem);
   return hexadecimal(context.get());
 }
 
 Result<AppendFile> AppendFile::open(const std::filesystem::path& file, Start start) {
-  const int mode = start == Start::empty ? O_TRUNC : 0;
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | mode, 0666);
-  if (descriptor < 0) return io_error(file, "cannot be created", errno);
-  return AppendFile(file, descriptor);
-}
-
-AppendFile::AppendFile(AppendFile&& other) noexcept
-    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-AppendFile& AppendFile::operator=(AppendFile&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(descriptor_, other.descriptor_);
-  return *this;
-}
-
-AppendFile::~AppendFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  const auto descriptor = start == Start::empty ? make_empty_file(file) : open_to_append(file);
+  if (!descriptor) return tl::unexpected(descriptor.error());
+  if (start == Start::empty) ::fcntl(*descriptor, F_SETFL, O_APPEND);
+  return AppendFile(file, *descriptor);
 }
 
 Result<void> AppendFile::append(std::string_view content) {
   struct ::stat before {};
-  const bool known = ::fstat(descriptor_, &before) == 0 && S_ISREG(before.st_mode);
-  const int problem = write_all(descriptor_, content);
+  const bool known = ::fstat(descriptor_.get(), &before) == 0 && S_ISREG(before.st_mode);
+  const int problem = write_all(descriptor_.get(), content);
   if (problem == 0) return {};
-  if (known && ::ftruncate(descriptor_, before.st_size) != 0) {
+  if (known && ::ftruncate(descriptor_.get(), before.st_size) != 0) {
     return io_error(path_, "cannot be written, and its last line is incomplete", problem);
   }
   return io_error(path_, "cannot be written", problem);
 }
 
 Result<void> AppendFile::sync() {
-  // Pipes and devices have nothing to sync.
-  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS)
+  // Pipes and devices cannot be synced.
+  if (::fsync(descriptor_.get()) != 0 && errno != EINVAL && errno != EROFS)
     return io_error(path_, "cannot be written", errno);
   return {};
 }

@@ -1,38 +1,37 @@
-// Files that are either whole or not there, and checksums.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Atomic file writes, append-only files and checksums.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/descriptor.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// Writes beside the file, syncs and renames over it: a reader sees the old or the new content, never a part. `io` with
-/// the path and the reason (disk full, access denied); the old file is then still there.
+/// Writes a temporary file in the same folder, syncs it and renames it: readers find the old or the new content, never
+/// a part. Errors: `io` with path and reason (disk full, access denied); the old file then remains.
 [[nodiscard]] Result<void> write_file_atomically(const std::filesystem::path& file, std::string_view content);
 
-/// Whether something has that path; false as well where the path cannot be looked up.
+/// Returns whether the path exists; false also if it cannot be looked up.
 [[nodiscard]] bool is_there(const std::filesystem::path& file);
 
-/// SHA-256 of a text in lower-case hexadecimal.
+/// Returns the SHA-256 of a text in lower-case hexadecimal.
 [[nodiscard]] std::string sha256_of(std::string_view text);
-/// SHA-256 of a file in lower-case hexadecimal, read in pieces. `io` when it cannot be read.
+/// Returns the SHA-256 of a file in lower-case hexadecimal; reads it in pieces. Errors: `io` (unreadable).
 [[nodiscard]] Result<std::string> sha256_of_file(const std::filesystem::path& file);
 
-/// A file that only grows. Every write is checked and goes to the system at once, so that a crash of the program loses
-/// nothing that was appended. Move-only; one thread at a time.
+/// Append-only file. Every write is checked and passed to the operating system at once, so that a crash of the program
+/// loses no appended data. Move-only; one thread at a time.
 class AppendFile {
  public:
   enum class Start { empty, at_end };
-  /// Creates the file or, at_end, continues it. `io` with path and reason.
+  /// Creates the file, or continues it with Start::at_end. Errors: `io` with path and reason.
   [[nodiscard]] static Result<AppendFile> open(const std::filesystem::path& file, Start start);
-  AppendFile(AppendFile&& other) noexcept;
-  AppendFile& operator=(AppendFile&& other) noexcept;
-  ~AppendFile();
 
-  /// Appends all of `content`, or nothing: what a full disk cut off is taken back. `io` with path and reason.
+  /// Appends all of `content`; a partial write on a full disk is truncated. Errors: `io` with path and reason.
   [[nodiscard]] Result<void> append(std::string_view content);
   /// Waits until the data are on the disk.
   [[nodiscard]] Result<void> sync();
@@ -41,7 +40,7 @@ class AppendFile {
  private:
   AppendFile(std::filesystem::path path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/text/folders.h"
 
 #include <fcntl.h>
@@ -6,7 +7,8 @@
 
 #include <cerrno>
 
-#include "acquisition/core/system_reason.h"
+#include "acquisition/base/descriptor.h"
+#include "acquisition/base/system_reason.h"
 
 namespace todbench {
 
@@ -29,14 +31,9 @@ Result<void> make_folder(const std::filesystem::path& folder) {
 class FolderClaim {
  public:
   explicit FolderClaim(int descriptor) : descriptor_(descriptor) {}
-  FolderClaim(const FolderClaim&) = delete;
-  FolderClaim& operator=(const FolderClaim&) = delete;
-  ~FolderClaim() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
 
  private:
-  int descriptor_;
+  Descriptor descriptor_;
 };
 
 Result<std::shared_ptr<const FolderClaim>> claim_folder(const std::filesystem::path& folder) {

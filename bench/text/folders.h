@@ -1,25 +1,26 @@
-// Folders to write into.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Folders for output.
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <system_error>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// What a refused path is: `invalid_input` where the path itself is wrong (it leads through a file, or is too long),
-/// `io` where the disk or its permissions refuse.
+/// Returns the code of a path error: `invalid_input` if the path itself is wrong (it passes through a file, or is too
+/// long), `io` if disk or permissions refuse.
 [[nodiscard]] ErrorCode code_of_path(const std::error_code& problem);
-/// Makes the folder with its parents, where it is not there yet, and makes sure that files can be made in it. Errors:
-/// those of code_of_path(), with the path.
+/// Creates the folder with its parents if absent, and checks that files can be created in it. Errors: code_of_path(),
+/// with the path.
 [[nodiscard]] Result<void> make_folder(const std::filesystem::path& folder);
 
-/// A folder that one program writes into. Held by the system, so it ends with the program, however that ends.
+/// Exclusive claim on a folder. The operating system holds it, so it ends with the program in every case.
 class FolderClaim;
-/// Claims a folder until the last copy of the claim is gone. Nothing is written into the folder. Errors:
-/// `invalid_input` while somebody else holds it. On file systems that cannot say, nobody does.
+/// Claims a folder until the last copy of the claim is destroyed. Writes no file into the folder. On file systems
+/// without locks the claim always succeeds. Errors: `invalid_input` (held by another program).
 [[nodiscard]] Result<std::shared_ptr<const FolderClaim>> claim_folder(const std::filesystem::path& folder);
 
 }  // namespace todbench

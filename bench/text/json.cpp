@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/text/json.h"
 
 #include <cmath>
 
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/safe_text.h"
 
 namespace todbench {
 

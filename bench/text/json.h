@@ -1,4 +1,5 @@
-// JSON as the bench writes it. A value that does not exist is null; NaN and infinity are never written.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// JSON output of the bench. Absent values are null; NaN and infinity are never written.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,18 +10,18 @@
 
 namespace todbench {
 
-/// Keys in the order in which they are added.
+/// Keeps keys in the order of insertion.
 using Json = nlohmann::ordered_json;
 
-/// The number, or null when it is missing or not finite.
+/// Returns the number; null if it is absent or not finite.
 [[nodiscard]] Json json_number(double value);
 [[nodiscard]] Json json_number(const std::optional<double>& value);
-/// [low, high], each side null where it is open.
+/// Returns [low, high]; an open end is null.
 [[nodiscard]] Json json_interval(const Interval& interval);
-/// One line of text; invalid UTF-8 is replaced, and what steers a terminal (valid_text()) stands there as \u escapes.
-/// Nothing throws.
+/// Returns one line of text. Invalid UTF-8 is replaced, and terminal control characters (valid_text()) become \u
+/// escapes. Never throws.
 [[nodiscard]] std::string to_line(const Json& json);
-/// The same over several lines, for files.
+/// Returns the same over several lines, for files.
 [[nodiscard]] std::string to_page(const Json& json);
 
 }  // namespace todbench

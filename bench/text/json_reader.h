@@ -1,4 +1,5 @@
-// Reading JSON with the same strictness as TOML: a missing key or another type is a mistake that names the key.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Strict JSON reader, like the TOML reader: a missing key or a wrong type is a mistake that names the key.
 #pragma once
 
 #include <cmath>
@@ -11,19 +12,19 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "bench/text/json.h"
 
 namespace todbench {
 
-/// Walks through one document; the first mistake is kept, values after it are empty. Copies share the mistake. Borrows
-/// the document, which has to outlive the reader. One thread at a time.
+/// Reader of one document. Keeps the first mistake; later values are empty. Copies share the mistake. Borrows the
+/// document, which must outlive the reader. One thread at a time.
 class JsonReader {
  public:
   explicit JsonReader(const Json& json, std::string path = "")
       : JsonReader(&json, std::move(path), std::make_shared<std::string>()) {}
 
-  /// The value of a key; a missing one is a mistake.
+  /// Returns the value of a key; a missing key is a mistake.
   [[nodiscard]] JsonReader at(const std::string& key) const {
     const std::string path = path_.empty() ? key : path_ + "." + key;
     if (!json_->is_object()) return wrong("an object");
@@ -34,7 +35,7 @@ class JsonReader {
     }
     return {&*found, path, mistake_};
   }
-  /// The value of a key that older records do not have; null where it is missing.
+  /// Returns the value of a key that older records do not have; null if missing.
   [[nodiscard]] JsonReader at_if_there(const std::string& key) const {
     if (json_->is_object() && !json_->contains(key))
       return {&nothing(), path_.empty() ? key : path_ + "." + key, mistake_};
@@ -48,7 +49,7 @@ class JsonReader {
       readers.push_back({&(*json_)[i], path_ + "[" + std::to_string(i) + "]", mistake_});
     return readers;
   }
-  /// Keys and values of an object in their order.
+  /// Returns keys and values of an object in their order.
   [[nodiscard]] std::vector<std::pair<std::string, JsonReader>> items() const {
     std::vector<std::pair<std::string, JsonReader>> pairs;
     if (!json_->is_object()) (void)wrong("an object");
@@ -73,7 +74,7 @@ class JsonReader {
   [[nodiscard]] std::string text() const {
     return json_->is_string() ? json_->get<std::string>() : ((void)wrong("a text"), std::string());
   }
-  /// A text that has to be this one, such as the name of a format or a unit.
+  /// Requires this text, for example the name of a format or a unit.
   void expect(std::string_view word) const {
     if (text() != word) (void)wrong("'" + std::string(word) + "'");
   }
@@ -85,7 +86,7 @@ class JsonReader {
     for (const JsonReader& element : elements()) values.push_back(element.text());
     return values;
   }
-  /// The value of an enumeration in `values` whose to_string() it is.
+  /// Returns the element of `values` whose to_string() is the text.
   template <typename Values>
   [[nodiscard]] auto named(const Values& values) const {
     const std::string name = text();
@@ -95,14 +96,14 @@ class JsonReader {
     (void)wrong("a known word");
     return *std::begin(values);
   }
-  /// A list of two numbers, each null where that side is open.
+  /// Returns an interval from a list of two numbers; null is an open end.
   [[nodiscard]] Interval interval() const {
     const std::vector<JsonReader> sides = elements();
     if (sides.size() == 2) return {sides[0].optional_number(), sides[1].optional_number()};
-    note("'" + path_ + "': expected two sides");
+    note("'" + path_ + "': expected two ends, low and high");
     return {};
   }
-  /// Success while nothing was wrong.
+  /// Succeeds if there was no mistake.
   [[nodiscard]] Result<void> finish() const {
     if (mistake_->empty()) return {};
     return fail(ErrorCode::invalid_input, *mistake_);

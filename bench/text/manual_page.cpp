@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/text/manual_page.h"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-/// A text line; one that would be empty is left out, troff makes a gap of it.
+/// Adds a text line. Empty lines are left out, because troff turns them into gaps.
 void add_line(std::string& page, std::string_view text) {
   if (!text.empty()) page += roff_text(text) + "\n";
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/text/terminal_lines.h"
 
 #include <algorithm>
@@ -9,14 +10,14 @@ namespace {
 using Lines = std::vector<std::string>;
 
 constexpr std::size_t gap = 3;           // between two columns
-constexpr std::size_t least_words = 24;  // columns for a cell of words that goes over several lines
+constexpr std::size_t least_words = 24;  // least columns of a cell of words over several lines
 
 std::string padded(std::string_view text, std::size_t columns, bool left) {
   const std::string blanks(columns > columns_of(text) ? columns - columns_of(text) : 0, ' ');
   return left ? std::string(text) + blanks : blanks + std::string(text);
 }
 
-/// A number, an interval, or the dash of a missing one.
+/// Returns whether the cell is a number, an interval, or the dash of an absent value.
 bool is_numeric(const std::string& cell) {
   return cell.empty() || cell.starts_with("–") || cell.find_first_of("0123456789") <= (cell.starts_with('-') ? 1U : 0U);
 }
@@ -30,7 +31,7 @@ struct Layout {
   }
 };
 
-/// The cells of a row, each over as many lines as its column makes of it.
+/// Adds the cells of a row, each over as many lines as its column requires.
 void add_row(const Layout& layout, const Lines& row, bool from_below, Lines& out) {
   std::vector<Lines> cells;
   std::size_t height = 1;
@@ -60,7 +61,7 @@ std::size_t longest_word(std::string_view text) {
   return longest;
 }
 
-/// Bytes of a line that further lines leave empty below.
+/// Returns the bytes of a line that continuation lines leave blank.
 std::size_t hanging_part(std::string_view line, std::size_t columns) {
   std::size_t part = 0;
   for (std::size_t i = 0; i < line.size() && columns_of(line.substr(0, i)) < columns / 2; ++i) {
@@ -97,7 +98,7 @@ std::vector<std::string> broken_line(std::string_view line, std::size_t columns)
   line.remove_prefix(head.size());
   Lines out;
   std::string current(head);
-  bool empty = true;  // nothing of the words is in `current` yet
+  bool empty = true;  // `current` has no word yet
   while (!line.empty()) {
     const std::size_t end = std::min(line.find(' '), line.size());
     const std::string_view word = line.substr(0, end);

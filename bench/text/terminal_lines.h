@@ -1,4 +1,5 @@
-// Tables and sentences as lines of a terminal. A terminal breaks a line that is too long in the middle of a word.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables and sentences as lines of a terminal, which would otherwise break long lines within words.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +10,18 @@
 
 namespace todbench {
 
-/// Characters on screen of a UTF-8 text without combining characters.
+/// Returns the number of characters of a UTF-8 text without combining characters.
 [[nodiscard]] std::size_t columns_of(std::string_view text);
 
-/// A line broken at its blanks into lines of at most so many columns. Further ones begin below what stands behind the
-/// last gap of two blanks or more in the first half of the columns, or behind the indent. A word that is longer stays
-/// whole. Blanks inside a line that fits stay as they are.
+/// Breaks a line at blanks into lines of at most `columns`. Continuation lines are indented to the text after the last
+/// gap of at least two blanks in the first half of the columns, or to the indent. Longer words stay whole. A line that
+/// fits keeps its blanks.
 [[nodiscard]] std::vector<std::string> broken_line(std::string_view line, std::size_t columns);
 
-/// A header, a rule and rows, the columns aligned: numbers to the right, words to the left. Without `columns`, or where
-/// the table fits, a line each. Otherwise headers go over several lines, then the cells of a last column of words; and
-/// where that is not enough every row is a list of "header: cell", with an empty line between two.
+/// Returns a header, a rule and rows with aligned columns: numbers to the right, words to the left. Without `columns`,
+/// or if the table fits, each row is one line. Otherwise the headers are broken over several lines, then the cells of a
+/// last column of words. If that is not enough, every row becomes a list of "header: cell", with an empty line between
+/// rows.
 [[nodiscard]] std::vector<std::string> table_lines(const std::vector<std::string>& header,
                                                    const std::vector<std::vector<std::string>>& rows,
                                                    std::optional<std::size_t> columns = std::nullopt);

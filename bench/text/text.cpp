@@ -1,20 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/text/text.h"
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <system_error>
+
+#include "acquisition/base/safe_file.h"
 
 namespace todbench {
 
 namespace {
 
-/// Some files never end: devices, a pipe from a program that does not stop.
+/// Limit for files that never end: devices, or a pipe from a program that does not stop.
 constexpr std::size_t largest_text = std::size_t{512} << 20U;
 
-/// Insertions, deletions, substitutions and swaps of neighbours (optimal string alignment) that turn `a` into `b`.
+/// Returns the number of insertions, deletions, substitutions and swaps of neighbours (optimal string alignment) that
+/// turn `a` into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last, last(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
@@ -84,15 +90,18 @@ Result<std::string> read_text_file(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(status)) {
     return fail(ErrorCode::invalid_input, file.string() + ": is a folder, expected a file");
   }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return fail(ErrorCode::invalid_input, file.string() + ": cannot be opened for reading");
+  const auto opened = open_to_read(file);
+  if (!opened) return fail(ErrorCode::invalid_input, opened.error().message);
   std::string content;
   std::vector<char> piece(std::size_t{1} << 20U);
-  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())), stream.gcount() > 0) {
-    content.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
-    if (content.size() > largest_text) return fail(ErrorCode::invalid_input, file.string() + ": larger than 512 MiB");
+  ssize_t taken = 0;
+  while (content.size() <= largest_text &&
+         ((taken = ::read(*opened, piece.data(), piece.size())) > 0 || (taken < 0 && errno == EINTR))) {
+    if (taken > 0) content.append(piece.data(), static_cast<std::size_t>(taken));
   }
-  if (stream.bad()) return fail(ErrorCode::invalid_input, file.string() + ": cannot be read");
+  ::close(*opened);
+  if (content.size() > largest_text) return fail(ErrorCode::invalid_input, file.string() + ": larger than 512 MiB");
+  if (taken < 0) return fail(ErrorCode::invalid_input, file.string() + ": cannot be read");
   return content;
 }
 
@@ -105,7 +114,8 @@ Result<std::vector<std::string>> split_csv(std::string_view line) {
       ++position;
       while (true) {
         const std::size_t quote = line.find('"', position);
-        if (quote == std::string_view::npos) return fail(ErrorCode::invalid_input, "a quoted field does not end");
+        if (quote == std::string_view::npos)
+          return fail(ErrorCode::invalid_input, "a quoted field has no closing quote");
         field += line.substr(position, quote - position);
         position = quote + 1;
         if (position >= line.size() || line[position] != '"') break;
@@ -113,13 +123,13 @@ Result<std::vector<std::string>> split_csv(std::string_view line) {
         ++position;
       }
       if (position < line.size() && line[position] != ',') {
-        return fail(ErrorCode::invalid_input, "text after the closing quote of a field");
+        return fail(ErrorCode::invalid_input, "unexpected text after the closing quote of a field");
       }
     } else {
       const std::size_t comma = std::min(line.find(',', position), line.size());
       field = line.substr(position, comma - position);
       if (field.find('"') != std::string::npos)
-        return fail(ErrorCode::invalid_input, "a quote within a field without quotes");
+        return fail(ErrorCode::invalid_input, "a quote inside a field without quotes");
       position = comma;
     }
     fields.push_back(std::move(field));

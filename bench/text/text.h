@@ -1,4 +1,5 @@
-// Text in and out of files: numbers that survive the round trip, names that are nearly right, whole files.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Text for files: exact number round trip, nearest names, whole files.
 #pragma once
 
 #include <filesystem>
@@ -8,33 +9,33 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/result.h"
+#include "acquisition/base/safe_text.h"
 
 namespace todbench {
 
-/// The shortest decimal text that reads back as exactly `value` (at most 17 significant digits), with a dot in every
-/// locale. Precondition: finite.
+/// Returns the shortest decimal text that reads back as exactly `value` (at most 17 significant digits), with a dot in
+/// every locale. Precondition: finite.
 [[nodiscard]] std::string number_text(double value);
-/// The finite number that is the whole of `text`, in any locale; nothing otherwise (blanks, trailing letters, nan, inf,
-/// overflow).
+/// Parses a finite number that is the whole of `text`, in any locale; empty otherwise (blanks, trailing letters, nan,
+/// inf, overflow).
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
-/// The name in `known` with the smallest edit distance to `name` (swapped neighbours count one), if it is close enough
-/// to be a slip of the pen (at most a third of its letters, at least one; ties: the first).
+/// Returns the name in `known` with the smallest edit distance to `name` (swapped neighbours count one), if it can be a
+/// typing error (at most a third of its letters, at least one; ties: the first).
 [[nodiscard]] std::optional<std::string> nearest_name(std::string_view name, std::span<const std::string> known);
-/// ", did you mean 'X'?" or nothing.
+/// Returns ", did you mean 'X'?" or an empty text.
 [[nodiscard]] std::string nearest_name_hint(std::string_view name, std::span<const std::string> known);
-/// The words, each in single quotes, with commas.
+/// Returns the words, each in single quotes, separated by commas.
 [[nodiscard]] std::string quoted_list(std::span<const std::string> words);
 
-/// A configuration or input file, whole. `invalid_input` with one sentence when it cannot be read or is larger than
-/// 512 MiB.
+/// Reads a whole configuration or input file. Errors: `invalid_input`, one sentence (unreadable, or larger than 512
+/// MiB).
 [[nodiscard]] Result<std::string> read_text_file(const std::filesystem::path& file);
 
-/// Splits one RFC 4180 record without its line end; `invalid_input` for a quote in the wrong place.
+/// Splits one RFC 4180 record without its line end. Errors: `invalid_input` (misplaced quote).
 [[nodiscard]] Result<std::vector<std::string>> split_csv(std::string_view line);
-/// A field as RFC 4180 wants it: one_line(), quoted where it contains a comma, a quote or blanks at its ends.
+/// Returns a field in the format of RFC 4180: one_line(), quoted if it contains a comma, a quote or blanks at its ends.
 [[nodiscard]] std::string csv_field(std::string_view text);
 
 }  // namespace todbench

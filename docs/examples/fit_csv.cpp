@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Fits a psychometric function to a CSV file with the columns size,correct,total: fit_csv FILE
 #include <fmt/core.h>
 

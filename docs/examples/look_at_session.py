@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """From a session folder to numbers and a figure, cell by cell: look_at_session.py SESSION [RECORDING] [--svg FILE]
 
 With --fit PROGRAM the trials of the highest contrast are fitted again by `PROGRAM fit`.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Measures the TOD of a camera. The camera here is a simulated one; any FrameSource takes its place, and any Target
 // that of the scene.
 #include <fmt/core.h>

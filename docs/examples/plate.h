@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A plate as its drawing states it: four rows of four triangles, all over a range of sizes. Places in mm from the
 // middle of the plate, x to the right, y down.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A simulated sensor: what it is, what it looks at, one frame.
 #include <fmt/core.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reads what todbench writes: session folders, recordings (.todrec), and --json. Needs numpy and nothing else.
 
     session = todbench_session.read_session("session-20261122T090000Z-demo")
@@ -5,7 +6,7 @@
     for frame in todbench_session.read_recording("camera.todrec"):
         frame.kelvin().mean()
 
-Formats: session-folder-and-json.md and recordings.md of todbench. A session whose files are not those of its manifest is refused.
+Formats: reference/session-folder.md and reference/recordings.md of todbench. A session whose files are not those of its manifest is refused.
 """
 import csv
 import hashlib

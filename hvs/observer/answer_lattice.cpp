@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/answer_lattice.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 #include "hvs/observer/steffen.h"
 #include "hvs/observer/template_bank.h"
 
@@ -22,7 +23,7 @@ constexpr std::size_t most_alternatives = Choice::max_alternatives;
 // Nodes of the lattice, in ln sigma and ln s.
 constexpr double sigma_step = 0.2, noise_step = 0.3;
 
-/// Standard deviations within which a template takes part, beside the best of each alternative.
+/// A template takes part within this many standard deviations; the best one of each alternative always does.
 constexpr float reach_sd = 5;
 
 /// Places along the direction, in standard deviations.
@@ -32,12 +33,12 @@ constexpr double first_along = -4.5, along_step = 0.5;
 /// A score that never wins.
 constexpr float never = -1e30F;
 
-/// Below this a probability is not told from its neighbours in double precision.
+/// Lower limit of a probability, so that its logarithm is finite.
 constexpr double least_probability = 1e-300;
 
 using Tops = std::array<std::array<double, places_along>, most_alternatives>;
 
-/// For each place along the direction the largest of signal / s + noise + place * along over some blocks of templates.
+/// For each place along the direction: the largest signal / s + noise + place * along over some blocks of templates.
 TODBENCH_MULTIVERSION
 void largest_along(const float* signal, const float* noise, const float* along, std::size_t count, float scale,
                    float sign, float shift, float* tops) {
@@ -66,20 +67,20 @@ void largest_along(const float* signal, const float* noise, const float* along, 
   }
 }
 
-/// Probability that a standard normal variable lies between, without loss in the tails.
+/// Probability of a standard normal variable between two limits, without loss of precision in the tails.
 double between(double low, double high) {
   if (low > 0) return between(-high, -low);
   return 0.5 * (std::erfc(-high / std::numbers::sqrt2) - std::erfc(-low / std::numbers::sqrt2));
 }
 
-/// Adds to `shares` the probability of each alternative, its score being linear on [from, to] with these values at
-/// `at` and `at + along_step`.
+/// Adds the probability of each alternative on [from, to] to `shares`. Its score is linear, with the values of `tops`
+/// at `at` and `at + along_step`.
 void share_segment(const Tops& tops, std::size_t alternatives, std::size_t v, double from, double to,
                    std::array<double, most_alternatives>& shares) {
   const double at = first_along + along_step * static_cast<double>(v);
   const auto slope = [&](std::size_t o) { return (tops[o][v + 1] - tops[o][v]) / along_step; };
   double here = from;
-  // The best at the left end: at an end that is infinite, the one of the least slope.
+  // The best at the left end; at an infinite end the one with the smallest slope.
   std::size_t best = 0;
   for (std::size_t o = 1; o < alternatives; ++o) {
     if (std::isfinite(from)) {
@@ -117,7 +118,7 @@ void share_range(const Tops& tops, std::size_t alternatives, std::array<double, 
   }
 }
 
-/// The middle of a patch, without its mean, in units of the contrast.
+/// The centre of a patch, without its mean, in units of the contrast.
 std::vector<float> scaled(const AnsweredPatch& patch, int window) {
   const int margin = (patch.kelvin.rows - window) / 2;
   const cv::Mat1f middle = patch.kelvin(cv::Rect(margin, margin, window, window));
@@ -136,10 +137,10 @@ int node_count(double low, double high, double step) {
   return static_cast<int>(std::ceil(std::log(high / low) / step - 1e-9)) + 1;
 }
 
-/// Where between nodes.
+/// Position between nodes.
 struct Between {
   int node = 0;      ///< at or below
-  double share = 0;  ///< of the way to the next, in [0, 1]
+  double share = 0;  ///< fraction of the distance to the next node, in [0, 1]
 };
 Between between_nodes(double value, double low, double step, int count) {
   const double at = std::clamp(std::log(value / low) / step, 0.0, static_cast<double>(count - 1));
@@ -157,14 +158,14 @@ struct AnswerLattice::Content {
     int samples_per_pitch = 1;
     std::vector<std::size_t> members;
   };
-  /// Of one patch at one sigma; alternatives in rows of whole blocks.
+  /// Scores of one patch at one sigma; alternatives in rows of whole blocks.
   struct Scores {
     std::vector<float> signal, along, likeness;  ///< likeness: product with the best template
-    std::size_t first = 0, second = 0;           ///< the two best of different alternatives
-    double distance = 1;                         ///< of their templates
+    std::size_t first = 0, second = 0;           ///< the two best templates of different alternatives
+    double distance = 1;                         ///< between these templates
     std::vector<std::optional<Values>> values;   ///< by node of s
   };
-  /// Of one size at one sigma.
+  /// Noise of one size at one sigma.
   struct Noise {
     std::vector<std::vector<float>> draws;
   };
@@ -227,7 +228,7 @@ struct AnswerLattice::Content {
 
   void prepare(std::size_t sigma, std::size_t g) {
     const Group& group = groups[g];
-    // The bank was built once by create() with these numbers but for the blur, which no limit depends on.
+    // create() has built this bank with the same parameters except the blur, on which no limit depends.
     const Result<TemplateBank> built = bank(group, least_sigma * std::exp(sigma_step * static_cast<double>(sigma)));
     CV_Assert(built);
     const auto side = static_cast<std::size_t>(built->window_samples());
@@ -282,7 +283,7 @@ struct AnswerLattice::Content {
     std::array<double, most_alternatives> sum{};
     Tops tops{};
     const auto scale = static_cast<float>(1 / sd);
-    // Those that take part, alternative by alternative in whole blocks.
+    // The templates that take part, by alternative, in whole blocks.
     const auto able = contenders(at, sd);
     std::vector<std::size_t> begin(alternatives.size() + 1, 0);
     for (std::size_t o = 0; o < alternatives.size(); ++o)
@@ -312,7 +313,7 @@ struct AnswerLattice::Content {
     Values out{};
     const double draws = 2.0 * static_cast<double>(own.draws.size());
     for (std::size_t o = 0; o < alternatives.size(); ++o) {
-      // What so many draws cannot resolve: half a draw, as far as the best template can win at all.
+      // Resolution of the draws: half a draw, weighted with the probability that the best template wins.
       const double share = (sum[o] + 0.5 * beats_best(at, o, sd)) / draws;
       out[o] = static_cast<float>(std::log(std::max(share, least_probability)));
     }
@@ -355,7 +356,7 @@ Result<AnswerLattice> AnswerLattice::create(const TemplateObserverSpec& spec, co
       return refuse("expected a square with an even number of samples on a side");
     if (!cv::checkRange(patch.kelvin)) return refuse("a sample is not finite");
     if (!std::isfinite(patch.contrast_k) || patch.contrast_k == 0) return refuse("a contrast of 0 cannot be judged");
-    if (!(patch.noise_k >= 0) || !std::isfinite(patch.noise_k)) return refuse("expected a noise of 0 or more");
+    if (!(patch.noise_k >= 0) || !std::isfinite(patch.noise_k)) return refuse("the noise must be at least 0");
     const auto [place, added] =
         known.try_emplace({patch.size_samples, patch.samples_per_pitch}, content->groups.size());
     if (added) content->groups.push_back({patch.size_samples, patch.samples_per_pitch, {}});
@@ -367,8 +368,8 @@ Result<AnswerLattice> AnswerLattice::create(const TemplateObserverSpec& spec, co
     const Result<TemplateBank> bank = content->bank(group, spec.blur_sigma_samples);
     if (!bank) return refuse(bank.error().message);
     if (patch.kelvin.rows < bank->window_samples()) {
-      return refuse("it has " + std::to_string(patch.kelvin.rows) + " samples on a side, observer " + spec.name +
-                    " wants " + std::to_string(bank->window_samples()));
+      return refuse("it has " + std::to_string(patch.kelvin.rows) + " samples on a side, but observer " + spec.name +
+                    " needs at least " + std::to_string(bank->window_samples()));
     }
     content->row = (static_cast<std::size_t>(bank->places()) + block - 1) / block * block;
   }
@@ -389,7 +390,7 @@ const AnsweredPatch& AnswerLattice::patch(std::size_t index) const {
   return content_->patches[index];
 }
 
-LogProbabilities AnswerLattice::log_probabilities(std::size_t patch, double sigma_samples, double noise) {
+AnswerLogProbabilities AnswerLattice::log_probabilities(std::size_t patch, double sigma_samples, double noise) {
   CV_Assert(patch < patches() && sigma_samples > 0 && noise > 0);
   const Between sigma = between_nodes(sigma_samples, least_sigma, sigma_step, content_->sigmas);
   const Between sd = between_nodes(noise, least_noise, noise_step, content_->noises);
@@ -399,7 +400,7 @@ LogProbabilities AnswerLattice::log_probabilities(std::size_t patch, double sigm
       nodes[static_cast<std::size_t>(a)][static_cast<std::size_t>(j)] =
           &content_->value(patch, sigma.node + a - 1, sd.node + j - 1);
   }
-  LogProbabilities out;
+  AnswerLogProbabilities out;
   double sum = 0;
   const auto count = static_cast<std::size_t>(alternatives());
   for (std::size_t o = 0; o < count; ++o) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/answer_probabilities.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 #include "hvs/observer/block_product.h"
 
 namespace todbench {
@@ -15,15 +16,15 @@ namespace {
 
 constexpr std::size_t block = TemplateBank::block;
 
-/// Standard deviations within which a template takes part: a normal variable exceeds them with probability 2.9e-7.
+/// A template takes part within this many standard deviations: a normal variable exceeds them with probability 2.9e-7.
 constexpr double reach_sd = 5;
 
-/// Banks are at most 1 GiB and windows have 4 x 4 samples or more: so many blocks, and one more for each alternative.
+/// Banks have at most 1 GiB and windows at least 4 x 4 samples, which limits the blocks; one more for each alternative.
 constexpr std::size_t max_blocks = TemplateBank::max_bytes / (sizeof(float) * block * 16) + Choice::max_alternatives;
 
 constexpr float none = -std::numeric_limits<float>::infinity();
 
-/// Values of the noise along the difference of the two best, for each draw across it.
+/// Values of the noise along the difference of the two best templates, for each draw across it.
 constexpr std::size_t strata = 8;
 constexpr int least_vectors = 4;
 
@@ -35,8 +36,8 @@ struct Best {
   float lanes[strata][block];
 };
 
-/// One block of templates under one draw, of which `score` holds the noise: for each stratum the larger of best and
-/// signal + scale * (noise + value * along). Destroys the noise.
+/// Processes one block of templates under one draw, whose noise is in `score`: for each stratum the larger of best and
+/// signal + scale * (noise + value * along). Overwrites the noise.
 TODBENCH_MULTIVERSION
 void take_block(float* score, const float* signal, const float* along, float scale, const Strata& values, Best& best) {
   for (std::size_t t = 0; t < block; ++t) score[t] = signal[t] + scale * score[t];
@@ -50,7 +51,7 @@ void take_block(float* score, const float* signal, const float* along, float sca
   }
 }
 
-/// The largest of the lanes, folded in halves. Destroys them.
+/// The largest of the lanes, by halving. Overwrites them.
 TODBENCH_MULTIVERSION
 float largest(float* lanes) {
   for (std::size_t half = block / 2; half > 0; half /= 2) {
@@ -59,7 +60,7 @@ float largest(float* lanes) {
   return lanes[0];
 }
 
-/// Templates that can win: the blocks that hold one, and their alternatives.
+/// Templates that can win: the blocks that contain one, and their alternatives.
 struct Contenders {
   std::bitset<max_blocks> blocks;
   std::bitset<Choice::max_alternatives> alternatives;
@@ -91,8 +92,8 @@ Contenders contenders(const ScoreNoise& noise, double sd, const AnswerRoom& room
   return out;
 }
 
-/// The direction from the second to the first, of unit length, and what it is to every template. False where the two
-/// templates are the same.
+/// Finds the unit direction from the second to the first template, and its product with every template. False if the
+/// two templates are equal.
 bool find_direction(const ScoreNoise& noise, const Contenders& able, const AnswerRoom& room) {
   noise.copy_factor(able.first, room.direction);
   noise.copy_factor(able.second, room.numbers);
@@ -107,7 +108,7 @@ bool find_direction(const ScoreNoise& noise, const Contenders& able, const Answe
   return true;
 }
 
-/// Takes the part along the direction out of the numbers.
+/// Removes the component along the direction from the numbers.
 void project_across(std::span<float> numbers, std::span<const float> direction) {
   double along = 0;
   for (std::size_t k = 0; k < numbers.size(); ++k)
@@ -115,7 +116,7 @@ void project_across(std::span<float> numbers, std::span<const float> direction) 
   for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k] -= static_cast<float>(along) * direction[k];
 }
 
-/// A standard normal value in each stratum, all at the same share of it.
+/// A standard normal value in each stratum, all at the same fraction of it.
 Strata values_in_strata(double share) {
   Strata out;
   for (std::size_t v = 0; v < strata; ++v) {
@@ -125,7 +126,7 @@ Strata values_in_strata(double share) {
   return out;
 }
 
-/// How often each alternative wins under one draw across the direction, over the strata; equal scores share.
+/// Share of wins of each alternative under one draw across the direction, over the strata; equal scores share.
 Shares winners(const ScoreNoise& noise, const Contenders& able, const AnswerRoom& room, float scale,
                const Strata& values) {
   std::array<std::array<float, Choice::max_alternatives>, strata> tops;
@@ -181,7 +182,7 @@ AnswerProbabilities answer_probabilities(const ScoreNoise& noise, std::span<cons
   const auto most = static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
   const double variance = std::max(0.0, (squares[most] - sum[most] * sum[most] / n) / (n - 1));
   out.draws = vectors * static_cast<int>(strata);
-  // Not below one draw in all: vectors that agree do not prove that no noise decides otherwise.
+  // At least one draw: draws that agree do not prove that no noise decides otherwise.
   out.standard_error = std::max(std::sqrt(variance / n), 1.0 / out.draws);
   return out;
 }

@@ -1,35 +1,36 @@
-// How probable each answer to a patch is, over the white noise that an observer adds to what it sees.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Probability of each answer to a patch, over the white noise that an observer adds.
 #pragma once
 
 #include <array>
 #include <span>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "hvs/observer/observer.h"
 #include "hvs/observer/score_noise.h"
 
 namespace todbench {
 
-/// Lent for a call.
+/// Working memory, lent for a call.
 struct AnswerRoom {
   std::span<float> rows;       ///< ScoreNoise::size() elements
-  std::span<float> along;      ///< as many
+  std::span<float> along;      ///< ScoreNoise::size() elements
   std::span<float> numbers;    ///< ScoreNoise::rank() elements
-  std::span<float> direction;  ///< as many
+  std::span<float> direction;  ///< ScoreNoise::rank() elements
 };
 
-/// The shares of noise for which each alternative has the largest score. `scores` are those of the patch without the
-/// noise, as its bank gives them; `sd` is that of the noise per sample, in the same unit.
+/// Returns the share of the noise for which each alternative has the largest score. `scores` are those of the patch
+/// without the noise, as its bank gives them; `sd` is the standard deviation of the noise per sample, in the same unit.
 ///
-/// Without noise the best alternative has probability 1 (equal ones share it). With noise a template takes part only
-/// where it can come within five standard deviations of the best one: score_best - score < 5 sd sqrt(2 (1 - rho)) with
-/// rho the product of the two templates. If one alternative is left it has probability 1 (error below 3e-7 for each
-/// template that was left out).
+/// Without noise the best alternative has probability 1 (equal ones share it). With noise a template takes part only if
+/// it can come within five standard deviations of the best one: score_best - score < 5 sd sqrt(2 (1 - rho)) with rho
+/// the product of the two templates. An alternative that is the only one left has probability 1 (error below 3e-7 for
+/// each omitted template).
 ///
-/// Otherwise the noise is drawn in the directions across the difference of the two best alternatives' templates, and
-/// along it in eight strata of equal probability, one value in each (conditional and stratified sampling, Owen
-/// 2013, 8.7 and 8.4): what decides most varies along it. `draws` is rounded up to a multiple of eight, at least 32.
-/// Allocates nothing. The same bits on every instruction set.
+/// Otherwise the noise is drawn in the directions across the difference of the two best alternatives' templates. Along
+/// it, where the decision varies most, it is drawn in eight strata of equal probability, one value in each (conditional
+/// and stratified sampling, Owen 2013, 8.7 and 8.4). `draws` is rounded up to a multiple of eight, at least 32.
+/// Allocates no memory. The same bits on every instruction set.
 [[nodiscard]] AnswerProbabilities answer_probabilities(const ScoreNoise& noise, std::span<const float> scores,
                                                        double sd, const RandomStream& stream, int draws,
                                                        const AnswerRoom& room);

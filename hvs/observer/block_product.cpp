@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/block_product.h"
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 #include "hvs/observer/template_bank.h"
 
 namespace todbench {

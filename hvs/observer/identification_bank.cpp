@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/identification_bank.h"
 
 #include <Eigen/Dense>
@@ -5,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 #include "hvs/observer/block_product.h"
 #include "hvs/shape/step_image.h"
 
@@ -15,7 +16,7 @@ namespace {
 constexpr std::size_t identification_block = TemplateBank::block;
 constexpr std::size_t samples_at_once = 128;  ///< 32 KiB of templates
 
-/// Display and eye, as the templates of triangles.
+/// Filter of display and eye, as for the templates of triangles.
 TransferFunction eye_filter(double sigma_samples) {
   return [sigma_samples](double u, double w) -> std::complex<double> {
     const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); };
@@ -35,11 +36,11 @@ double reach_of(std::span<const AlternativeAspects> alternatives) {
   return reach;
 }
 
-/// Where a window of samples lies on the fine picture of a target, at every place of the search.
+/// Position of a window of samples on the fine picture of a target, at every place of the search.
 struct PlacedWindow {
   int side = 0, search = 0;  ///< in samples; in steps each way
-  int per_sample = 1;        ///< points of the fine picture to the sample
-  int stride = 1;            ///< and to the step of the search
+  int per_sample = 1;        ///< points of the fine picture per sample
+  int stride = 1;            ///< points per step of the search
   int period = 1;            ///< of the fine picture, in points
 
   /// One row per place, each without its mean.
@@ -71,11 +72,11 @@ struct FewTemplates {
   Eigen::MatrixXf coefficients;  ///< [row of the basis][place]
 };
 
-/// Gram and Schmidt, each time with the row that is described worst, until what is left of every row is shorter than
-/// the tolerance: as the pivoted Cholesky decomposition of their inner products, whose errors of 1e-15 are small beside
-/// the square of the tolerance. Divides the rows by their norms. Nothing where a row is 0.
+/// Gram-Schmidt process with pivoting: each step takes the row with the largest residual, until every residual is
+/// shorter than the tolerance. Equivalent to the pivoted Cholesky decomposition of the inner products, whose errors of
+/// 1e-15 are small against the square of the tolerance. Divides the rows by their norms. Empty if a row is 0.
 std::optional<FewTemplates> few_templates(cv::Mat1d& rows) {
-  // Its columns are the rows.
+  // The columns of `templates` are the rows.
   Eigen::Map<Eigen::MatrixXd> templates(rows.ptr<double>(), rows.cols, rows.rows);
   const Eigen::RowVectorXd norms = templates.colwise().norm();
   if (!(norms.minCoeff() > 0)) return std::nullopt;
@@ -87,7 +88,7 @@ std::optional<FewTemplates> few_templates(cv::Mat1d& rows) {
   // Column k: the coefficients of the k-th row of the basis.
   Eigen::MatrixXd coefficients(templates.cols(), most), chosen(templates.rows(), most);
   std::vector<Eigen::Index> pivots;
-  Eigen::VectorXd left = Eigen::VectorXd::Ones(templates.cols());  // squares of what is not described
+  Eigen::VectorXd left = Eigen::VectorXd::Ones(templates.cols());  // squared residuals
   Eigen::Index found = 0, at = 0;
   for (; found < most && left.maxCoeff(&at) >= template_tolerance * template_tolerance; ++found) {
     const double length = std::sqrt(left(at));
@@ -101,7 +102,7 @@ std::optional<FewTemplates> few_templates(cv::Mat1d& rows) {
   Eigen::MatrixXd triangle(found, found);
   for (Eigen::Index k = 0; k < found; ++k)
     triangle.row(k) = coefficients.row(pivots[static_cast<std::size_t>(k)]).head(found);
-  // What was chosen is the basis times the transposed triangle.
+  // The chosen rows are the basis times the transposed triangle.
   Eigen::MatrixXd basis = chosen.leftCols(found);
   triangle.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(basis);
   return FewTemplates{basis.cast<float>(), coefficients.leftCols(found).transpose().cast<float>()};
@@ -127,7 +128,7 @@ float largest_sum(const float* signal, const float* first, float first_scale, co
   return *std::max_element(top, top + lanes);
 }
 
-/// In eight sums, the same on every instruction set.
+/// Inner product in eight partial sums, the same on every instruction set.
 TODBENCH_MULTIVERSION
 float inner_product(const float* a, const float* b, int count) {
   constexpr int lanes = 8;
@@ -142,8 +143,8 @@ float inner_product(const float* a, const float* b, int count) {
   return sum;
 }
 
-/// results[l][row] = inner_product(values[row], factors[l]) of four factors, the same bits: their sums run beside each
-/// other.
+/// results[l][row] = inner_product(values[row], factors[l]) for four factors, with the same bits: their sums are
+/// interleaved.
 TODBENCH_MULTIVERSION
 void inner_products(const float* values, int count, int length, const float* const* factors, float* const* results) {
   constexpr int lanes = 8, many = products_at_once;
@@ -192,7 +193,7 @@ Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec&
   const auto refusal = [&] {
     return fail(ErrorCode::invalid_input,
                 "targets of " + std::to_string(std::lround(2 * reach)) +
-                    " samples are too large for this observer: their templates would need over 1 GiB");
+                    " samples are too large for this observer, because their templates would need more than 1 GiB");
   };
   if (too_large(samples * places * sizeof(double))) return refusal();
 
@@ -212,11 +213,11 @@ Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec&
   bank.first_aspect_.push_back(0);
   std::size_t index = 0;
   for (const auto& alternative : alternatives) {
-    if (alternative.empty()) return fail(ErrorCode::invalid_input, "an alternative is seen from no side");
+    if (alternative.empty()) return fail(ErrorCode::invalid_input, "an alternative has no views");
     for (const auto& edges : alternative) {
       cv::Mat1d shown = edges.empty() ? cv::Mat1d() : window.centred(fine_step_image(edges, filter, per_sample));
       auto few = edges.empty() ? std::nullopt : few_templates(shown);
-      if (!few) return fail(ErrorCode::invalid_input, "an alternative cannot be told from its background");
+      if (!few) return fail(ErrorCode::invalid_input, "an alternative cannot be distinguished from its background");
       const std::size_t end = index + static_cast<std::size_t>(few->basis.cols());
       const std::size_t blocks = (end + identification_block - 1) / identification_block;
       if (too_large(blocks * identification_block * samples * sizeof(float))) return refusal();
@@ -245,7 +246,7 @@ std::vector<std::vector<float>> IdentificationBank::project_all(std::span<const 
   const std::size_t block_values = identification_block * samples, rows = basis_.size() / samples;
   for (const auto& patch : patches) CV_Assert(patch.rows == window_ && patch.cols == window_ && patch.isContinuous());
   std::vector<float> products(patches.size() * rows);
-  // Of the patches, as many as are multiplied at once; the others one by one.
+  // Complete groups are multiplied together; the remaining patches singly.
   const std::size_t together = patches.size() / products_at_once * products_at_once;
   for (std::size_t from = 0; from < basis_.size(); from += block_values) {
     for (std::size_t part = 0; part < samples; part += samples_at_once) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/known_position.h"
 
 #include <algorithm>
@@ -13,9 +14,9 @@ double normal_cdf(double x) {
 }
 
 double normal_quantile(double p) {
-  // Kept inside the open interval: at the ends the weight of the point is zero anyway.
+  // Kept inside the open interval: at its ends the weight of the point is zero anyway.
   const double inside = std::clamp(p, 1e-300, 1 - 1e-16);
-  // In double: extended precision takes four times as long and changes nothing above 1e-15.
+  // In double precision: extended precision takes four times as long and changes nothing above 1e-15.
   using Plain = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
   return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * inside, Plain());
 }
@@ -38,7 +39,7 @@ struct Factor {
   }
 };
 
-/// P(bound + scale z > 0) with scale >= 0; a sure event decides by its sign, a tie by half.
+/// P(bound + scale z > 0) with scale >= 0. If scale is 0, the sign of the bound decides; a tie gives one half.
 double upper(double bound, double scale) {
   if (scale > 0) return normal_cdf(bound / scale);
   return bound > 0 ? 1.0 : (bound < 0 ? 0.0 : 0.5);
@@ -69,7 +70,7 @@ double probability_correct(const KnownPositionTask& task, std::span<const Quadra
     }
   }
   const Factor f(c);
-  // x_i = b_i + sum_j l_ij z_j > 0 for all i; z_0 and z_1 are conditioned and integrated, z_2 is closed.
+  // x_i = b_i + sum_j l_ij z_j > 0 for all i; z_0 and z_1 are conditioned and integrated, z_2 is in closed form.
   const double p0 = upper(b[0], f.l[0][0]);
   double sum = 0;
   for (const auto& [s, ws] : rule) {

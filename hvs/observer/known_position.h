@@ -1,4 +1,5 @@
-// The probability of a correct answer when the position is known: exact, without trials.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Probability of a correct answer at a known position, without trials.
 #pragma once
 
 #include <array>
@@ -8,18 +9,18 @@
 
 namespace todbench {
 
-/// Four decision variables, jointly normal: the first belongs to the true alternative.
+/// Four decision variables, jointly normal; the first belongs to the true alternative.
 struct KnownPositionTask {
   std::array<double, 4> mean{};                 ///< response of each template to the signal
   std::array<std::array<double, 4>, 4> gram{};  ///< inner products of the templates
-  double noise = 1;  ///< sd of white noise per sample, in the unit of the signal; 0: certainty
+  double noise = 1;  ///< sd of white noise per sample, in the unit of the signal; 0: no noise
 };
 
 /// P(first variable is the largest): a three-dimensional orthant probability by sequential conditioning (Genz 1992) and
 /// a tensor Gauss-Legendre rule of nodes x nodes points. Error about 1e-4 at 16 nodes, 1e-7 at 192. Equal responses
 /// without noise share the probability.
 [[nodiscard]] double probability_correct(const KnownPositionTask& task, int nodes);
-/// The same with a rule of gauss_legendre(), for many tasks.
+/// The same with a given rule of gauss_legendre(), for many tasks.
 [[nodiscard]] double probability_correct(const KnownPositionTask& task, std::span<const QuadratureNode> rule);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/score_noise.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace {
 
 constexpr std::size_t score_block = TemplateBank::block;
 
-/// Columns of the factor, one per number.
+/// Columns of the factor, one per normal number.
 std::vector<std::vector<double>> cholesky_columns(const TemplateBank& bank) {
   const auto templates = static_cast<std::size_t>(bank.templates());
   const auto side = static_cast<std::size_t>(bank.window_samples());

@@ -1,17 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/share_won.h"
 
 #include <algorithm>
 #include <cstddef>
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 
 namespace todbench {
 namespace {
 
-/// Sums that are compared at once: enough that one comparison need not wait for the one before.
+/// Number of sums compared at once: enough that a comparison need not wait for the preceding one.
 constexpr std::size_t lanes = 64;
 
-/// Precondition: at least `lanes` numbers. The last ones may be looked at twice, which no maximum minds.
+/// Precondition: at least `lanes` numbers. The last ones may be read twice, which does not change a maximum.
 TODBENCH_MULTIVERSION
 float best_of_many(const float* signal, const float* noise, float scale, std::size_t count) {
   float top[lanes];
@@ -47,7 +48,7 @@ double share_won(std::span<const float> signal, std::span<const float> noise, fl
     return best(signal.data() + from, noise.data() + from, scale, count);
   };
   const float own = maximum(alternative);
-  // The others are looked at until one is above.
+  // Stops at the first alternative with a higher score.
   int equal = 1;
   for (int o = 0; o < alternatives; ++o) {
     if (o == alternative) continue;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/template_bank.h"
 
 #include <algorithm>
@@ -23,12 +24,12 @@ TransferFunction viewing_filter(double sigma_samples) {
   };
 }
 
-/// Where the Gaussian has fallen to 1e-12, in cycles per sample: exp(-2 pi^2 sigma^2 f^2) = 1e-12.
+/// Frequency at which the Gaussian has fallen to 1e-12, in cycles per sample: exp(-2 pi^2 sigma^2 f^2) = 1e-12.
 double filter_band(double sigma_samples) {
   return std::sqrt(27.631 / 2) / (std::numbers::pi * sigma_samples);
 }
 
-/// A template's samples with the mean removed and the Euclidean norm 1.
+/// Removes the mean of a template's samples and scales them to the Euclidean norm 1.
 void normalise(std::vector<double>& values) {
   double mean = 0;
   for (const double v : values) mean += v;
@@ -60,14 +61,14 @@ Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const
   if (samples * static_cast<double>(bank.padded_templates() * sizeof(float)) > static_cast<double>(max_bytes)) {
     return fail(ErrorCode::invalid_input,
                 "a target of " + std::to_string(size_samples) +
-                    " samples is too large for this observer: its templates would need over 1 GiB");
+                    " samples is too large for this observer, because its templates would need more than 1 GiB");
   }
   const int half = static_cast<int>(half_pitch) * samples_per_pitch;
   bank.window_ = 2 * half;
 
-  // Sample centres lie on half samples, search places on 1 / steps: one fine grid holds them all.
+  // Sample centres lie on half samples, search places on 1 / steps: one fine grid contains both.
   const double band = filter_band(spec.blur_sigma_samples);
-  // The next copy of the shape must stay out of the window: shape, seven sigma of blur, the display sample, and the
+  // The next copy of the shape must stay outside the window: shape, seven sigma of blur, the display sample, and the
   // search range.
   const int period = static_cast<int>(
       std::ceil(half + spec.search_range_samples + 0.9 * size_samples + 7 * spec.blur_sigma_samples + 1));

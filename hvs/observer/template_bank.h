@@ -1,12 +1,12 @@
-// The templates of one observer for one size: ideal shapes seen through the visual filter, at every place of the
-// search.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Templates of one observer for one size: ideal shapes behind the viewing filter, at every place of the search.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "hvs/observer/observer.h"
 
 namespace todbench {
@@ -15,11 +15,11 @@ struct TemplateObserverSpec;
 
 /// Zero-mean, unit-norm templates, single precision. Immutable, thread-safe.
 ///
-/// Template (o, p): alternative o at search place p, sampled at displayed-sample centres k + 1/2, k = -m..m-1, from the
-/// window's centre.
+/// Template (o, p) is alternative o at search place p, sampled at displayed-sample centres k + 1/2, k = -m..m-1, from
+/// the window's centre.
 class TemplateBank {
  public:
-  /// `invalid_input` for sizes whose bank would not fit into `max_bytes`.
+  /// Error: `invalid_input` if the bank would exceed `max_bytes`.
   [[nodiscard]] static Result<TemplateBank> build(const TemplateObserverSpec& spec, const Alternatives& alternatives,
                                                   double size_samples, int samples_per_pitch);
 
@@ -27,21 +27,22 @@ class TemplateBank {
   [[nodiscard]] int alternatives() const { return alternatives_; }
   /// Search places per alternative.
   [[nodiscard]] int places() const { return places_; }
-  /// Templates in all: alternatives times places; template (o, p) has index o * places() + p.
+  /// Number of templates, alternatives times places; template (o, p) has index o * places() + p.
   [[nodiscard]] int templates() const { return alternatives_ * places_; }
   /// templates() rounded up to whole blocks: the length of a score vector. The padding scores are zero.
   [[nodiscard]] std::size_t padded_templates() const { return blocks_ * block; }
   [[nodiscard]] std::size_t blocks() const { return blocks_; }
 
-  /// Scores of all templates for a patch of window_samples()^2 values, row by row. `scores` has padded_templates()
-  /// elements. Each score is one sum over samples in a fixed order: the same bits on every instruction set.
+  /// Computes the scores of all templates for a patch of window_samples()^2 values, row by row. `scores` has
+  /// padded_templates() elements. Each score is one sum over samples in a fixed order: the same bits on every
+  /// instruction set.
   void project(std::span<const float> patch, std::span<float> scores) const;
-  /// project() of every patch, which reads the bank once for all of them: the same bits. As many patches as scores.
+  /// project() of every patch with the same bits, reading the bank once. As many patches as scores.
   void project_all(std::span<const std::span<const float>> patches, std::span<const std::span<float>> scores) const;
-  /// The values of one template, sample by sample: window_samples()^2 elements.
+  /// Copies the values of one template, sample by sample: window_samples()^2 elements.
   void copy_template(std::size_t index, std::span<float> values) const;
-  /// Adds `amount` times every template's value at one sample of the patch to the scores: the change of project() when
-  /// that sample changes by `amount`.
+  /// Adds `amount` times every template's value at one sample to the scores: the change of project() when that sample
+  /// of the patch changes by `amount`.
   void add_sample(std::size_t sample, float amount, std::span<float> scores) const;
   /// One template as an image, for tests and pictures.
   [[nodiscard]] cv::Mat1f image(int alternative, int place) const;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/template_observer.h"
 
 #include <algorithm>
@@ -13,25 +14,25 @@
 namespace todbench {
 namespace {
 
-// Windows up to this many samples, and banks up to this many templates, are judged without touching the heap.
+// Windows up to this many samples and banks up to this many templates are judged without heap memory.
 constexpr std::size_t stack_samples = 64 * 64;
 constexpr std::size_t stack_templates = 4096;
 
 // Positions in a trial's random stream: pixel noise first, the tie-break far behind it.
 constexpr std::uint64_t tie_break_index = std::uint64_t{1} << 40;
-// The stream below a trial's own of which graded answers draw, apart from the one answer.
+// Substream of a trial for the draws of graded answers, separate from the single answer.
 constexpr std::uint64_t graded_sub_stream = 1;
 
-/// Internal noise, and the part of the sensor's noise by which this observer sees it enlarged: sd per sample in units
-/// of the contrast.
+/// Internal noise and the enlargement of the sensor's noise by this observer, combined: sd per sample in units of the
+/// contrast.
 double own_noise(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k) {
   const double enlarged = spec.sensor_noise_factor * spec.sensor_noise_factor - 1;
   const double seen = patch.noise_k / contrast_k;
   return std::sqrt(spec.internal_noise * spec.internal_noise + enlarged * seen * seen);
 }
 
-/// The patch without its mean, in units of the contrast. Differences are formed in double precision, so a background of
-/// 300 K leaves no trace.
+/// The patch without its mean, in units of the contrast. Differences are formed in double precision, so that a
+/// background of 300 K causes no error.
 void scale_to_contrast(const Patch& patch, double contrast_k, std::span<float> signal) {
   const double background = patch.kelvin(0, 0);
   double mean = 0;
@@ -110,7 +111,7 @@ class PreparedTemplateObserver final : public PreparedObserver {
                                 noise.sub(graded_sub_stream), draws, room);
   }
 
-  /// Made at the first graded answer: it costs as much as the bank, and most observers are only asked to choose.
+  /// Created at the first graded answer: it costs as much as the bank, and most observers only choose.
   [[nodiscard]] const ScoreNoise& own_noise_of_scores() const {
     std::call_once(noise_made_, [this] { noise_.emplace(*bank_); });
     return *noise_;
@@ -148,22 +149,22 @@ Result<void> validate(const TemplateObserverSpec& spec) {
   const auto refuse = [](const std::string& what) { return fail(ErrorCode::invalid_input, what); };
   if (spec.name.empty()) return refuse("an observer needs a name");
   if (!(spec.blur_sigma_samples >= 0.1 && spec.blur_sigma_samples <= 10))
-    return refuse("blur_sigma_samples must be in [0.1, 10]");
-  if (!(spec.internal_noise >= 0 && spec.internal_noise <= 10)) return refuse("internal_noise must be in [0, 10]");
+    return refuse("blur_sigma_samples must be from 0.1 to 10");
+  if (!(spec.internal_noise >= 0 && spec.internal_noise <= 10)) return refuse("internal_noise must be from 0 to 10");
   if (!(spec.sensor_noise_factor >= 1 && spec.sensor_noise_factor <= 100))
-    return refuse("sensor_noise_factor must be in [1, 100]");
+    return refuse("sensor_noise_factor must be from 1 to 100");
   const double steps = spec.search_step_samples > 0 ? 1 / spec.search_step_samples : 0;
   if (!(steps >= 1 && steps <= 64 && std::abs(steps - std::round(steps)) < 1e-9)) {
-    return refuse("search_step_samples must be 1/n with a whole n up to 64");
+    return refuse("search_step_samples must be 1/n with a whole number n from 1 to 64");
   }
   const double reach = spec.search_range_samples * steps;
   if (!(reach >= 0 && reach <= 128 && std::abs(reach - std::round(reach)) < 1e-9)) {
     return refuse("search_range_samples must be a whole number of search steps, at most 128");
   }
   if (!(spec.window_size_factor >= 0.9 && spec.window_size_factor <= 10))
-    return refuse("window_size_factor must be in [0.9, 10]");
+    return refuse("window_size_factor must be from 0.9 to 10");
   if (!(spec.window_margin_pitch >= 0 && spec.window_margin_pitch <= 100))
-    return refuse("window_margin_pitch must be in [0, 100]");
+    return refuse("window_margin_pitch must be from 0 to 100");
   return {};
 }
 

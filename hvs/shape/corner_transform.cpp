@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/shape/corner_transform.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 
 namespace todbench {
 namespace {
@@ -29,7 +30,7 @@ std::complex<double> turn(double turns) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// Cosines are even and sines odd, in b, k, j and i: four sums of a quarter of the length, each over b or k in
+/// Cosines are even and sines odd in b, k, j and i: four sums of a quarter of the length, each over b or k in
 /// increasing order.
 cv::Mat1d corner_of_inverse(const SplitMatrix& folded, int points, cv::Size size) {
   const auto n = static_cast<std::size_t>(points);
@@ -47,8 +48,8 @@ cv::Mat1d corner_of_inverse(const SplitMatrix& folded, int points, cv::Size size
       }
     }
   }
-  // With F_b + F_-b (b that are their own mirror image once) go cosines of b j, with F_b - F_-b sines. Of each the part
-  // that goes with the cosine of k i, and behind it that which goes with minus the sine.
+  // F_b + F_-b (a b that is its own mirror image counts once) is multiplied with cosines of b j, F_b - F_-b with sines.
+  // Each holds first the part for the cosine of k i, then the part for minus the sine.
   const std::size_t wide = 2 * stride;
   std::vector<double> even(half * wide), odd(half * wide);
   for (std::size_t b = 0; b < half; ++b) {

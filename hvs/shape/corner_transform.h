@@ -1,4 +1,5 @@
-// A small inverse transform in sums of a fixed order: the same bits whatever the instruction set.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A small inverse transform with sums in a fixed order: the same bits on every instruction set.
 #pragma once
 
 #include <complex>
@@ -8,17 +9,17 @@
 
 namespace todbench {
 
-/// exp(+2 pi i turns), as exact for many turns as for few.
+/// exp(+2 pi i turns), with full accuracy for any number of turns.
 [[nodiscard]] std::complex<double> turn(double turns);
 
-/// Columns summed together, in registers, and columns filled up to whole such groups.
+/// Columns summed together in registers; columns are padded to whole groups of this size.
 inline constexpr std::size_t lanes = 16;
 
 inline std::size_t whole_lanes(std::size_t columns) {
   return (columns + lanes - 1) / lanes * lanes;
 }
 
-/// A complex matrix, real and imaginary parts apart, rows padded with zeros to whole lanes: the form in which sums over
+/// A complex matrix with separate real and imaginary parts, rows padded with zeros to whole lanes, so that sums over
 /// rows vectorise.
 struct SplitMatrix {
   std::size_t stride;
@@ -26,14 +27,14 @@ struct SplitMatrix {
   SplitMatrix(std::size_t rows, std::size_t columns) : stride(whole_lanes(columns)), re(rows * stride), im(re.size()) {}
 };
 
-/// Eight numbers added or multiplied element by element (GCC and Clang): an explicit vector, because the compiler's own
-/// choice pairs real with imaginary parts and shuffles more than it computes.
+/// Eight numbers processed element by element (GCC and Clang). The vector is explicit because the compiler otherwise
+/// pairs real with imaginary parts and shuffles more than it computes.
 using Eight = double __attribute__((vector_size(64)));
 using EightInMemory = double __attribute__((vector_size(64), aligned(8), may_alias));
 static_assert(lanes == 2 * 8);
 
 /// out[j][i] = Re sum_b sum_k folded[b][k] exp(2 pi i (b j + k i) / n), n = `points`, over the n rows b and the first n
-/// columns k; j and i within `size`, beyond n periodic.
+/// columns k; j and i within `size`, periodic beyond n.
 [[nodiscard]] cv::Mat1d corner_of_inverse(const SplitMatrix& folded, int points, cv::Size size);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/shape/gauss_legendre.h"
 
 #include <cmath>
@@ -8,7 +9,7 @@ namespace todbench {
 std::vector<QuadratureNode> gauss_legendre(int count) {
   std::vector<QuadratureNode> rule(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
-    // Tricomi's estimate of the root, then Newton until it no longer moves.
+    // Tricomi's estimate of the root, then Newton's method until it no longer changes.
     double x = -std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5));
     double derivative = 1;
     for (int iteration = 0; iteration < 20; ++iteration) {

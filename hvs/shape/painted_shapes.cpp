@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/shape/painted_shapes.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-/// Of the whole extent.
+/// Relative to the whole extent.
 constexpr double smallest_feature = 1e-9;
 
 double cross_of(cv::Point2d p, cv::Point2d q) {
@@ -36,7 +37,7 @@ Extent extent_of(const Polygon& polygon) {
   return out;
 }
 
-/// By crossings of a ray to the right.
+/// Whether the polygon contains p, by crossings of a ray to the right.
 bool holds(const Polygon& polygon, cv::Point2d p) {
   bool inside = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -54,7 +55,7 @@ struct PaintedEdge {
   std::vector<double> cuts{0, 1};
 };
 
-/// Where the edge has to be cut because of another: crossings and touching ends, as shares of its length.
+/// Finds the cuts of the edge by another one: crossings and touching ends, as fractions of its length.
 void cut(PaintedEdge& edge, const PaintedEdge& other, double smallest) {
   const cv::Point2d d = edge.b - edge.a, e = other.b - other.a;
   const double length = std::hypot(d.x, d.y);
@@ -76,7 +77,7 @@ class PaintedPicture {
     for (const auto& p : painted) extents_.push_back(extent_of(p.outline));
   }
 
-  /// The polygon on top at a place; nothing: none.
+  /// Index of the topmost polygon at a place; empty: none.
   [[nodiscard]] std::optional<std::size_t> top_at(cv::Point2d place) const {
     for (std::size_t i = painted_.size(); i-- > 0;) {
       if (extents_[i].holds(place) && holds(painted_[i].outline, place)) return i;
@@ -122,7 +123,7 @@ bool is_simple(const Polygon& polygon) {
       const bool next = j == i + 1, before = (j + 1) % n == i;
       const double c_side = side(i, c), d_side = side(i, d);
       if (next || before) {
-        // Neighbours share a vertex; they must not run back over each other.
+        // Neighbours share a vertex; they must not overlap.
         const auto &shared = next ? c : polygon[i], &own = next ? polygon[i] : polygon[(i + 1) % n],
                    &far = next ? d : c;
         if (cross_of(own - shared, far - shared) == 0 && (own - shared).dot(far - shared) > 0) return false;
@@ -160,7 +161,7 @@ std::vector<StepEdge> visible_edges(std::span<const PaintedPolygon> painted) {
       if (to - from <= 1e-12) continue;
       const cv::Point2d middle = edge.a + d * ((from + to) / 2);
       const auto here = picture.top_at(middle + aside), there = picture.top_at(middle - aside);
-      // The step belongs to the one on top; another polygon's edge at the same place is not counted again.
+      // The step belongs to the topmost polygon; another polygon's edge at the same place is not counted again.
       if (here == there || std::max(here, there) != std::optional(edge.owner)) continue;
       const double step = picture.level(here) - picture.level(there);
       if (step != 0) visible.push_back({edge.a + d * from, edge.a + d * to, step});

@@ -1,5 +1,5 @@
-// Shapes of uniform level painted over each other, as what a picture of them is made of: the edges where the level
-// steps.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shapes of uniform level painted over each other, represented by the edges at which the level steps.
 #pragma once
 
 #include <span>
@@ -9,32 +9,32 @@
 
 namespace todbench {
 
-/// A polygon that covers whatever was painted before it.
+/// A polygon that covers everything painted before it.
 struct PaintedPolygon {
   Polygon outline;  ///< simple: see is_simple()
   double level = 0;
 };
 
 /// A straight edge from a to b. `step` is the level on its side (dy, -dx) minus that on the other, (dx, dy) = b - a:
-/// the gradient of the picture is step (dy, -dx) along it.
+/// along the edge the gradient of the picture is step (dy, -dx).
 struct StepEdge {
   cv::Point2d a, b;
   double step = 0;
 };
 
-/// Whether no edge meets another but at the vertex that they share, and the area is not 0. At least three vertices,
+/// Whether edges meet only at the vertices that they share, and the area is not 0. Needs at least three vertices, all
 /// finite.
 [[nodiscard]] bool is_simple(const Polygon& polygon);
 
-/// The edges of what is seen when the polygons are painted in their order over level 0. Edges are cut where others
-/// cross or touch them; what is covered, or has the same level on both sides, is left out; edges that two polygons
-/// share count once. Features below 1e-9 of the whole extent are lost. Cost: the square of the number of edges.
+/// Returns the visible edges of polygons painted in order over level 0. Edges are cut at crossings and contacts with
+/// others; covered edges and edges with the same level on both sides are omitted; edges shared by two polygons count
+/// once. Features below 1e-9 of the whole extent are lost. Cost: the square of the number of edges.
 [[nodiscard]] std::vector<StepEdge> visible_edges(std::span<const PaintedPolygon> painted);
 
-/// The integral of the level over the plane.
+/// Integral of the level over the plane.
 [[nodiscard]] double integral(std::span<const StepEdge> edges);
 
-/// Turned clockwise (y points down) about the origin, scaled, then moved.
+/// Rotated clockwise (y points down) about the origin, scaled, then moved.
 [[nodiscard]] std::vector<StepEdge> placed(std::span<const StepEdge> edges, double scale, double rotation_deg,
                                            cv::Point2d offset);
 

@@ -1,4 +1,5 @@
-// Flat shapes of uniform contrast: what the sensor looks at and what the observer has in mind.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Flat shapes of uniform contrast: targets of the sensor and shapes of the observer's templates.
 #pragma once
 
 #include <opencv2/core/types.hpp>
@@ -6,7 +7,7 @@
 
 namespace todbench {
 
-/// Vertices in order, either sense of rotation, not self-intersecting. x right, y down; the unit is the caller's.
+/// Vertices in order, clockwise or not, without self-intersection. x right, y down; the unit is the caller's.
 using Polygon = std::vector<cv::Point2d>;
 
 /// Enclosed area, never negative.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/shape/polygon_coverage.h"
 
 #include <algorithm>
@@ -6,9 +7,9 @@
 namespace todbench {
 namespace {
 
-/// Green's theorem by pixels. An edge that runs down a pixel row by dy leaves everything to its right covered by dy,
-/// and of the pixel it passes the part to its right. Left of the picture counts as its first column, right of it as
-/// nothing.
+/// Green's theorem by pixels. An edge that runs down a pixel row by dy covers everything to its right by dy, and of the
+/// pixel that it passes the part to its right. Edges left of the picture count in its first column; edges right of it
+/// are ignored.
 class Accumulator {
  public:
   explicit Accumulator(cv::Size size) : shares_(cv::Mat1d::zeros(size)), steps_(cv::Mat1d::zeros(size)) {}
@@ -22,7 +23,7 @@ class Accumulator {
     for (int row = static_cast<int>(std::floor(top)); row < bottom; ++row) {
       const double y0 = std::max(top, static_cast<double>(row)), y1 = std::min(bottom, row + 1.0);
       if (y1 <= y0) continue;
-      // From whichever end is nearer, so that the ends are met exactly.
+      // From the nearer end, so that both ends are met exactly.
       const auto x_at = [&](double y) { return y - a.y < b.y - y ? a.x + slope * (y - a.y) : b.x - slope * (b.y - y); };
       add_in_row(row, x_at(y0), x_at(y1), sign * (y1 - y0));
     }
@@ -41,7 +42,7 @@ class Accumulator {
   }
 
  private:
-  /// A piece within one row, signed height dy, between two places in x.
+  /// Adds a piece within one row, of signed height dy, between two positions in x.
   void add_in_row(int row, double x0, double x1, double dy) {
     if (x0 > x1) std::swap(x0, x1);
     const double width = shares_.cols;
@@ -62,7 +63,7 @@ class Accumulator {
       add_to(row, column, per_x * (right - left), (left + right) / 2 - column);
     }
   }
-  /// Of height dy at a mean place within the column, from its left.
+  /// Adds height dy at a mean position within the column, from its left edge.
   void add_to(int row, int column, double dy, double place) {
     if (column >= shares_.cols) return;
     shares_(row, column) += dy * (1 - place);

@@ -1,4 +1,5 @@
-// How much of each pixel a polygon covers: exact areas.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Exact area of each pixel that a polygon covers.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -7,9 +8,9 @@
 
 namespace todbench {
 
-/// The share of each pixel that lies within the polygon; pixel (column i, row j) reaches from (i, j) to (i + 1, j + 1).
-/// Every edge is cut at the lines of the grid and its area added up in closed form: exact to rounding (about 1e-12 of a
-/// pixel). The polygon may leave the picture. Cost: the pixels plus those along the edges.
+/// Returns the share of each pixel inside the polygon; pixel (column i, row j) extends from (i, j) to (i + 1, j + 1).
+/// Every edge is cut at the grid lines and its area is summed in closed form: exact to rounding (about 1e-12 of a
+/// pixel). The polygon may extend beyond the picture. Cost: the pixels plus those along the edges.
 [[nodiscard]] cv::Mat1d pixel_coverage(const Polygon& polygon, cv::Size size);
 
 }  // namespace todbench

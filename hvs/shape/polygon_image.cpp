@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/shape/polygon_image.h"
 
 #include <fftw3.h>
@@ -11,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 #include "hvs/shape/corner_transform.h"
 
 namespace todbench {
@@ -24,7 +25,7 @@ int wrapped(int index, int n) {
   return ((index % n) + n) % n;
 }
 
-/// Rows read together: as many streams as the memory system follows.
+/// Rows read together: as many streams as the memory system can follow.
 constexpr std::size_t rows_at_once = 4;
 
 /// Adds factor_b row_b, b = 0..rows_at_once-1 in this order, to `columns` (whole lanes) sums.
@@ -82,7 +83,7 @@ void add_products(const double* re, const double* im, const Complex* factors, st
   }
 }
 
-/// Adds to every row b the conjugate of row -b, as they were before.
+/// Adds to every row b the conjugate of the original row -b.
 void add_conjugates(SplitMatrix& rows) {
   const std::size_t n = rows.re.size() / rows.stride;
   for (std::size_t b = 0; 2 * b <= n; ++b) {
@@ -95,7 +96,7 @@ void add_conjugates(SplitMatrix& rows) {
   }
 }
 
-/// turn(m * turns) for m = first..first+count-1, as products of two of fewer: a rounding more than each by itself.
+/// turn(m * turns) for m = first..first+count-1, as products of two table values: one rounding more than single calls.
 std::vector<Complex> turns_of(int first, int count, double turns) {
   constexpr int together = 16;
   std::array<Complex, together> fine;
@@ -116,13 +117,13 @@ struct DestroyPlan {
 };
 using OwnedPlan = std::unique_ptr<std::remove_pointer_t<fftw_plan>, DestroyPlan>;
 
-/// Inverse transforms of n points, contiguous: of complex numbers in place, and to real ones. FFTW_ESTIMATE, so that
-/// results repeat bit for bit.
+/// Inverse transforms of n contiguous points: complex in place, and to real numbers. FFTW_ESTIMATE, so that results
+/// repeat bit for bit.
 struct InversePlans {
   OwnedPlan complex, real;
 };
 
-/// Planned once for each length, kept until the program ends; addresses are to be multiples of 16 bytes.
+/// Planned once for each length, kept until the program ends; addresses must be multiples of 16 bytes.
 const InversePlans& inverse_plans(int n) {
   static std::mutex planner;  // FFTW's planner is not thread-safe; executing a plan is
   static std::map<int, InversePlans> plans;
@@ -137,7 +138,7 @@ const InversePlans& inverse_plans(int n) {
   return own;
 }
 
-/// (x, y) -> (-y, x), so often.
+/// Applies (x, y) -> (-y, x) `quarters` times.
 cv::Point2d turned_point(cv::Point2d p, int quarters) {
   for (int k = 0; k < wrapped(quarters, 4); ++k) p = {-p.y, p.x};
   return p;
@@ -154,7 +155,7 @@ bool is_mirrored(const Polygon& polygon) {
   return false;
 }
 
-/// Spectra of this many columns are brought into order together: a line of the cache.
+/// Spectra of this many columns are reordered together: a cache line.
 constexpr int columns_at_once = 8;
 
 }  // namespace
@@ -212,7 +213,7 @@ PolygonImage PolygonImage::turned(int quarters) const {
 
 cv::Mat1d PolygonImage::sample(cv::Point2d first, double step, cv::Size size) const {
   if (turns_ == 0) return sample_upright(first, step, size);
-  // The two corners of the window turned back; between them lie the samples of the spectrum's own image.
+  // The two corners of the window, rotated back; between them lie the samples of the spectrum's own image.
   const cv::Point2d a = turned_point(first, -turns_);
   const cv::Point2d b = turned_point(first + step * cv::Point2d(size.width - 1, size.height - 1), -turns_);
   const bool odd = turns_ % 2 == 1;
@@ -231,7 +232,7 @@ cv::Mat1d PolygonImage::sample_upright(cv::Point2d first, double step, cv::Size 
   const double period = lattice_.period;
   const auto columns = static_cast<std::size_t>(band) + 1;
 
-  // Rows: shift to first.y, then fold frequencies that the sampling cannot tell apart: every n-th row into one.
+  // Rows: shift to first.y, then add frequencies that the sampling cannot distinguish: every n-th row into one.
   const auto bins = static_cast<std::size_t>(n);
   const int lowest = half_ ? 0 : -band;
   SplitMatrix rows(bins, columns);
@@ -254,7 +255,7 @@ cv::Mat1d PolygonImage::sample_upright(cv::Point2d first, double step, cv::Size 
       add_row(re_[top] + b * stride, im_[top] + b * stride, ramps[b], extent(b), &rows.re[at], &rows.im[at]);
   }
   if (half_) add_conjugates(rows);
-  // Columns likewise. Frequencies u > 0 count twice, for their mirror images; the real part is taken at the end.
+  // The same for columns. Frequencies u > 0 count twice, for their mirror images; the real part is taken at the end.
   turns = turns_of(0, band + 1, first.x / period);
   turns[0] = 0.5;
   SplitMatrix folded(bins, bins);
@@ -292,15 +293,15 @@ cv::Mat1d PolygonImage::fine_image(int per_unit, int reach) const {
   return out;
 }
 
-/// The first `rows` and the last `rows` of n, by transforms along the columns and then along those rows. A spectrum of
-/// which half is kept has real columns.
+/// The first `rows` and the last `rows` of n, by transforms along the columns and then along those rows. If only half
+/// of a spectrum is kept, its columns are real.
 cv::Mat1d PolygonImage::fine_rows(int n, int rows) const {
   const int band = lattice_.band;
   const int half = n / 2 + 1;
   const InversePlans& plans = inverse_plans(n);
   const double scale = 1.0 / (static_cast<double>(lattice_.period) * lattice_.period);
   const auto wanted = [&](int row) { return row < rows || row >= n - rows; };
-  cv::Mat1d data(n, 2 * half);  // rows of `half` complex numbers become rows of n real ones with padding behind
+  cv::Mat1d data(n, 2 * half);  // rows of `half` complex numbers become rows of n real ones with padding
   cv::Mat1d spectra(columns_at_once, 2 * n), real(columns_at_once, n + n % 2);
   for (int first = 0; first <= band; first += columns_at_once) {
     const int count = std::min(columns_at_once, band + 1 - first);

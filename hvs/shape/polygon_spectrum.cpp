@@ -1,12 +1,13 @@
-// The closed-form Fourier transform of a polygon: at one frequency, and on a lattice without a trigonometric call in
-// the inner loop.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The closed-form Fourier transform of a polygon: at one frequency, and on a lattice without trigonometric calls in the
+// inner loop.
 #include "hvs/shape/polygon_spectrum.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 
 namespace todbench {
 namespace {
@@ -50,7 +51,7 @@ double radius(const Polygon& polygon) {
 }
 
 /// F = (i / k^2) sum_e kn_e exp(-i k.m_e) sinc(k.d_e / 2), with kn = kx dy - ky dx. The kn sum to zero over a closed
-/// polygon, so exp() sinc() - 1 may stand in the sum, which keeps full relative accuracy as k -> 0.
+/// polygon, so exp() sinc() - 1 can replace exp() sinc(), which keeps full relative accuracy as k -> 0.
 std::complex<double> spectrum_at(const Polygon& polygon, double kx, double ky) {
   const double k_squared = kx * kx + ky * ky;
   if (k_squared == 0) return area(polygon);
@@ -77,8 +78,8 @@ void multiply(const double* re, const double* im, double fr, double fi, std::siz
   }
 }
 
-/// Adds T_e = (kn / kd) (E_v - E_w) of the edge v -> w = v + d. The quotient is taken as zero where it is unsafe; those
-/// points are computed singly afterwards.
+/// Adds T_e = (kn / kd) (E_v - E_w) of the edge v -> w = v + d. At unsafe points the quotient is zero; these points are
+/// computed singly afterwards.
 TODBENCH_MULTIVERSION
 void add_edge(const double* kx, double ky, cv::Point2d d, const double* vr, const double* vi, const double* wr,
               const double* wi, std::size_t n, double* __restrict re, double* __restrict im) {
@@ -86,7 +87,7 @@ void add_edge(const double* kx, double ky, cv::Point2d d, const double* vr, cons
     const double kd = kx[m] * d.x + ky * d.y;
     const double kn = kx[m] * d.y - ky * d.x;
     const bool unsafe = std::abs(kd) < series_limit;
-    // Both selected before the division: a compiler may divide first and select afterwards, and by zero then.
+    // Both are selected before the division: otherwise a compiler may divide first, and by zero.
     const double ratio = (unsafe ? 0.0 : kn) / (unsafe ? 1.0 : kd);
     re[m] += ratio * (vr[m] - wr[m]);
     im[m] += ratio * (vi[m] - wi[m]);
@@ -113,7 +114,7 @@ std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w
 PolygonSpectrumRows::PhaseTable::PhaseTable(int first, int count, double x, double period)
     : re(static_cast<std::size_t>(count)), im(re.size()) {
   for (int i = 0; i < count; ++i) {
-    // The fraction of a turn is reduced before the trigonometric functions see it: exact for whole and half turns.
+    // The fraction of a turn is reduced before the trigonometric calls: exact for whole and half turns.
     const double turns = static_cast<double>(first + i) * x / period;
     const double angle = -two_pi * (turns - std::nearbyint(turns));
     re[static_cast<std::size_t>(i)] = std::cos(angle);
@@ -159,7 +160,7 @@ void PolygonSpectrumRows::sum_edges(int r, double ky, std::size_t n) {
   divide_by_square(kx_.data(), ky, n, re_.data(), im_.data());
 }
 
-/// Points at which the sum over edges loses digits.
+/// Recomputes the points at which the sum over edges loses digits.
 void PolygonSpectrumRows::replace_unsafe(double ky, std::size_t n) {
   const auto replace = [&](std::size_t m) {
     const std::complex<double> value = spectrum_at(polygon_, kx_[m], ky);
@@ -168,7 +169,7 @@ void PolygonSpectrumRows::replace_unsafe(double ky, std::size_t n) {
   };
   for (std::size_t v = 0; v < polygon_.size(); ++v) {
     const auto d = polygon_[(v + 1) % polygon_.size()] - polygon_[v];
-    // Columns on which |kx dx + ky dy| is below the limit: all, none, or a short run round -ky dy / dx.
+    // Columns on which |kx dx + ky dy| is below the limit: all, none, or a short run around -ky dy / dx.
     std::size_t first = 0;
     std::size_t last = n;
     if (std::abs(d.x) * kx_.back() > series_limit) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The closed-form Fourier transform of a polygon.
 #pragma once
 
@@ -17,9 +18,9 @@ struct FrequencyLattice {
   bool operator==(const FrequencyLattice&) const = default;
 };
 
-/// Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length: the integral of
-/// exp(-2 pi i (u x + w y)) over its area. Sum over edges with sinc factors; relative accuracy near 1e-15 times the
-/// number of turns, also for wave vectors perpendicular to an edge and at the origin.
+/// Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length: the integral of exp(-2
+/// pi i (u x + w y)) over its area. A sum over edges with sinc factors; relative accuracy near 1e-15 times the number
+/// of turns, also for wave vectors perpendicular to an edge and at the origin.
 [[nodiscard]] std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w);
 
 /// The same on a lattice, half plane u >= 0 (the rest follows by symmetry): rows w = -band..band, columns u = 0..band.
@@ -27,7 +28,7 @@ struct FrequencyLattice {
 /// area.
 [[nodiscard]] cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& polygon, const FrequencyLattice& lattice);
 
-/// The same, row by row, real and imaginary parts apart: for callers that filter a row while it is in the cache.
+/// The same row by row, with separate real and imaginary parts, for callers that filter a row while it is in the cache.
 /// One thread at a time.
 class PolygonSpectrumRows {
  public:
@@ -39,7 +40,7 @@ class PolygonSpectrumRows {
   [[nodiscard]] Row row(int r, std::size_t columns);
 
  private:
-  /// exp(-2 pi i m x / period), real and imaginary parts apart.
+  /// exp(-2 pi i m x / period), with separate real and imaginary parts.
   struct PhaseTable {
     std::vector<double> re, im;
     PhaseTable(int first, int count, double x, double period);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/shape/step_image.h"
 
 #include <cmath>
@@ -27,7 +28,7 @@ struct Corner {
   std::vector<std::complex<double>> along_x, along_y, row;
 };
 
-/// Edges between corners that are known once.
+/// Edges with shared corners, whose phases are computed once.
 class EdgeSpectrum {
  public:
   EdgeSpectrum(std::span<const StepEdge> edges, FrequencyLattice lattice) : edges_(edges), lattice_(lattice) {
@@ -44,8 +45,8 @@ class EdgeSpectrum {
     for (const auto& edge : edges) ends_.emplace_back(corner(edge.a), corner(edge.b));
   }
 
-  /// F = (1 / k^2) sum of -step kn (E_a - E_b) / kd, kn = kx dy - ky dx, kd = k.d: that of a polygon, of which every
-  /// edge has the step -1 outwards. `columns` numbers of the row w = r - band.
+  /// F = (1 / k^2) sum of -step kn (E_a - E_b) / kd, kn = kx dy - ky dx, kd = k.d; equals the spectrum of a polygon if
+  /// every edge has the step -1 outwards. Returns the first `columns` values of the row w = r - band.
   std::vector<std::complex<double>> row(int r, std::size_t columns) {
     const double ky = full_turn * (r - lattice_.band) / lattice_.period;
     for (Corner& corner : corners_) {
@@ -64,7 +65,7 @@ class EdgeSpectrum {
         if (std::abs(kd) > 1e-3) {
           sum[m] += weight / kd * (from[m] - to[m]);
         } else {
-          // i exp(-i k.m) sinc(kd / 2), the next term kd^4 / 1920.
+          // i exp(-i k.m) sinc(kd / 2); the next term is kd^4 / 1920.
           const cv::Point2d middle = (edges_[e].a + edges_[e].b) / 2;
           sum[m] += weight * (1 - kd * kd / 24) * std::complex<double>(0, 1) *
                     std::polar(1.0, -(kx * middle.x + ky * middle.y));

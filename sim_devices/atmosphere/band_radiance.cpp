@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/atmosphere/band_radiance.h"
 
 #include <fmt/format.h>
@@ -42,7 +43,8 @@ double edge(double t) {
 Result<void> validate(const SpectralBand& band) {
   if (std::isfinite(band.high_um) && band.low_um > 0 && band.high_um > band.low_um) return {};
   return fail(ErrorCode::invalid_input,
-              fmt::format("a band of {:g} to {:g} um holds no wavelength", band.low_um, band.high_um));
+              fmt::format("the band from {:g} to {:g} um is empty: it needs 0 < low end < high end", band.low_um,
+                          band.high_um));
 }
 
 double band_radiance(const SpectralBand& band, double temperature_k) {
@@ -61,7 +63,7 @@ std::optional<double> radiation_temperature_k(const SpectralBand& band, double r
   if (!(radiance_w_m2_sr > 0) || radiance_w_m2_sr > band_radiance(band, hottest_k)) return std::nullopt;
   double low = 1e-3, high = hottest_k;
   double t = 300;
-  // ln B is nearly linear in 1 / T: Newton there, kept inside the bracket.
+  // ln B is nearly linear in 1 / T: Newton's method in these variables, kept inside the bracket.
   for (int i = 0; i < 200; ++i) {
     const double radiance = band_radiance(band, t);
     (radiance < radiance_w_m2_sr ? low : high) = t;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/atmosphere/radiative_path.h"
 
 #include <fmt/format.h>

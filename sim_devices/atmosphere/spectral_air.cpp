@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/atmosphere/spectral_air.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@
 namespace todbench {
 namespace {
 
-/// Half of the distance between the neighbours: the trapezoid rule as weights.
+/// Half of the distance between the neighbours: weights of the trapezoid rule.
 template <typename Axis>
 double cell(std::size_t i, std::size_t count, Axis axis) {
   const double low = axis(i == 0 ? 0 : i - 1), high = axis(i + 1 == count ? i : i + 1);
@@ -34,7 +35,7 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-/// The next word of a line, which is taken from it.
+/// Removes the next word from a line and returns it.
 std::string_view next_word(std::string_view& line) {
   const auto first = line.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return line = {};
@@ -54,7 +55,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-/// "   36TROPICAL MODEL", "   361976 U S STANDARD": a number of levels and a name.
+/// True for a number of levels and a name: "   36TROPICAL MODEL", "   361976 U S STANDARD".
 bool names_a_model(std::string_view line) {
   if (line.find('!') != std::string_view::npos) return false;
   const auto letters = std::count_if(line.begin(), line.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
@@ -66,7 +67,7 @@ tl::unexpected<Error> wrong(std::size_t line, std::string_view sentence) {
   return fail(ErrorCode::invalid_input, fmt::format("line {}: {}", line + 1, sentence));
 }
 
-/// Range of card 3, the line behind the name of the model, before the header of the columns.
+/// Range from card 3, the line after the name of the model, in front of the header of the columns.
 Result<double> range_of(std::span<const std::string_view> lines, std::size_t begin, std::size_t header) {
   for (std::size_t i = begin; i + 1 < header; ++i) {
     if (!names_a_model(lines[i])) continue;
@@ -78,7 +79,7 @@ Result<double> range_of(std::span<const std::string_view> lines, std::size_t beg
   return wrong(header, "no line with the name of a model atmosphere before the columns: is this a tape7 file?");
 }
 
-/// The rows of a run from `line` on; leaves `line` behind the end of the run.
+/// Reads the rows of a run from `line` on and moves `line` to the end of the run.
 Result<void> read_rows(std::span<const std::string_view> lines, std::size_t& line, Tape7Run& run) {
   for (; line < lines.size(); ++line) {
     std::string_view rest = lines[line];
@@ -101,11 +102,11 @@ Result<void> read_rows(std::span<const std::string_view> lines, std::size_t& lin
   return {};
 }
 
-/// Weights dL/dT of the wavenumbers inside the band; 0 outside. dL/dnu = dL/dlambda lambda^2.
+/// Weights dL/dT of the wavenumbers inside the band, 0 outside. dL/dnu = dL/dlambda lambda^2.
 Result<std::vector<double>> weights_of(const Tape7Run& run, const SpectralBand& band, double temperature_k) {
   const auto& nu = run.wavenumber_per_cm;
   const double low = 1e4 / band.high_um, high = 1e4 / band.low_um;
-  // A run that begins a step late still covers the band.
+  // A run that begins one step late still covers the band.
   const double step = nu.size() > 1 ? (nu.back() - nu.front()) / static_cast<double>(nu.size() - 1) : 0;
   if (nu.size() < 2 || nu.front() > low + step || nu.back() < high - step) {
     return fail(ErrorCode::invalid_input,
@@ -127,8 +128,10 @@ Result<std::vector<double>> weights_of(const Tape7Run& run, const SpectralBand& 
 }  // namespace
 
 Result<Transmittance> air_of_spectrum(std::span<const SpectralExtinction> spectrum, double temperature_k) {
-  if (spectrum.size() < 2) return fail(ErrorCode::invalid_input, "a spectrum needs two wavelengths");
-  if (!(temperature_k > 0)) return fail(ErrorCode::invalid_input, "the temperature of the weight must be above 0 K");
+  if (spectrum.size() < 2) return fail(ErrorCode::invalid_input, "a spectrum needs at least two wavelengths");
+  if (!(temperature_k > 0))
+    return fail(ErrorCode::invalid_input,
+                "the temperature of the black body that weights the spectrum must be above 0 K");
   std::vector<double> weights, extinction;
   double sum = 0;
   for (std::size_t i = 0; i < spectrum.size(); ++i) {
@@ -137,13 +140,15 @@ Result<Transmittance> air_of_spectrum(std::span<const SpectralExtinction> spectr
         (i > 0 && wavelength_um <= spectrum[i - 1].wavelength_um))
       return fail(ErrorCode::invalid_input, "wavelengths must be above 0 um and increase");
     if (!std::isfinite(per_km) || per_km < 0)
-      return fail(ErrorCode::invalid_input, "the extinction must be 0 or more per km at every wavelength");
+      return fail(ErrorCode::invalid_input, "the extinction must be at least 0 per km at every wavelength");
     weights.push_back(cell(i, spectrum.size(), [&](std::size_t k) { return spectrum[k].wavelength_um; }) *
                       thermal_weight(wavelength_um, temperature_k));
     extinction.push_back(per_km);
     sum += weights.back();
   }
-  if (!(sum > 0)) return fail(ErrorCode::invalid_input, "a black body of the weight's temperature emits nothing there");
+  if (!(sum > 0))
+    return fail(ErrorCode::invalid_input,
+                "the black body that weights the spectrum emits no radiation at its wavelengths");
   return Transmittance::of_spectrum(std::move(weights), std::move(extinction));
 }
 
@@ -158,7 +163,7 @@ Result<std::vector<Tape7Run>> parse_tape7(std::string_view text) {
     const auto range_km = range_of(lines, begin, line);
     if (!range_km) return tl::unexpected(range_km.error());
     ++line;
-    // Runs of transmittance alone have a second line of names.
+    // Runs that contain only transmittance have a second line of names.
     if (line < lines.size() && trimmed(lines[line]).starts_with("CM")) ++line;
     Tape7Run run{.range_km = *range_km, .wavenumber_per_cm = {}, .transmittance = {}};
     if (auto read = read_rows(lines, line, run); !read) return tl::unexpected(read.error());
@@ -184,7 +189,7 @@ Result<Transmittance> air_of_tape7(std::span<const Tape7Run> runs, const Spectra
   std::vector<TransmittancePoint> rows;
   if (runs.size() == 1) {
     Tape7Run scaled = runs.front();
-    constexpr int steps = 60;  // twenty a decade
+    constexpr int steps = 60;  // twenty per decade
     for (int i = 0; i <= steps; ++i) {
       const double share = std::pow(1000.0, static_cast<double>(i - steps) / steps);
       for (std::size_t k = 0; k < scaled.transmittance.size(); ++k)

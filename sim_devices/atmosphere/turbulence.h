@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Turbulence of the air on a horizontal path of constant Cn2.
 #pragma once
 
@@ -13,8 +14,8 @@ struct TurbulentPath {
 
 /// Fried's coherence diameter for a plane wave: (0.423 k^2 Cn2 L)^(-3/5), in metres.
 [[nodiscard]] double fried_plane_m(const TurbulentPath& path);
-/// For a spherical wave from the target, weight (z / L)^(5/3) with z from the target: (8/3)^(3/5) = 1.80 of the plane
-/// one.
+/// Coherence diameter in metres for a spherical wave from the target, weight (z / L)^(5/3) with z from the target:
+/// (8/3)^(3/5) = 1.80 times that of the plane wave.
 [[nodiscard]] double fried_spherical_m(const TurbulentPath& path);
 
 /// 3.44 (lambda nu / r0)^(5/3), r0 spherical (Fried 1966).
@@ -22,11 +23,11 @@ struct TurbulentPath {
 /// Long exposure: exp[-3.44 (lambda nu / r0)^(5/3)], r0 spherical (Fried 1966).
 [[nodiscard]] double long_exposure_mtf(const TurbulentPath& path, double cycles_per_mrad);
 enum class PropagationField { near_field, far_field };
-/// Short exposure: the exponent times 1 - a (lambda nu / D)^(1/3), a = 1 in the near and 1/2 in the far field. May pass
-/// the long exposure by; nothing beyond the cut-off of the aperture, nu > D / lambda.
+/// Short exposure: the exponent times 1 - a (lambda nu / D)^(1/3), a = 1 in the near field and 1/2 in the far field. It
+/// can exceed the long exposure. Empty beyond the cut-off of the aperture, nu > D / lambda.
 [[nodiscard]] std::optional<double> short_exposure_mtf(const TurbulentPath& path, double aperture_m,
                                                        PropagationField field, double cycles_per_mrad);
-/// Standard deviation of the image's dance per axis in mrad: sqrt(0.182 (D / r0)^(5/3)) lambda / D.
+/// Standard deviation of the image dance per axis in mrad: sqrt(0.182 (D / r0)^(5/3)) lambda / D (Noll 1976).
 [[nodiscard]] double tilt_sd_mrad(const TurbulentPath& path, double aperture_m);
 
 }  // namespace todbench

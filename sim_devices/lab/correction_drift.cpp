@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/correction_drift.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 
 namespace todbench {
 
@@ -32,8 +33,8 @@ cv::Mat1w with_pattern(const cv::Mat1w& counts, const DriftPattern& pattern, dou
                        const SensorSpec& sensor) {
   cv::Mat1w out(counts.size());
   const double per_k = 1 / sensor.kelvin_per_count, top = std::exp2(sensor.bits) - 1;
-  // Counts are whole already: rounding to the nearest would leave the pattern in steps. Multiples of the golden
-  // section's part are spread evenly.
+  // Counts are already whole: rounding to the nearest would show the pattern in steps. Multiples of the golden ratio
+  // are spread evenly.
   constexpr std::uint64_t period = 1 << 20;
   const double moved = 0.6180339887498949 * static_cast<double>(exposure % period);
   for (int j = 0; j < counts.rows; ++j) {

@@ -1,4 +1,5 @@
-// What a camera drifts after a correction of its non-uniformity.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Drift of a camera after a non-uniformity correction.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +9,26 @@
 
 namespace todbench {
 
-/// Rates just after a correction; in time, rate t or rate T (1 - exp(-t / T)).
+/// Drift as a function of time t: rate t, or rate T (1 - exp(-t / T)). Rates apply just after a correction.
 struct CorrectionDrift {
   double level_k_per_min = 0;    ///< of the whole picture
-  double pattern_k_per_min = 0;  ///< standard deviation over the pixels, normal
-  double time_constant_s = 0;    ///< T of both; 0: linear
+  double pattern_k_per_min = 0;  ///< standard deviation over the pixels, normally distributed
+  double time_constant_s = 0;    ///< T of both drifts; 0: linear
 
   [[nodiscard]] bool any() const { return level_k_per_min != 0 || pattern_k_per_min != 0; }
-  /// Minutes at the initial rate that lead to the same after `since_s`.
+  /// Equivalent duration in minutes at the initial rate for the drift after `since_s`.
   [[nodiscard]] double minutes(double since_s) const;
 };
 
-/// One draw per pixel, the same for the same seed.
+/// Pattern of the drift, one random draw per pixel. Depends only on the seed.
 struct DriftPattern {
-  cv::Mat1d draw;   ///< mean 0 and standard deviation 1 over the picture; empty: there is no pattern
+  cv::Mat1d draw;   ///< mean 0 and standard deviation 1 over the picture; empty: no pattern
   cv::Mat1d phase;  ///< of the rounding, 0 to 1
 };
 [[nodiscard]] DriftPattern drift_pattern(cv::Size size, std::uint64_t seed);
 
-/// Whole counts with `pattern_k` times the pattern on them: of successive exposures so many are rounded up that their
-/// mean has parts of a count, too.
+/// Adds `pattern_k` times the pattern to whole counts. Successive exposures are rounded up or down so that their mean
+/// also contains fractions of a count.
 [[nodiscard]] cv::Mat1w with_pattern(const cv::Mat1w& counts, const DriftPattern& pattern, double pattern_k,
                                      std::uint64_t exposure, const SensorSpec& sensor);
 

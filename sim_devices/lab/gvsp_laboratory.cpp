@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/gvsp_laboratory.h"
 
 #include <map>
@@ -25,7 +26,7 @@ class GvspLaboratoryCamera final : public LaboratoryCamera {
   [[nodiscard]] std::map<std::string, std::string> settings() const override {
     const GvspCameraConfig& config = camera_->config();
     if (config.model != CameraModel::unlisted) return {};
-    // It says nothing of temperature.
+    // This model does not report its temperature scale.
     return {{"TemperatureLinearScale", control_text(config.kelvin_per_count)},
             {"TemperatureLinearOffset", control_text(config.offset_k)}};
   }

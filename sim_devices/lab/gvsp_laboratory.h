@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The emulated laboratory with a GigE Vision camera on plain sockets.
 #pragma once
 
@@ -7,11 +8,11 @@
 
 namespace todbench {
 
-/// The sensor with counts as this model sends them when it is set up for measuring: 0.04 K in 14 bits, or 0.01 K in 16.
-/// A model that sends raw counts leaves the sensor as it is.
+/// The sensor with the counts that this model sends when set up for measuring: 0.04 K in 14 bits, or 0.01 K in 16. For
+/// a model that sends raw counts the sensor is unchanged.
 [[nodiscard]] SensorSpec with_counts_of(CameraModel model, SensorSpec sensor);
 
-/// Geometry, rate and scale of the configuration are filled in from the sensor.
+/// Connects the camera. The sensor sets geometry, rate and scale of the configuration.
 [[nodiscard]] ConnectCamera connect_gvsp(GvspCameraConfig config);
 
 }  // namespace todbench

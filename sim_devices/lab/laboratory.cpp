@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/laboratory.h"
 
 #include <algorithm>
 #include <atomic>
 #include <optional>
 
+#include "acquisition/base/rng.h"
 #include "acquisition/core/camera_id.h"
-#include "acquisition/core/rng.h"
 #include "sim_devices/sensor/contrast_steps.h"
 #include "sim_devices/sensor/moving_scene.h"
 
@@ -34,7 +35,7 @@ ConnectCamera connect_gige(const EmulatedGigeCameraConfig& config, EmulatedGigeC
   };
 }
 
-/// The sensor as a camera states it whose kelvin are `scale` true ones.
+/// The sensor as stated by a camera with an error of scale: stated over true kelvin is `scale`.
 SensorSpec as_stated(SensorSpec sensor, double scale) {
   sensor.kelvin_per_count *= scale;
   sensor.offset_k = scale * sensor.offset_k + (1 - scale) * sensor.scene_temperature_k;
@@ -52,12 +53,12 @@ struct Laboratory::State {
   std::string camera_id, camera_address;
   std::map<std::string, std::string> camera_settings, client_environment;
   std::atomic<std::uint64_t> next_exposure = 0, since_power_up = 0;
-  std::optional<ContrastSteps> taken_in{};      ///< of the contrast, since power-up; the camera's thread
+  std::optional<ContrastSteps> taken_in{};      ///< contrast steps since power-up; used by the camera's thread
   std::atomic<std::uint64_t> corrected_at = 0;  ///< exposures since power-up at the last correction
-  DriftPattern drifting;                        ///< pattern of the drift; empty: there is none
-  std::unique_ptr<LaboratoryCamera> camera;     // last: its thread looks at the others
+  DriftPattern drifting;                        ///< pattern of the drift; empty: none
+  std::unique_ptr<LaboratoryCamera> camera;     // last: its thread uses the other members
 
-  /// Frame k shows what is before the camera at that moment, with the noise of exposure k.
+  /// Frame k shows the scene at that moment with the noise of exposure k.
   [[nodiscard]] Result<void> connect_camera() {
     corrected_at = 0;
     const LaboratoryExposure expose = [this, first = next_exposure.load()](std::uint64_t index) {
@@ -66,7 +67,8 @@ struct Laboratory::State {
       if (monitor) return monitor->expose(first + index);
       PlateScene scene = scene_at(frame_time_s(index));
       scene.delta_t_k = taken_in_k(scene.delta_t_k, index);
-      return exposed(std::move(scene), first + index, index);
+      cv::Mat1w counts = exposed(scene, first + index, index);
+      return options.sent_counts ? options.sent_counts(std::move(counts), scene) : counts;
     };
     auto connected = options.connect(as_stated(options.sensor, options.stated_scale), expose);
     if (!connected) return tl::unexpected(connected.error());
@@ -74,7 +76,7 @@ struct Laboratory::State {
     return {};
   }
 
-  /// With what the camera has drifted since its correction.
+  /// Adds the drift since the last correction.
   [[nodiscard]] cv::Mat1w exposed(PlateScene scene, std::uint64_t exposure, std::uint64_t index) const {
     if (!options.drift.any()) return model->expose(scene, exposure);
     const double frames = static_cast<double>(index) - static_cast<double>(corrected_at.load());
@@ -85,8 +87,7 @@ struct Laboratory::State {
     return with_pattern(counts, drifting, options.drift.pattern_k_per_min * minutes, exposure, options.sensor);
   }
 
-  /// What the detector has taken in of the contrast, which has become `delta_t_k` at a moment since the last exposure
-  /// that the frame clock does not know.
+  /// Contrast that the detector has reached. It became `delta_t_k` at an unknown moment since the last exposure.
   [[nodiscard]] double taken_in_k(double delta_t_k, std::uint64_t index) {
     const double time_s = frame_time_s(index);
     if (!taken_in || index == 0) taken_in.emplace(delta_t_k);
@@ -98,7 +99,7 @@ struct Laboratory::State {
     return taken_in->seen_k(time_s, options.sensor);
   }
 
-  /// Device time of an exposure since power-up: the camera's clock advances by a frame with each.
+  /// Device time of an exposure since power-up. The camera's clock advances by one frame per exposure.
   [[nodiscard]] double frame_time_s(std::uint64_t index) const {
     return static_cast<double>(index + 1) / options.sensor.frame_rate_hz;
   }
@@ -113,7 +114,8 @@ struct Laboratory::State {
     scene.delta_t_k = heat.delta_t_k;
     scene.background_k = heat.plate_temperature_k;
     scene.distance_m = options.distance_m;
-    scene.shift_mm = on_stage.shift_mm;
+    const auto& real_place_mm = options.stage.real_place_mm;
+    scene.shift_mm = real_place_mm ? real_place_mm(on_stage.shift_mm) : on_stage.shift_mm;
     scene.centre_px = options.centre_px;
     scene.rotation_deg = options.rotation_deg;
     return in_motion(std::move(scene), on_stage.speed_mm_per_s, model->spec());
@@ -124,7 +126,7 @@ Laboratory::Laboratory(std::unique_ptr<State> state) : state_(std::move(state)) 
 Laboratory::~Laboratory() = default;
 
 Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options) {
-  if (options.plates.empty()) return fail(ErrorCode::invalid_input, "the emulated laboratory needs a plate");
+  if (options.plates.empty()) return fail(ErrorCode::invalid_input, "the emulated laboratory needs at least one plate");
   // Written so that NaN fails.
   if (!(options.stated_scale > 0)) return fail(ErrorCode::invalid_input, "the stated scale must be above 0");
   auto state = std::make_unique<State>();

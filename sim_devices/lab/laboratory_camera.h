@@ -1,4 +1,5 @@
-// What the emulated laboratory needs of a camera, whatever interface it is on.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Interface of a camera for the emulated laboratory, for any transport.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +9,13 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/sensor/sensor_spec.h"
 
 namespace todbench {
 
-/// An emulated camera that serves while it lives; destroyed without a word to its client, as a pulled cable does.
+/// An emulated camera that serves during its lifetime. Destruction acts like a pulled cable, without notice to a
+/// client.
 class LaboratoryCamera {
  public:
   virtual ~LaboratoryCamera() = default;
@@ -21,20 +23,20 @@ class LaboratoryCamera {
   LaboratoryCamera(const LaboratoryCamera&) = delete;
   LaboratoryCamera& operator=(const LaboratoryCamera&) = delete;
 
-  /// For the plan: "gige:VENDOR-SERIAL".
+  /// Identifier for the plan: "gige:VENDOR-SERIAL".
   [[nodiscard]] virtual std::string id() const = 0;
-  /// Where it is: an IPv4 address, a device node.
+  /// IPv4 address or device node.
   [[nodiscard]] virtual std::string address() const = 0;
-  /// What a plan has to state, because the camera does not say it itself.
+  /// Settings that a plan must state because the camera does not report them.
   [[nodiscard]] virtual std::map<std::string, std::string> settings() const { return {}; }
-  /// What the environment of a client in another process has to be; empty: nothing special.
+  /// Environment variables for a client in another process; empty: none.
   [[nodiscard]] virtual std::map<std::string, std::string> client_environment() const { return {}; }
 };
 
-/// Picture number `index` since power-up, of the geometry of the sensor.
+/// Picture number `index` since power-up, with the geometry of the sensor.
 using LaboratoryExposure = std::function<cv::Mat1w(std::uint64_t index)>;
 
-/// The configuration of an emulated camera with the geometry, rate and scale of a sensor.
+/// Configuration of an emulated camera with the geometry, rate and scale of a sensor.
 template <typename Config>
 [[nodiscard]] Config as_sensor(Config config, const SensorSpec& sensor) {
   config.width = sensor.width * sensor.microscan;
@@ -46,7 +48,7 @@ template <typename Config>
   return config;
 }
 
-/// Switches a camera on that sends what a sensor exposes.
+/// Switches on a camera that sends the exposures of a sensor.
 using ConnectCamera =
     std::function<Result<std::unique_ptr<LaboratoryCamera>>(const SensorSpec& sensor, LaboratoryExposure exposure)>;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/monitor_view.h"
 
 #include <fmt/format.h>
@@ -12,15 +13,16 @@ Result<MonitorView> MonitorView::make(Monitor monitor, const SensorModel& model,
                                       cv::Point2d centre_px) {
   for (const double number : {monitor.pixel_mm, monitor.span_k, monitor.gamma, distance_m}) {
     if (!(std::isfinite(number) && number > 0))
-      return fail(ErrorCode::invalid_input, "pixel, span and gamma of a monitor and its distance are above 0");
+      return fail(ErrorCode::invalid_input, "the pixel, span, gamma and distance of a monitor must be above 0");
   }
   const SensorSpec& spec = model.spec();
   const double pixel_samples = monitor.pixel_mm / distance_m / spec.ifov_mrad() * spec.samples_per_pitch();
   if (pixel_samples > 1) {
-    return fail(ErrorCode::invalid_input,
-                fmt::format("a pixel of the monitor of {:g} mm at {:g} m is {:.2f} samples of "
-                            "the camera: at most one can be emulated",
-                            monitor.pixel_mm, distance_m, pixel_samples));
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format(
+            "a monitor pixel of {:g} mm at {:g} m covers {:.2f} samples of the camera; at most 1 can be emulated",
+            monitor.pixel_mm, distance_m, pixel_samples));
   }
   return MonitorView(std::move(monitor), model, accuracy, pixel_samples, centre_px);
 }
@@ -41,7 +43,7 @@ void MonitorView::look(const std::shared_ptr<const cv::Mat1f>& levels) {
     surround_ = 0;
     return;
   }
-  // No panel is darker than black or brighter than white; what is no number is black.
+  // No panel is darker than black or brighter than white. NaN counts as black.
   const auto light = [&](float level) {
     return std::pow(std::min(1.0, std::max(0.0, static_cast<double>(level))), monitor_.gamma);
   };

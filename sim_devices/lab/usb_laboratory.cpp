@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/usb_laboratory.h"
 
 #include "acquisition/core/camera_id.h"
@@ -54,7 +55,8 @@ ConnectCamera connect_seek(std::shared_ptr<MockSystem> system, SeekCameraConfig 
             sensor.bits > 14) {
           return fail(ErrorCode::invalid_input, "a Seek " + std::string(to_string(config.model)) + " has " +
                                                     std::to_string(size.width) + " x " + std::to_string(size.height) +
-                                                    " pixels of 14 bits; sensor " + sensor.name + " has not");
+                                                    " pixels of 14 bits; the sensor " + sensor.name +
+                                                    " has another size or more bits");
         }
         config.frame_rate_hz = sensor.frame_rate_hz;
         auto camera = SeekCamera::create(config, std::move(exposure));

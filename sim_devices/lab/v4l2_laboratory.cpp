@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/v4l2_laboratory.h"
 
 #include "acquisition/v4l2/video_listing.h"

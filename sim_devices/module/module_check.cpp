@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/module/module_check.h"
 
 #include <fmt/format.h>
@@ -5,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 
 namespace todbench {
 namespace {
@@ -16,7 +17,7 @@ cv::Mat1f noise(cv::Size size, std::uint64_t index) {
   return picture;
 }
 
-/// The answers of a new process to the pictures in their order.
+/// Answers of a new process to the pictures, in order.
 Result<std::vector<cv::Mat1f>> answers_to(const ModuleOptions& options, const std::vector<cv::Mat1f>& pictures) {
   auto module = ModuleProcess::start(options);
   if (!module) return tl::unexpected(module.error());
@@ -32,7 +33,7 @@ Result<std::vector<cv::Mat1f>> answers_to(const ModuleOptions& options, const st
   return answers;
 }
 
-/// Median of twenty exchanges; a process that remembers is asked with pictures that it has seen.
+/// Median of twenty exchanges with the same picture.
 Result<double> latency_ms(const ModuleOptions& options) {
   auto module = ModuleProcess::start(options);
   if (!module) return tl::unexpected(module.error());
@@ -43,11 +44,11 @@ Result<double> latency_ms(const ModuleOptions& options) {
     if (auto answer = module->exchange(picture); !answer) return tl::unexpected(answer.error());
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
-  std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first starts the program
+  std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first includes the start
   return times[11];
 }
 
-/// The answer of a process of its own: one that remembers has nothing to remember.
+/// Answer of a separate process, which has no memory of earlier pictures.
 Result<cv::Mat1f> fresh_answer(const ModuleOptions& options, const cv::Mat1f& picture) {
   auto answers = answers_to(options, {picture});
   if (!answers) return tl::unexpected(answers.error());

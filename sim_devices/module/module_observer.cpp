@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/module/module_observer.h"
 
 #include <mutex>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-/// The process behind all sizes of one observer.
+/// The process that serves all sizes of one observer.
 class ScoringProcess {
  public:
   ScoringProcess(const ModulePlan& plan, std::function<void(std::string_view line)> on_error_line)
@@ -88,7 +89,7 @@ class PreparedModuleObserver final : public PreparedObserver {
 
  private:
   TemplateObserverSpec spec_;
-  std::shared_ptr<const PreparedObserver> templates_;  ///< for its window
+  std::shared_ptr<const PreparedObserver> templates_;  ///< provides the window
   std::shared_ptr<ScoringProcess> process_;
   int alternatives_;
   double size_samples_;

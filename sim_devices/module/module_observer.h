@@ -1,4 +1,5 @@
-// An observer whose scores come from a program of the user's.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Observer that takes its scores from a program of the user.
 #pragma once
 
 #include <functional>
@@ -10,11 +11,11 @@
 
 namespace todbench {
 
-/// The observer `spec` with its window, its search range and its internal noise, whose templates are replaced by a
-/// module: for every patch it is sent an array <f8 of six numbers (size in displayed samples, displayed samples per
-/// pitch, contrast in kelvin, phase in x and y in samples, noise of the sensor in kelvin) and one <f4 with the patch as
-/// the templates would meet it (seen_patch()), and answers with one score for each alternative; the highest wins. It
-/// has no judge(): graded answers are those of choose(), 1 or 0. After a failure() every choice is that of no scores.
+/// The observer `spec` with its window, search range and internal noise; a module replaces its templates. For every
+/// patch the module receives two arrays: one <f8 of six numbers (size in displayed samples, displayed samples per
+/// pitch, contrast in kelvin, phase in x and y in samples, noise of the sensor in kelvin), and one <f4 with the patch
+/// as the templates would receive it (seen_patch()). It answers one score for each alternative; the highest wins. There
+/// is no judge(): graded answers are those of choose(), 1 or 0. After a failure() every choice is made without scores.
 /// One thread at a time.
 [[nodiscard]] std::unique_ptr<Observer> module_observer(const TemplateObserverSpec& spec, Alternatives alternatives,
                                                         const ModulePlan& module,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/module/module_observer_check.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace todbench {
 namespace {
 
 constexpr double contrast_k = 2;
-/// Small, usual, large, and one as microscan shows it.
+/// Small, usual, large, and one size with microscan.
 constexpr std::array<std::pair<double, int>, 4> asked_sizes{{{1.6, 1}, {2.6, 1}, {5.0, 1}, {12.0, 2}}};
 constexpr int places_across = 3;
 
@@ -20,7 +21,7 @@ RandomStream check_noise() {
   return {1, "module.observer.check"};
 }
 
-/// A target behind detectors that average over a sample, nothing else.
+/// A target after detectors that average over a sample, without any other effect.
 Patch planted(const Polygon& shape, double size_samples, int window_samples, cv::Point2d phase) {
   const cv::Point2d middle(window_samples / 2.0, window_samples / 2.0);
   return {.kelvin = 300 + contrast_k * pixel_coverage(placed(shape, size_samples, middle + phase),
@@ -50,7 +51,7 @@ std::vector<Question> questions(int alternatives) {
   return all;
 }
 
-/// The answers of one new process, in the order of the questions.
+/// Answers of a new process, in the order of the questions.
 Result<std::vector<Choice>> answers_to(const std::vector<Question>& asked, const TemplateObserverSpec& spec,
                                        const Alternatives& alternatives, const ModulePlan& module) {
   const auto observer = module_observer(spec, alternatives, module, nullptr);
@@ -81,7 +82,7 @@ Result<double> patch_time_ms(const TemplateObserverSpec& spec, const Alternative
     if (const auto failure = observer->failure()) return tl::unexpected(*failure);
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
-  std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first starts the program
+  std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first includes the start
   return times[11];
 }
 

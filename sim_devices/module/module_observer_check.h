@@ -1,4 +1,5 @@
-// The contract test for authors of observers that are programs.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contract test for authors of observer programs.
 #pragma once
 
 #include <vector>
@@ -7,7 +8,7 @@
 
 namespace todbench {
 
-/// Targets of one size that it was asked about.
+/// Test targets of one size.
 struct JudgedSize {
   double size_samples = 0;  ///< square root of area
   int samples_per_pitch = 1;
@@ -15,17 +16,17 @@ struct JudgedSize {
   int asked = 0, right = 0;
 };
 
-/// What a program that keeps the contract of an observer was found to do. Nothing of it is a fault.
+/// Properties of an observer program that keeps the contract. None of them is a fault.
 struct ObserverModuleReport {
   std::vector<JudgedSize> sizes;
-  bool network_cut = false;    ///< it could reach nobody
+  bool network_cut = false;    ///< it could not reach any other computer
   double latency_ms = 0;       ///< median of twenty patches of a target of 5 samples
-  bool order_matters = false;  ///< another process, asked in the opposite order, gave other scores
+  bool order_matters = false;  ///< another process that received the patches in the opposite order gave other scores
 };
 
-/// Starts the program several times and asks it about patches of targets without sensor noise, every alternative at
-/// nine places within a sample, seen with the internal noise of `spec`. Errors: those of the module, and `integrity`
-/// when two processes score the same patches in the same order differently.
+/// Starts the program several times and sends it patches of targets without sensor noise: every alternative at nine
+/// places within a sample, with the internal noise of `spec`. Errors: those of the module, and `integrity` if two
+/// processes score the same patches in the same order differently.
 [[nodiscard]] Result<ObserverModuleReport> check_observer(const TemplateObserverSpec& spec,
                                                           const Alternatives& alternatives, const ModulePlan& module);
 

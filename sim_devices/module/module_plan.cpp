@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/module/module_plan.h"
 
 #include <nlohmann/json.hpp>
 
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/safe_text.h"
 
 namespace todbench {
 
@@ -22,7 +23,7 @@ ModuleStageOptions stage_options(const ModulePlan& plan, std::span<const SensorF
     std::visit([&, &key = name](auto number) { header["sensor"][key] = number; }, value);
   ModuleStageOptions options;
   options.process.command = plan.command;
-  // A text that is no UTF-8 is handed over with its broken bytes replaced, not refused in the middle of a run.
+  // Invalid UTF-8 is replaced, because an exception would end the run.
   options.process.header = header.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   options.process.limit = std::chrono::milliseconds(plan.limit_ms);
   options.process.memory_limit_mib = static_cast<std::size_t>(plan.memory_mib);

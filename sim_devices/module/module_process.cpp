@@ -1,9 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/module/module_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,104 +16,150 @@
 
 #include <fmt/format.h>
 
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/process.h"
+#include "acquisition/base/safe_text.h"
+#include "sim_devices/module/module_filter.h"
 #include "sim_devices/module/npy_message.h"
-
-extern char** environ;
 
 namespace todbench {
 namespace {
 
 constexpr std::size_t kept_errors = 4096;
 
-struct Pipe {
-  int read = -1, write = -1;
-};
-
-Result<Pipe> made_pipe() {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return fail(ErrorCode::internal, "no pipe to a module can be made");
-  return Pipe{ends[0], ends[1]};
-}
-
-void close_end(int& descriptor) {
-  if (descriptor >= 0) ::close(descriptor);
-  descriptor = -1;
-}
-
 void never_wait(int descriptor) {
   ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
 }
 
-/// A shell for the command, in a network of its own: the file system is as ours, its processes end with the first.
+/// File descriptor at which bwrap finds the filter.
+constexpr int filter_end = 3;
+
+/// Own network without UNIX sockets. The file system is that of the host; all processes end with the first.
+std::vector<std::string> sandbox_words() {
+  // Not --die-with-parent: the module would die with its starting thread. A bench that ends closes the input.
+  return {"bwrap",         "--dev-bind", "/",     "/",         "--unshare-net",
+          "--unshare-pid", "--proc",     "/proc", "--seccomp", std::to_string(filter_end)};
+}
+
+bool is_in_sandbox(const ModuleOptions& options) {
+  return options.network == ModuleNetwork::cut && can_cut_network();
+}
+
+/// Shell command line of the module.
 std::vector<std::string> words_of(const ModuleOptions& options) {
   std::vector<std::string> words;
-  if (options.network == ModuleNetwork::cut && can_cut_network()) {
-    // Not --die-with-parent: it would die with the thread that started it. A bench that is gone has closed the input.
-    words = {"bwrap", "--dev-bind", "/", "/", "--unshare-net", "--unshare-pid", "--proc", "/proc"};
-  }
+  if (is_in_sandbox(options)) words = sandbox_words();
   const std::string limit =
       options.memory_limit_mib == 0 ? "" : fmt::format("ulimit -v {} || exit 1\n", options.memory_limit_mib * 1024);
   words.insert(words.end(), {"/bin/sh", "-c", limit + options.command});
   return words;
 }
 
-/// The words in a process group of their own, with these standard streams and no signal blocked.
-Result<pid_t> spawned_group(std::vector<std::string> words, const Pipe& in, const Pipe& out, const Pipe& err) {
-  std::vector<char*> pointers;
-  for (auto& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, in.read, 0);
-  posix_spawn_file_actions_adddup2(&actions, out.write, 1);
-  posix_spawn_file_actions_adddup2(&actions, err.write, 2);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none, pipe_signal;
-  sigemptyset(&none);
-  sigemptyset(&pipe_signal);
-  sigaddset(&pipe_signal, SIGPIPE);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &pipe_signal);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  pid_t process = -1;
-  const int failure = ::posix_spawnp(&process, pointers.front(), &actions, &attributes, pointers.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) return fail(ErrorCode::internal, "no process for a module can be made");
+enum class Sandbox { none, filtered };
+
+/// Starts a process group with these standard streams and no blocked signal.
+Result<pid_t> spawned_group(std::vector<std::string> words, Sandbox sandbox, const Pipe& in, const Pipe& out,
+                            const Pipe& err) {
+  const Descriptor filter(sandbox == Sandbox::filtered ? module_filter() : -1);
+  if (sandbox == Sandbox::filtered && !filter.is_open())
+    return fail(ErrorCode::internal, "the system-call filter of the module cannot be created");
+  const auto process = start_program(
+      std::move(words),
+      {.input = in.read.get(), .output = out.write.get(), .error = err.write.get(), .at_three = filter.get()},
+      ChildGroup::own);
+  if (!process) return fail(ErrorCode::internal, "the process of the module cannot be started");
   return process;
 }
 
 }  // namespace
 
+namespace {
+
+/// Starts a process and reads the first line from either of its outputs, for at most `limit`, then ends it. The exit
+/// code is set if the process ended before.
+struct Said {
+  std::string line;
+  std::optional<int> exit_code;
+};
+Result<Said> first_line_said(std::vector<std::string> words, Sandbox sandbox, std::chrono::milliseconds limit) {
+  auto in = make_pipe(), out = make_pipe();
+  if (!in || !out) return fail(ErrorCode::internal, "the pipe to the module cannot be created");
+  const auto process = spawned_group(std::move(words), sandbox, *in, *out, *out);
+  in->read.close();
+  in->write.close();
+  out->write.close();
+  Said said;
+  const auto until = std::chrono::steady_clock::now() + limit;
+  constexpr std::size_t longest_line = 256;
+  bool at_end = false;
+  while (process && !at_end && said.line.size() < longest_line && said.line.find('\n') == std::string::npos) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+    pollfd readable{out->read.get(), POLLIN, 0};
+    if (left.count() <= 0 || ::poll(&readable, 1, static_cast<int>(left.count())) == 0) break;
+    std::array<char, longest_line> piece{};
+    const ssize_t got = ::read(out->read.get(), piece.data(), piece.size());
+    if (got < 0 && errno == EINTR) continue;
+    at_end = got <= 0;
+    if (got > 0) said.line.append(piece.data(), static_cast<std::size_t>(got));
+  }
+  out->read.close();
+  if (!process) return tl::unexpected(process.error());
+  int status = 0;
+  bool ended = false;
+  // The process may have closed its output and still run.
+  while (at_end && !ended && std::chrono::steady_clock::now() < until) {
+    ended = ::waitpid(*process, &status, WNOHANG) == *process;
+    if (!ended) ::poll(nullptr, 0, 1);
+  }
+  if (!ended) {
+    ::kill(-*process, SIGKILL);
+    while (::waitpid(*process, &status, 0) < 0 && errno == EINTR) {
+    }
+  }
+  // Ends everything that it left running in its group.
+  ::kill(-*process, SIGKILL);
+  if (ended && WIFEXITED(status)) said.exit_code = WEXITSTATUS(status);
+  said.line = said.line.substr(0, std::min(said.line.find('\n'), longest_line));
+  return said;
+}
+
+}  // namespace
+
 bool can_cut_network() {
-  static const bool can = std::system(
-                              "bwrap --dev-bind / / --unshare-net --unshare-pid --proc /proc true "
-                              ">/dev/null 2>&1 </dev/null") == 0;
+  static const bool can = [] {
+    auto words = sandbox_words();
+    words.emplace_back("true");
+    const auto said = first_line_said(std::move(words), Sandbox::filtered, std::chrono::seconds(10));
+    return said && said->exit_code == 0;
+  }();
   return can;
 }
 
+std::string first_line_of_module(const ModuleOptions& options) {
+  const auto said =
+      first_line_said(words_of(options), is_in_sandbox(options) ? Sandbox::filtered : Sandbox::none, options.limit);
+  return said ? said->line : std::string();
+}
+
 Result<ModuleProcess> ModuleProcess::start(const ModuleOptions& options) {
-  auto in = made_pipe(), out = made_pipe(), err = made_pipe();
+  auto in = make_pipe(), out = make_pipe(), err = make_pipe();
   for (const auto* pipe : {&in, &out, &err}) {
     if (!*pipe) return tl::unexpected(pipe->error());
   }
-  auto process = spawned_group(words_of(options), *in, *out, *err);
-  close_end(in->read);
-  close_end(out->write);
-  close_end(err->write);
+  auto process =
+      spawned_group(words_of(options), is_in_sandbox(options) ? Sandbox::filtered : Sandbox::none, *in, *out, *err);
+  in->read.close();
+  out->write.close();
+  err->write.close();
   ModuleProcess module(options);
-  module.in_ = in->write;
-  module.out_ = out->read;
-  module.err_ = err->read;
+  module.in_ = std::move(in->write);
+  module.out_ = std::move(out->read);
+  module.err_ = std::move(err->read);
   if (!process) return tl::unexpected(process.error());
   module.process_ = *process;
-  for (const int end : {module.in_, module.out_, module.err_}) never_wait(end);
-  // A whole picture at once where the system allows it: fewer changes between the two processes.
+  for (const int end : {module.in_.get(), module.out_.get(), module.err_.get()}) never_wait(end);
+  // A whole picture at once if the system allows it, for fewer switches between the two processes.
   constexpr int picture_bytes = 1 << 20;
-  for (const int end : {module.in_, module.out_}) ::fcntl(end, F_SETPIPE_SZ, picture_bytes);
+  for (const int end : {module.in_.get(), module.out_.get()}) ::fcntl(end, F_SETPIPE_SZ, picture_bytes);
   module.to_write_ = to_message(std::string_view(options.header));
   return module;
 }
@@ -122,9 +168,9 @@ ModuleProcess::ModuleProcess(ModuleProcess&& other) noexcept
     : options_(std::move(other.options_)),
       process_(std::exchange(other.process_, -1)),
       exit_code_(other.exit_code_),
-      in_(std::exchange(other.in_, -1)),
-      out_(std::exchange(other.out_, -1)),
-      err_(std::exchange(other.err_, -1)),
+      in_(std::move(other.in_)),
+      out_(std::move(other.out_)),
+      err_(std::move(other.err_)),
       to_write_(std::move(other.to_write_)),
       read_(std::move(other.read_)),
       errors_(std::move(other.errors_)),
@@ -136,11 +182,11 @@ ModuleProcess::~ModuleProcess() {
 }
 
 void ModuleProcess::end() {
-  close_end(in_);
-  close_end(out_);
-  close_end(err_);
+  in_.close();
+  out_.close();
+  err_.close();
   if (process_ < 0) return;
-  // Everything that it started belongs to its group.
+  // Ends everything that it started, which belongs to its group.
   ::kill(-process_, SIGKILL);
   int status = 0;
   pid_t ended = -1;
@@ -153,7 +199,7 @@ void ModuleProcess::end() {
 void ModuleProcess::say_lines(std::string_view words) {
   if (!options_.on_error_line) return;
   for (const char c : words) {
-    // A line without an end is no reason to keep all of it.
+    // Keeps only the beginning of an endless line.
     if (c != '\n' && error_line_.size() < kept_errors) {
       error_line_ += c;
       continue;
@@ -165,7 +211,7 @@ void ModuleProcess::say_lines(std::string_view words) {
 
 void ModuleProcess::take_errors() {
   std::array<char, 4096> buffer{};
-  for (ssize_t got = 0; (got = ::read(err_, buffer.data(), buffer.size())) > 0;) {
+  for (ssize_t got = 0; (got = ::read(err_.get(), buffer.data(), buffer.size())) > 0;) {
     const std::string_view words(buffer.data(), static_cast<std::size_t>(got));
     errors_ += words;
     say_lines(words);
@@ -178,7 +224,7 @@ Error ModuleProcess::with_last_words(Error error) const {
   std::string_view text = errors_;
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ')) text.remove_suffix(1);
   const auto line = text.substr(text.rfind('\n') == std::string_view::npos ? 0 : text.rfind('\n') + 1);
-  if (!line.empty()) error.message += "; it said: " + one_line(std::string(line));
+  if (!line.empty()) error.message += "; its last output: " + one_line(std::string(line));
   return error;
 }
 
@@ -197,29 +243,29 @@ Result<NpyPlace> ModuleProcess::transfer(std::chrono::steady_clock::time_point u
       return tl::unexpected(with_last_words(
           {ErrorCode::timeout, fmt::format("the module did not answer within {} ms", options_.limit.count())}));
     }
-    std::array<pollfd, 3> ends{pollfd{out_, POLLIN, 0}, pollfd{err_, POLLIN, 0},
-                               pollfd{to_write_.empty() ? -1 : in_, POLLOUT, 0}};
+    std::array<pollfd, 3> ends{pollfd{out_.get(), POLLIN, 0}, pollfd{err_.get(), POLLIN, 0},
+                               pollfd{to_write_.empty() ? -1 : in_.get(), POLLOUT, 0}};
     if (::poll(ends.data(), ends.size(), static_cast<int>(left.count())) < 0 && errno != EINTR)
-      return fail(ErrorCode::internal, "a module cannot be waited for");
+      return fail(ErrorCode::internal, "waiting for the module failed");
     if (ends[1].revents != 0) {
       take_errors();
-      if ((ends[1].revents & POLLHUP) != 0) close_end(err_);
+      if ((ends[1].revents & POLLHUP) != 0) err_.close();
     }
     if ((ends[2].revents & (POLLOUT | POLLERR)) != 0) {
-      const ssize_t done = ::write(in_, to_write_.data(), to_write_.size());
+      const ssize_t done = ::write(in_.get(), to_write_.data(), to_write_.size());
       if (done > 0) to_write_.erase(0, static_cast<std::size_t>(done));
-      // A module that no longer reads may still have answered: what is left to read decides.
+      // A module that stopped reading may still have answered: the remaining input decides.
       if (done < 0 && errno == EPIPE) to_write_.clear();
     }
     if (ends[0].revents == 0) continue;
-    const ssize_t got = ::read(out_, buffer_.data(), buffer_.size());
+    const ssize_t got = ::read(out_.get(), buffer_.data(), buffer_.size());
     if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) {
       take_errors();
       return tl::unexpected(died());
     }
     if (got > 0) read_.append(buffer_.data(), static_cast<std::size_t>(got));
     if (read_.size() > most_bytes)
-      return tl::unexpected(with_last_words({ErrorCode::integrity, "the module's answer does not end"}));
+      return tl::unexpected(with_last_words({ErrorCode::integrity, "the module's answer is too long"}));
   }
 }
 
@@ -230,11 +276,12 @@ tl::unexpected<Error> ModuleProcess::refused(Error error) {
 
 Result<NpyPlace> ModuleProcess::answer_to(const std::string& messages, const std::vector<std::size_t>& shape) {
   if (process_ < 0) return fail(ErrorCode::disconnected, "the module has ended");
-  // What stands there before anything was asked is no answer.
+  // Output in front of the first request is not an answer.
   std::array<char, 64> early{};
-  if (const ssize_t got = ::read(out_, early.data(), early.size()); got > 0)
+  if (const ssize_t got = ::read(out_.get(), early.data(), early.size()); got > 0)
     read_.append(early.data(), static_cast<std::size_t>(got));
-  if (!read_.empty()) return refused(with_last_words({ErrorCode::integrity, "the module wrote more than its answer"}));
+  if (!read_.empty())
+    return refused(with_last_words({ErrorCode::integrity, "the module wrote more bytes than its answer"}));
   to_write_ += messages;
   std::size_t count = 1;
   for (const std::size_t length : shape) count *= length;
@@ -254,7 +301,7 @@ Result<cv::Mat1f> ModuleProcess::exchange(const cv::Mat1f& picture) {
   if (!found) return tl::unexpected(found.error());
   cv::Mat1f answer = picture_at(read_, *found);
   read_.erase(0, found->bytes);
-  // In range: neither infinite nor NaN, which compares with nothing.
+  // Rejects infinite values and NaN, which fails every comparison.
   if (!cv::checkRange(answer))
     return refused(with_last_words({ErrorCode::integrity, "the module answered with a number that is not finite"}));
   return answer;

@@ -1,4 +1,5 @@
-// A stage of the chain as a process of the user's, in any language.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A process of the user, in any language, as a stage of the chain.
 #pragma once
 
 #include <sys/types.h>
@@ -11,47 +12,52 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/descriptor.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/module/npy_message.h"
 
 namespace todbench {
 
-/// Whether a module may reach other computers, and this one by its network.
+/// Access of a module to other computers, and to this one over its network.
 enum class ModuleNetwork {
-  cut,  ///< a network of its own without any way out, by Debian's bubblewrap; where that cannot run: as ours
+  cut,  ///< own network without UNIX sockets, by bubblewrap; as `ours` if that cannot run
   ours,
 };
-/// Whether a network can be cut here: bubblewrap is installed and the system lets it work. Asked once.
+/// True if a network can be cut here: bubblewrap is installed and works. Tested once.
 [[nodiscard]] bool can_cut_network();
 
-/// How a module is started and what it may take.
+/// Command and limits of a module.
 struct ModuleOptions {
   std::string command{};                  ///< for a shell
   std::string header = "{}";              ///< JSON that is sent first, as a byte array
-  std::chrono::milliseconds limit{5000};  ///< for an answer, the start of the process included in the first
-  std::size_t memory_limit_mib = 0;       ///< of address space, each process that it starts for itself; 0: none
+  std::chrono::milliseconds limit{5000};  ///< for one answer; the first includes the start of the process
+  std::size_t memory_limit_mib = 0;       ///< of address space, for each process that it starts; 0: no limit
   ModuleNetwork network = ModuleNetwork::cut;
-  std::function<void(std::string_view line)> on_error_line{};  ///< every line of its standard error
+  std::function<void(std::string_view line)> on_error_line{};  ///< receives every line of its standard error
 };
 
-/// Picture to picture: writes one .npy array to the module's standard input and reads one of the same shape from its
-/// standard output. Its own process group, which ends with the object. What goes wrong is said with the last line of
-/// its standard error; after an error the module is dead. The program has to ignore SIGPIPE. Move-only; one thread at a
-/// time.
+/// First line (at most 256 bytes) that the command writes to its standard output or error within `limit`. It runs with
+/// empty standard input under the limits of a module. Empty if there is none.
+[[nodiscard]] std::string first_line_of_module(const ModuleOptions& options);
+
+/// Runs a module: writes one .npy array to its standard input and reads one of the same shape from its standard output.
+/// The module has its own process group, which ends with the object. Error messages contain the last line of its
+/// standard error. After an error the module is dead. The calling program must ignore SIGPIPE. Move-only; one thread at
+/// a time.
 class ModuleProcess {
  public:
-  /// `internal` where no process can be made; a command that does not exist is noticed by the first exchange.
+  /// `internal` if no process can be created. A command that does not exist fails in the first exchange.
   [[nodiscard]] static Result<ModuleProcess> start(const ModuleOptions& options);
   ModuleProcess(ModuleProcess&& other) noexcept;
   ModuleProcess& operator=(ModuleProcess&& other) = delete;
   ~ModuleProcess();
 
-  /// `disconnected`: it died. `timeout`: no answer in time. `integrity`: no array, another shape, a type that is none,
-  /// a number that is not finite, bytes behind the answer.
+  /// Errors: `disconnected` (the module died), `timeout` (no answer in time), `integrity` (no array, another shape, an
+  /// unknown type, a number that is not finite, bytes after the answer).
   [[nodiscard]] Result<cv::Mat1f> exchange(const cv::Mat1f& picture);
-  /// Any messages, answered by one array of this shape; its numbers, last index fastest. Errors as exchange().
+  /// Sends messages and returns the numbers of an array of this shape, last index fastest. Errors as exchange().
   [[nodiscard]] Result<std::vector<double>> ask(const std::string& messages, const std::vector<std::size_t>& shape);
-  /// After an error: what it ended with. Nothing: it was still there, or a signal ended it.
+  /// Exit code after an error. Empty if the process was still running or a signal ended it.
   [[nodiscard]] std::optional<int> exit_code() const { return exit_code_; }
 
  private:
@@ -68,7 +74,7 @@ class ModuleProcess {
   ModuleOptions options_;
   pid_t process_ = -1;
   std::optional<int> exit_code_;
-  int in_ = -1, out_ = -1, err_ = -1;  ///< our ends of its standard streams
+  Descriptor in_, out_, err_;  ///< our ends of its standard streams
   std::string to_write_, read_, errors_, error_line_;
   std::vector<char> buffer_ = std::vector<char>(1 << 20);  ///< for reading
 };

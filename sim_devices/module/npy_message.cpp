@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/module/npy_message.h"
 
 #include <fmt/format.h>
@@ -10,27 +11,14 @@
 #include <cstring>
 #include <utility>
 
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/npy_header.h"
+#include "acquisition/base/safe_text.h"
 
 namespace todbench {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
-constexpr std::string_view magic("\x93NUMPY", 6);
 constexpr std::size_t longest_header = 65535;
-
-std::string with_header(std::string_view type, const std::string& shape) {
-  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
-  // Magic, version, length and header end together at a multiple of 64, with a line end.
-  constexpr std::size_t before = 10, alignment = 64;
-  while ((before + header.size() + 1) % alignment != 0) header += ' ';
-  header += '\n';
-  std::string bytes(magic);
-  bytes += std::string("\x01\x00", 2);
-  bytes += static_cast<char>(header.size() & 0xff);
-  bytes += static_cast<char>(header.size() >> 8);
-  return bytes + header;
-}
 
 template <typename T, typename To>
 void convert(const char* bytes, std::size_t count, To* to) {
@@ -55,7 +43,7 @@ constexpr std::array types{type_of<float>("<f4"),        type_of<double>("<f8"),
                            type_of<std::int8_t>("|i1"),  type_of<std::uint8_t>("|b1"),  type_of<std::uint16_t>("<u2"),
                            type_of<std::int16_t>("<i2"), type_of<std::uint32_t>("<u4"), type_of<std::int32_t>("<i4")};
 
-/// What stands behind 'KEY': in the header's dictionary, up to `end`.
+/// Text after 'KEY': in the header's dictionary, up to `end`.
 std::string_view entry_of(std::string_view header, std::string_view key, char end) {
   const auto place = header.find(key);
   if (place == std::string_view::npos) return {};
@@ -63,7 +51,7 @@ std::string_view entry_of(std::string_view header, std::string_view key, char en
   return rest.substr(0, rest.find(end));
 }
 
-/// "2, 3" or "4," as numbers.
+/// Parses "2, 3" or "4," as numbers.
 std::optional<std::vector<std::size_t>> shape_from(std::string_view text) {
   std::vector<std::size_t> shape;
   while (true) {
@@ -78,13 +66,13 @@ std::optional<std::vector<std::size_t>> shape_from(std::string_view text) {
 }
 
 tl::unexpected<Error> wrong(const std::string& sentence) {
-  return fail(ErrorCode::integrity, "the module's answer: " + sentence);
+  return fail(ErrorCode::integrity, "the module's answer " + sentence);
 }
 
 }  // namespace
 
 std::string to_message(const cv::Mat1f& picture) {
-  std::string bytes = with_header("<f4", fmt::format("{}, {}", picture.rows, picture.cols));
+  std::string bytes = npy_header("<f4", fmt::format("{}, {}", picture.rows, picture.cols));
   bytes.reserve(bytes.size() + picture.total() * sizeof(float));
   for (int row = 0; row < picture.rows; ++row)
     bytes.append(reinterpret_cast<const char*>(picture.ptr(row)),
@@ -93,34 +81,36 @@ std::string to_message(const cv::Mat1f& picture) {
 }
 
 std::string to_message(const std::vector<double>& numbers) {
-  std::string bytes = with_header("<f8", fmt::format("{},", numbers.size()));
+  std::string bytes = npy_header("<f8", fmt::format("{},", numbers.size()));
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
   return bytes;
 }
 
 std::string to_message(std::string_view text) {
-  return with_header("|u1", fmt::format("{},", text.size())) + std::string(text);
+  return npy_header("|u1", fmt::format("{},", text.size())) + std::string(text);
 }
 
 Result<std::optional<NpyPlace>> find_message(std::string_view stream, std::size_t most_values) {
-  const auto begins = stream.substr(0, magic.size());
-  if (!magic.starts_with(begins))
-    return wrong("is no .npy array, it begins with '" + one_line(std::string(begins)) + "'");
+  const auto begins = stream.substr(0, npy_magic.size());
+  if (!npy_magic.starts_with(begins))
+    return wrong("is not a .npy array: it begins with '" + one_line(std::string(begins)) + "'");
   const std::optional<NpyPlace> not_yet;
   if (stream.size() < 12) return not_yet;
   const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(stream[i])); };
   const std::size_t version = byte(6);
-  if (version < 1 || version > 3) return wrong(fmt::format("is of version {} of .npy", version));
+  if (version < 1 || version > 3) return wrong(fmt::format("has version {} of .npy, expected 1 to 3", version));
   const std::size_t length =
       version == 1 ? byte(8) | byte(9) << 8 : byte(8) | byte(9) << 8 | byte(10) << 16 | byte(11) << 24;
   const std::size_t begin = version == 1 ? 10 : 12;
-  if (length > longest_header) return wrong("has too long a header");
+  if (length > longest_header) return wrong("has a header that is too long");
   if (stream.size() < begin + length) return not_yet;
   const std::string_view header = stream.substr(begin, length);
   const std::string_view name = entry_of(header, "'descr': '", '\'');
   const auto* type = std::find_if(types.begin(), types.end(), [&](const Type& known) { return known.name == name; });
-  if (type == types.end()) return wrong("has the type '" + one_line(std::string(name)) + "', expected one as <f4");
-  if (header.find("'fortran_order': False") == std::string_view::npos) return wrong("has columns first, expected rows");
+  if (type == types.end())
+    return wrong("has the type '" + one_line(std::string(name)) + "', expected a number type, for example <f4");
+  if (header.find("'fortran_order': False") == std::string_view::npos)
+    return wrong("is stored by columns, expected by rows");
   const auto shape = shape_from(entry_of(header, "'shape': (", ')'));
   if (!shape) return wrong("has no shape");
   std::size_t count = 1;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/module/picture_stage.h"
 
 #include <algorithm>
@@ -80,7 +81,7 @@ cv::Mat1f equalised_to_plateau(const cv::Mat1f& picture, double plateau_percent)
   const double plateau = std::max(1.0, plateau_percent / 100 * static_cast<double>(picture.total()));
   double sum = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    // The middle of a class: what is equal before is equal after, half of it counts as below.
+    // Middle of a class: equal values stay equal, and half of the class counts as below.
     const double counted = std::min(counts[i], plateau);
     below[i] = sum + counted / 2;
     sum += counted;
@@ -100,7 +101,7 @@ cv::Mat1f in_grey_levels(const cv::Mat1f& picture, int plateau_counts) {
   for (auto& [count, pixels] : histogram) {
     if (plateau_counts > 0) pixels = std::min(pixels, static_cast<double>(plateau_counts));
     total += pixels;
-    pixels = total;  // from here on: up to the count itself
+    pixels = total;  // from here on: up to and including the count
   }
   cv::Mat1f answer(picture.size());
   std::transform(picture.begin(), picture.end(), answer.begin(), [&](float value) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/bar_pattern.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ std::vector<StepEdge> bar_edges(BarPattern pattern, double frequency_per_pitch, 
 std::vector<double> bar_energies(double frequency_per_pitch, BarPattern alternative, const TransferFunction& transfer,
                                  double band_per_pitch, int phases) {
   const double side = 3.5 / frequency_per_pitch;
-  const int period = static_cast<int>(std::ceil(side)) + 24;  // what blur leaves 12 pitches outside is far below 1e-9
+  const int period = static_cast<int>(std::ceil(side)) + 24;  // blur beyond 12 pitches outside is far below 1e-9
   const FrequencyLattice lattice{.period = period, .band = static_cast<int>(std::ceil(band_per_pitch * period))};
   // Phases lie between points of a lattice twice as fine.
   int per_pitch = 2 * phases;

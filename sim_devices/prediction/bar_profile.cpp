@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/bar_profile.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace todbench {
 std::vector<float> bar_profile(const cv::Mat1f& window, double frequency_per_sample, BarAxis axis) {
   const cv::Mat1f turned = axis == BarAxis::horizontal ? window : cv::Mat1f(window.t());
   const double half_length = 1.75 / frequency_per_sample;
-  // Ends of bars are blurred: what lies within a sample of them is left out where enough remains.
+  // Ends of bars are blurred: the last sample is left out if enough samples remain.
   const int most = turned.rows / 2;
   const int half = std::clamp(static_cast<int>(half_length - 1), 1, most);
   cv::Mat1f mean;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/camera_trials.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace todbench {
 namespace {
 
 constexpr int factor = 2;
-constexpr double largest_shift_px = 1.5;  ///< frames displaced by half a pitch at most are found this near
+constexpr double largest_shift_px = 1.5;  ///< search range for frames displaced by at most half a pitch
 
 cv::Mat1f kelvin_of(const cv::Mat1w& counts, const SensorSpec& sensor, double background_k) {
   cv::Mat1f kelvin;
@@ -22,7 +23,7 @@ cv::Mat1f kelvin_of(const cv::Mat1w& counts, const SensorSpec& sensor, double ba
   return kelvin;
 }
 
-/// The frames of one presentation with what is known about them.
+/// Frames of one presentation with their true displacements.
 struct Presentation {
   std::vector<cv::Mat1f> frames;
   std::vector<cv::Point2d> displacements_px;  ///< against the first
@@ -55,11 +56,11 @@ Presentation expose(const SensorModel& model, const TargetPlate& plate, const Ca
   return shown;
 }
 
-/// The frames of a presentation whose displacement was found. The others are left out, as a camera would.
+/// Frames of a presentation that were registered. A camera leaves the others out, too.
 struct Registered {
   std::vector<cv::Mat1f> frames;
   std::vector<cv::Point2d> shifts_px;
-  double squared_errors = 0;  ///< found minus true displacement, mean of both axes
+  double squared_errors = 0;  ///< estimated minus true displacement, mean of both axes
 };
 
 Registered register_frames(const Presentation& shown) {
@@ -77,7 +78,7 @@ Registered register_frames(const Presentation& shown) {
   return registered;
 }
 
-/// A picture to be judged: where a pixel of the camera is in it, and how finely it is sampled.
+/// A picture to be judged: the place of a camera pixel in it, and its sampling.
 struct Picture {
   cv::Mat1f kelvin;
   cv::Point2d first_px;
@@ -142,7 +143,7 @@ double noise_of(const SensorSpec& sensor, double frames) {
 
 Result<void> check(const CameraTrialOptions& options) {
   if (options.sizes_pitch.empty() || options.presentations < 2 || options.frames < factor * factor)
-    return fail(ErrorCode::invalid_input, "camera trials need sizes, two presentations and four frames");
+    return fail(ErrorCode::invalid_input, "camera trials need at least one size, two presentations and four frames");
   for (const double size : options.sizes_pitch) {
     if (!(size > 0.1 && size < 40))
       return fail(ErrorCode::invalid_input, "camera trials need sizes of 0.1 to 40 pitches");
@@ -156,11 +157,10 @@ Result<void> check(const CameraTrialOptions& options) {
 Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vector<TemplateObserver*>& observers,
                                         const CameraTrialOptions& options) {
   if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
-  if (sensor.microscan != 1)
-    return fail(ErrorCode::invalid_input, "super-resolution is for a camera without microscan");
+  if (sensor.microscan != 1) return fail(ErrorCode::invalid_input, "super-resolution needs a camera without microscan");
   if (reaches_an_end(sensor, options.delta_t_k, PlateScene{}.background_k))
     return fail(ErrorCode::invalid_input, "a contrast of " + std::to_string(options.delta_t_k) +
-                                              " K reaches an end of the camera's counts: frames of it are clipped");
+                                              " K reaches an end of the camera's counts, so its frames are clipped");
   const TargetPlate plate = trial_plate(options.sizes_pitch, sensor.ifov_mrad());
   const SensorSpec camera = cropped_to(sensor, plate, 0);
   const SensorModel model(camera, full_plan(camera, {}, {}), options.accuracy, options.seed);
@@ -184,7 +184,7 @@ Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vec
     squares += registered.squared_errors;
     used += registered.frames.size();
     placement += fine->placement_rms_px * fine->placement_rms_px;
-    // A sample's noise variance is that of a frame over the frames in it; the mean variance is what counts.
+    // The noise variance of a sample is that of a frame over the number of frames in it; the mean variance counts.
     double inverse = 0;
     for (const int count : fine->frames_per_cell) inverse += 1.0 / count;
     const double averaged = static_cast<double>(fine->frames_per_cell.total()) / inverse;

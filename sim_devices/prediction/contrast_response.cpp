@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/contrast_response.h"
 
 namespace todbench {
@@ -5,7 +6,7 @@ namespace todbench {
 Result<double> contrast_response(const SensorModel& model, const TargetPlate& plate, double distance_m,
                                  double min_reference_px, const RegistrationOptions& registration, std::stop_token stop,
                                  LevelEstimate level) {
-  // Phases are those of the plate's own triangles, shifted by half a pixel the second time.
+  // The phases are those of the plate's own triangles, shifted by half a pixel the second time.
   double sum = 0;
   int count = 0;
   for (const Mounting mounting : all_mountings) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/cost_frontier.h"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double reference_share = 1.0 / 3;  // of the budget
 constexpr int fewest_reference_draws = 200;  // a standard error near 1 %
 constexpr int paired_draws = 200;            // differences of paired estimates are finer than their standard error
-constexpr double trials_share = 2;           // a run of trials fits where as much time is left for the knobs
+constexpr double trials_share = 2;           // a run of trials fits if this multiple of its time is left
 constexpr double worth_repeating_s = 1;      // shorter runs are measured twice
 
 /// Requests a stop when the time is over or the caller requests one.
@@ -38,16 +39,16 @@ class Deadline {
   std::stop_callback<std::function<void()>> forward_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::jthread timer_;  // last: joined before what it uses is gone
+  std::jthread timer_;  // last: joined before the members that it uses are destroyed
 };
 
 using Estimate = std::function<Result<std::vector<ThresholdEstimate>>(std::stop_token)>;
 
-/// One way of computing and what it is held against.
+/// One way of computing, with its reference.
 struct Way {
   CostPoint point;
   Estimate estimate;
-  double expected_s = 0;  ///< nothing runs that will not fit; 0: not known
+  double expected_s = 0;  ///< expected time; points that do not fit are not run; 0: unknown
 };
 
 struct Timed {
@@ -63,7 +64,7 @@ double largest_error_percent(const std::vector<ThresholdEstimate>& found,
   return largest;
 }
 
-/// Nothing where one contrast has none.
+/// Empty if one of the estimates has no standard error.
 std::optional<double> largest_standard_error_percent(const std::vector<ThresholdEstimate>& found) {
   double largest = 0;
   for (const ThresholdEstimate& point : found) {
@@ -83,7 +84,7 @@ void mark_best(std::vector<CostPoint>& points) {
   }
 }
 
-/// The run of one task: what is known so far, and the time that is left.
+/// Run of one task: results so far and remaining time.
 class Frontier {
  public:
   Frontier(const CostTask& task, const CostListener& listener, std::stop_token stop)
@@ -95,7 +96,7 @@ class Frontier {
 
  private:
   [[nodiscard]] Estimate direct(const SensorPlan& effects, const Accuracy& accuracy) const;
-  /// By the formula of direct estimates and the speed that the scouting run had.
+  /// Predicted time, from the formula for direct estimates and the speed of the scouting run.
   [[nodiscard]] double expected_s(const Accuracy& accuracy) const;
   [[nodiscard]] double formula_s(int draws, int phases_per_axis) const;
   [[nodiscard]] double seconds_since(Clock::time_point start) const {
@@ -120,7 +121,7 @@ class Frontier {
   Clock::time_point begin_ = task_.now();
   std::vector<double> delta_t_k_;  ///< those with a threshold
   std::vector<double> scouted_pitch_;
-  double speed_ = 1;  ///< measured over formula
+  double speed_ = 1;  ///< measured time over that of the formula
   std::vector<ThresholdEstimate> paired_reference_;
   std::size_t planned_ = 0;
   CostFrontier out_;
@@ -128,7 +129,7 @@ class Frontier {
 
 Estimate Frontier::direct(const SensorPlan& effects, const Accuracy& accuracy) const {
   return [this, &effects, accuracy](std::stop_token stop) -> Result<std::vector<ThresholdEstimate>> {
-    TemplateObserver observer(task_.observer, triangle_alternatives());  // a new one: its banks are part of the price
+    TemplateObserver observer(task_.observer, triangle_alternatives());  // new: its banks are part of the cost
     const auto points = direct_estimate(task_.sensor, effects, observer, delta_t_k_,
                                         {.samples_per_pitch = 0,
                                          .motion = task_.motion,
@@ -161,9 +162,9 @@ Result<Timed> Frontier::timed(const Estimate& estimate) const {
   return Timed{.found = std::move(*found), .wall_s = seconds_since(start)};
 }
 
-/// A draft at every contrast: which have a threshold, near which size, and how fast this machine is.
+/// Draft estimate at every contrast: finds the contrasts with a threshold, its size, and the speed of the machine.
 Result<void> Frontier::scout() {
-  phase("looking for the thresholds");
+  phase("searching for the thresholds");
   Accuracy draft = Accuracy::draft();
   double seconds = 0;
   std::string first_reason;
@@ -178,9 +179,9 @@ Result<void> Frontier::scout() {
       return tl::unexpected(found.error());
     } else if (found.error().code == ErrorCode::interrupted) {
       return fail(ErrorCode::invalid_input,
-                  fmt::format("a budget of {:g} s is too short even to look for the thresholds", task_.budget_s));
+                  fmt::format("a budget of {:g} s is too short even to find the thresholds", task_.budget_s));
     } else {
-      out_.notes.push_back(fmt::format("{:g} K is left out: ", contrast) + found.error().message);
+      out_.notes.push_back(fmt::format("{:g} K is omitted: ", contrast) + found.error().message);
     }
   }
   delta_t_k_.clear();
@@ -194,24 +195,22 @@ Result<void> Frontier::measure_references() {
   phase("computing the reference");
   Accuracy reference = Accuracy::reference();
   const double allowed_s = reference_share * task_.budget_s;
-  // Time is a part for the pictures and banks, and one in proportion to the draws.
+  // Time has one part for pictures and banks, and one proportional to the draws.
   Accuracy fewest = reference;
   fewest.noise_draws = fewest_reference_draws;
   const double whole_s = expected_s(reference), fewest_s = expected_s(fewest);
   if (fewest_s > allowed_s) {
-    return fail(
-        ErrorCode::invalid_input,
-        fmt::format(
-            "a budget of {:g} s is too short: the reference level with {} draws takes about {:.0f} s and may use "
-            "a third of it",
-            task_.budget_s, fewest_reference_draws, std::ceil(fewest_s)));
+    return fail(ErrorCode::invalid_input,
+                fmt::format("a budget of {:g} s is too short: the reference level with {} draws takes about {:.0f} s "
+                            "and may use at most a third of the budget",
+                            task_.budget_s, fewest_reference_draws, std::ceil(fewest_s)));
   }
   if (whole_s > allowed_s) {
     const double share = (allowed_s - fewest_s) / (whole_s - fewest_s);
     reference.noise_draws =
         fewest_reference_draws + static_cast<int>(share * (reference.noise_draws - fewest_reference_draws));
     out_.notes.push_back(
-        fmt::format("the reference has {} draws per size, not {}: with all it would take about {:.0f} s",
+        fmt::format("the reference has {} draws per size instead of {}, because all of them would take about {:.0f} s",
                     reference.noise_draws, Accuracy::reference().noise_draws, std::ceil(whole_s)));
   }
   auto whole = timed(direct(task_.full, reference));
@@ -237,7 +236,7 @@ Result<void> Frontier::measure_references() {
   return {};
 }
 
-/// Measures one way, or says why it was not.
+/// Measures one way, or records the reason for not doing so.
 void Frontier::measure(Way way) {
   CostPoint& point = way.point;
   const auto refuse = [&](std::string why) {
@@ -247,8 +246,8 @@ void Frontier::measure(Way way) {
   const double left = left_s();
   if (left <= 0) return refuse(fmt::format("the budget of {:g} s was used up", task_.budget_s));
   if (way.expected_s > left) {
-    return refuse(
-        fmt::format("about {:.1f} s are more than was left of the budget of {:g} s", way.expected_s, task_.budget_s));
+    return refuse(fmt::format("it needs about {:.1f} s, more than is left of the budget of {:g} s", way.expected_s,
+                              task_.budget_s));
   }
   auto found = timed(way.estimate);
   if (!found) {
@@ -285,7 +284,7 @@ std::vector<Way> Frontier::choices() const {
   return ways;
 }
 
-/// Each knob alone, the others at the reference level; the coarsest first, because it is the cheapest.
+/// Varies each knob alone with the others at the reference level, the coarsest first because it is the cheapest.
 std::vector<Way> Frontier::knobs() const {
   std::vector<Way> ways;
   const auto add = [&](const char* knob, std::string setting, const Accuracy& accuracy, bool paired) {
@@ -332,7 +331,8 @@ void Frontier::measure_trials() {
       for (const double contrast : delta_t_k_) {
         const auto at = std::ranges::find(*found, contrast, &ThresholdEstimate::delta_t_k);
         if (at == found->end()) {
-          return fail(ErrorCode::invalid_input, fmt::format("so few trials identify no threshold at {:g} K", contrast));
+          return fail(ErrorCode::invalid_input,
+                      fmt::format("the trials are too few to identify the threshold at {:g} K", contrast));
         }
         ordered.push_back(*at);
       }

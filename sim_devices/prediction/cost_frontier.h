@@ -1,4 +1,5 @@
-// What accuracy costs in time, measured on the machine on which it runs.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Computing time against accuracy, measured on the machine that runs it.
 #pragma once
 
 #include <chrono>
@@ -10,34 +11,35 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/accuracy.h"
+#include "acquisition/base/accuracy.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 
 namespace todbench {
 
-/// The 75 % size that one way of computing found at one contrast.
+/// The 75 % size at one contrast from one way of computing.
 struct ThresholdEstimate {
   double delta_t_k = 0;
   double s75_pitch = 0;
-  std::optional<double> standard_error_pitch{};  ///< as stated with it
+  std::optional<double> standard_error_pitch{};  ///< as the estimate states it
 };
 
-/// One way of computing the thresholds, what it took and how far it was off.
+/// One way of computing the thresholds, with its time and its error.
 struct CostPoint {
   std::string knob;     ///< "wavelengths", "phases", "wrap", "band", "draws", "trials", "tolerance", "planner"
-  std::string setting;  ///< of the knob: "4", "1.5e-05", "5 %", "normal"
-  bool paired = false;  ///< random numbers as its reference has them: the error is that of the knob alone
-  std::optional<double> wall_s{};         ///< nothing, and nothing below: not measured
-  std::optional<double> error_percent{};  ///< of the 75 % acuity against the reference, the largest over contrasts
-  std::optional<double> standard_error_percent{};  ///< stated by the estimate, the largest over contrasts
-  std::string not_measured{};                      ///< why, a clause; empty where it was
-  bool chosen = false;                             ///< what the plan asks for
-  bool best = false;  ///< of those not paired: nothing measured is both faster and nearer, standard error included
+  std::string setting;  ///< value of the knob: "4", "1.5e-05", "5 %", "normal"
+  bool paired = false;  ///< same random numbers as its reference: the error is that of the knob alone
+  std::optional<double> wall_s{};         ///< empty, as the following ones, if not measured
+  std::optional<double> error_percent{};  ///< of the 75 % acuity against the reference; the largest over contrasts
+  std::optional<double> standard_error_percent{};  ///< stated by the estimate; the largest over contrasts
+  std::string not_measured{};                      ///< reason, a clause; empty if measured
+  bool chosen = false;                             ///< selected by the plan
+  /// Among points that are not paired: no measured point is both faster and more accurate, standard error included.
+  bool best = false;
 
   [[nodiscard]] bool measured() const { return wall_s.has_value(); }
-  /// What a result computed so may be off by: error and standard error together; paired: the error.
+  /// Possible deviation of a result: root of the sum of squares of error and standard error; if paired, the error.
   [[nodiscard]] double total_percent() const {
     const double error = error_percent.value_or(0);
     return paired ? error : std::hypot(error, standard_error_percent.value_or(0));
@@ -46,16 +48,16 @@ struct CostPoint {
 
 struct CostFrontier {
   std::vector<CostPoint> points;
-  std::vector<ThresholdEstimate> reference;  ///< empty, and no points: no contrast has a threshold
+  std::vector<ThresholdEstimate> reference;  ///< empty, like `points`, if no contrast has a threshold
   double reference_s = 0;                    ///< wall time of the reference
   int reference_draws = 0;
   int paired_draws = 0;  ///< of the paired points and of their reference
   double reference_standard_error_percent = 0;
   double budget_s = 0, spent_s = 0;
-  std::vector<std::string> notes;  ///< sentences: contrasts without threshold, a reference cut to the budget
+  std::vector<std::string> notes;  ///< sentences: contrasts without threshold, a reference reduced to fit the budget
 };
 
-/// Effects and accuracy of a result that the program could give: a planner's choice.
+/// Effects and accuracy of a result that a choice of the planner gives.
 struct CostChoice {
   std::string setting;
   SensorPlan effects;
@@ -63,46 +65,46 @@ struct CostChoice {
   bool chosen = false;
 };
 
-/// Thresholds from trials, made by whoever can make trials.
+/// Thresholds from trials, computed by the caller.
 struct CostTrials {
-  std::string setting;       ///< "1920": so many trials
-  double relative_cost = 1;  ///< compared with each other
+  std::string setting;       ///< number of trials: "1920"
+  double relative_cost = 1;  ///< relative to the other entries
   std::function<Result<std::vector<ThresholdEstimate>>(std::stop_token)> measure;
 };
 
-/// What is measured.
+/// The task that is measured.
 struct CostTask {
   SensorSpec sensor;
-  SensorPlan full;  ///< every effect; with which the reference and the knobs are computed
+  SensorPlan full;  ///< every effect; used for the reference and the knobs
   TemplateObserverSpec observer;
   SceneMotion motion{};
   std::vector<double> delta_t_k;
   std::vector<CostChoice> choices;  ///< knob "planner"
-  std::vector<CostTrials> trials;   ///< knob "trials", cheap ones first
+  std::vector<CostTrials> trials;   ///< knob "trials"; cheap ones first
   std::uint64_t seed = 1;
-  double budget_s = 60;  ///< wall time for all of it
-  /// The time base of prices and budget; what runs when the budget ends is stopped by the host's clock.
+  double budget_s = 60;  ///< wall time for the whole task
+  /// Time base of costs and budget. Work that still runs at the end of the budget is stopped by the host's clock.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
-/// Called with what is done, and how many points of how many are through.
+/// Callbacks: the present phase, and the number of points done out of all.
 struct CostListener {
   std::function<void(std::string_view phase)> on_phase{};
   std::function<void(std::size_t done, std::size_t points)> on_progress{};
 };
 
 /// Estimates every threshold anew, template banks included, for the planner's choices and for each setting of each knob
-/// of Accuracy alone, all others at the reference level.
+/// of Accuracy. Each knob varies alone, the others stay at the reference level.
 ///
-/// The error of wavelengths, phases, wrap and band is taken against the reference level with as many draws as they
-/// have, whose random numbers are the same, so that it is theirs alone. That of draws, trials, tolerance and planner is
-/// taken against the whole reference; it holds what their random numbers happened to do, so their standard error stands
-/// beside it. Wall times are of one thread and whatever else the machine does; the shorter of two where there is time.
+/// The error of wavelengths, phases, wrap and band is relative to the reference level with the same number of draws and
+/// the same random numbers, so it is that of the knob alone. The error of draws, trials, tolerance and planner is
+/// relative to the whole reference. It contains the variation of their random numbers, so their standard error is
+/// stated, too. Wall times are those of one thread on the machine as loaded: the shorter of two runs if there is time.
 ///
-/// The budget is kept: the reference uses no more than a third of it (with fewer draws where it must, and a note), a
-/// point that will not fit, or does not, is left unmeasured and says so. The planner's chosen point comes first.
+/// The budget is kept. The reference uses at most a third of it, if necessary with fewer draws and a note. A point that
+/// does not fit is left unmeasured with a reason. The planner's chosen point comes first.
 ///
-/// `invalid_input`: the budget is too short for the reference; `interrupted`.
+/// Errors: `invalid_input` (the budget is too short for the reference), `interrupted`.
 [[nodiscard]] Result<CostFrontier> cost_frontier(const CostTask& task, const CostListener& listener,
                                                  std::stop_token stop);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/cued_estimate.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ double logit(double p) {
   return std::log((inside - 0.25) / (1 - inside));
 }
 
-/// The noise at which a size is judged 75 % correct, to 2 %; from `q` on downwards.
+/// Noise, from `q` downwards, at which a size is judged 75 % correct, to 2 %.
 double bearable_noise(const SizeTrial& trial, double q) {
   double high = q, low = q;
   do {
@@ -70,9 +71,9 @@ Result<const SizeTrial*> CuedEstimate::trial(double size_pitch) {
 }
 
 bool CuedEstimate::hopeless(double q, int index) {
-  // The response to the differences of the shapes, and with it the bearable noise, grows with a power of the size: a
-  // high one while blur and footprint take most of them, falling to 1. So the power between two sizes bounds what
-  // larger ones bear; a tenth is for the phases, of which there are few.
+  // The response to the differences of the shapes, and with it the tolerable noise, grows with a power of the size. The
+  // power is high as long as blur and footprint remove most of the differences, and falls to 1. The power between two
+  // sizes is therefore a bound for larger sizes; a tenth is added because there are few phases.
   constexpr double margin = 1.1;
   const auto here = trial_at(index), before = trial_at(index - 4);
   if (!here || !before) return false;
@@ -94,15 +95,15 @@ Result<double> CuedEstimate::s75_pitch(double q) {
   int above = first_index;
   while (!error && at(above) < target) {
     if (above >= largest_index)
-      return fail(ErrorCode::invalid_input, "no size up to 40 pitches is judged 75 % correct");
-    // Large sizes take long: nothing is looked for where all is near chance and must stay below 75 %.
+      return fail(ErrorCode::invalid_input, "no size up to 40 pitches reaches 75 % correct answers");
+    // Large sizes take long: stop if the proportion is near chance and must stay below 75 %.
     if (above > first_index && at(above) < logit(0.4) && hopeless(q, above))
-      return fail(ErrorCode::invalid_input, "no size up to 40 pitches is judged 75 % correct");
+      return fail(ErrorCode::invalid_input, "no size up to 40 pitches reaches 75 % correct answers");
     above = std::min(above + 4, largest_index);
   }
   int below = above - 1;
   while (!error && at(below) >= target) {
-    if (below <= smallest_index) return fail(ErrorCode::invalid_input, "even the smallest target is judged correctly");
+    if (below <= smallest_index) return fail(ErrorCode::invalid_input, "even the smallest target is recognised");
     --below;
   }
   if (error) return tl::unexpected(*error);
@@ -111,7 +112,7 @@ Result<double> CuedEstimate::s75_pitch(double q) {
 }
 
 Result<double> CuedEstimate::sensitivity(double q) {
-  // A fifth each way: several sizes of the ladder, so that its interpolation does not show.
+  // A fifth to each side: several sizes of the ladder, so that its interpolation has no effect.
   const auto more = s75_pitch(q * 1.2);
   if (!more) return more;
   const auto less = s75_pitch(q / 1.2);
@@ -138,7 +139,7 @@ Result<double> CuedEstimate::weibull_slope(double q) {
 double discriminability(const SensorSpec& sensor, const SensorPlan& plan, double size_pitch, int wavelengths,
                         SceneMotion motion) {
   const int period = 2 * static_cast<int>(std::ceil(2 * size_pitch)) + 8;
-  double highest = 8;  // what is beyond carries less than 1 % of the differences of triangles of a pitch
+  double highest = 8;  // higher frequencies carry less than 1 % of the differences of triangles of a pitch
   if (plan.simulates(Effect::diffraction))
     highest = std::min(highest, sensor.pitch_um / (sensor.wavelength_min_um * sensor.f_number));
   const FrequencyLattice lattice{.period = period, .band = static_cast<int>(highest * period)};

@@ -1,40 +1,41 @@
-// The first tier: the 75 % size of an observer that knows where the target is, analytically and without noise draws.
-// It brackets sizes and feeds the planner of effects; the reported number is that of the searching observer.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The 75 % size of an observer that knows the position of the target: analytic, without noise draws. It brackets sizes
+// and feeds the planner of effects. Reported numbers are those of the searching observer.
 #pragma once
 
 #include <map>
 #include <memory>
 #include <opencv2/core/types.hpp>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/size_trial.h"
 
 namespace todbench {
 
-/// S75 over the noise-to-contrast ratio of one sensor and observer. Sizes are those of direct_estimate(), and share its
-/// template banks. One thread at a time.
+/// S75 over the noise-to-contrast ratio of one sensor and observer. Uses the sizes and the template banks of
+/// direct_estimate(). One thread at a time.
 ///
-/// Validity (section "Two tiers" of docs/effect-planning.md): within 4 % of the searching observer for q up to 0.1,
-/// within 8 % up to 0.35.
+/// Validity (section "Two tiers" of docs/method/effect-planning.md): within 4 % of the searching observer for q up to
+/// 0.1, within 8 % up to 0.35.
 class CuedEstimate {
  public:
   /// `observer` must outlive it.
   CuedEstimate(const SensorSpec& sensor, const SensorPlan& plan, TemplateObserver& observer, SceneMotion motion = {});
 
-  /// In pitches. `q` is the noise per sample over the contrast, internal noise included. `invalid_input` where no size
-  /// from 0.2 to 40 pitches is judged 75 % correct, or even the smallest is.
+  /// 75 % size in pitches. `q` is the noise per sample over the contrast, internal noise included. `invalid_input` if
+  /// no size from 0.2 to 40 pitches is judged 75 % correct, or if even the smallest is judged better.
   [[nodiscard]] Result<double> s75_pitch(double q);
   /// d ln S75 / d ln q at q.
   [[nodiscard]] Result<double> sensitivity(double q);
-  /// Slope b of the Weibull function that rises as the proportion correct does at its 75 % size: dP/dlnS = (b/4) ln 3.
+  /// Slope b of the Weibull function that rises like the proportion correct at its 75 % size: dP/dlnS = (b/4) ln 3.
   [[nodiscard]] Result<double> weibull_slope(double q);
   /// The size trial next to `size_pitch`.
   [[nodiscard]] Result<const SizeTrial*> trial(double size_pitch);
 
  private:
   [[nodiscard]] Result<const SizeTrial*> trial_at(int index);
-  /// Whether no size of the ladder can be judged 75 % correct at `q`, from the sizes at `index` and four below.
+  /// True if no size of the ladder can reach 75 % correct at `q`, judged by the sizes at `index` and four below.
   [[nodiscard]] bool hopeless(double q, int index);
 
   TemplateObserver& observer_;
@@ -43,8 +44,8 @@ class CuedEstimate {
   std::map<int, std::unique_ptr<SizeTrial>> trials_;
 };
 
-/// Discriminability of the orientations behind a sensor, noise left out: D^2 = integral of
-/// (|F_up - F_down|^2 + |F_up - F_right|^2) |H|^2 over the frequencies, F the spectrum of a triangle of `size_pitch`.
+/// Discriminability of the orientations behind a sensor, without noise: D^2 = integral of (|F_up - F_down|^2 + |F_up -
+/// F_right|^2) |H|^2 over the frequencies. F is the spectrum of a triangle of `size_pitch`.
 [[nodiscard]] double discriminability(const SensorSpec& sensor, const SensorPlan& plan, double size_pitch,
                                       int wavelengths, SceneMotion motion = {});
 

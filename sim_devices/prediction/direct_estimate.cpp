@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/direct_estimate.h"
 
 #include <fmt/format.h>
@@ -30,11 +31,11 @@ double size_of(int index) {
   return std::pow(size_step, index);
 }
 
-/// How a contrast is judged.
+/// Conditions for judging a contrast.
 struct AskedContrast {
   double delta_t_k = 0;
-  WhiteNoise white;                     ///< rounding among it
-  std::optional<PixelContrast> pixels;  ///< where rounding is no noise, or something is clipped
+  WhiteNoise white;                     ///< rounding included
+  std::optional<PixelContrast> pixels;  ///< set if rounding is not noise, or if something is clipped
 };
 
 /// Sizes on demand for one sensor and observer.
@@ -71,13 +72,13 @@ class SizeLadder {
   std::map<int, std::unique_ptr<SizeTrial>> sizes_;
 };
 
-/// The largest index whose proportion is below 75 % while that of the next is not: the first crossing from above.
+/// Largest index with a proportion below 75 % whose successor is not below: the first crossing from above.
 Result<int> bracket(SizeLadder& ladder, const AskedContrast& asked) {
   int index = 9;  // 2 pitches
   for (;; index += 4) {
     if (index > largest_index) {
       return fail(ErrorCode::invalid_input,
-                  fmt::format("at a contrast of {:g} K no size up to {:.0f} pitches is judged 75 % correct",
+                  fmt::format("at a contrast of {:g} K, no size up to {:.0f} pitches reaches 75 % correct answers",
                               asked.delta_t_k, size_of(largest_index)));
     }
     const auto p = ladder.proportion(index, asked, scout_draws);
@@ -90,13 +91,13 @@ Result<int> bracket(SizeLadder& ladder, const AskedContrast& asked) {
     if (p->mean < 0.75) return index;
   }
   return fail(ErrorCode::invalid_input,
-              "even the smallest target is judged correctly: there is no threshold above 0.2 pitch");
+              "even the smallest target is recognised: there is no threshold above 0.2 pitch");
 }
 
-/// One pass at a number of draws: six sizes around the threshold, moved until it is between the two in their middle.
+/// One pass with a fixed number of draws: six sizes around the threshold, moved until it lies between the middle two.
 struct Pass {
   DirectPoint point;
-  int below = 0;  ///< index of the size next below the threshold
+  int below = 0;  ///< index of the largest size below the threshold
 };
 
 Result<Pass> one_pass(SizeLadder& ladder, const AskedContrast& asked, int below, int draws) {
@@ -128,15 +129,15 @@ Result<Pass> one_pass(SizeLadder& ladder, const AskedContrast& asked, int below,
     return Pass{std::move(point), below};
   }
   return fail(ErrorCode::invalid_input,
-              "the proportion correct does not rise with size near 75 %: the contrast has no threshold");
+              "the proportion correct does not rise with size near 75 %, so the contrast has no threshold");
 }
 
-/// Why the asked tolerance cannot be met, what can, and for what.
+/// Message: why the demanded tolerance cannot be met, which one can, and in which time.
 std::string out_of_reach(double contrast, double asked_percent, double needed_draws, double reachable_percent,
                          double seconds) {
   return fmt::format(
-      "a tolerance of {:.3g} % cannot be met at a contrast of {:g} K: a standard error of half of it needs {:.0f} "
-      "noise draws per size, the most is {}; the best that is reachable is {:.2g} %, for about {:.1f} s",
+      "a tolerance of {:.3g} % cannot be met at a contrast of {:g} K: a standard error of half the tolerance needs "
+      "{:.0f} noise draws per size, the maximum is {}. The best reachable tolerance is {:.2g} %, in about {:.1f} s",
       2 * asked_percent, contrast, needed_draws, Accuracy::max_noise_draws, 2 * reachable_percent, seconds);
 }
 
@@ -151,7 +152,7 @@ Result<DirectPoint> estimate_contrast(SizeLadder& ladder, const AskedContrast& a
     const double reached = 100 * pass->point.standard_error_pitch / pass->point.s75_pitch;
     const double asked = accuracy.standard_error_percent;
     if (!(asked > 0) || reached <= asked) return std::move(pass->point);
-    // The error falls with the square root of the draws; a tenth more, because it is itself an estimate.
+    // The error falls with the square root of the draws. A tenth is added, because it is itself an estimate.
     const double needed = 1.1 * draws * std::pow(reached / asked, 2);
     if (needed > 2 * Accuracy::max_noise_draws || draws == Accuracy::max_noise_draws) {
       const double reachable = 1.05 * reached * std::sqrt(draws / double{Accuracy::max_noise_draws});
@@ -163,8 +164,8 @@ Result<DirectPoint> estimate_contrast(SizeLadder& ladder, const AskedContrast& a
   }
 }
 
-/// Standard deviation in time of a pixel that sees the surround, as frames show it: rounded, and averaged over where
-/// the fixed pattern puts the pixels within a count.
+/// Temporal standard deviation of a pixel of the surround in frames: rounded, and averaged over the places of pixels
+/// within a count, which the fixed pattern spreads.
 double noise_of_frames_k(const SensorSpec& sensor, const Quantiser& quantiser, double noise_k) {
   constexpr int places = 41;
   double variance = 0;
@@ -175,7 +176,7 @@ double noise_of_frames_k(const SensorSpec& sensor, const Quantiser& quantiser, d
   return std::sqrt(variance);
 }
 
-/// The contrast of a camera whose counts are too coarse or too few for it.
+/// Contrast of a camera with counts that are too coarse or too few for it.
 Result<PixelContrast> pixel_contrast(const SensorSpec& sensor, const SensorPlan& plan,
                                      const TemplateObserverSpec& observer, double delta_t_k,
                                      const DirectEstimateOptions& options) {
@@ -196,14 +197,15 @@ Result<PixelContrast> pixel_contrast(const SensorSpec& sensor, const SensorPlan&
   const double highest_k = sensor.offset_k + sensor.kelvin_per_count * (std::exp2(sensor.bits) - 1);
   if (plan.simulates(Effect::quantisation) && (out.background_k < sensor.offset_k || out.background_k > highest_k)) {
     return fail(ErrorCode::invalid_input,
-                fmt::format("a scene of {:g} K is beyond what the counts hold, {:g} to {:g} K", out.background_k,
+                fmt::format("a scene of {:g} K is outside the range of the counts, {:g} to {:g} K", out.background_k,
                             sensor.offset_k, highest_k));
   }
   if (!(out.seen_k / delta_t_k > 1e-6)) {
     return fail(ErrorCode::invalid_input,
-                fmt::format("a contrast of {:g} K disappears in counts of {:g} K", delta_t_k, sensor.kelvin_per_count));
+                fmt::format("a contrast of {:g} K disappears in the rounding to counts of {:g} K", delta_t_k,
+                            sensor.kelvin_per_count));
   }
-  // An observer of limited efficiency adds white noise in proportion to what frames show.
+  // An observer of limited efficiency adds white noise in proportion to that of the frames.
   const double factor = observer.sensor_noise_factor;
   out.internal_k =
       std::hypot(observer.internal_noise * out.seen_k,
@@ -232,7 +234,7 @@ TrialConditions trial_conditions(const SensorSpec& spec, const SensorPlan& plan,
   return conditions;
 }
 
-/// Asked of a sensor as its conditions have it.
+/// Conditions for a contrast. `sensor` is that of the trial conditions.
 Result<AskedContrast> asked_contrast(const SensorSpec& sensor, const SensorPlan& plan,
                                      const TemplateObserverSpec& observer, double delta_t_k,
                                      const DirectEstimateOptions& options) {
@@ -250,7 +252,7 @@ Result<AskedContrast> asked_contrast(const SensorSpec& sensor, const SensorPlan&
   return asked;
 }
 
-/// Sizes at which an answer says something: from next to chance to next to certainty.
+/// Curve over the sizes between nearly chance and nearly certain.
 Result<ProportionCurve> curve_of(SizeLadder& ladder, const AskedContrast& asked, int draws) {
   constexpr double next_to_chance = 0.26, next_to_certainty = 0.9985;
   const auto middle = bracket(ladder, asked);
@@ -278,8 +280,8 @@ Result<ProportionCurve> curve_of(SizeLadder& ladder, const AskedContrast& asked,
   return curve;
 }
 
-/// What `find` (of a ladder, the contrast as asked and the sensor of the conditions) says of every contrast. The
-/// ladders are shared, so that contrasts share their images.
+/// Calls `find` (ladder, contrast, sensor of the conditions) for every contrast. The contrasts share the ladders and
+/// with them their images.
 template <typename Found, typename Find>
 Result<std::vector<Found>> for_every_contrast(const SensorSpec& spec, const SensorPlan& plan,
                                               TemplateObserver& observer, const std::vector<double>& delta_t_k,
@@ -332,8 +334,8 @@ double predicted_direct_seconds(const TemplateObserverSpec& observer, const Sens
   const double half = std::ceil(observer.window_size_factor * s75_pitch + observer.window_margin_pitch);
   const double samples = std::pow(2 * half * n, 2);
   const double phases = std::pow(phases_per_axis / n, 2) * dances_per_phase(sensor, phases_per_axis);
-  // Building a bank costs as much as sixty of its projections. A draw is projected, and compared at every phase; where
-  // every pixel is rounded it is projected at as many phases as an axis has.
+  // Building a bank costs as much as sixty of its projections. A draw is projected once and compared at every phase;
+  // with rounded pixels it is projected at as many phases as an axis has.
   const double projections = rounds_coarsely(sensor) ? 2 * phases_per_axis / n : 1;
   const double per_size = (noise_draws * projections + 60.0) * templates * samples + noise_draws * templates * phases;
   return 5 * per_size * 5e-11;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/direct_timing.h"
 
 #include <ctime>
@@ -17,7 +18,7 @@ constexpr int timed_draws = 24;
 constexpr int scout_draws = 16;  // of direct_estimate()
 constexpr int final_sizes = 5;
 
-/// Sizes beyond the final ones that the search looks at: from 2 pitches upwards in steps of four, then down one by one.
+/// Sizes that the search visits beyond the final ones: from 2 pitches upwards in steps of four, then down one by one.
 double scouted_sizes(double s75_pitch) {
   const double index = std::log(s75_pitch) / std::log(1.08);
   const double upwards = index < 8 ? 1 : 1 + std::ceil((index - 8) / 4);
@@ -49,7 +50,8 @@ Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan&
   const ImageChain chain(spec, plan, accuracy, motion);
   const double white_k = std::sqrt(white_variance_k2(sensor, plan, observer_spec.sensor_noise_factor));
   const WhiteNoise white{.sensor = white_k / std::abs(delta_t_k), .internal = observer_spec.internal_noise};
-  (void)chain.image(triangle(s75_pitch, Apex::up));  // tabulates the transfer function: timed with the first size
+  // Tabulates the transfer function, which would otherwise be timed with the first size.
+  (void)chain.image(triangle(s75_pitch, Apex::up));
   const double t0 = thread_seconds();
   auto bank = observer.bank(s75_pitch * samples_per_pitch, samples_per_pitch);
   if (!bank) return tl::unexpected(bank.error());
@@ -71,7 +73,7 @@ Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan&
   const double build = t1 - t0;
   const double compare = (t3 - t2) / timed_draws;
   const double project = std::max(0.0, (t2 - t1) / timed_draws - compare);
-  // With a demanded standard error a first pass is made with fewer draws, whose comparisons are made again.
+  // With a demanded standard error there is a first pass with fewer draws, whose comparisons are repeated.
   const double first_pass = accuracy.standard_error_percent > 0 && noise_draws > accuracy.noise_draws
                                 ? static_cast<double>(accuracy.noise_draws)
                                 : 0.0;

@@ -1,4 +1,5 @@
-// What a direct estimate will take on this machine, from a moment of the work itself.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Predicted time of a direct estimate on this machine, from a short run of the work itself.
 #pragma once
 
 #include "hvs/observer/template_observer.h"
@@ -6,11 +7,11 @@
 
 namespace todbench {
 
-/// Processor time of this thread so far, in seconds: differences do not hold what other programs took.
+/// Processor time of this thread so far, in seconds. Differences exclude the time of other programs.
 [[nodiscard]] double thread_seconds();
 
-/// Processor time of direct_estimate() for one contrast whose 75 % size is near `s75_pitch`, with `noise_draws` at the
-/// end. Times one size trial with a few draws on this machine; takes some tens of milliseconds, more for large sizes.
+/// Processor time in seconds of direct_estimate() for one contrast with a 75 % size near `s75_pitch` and `noise_draws`
+/// final draws. Times one size trial with a few draws, which takes some tens of milliseconds, longer for large sizes.
 /// Errors as TemplateObserver::bank().
 [[nodiscard]] Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan& plan,
                                                      const TemplateObserverSpec& observer, double delta_t_k,

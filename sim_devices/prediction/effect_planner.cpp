@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/effect_planner.h"
 
 #include <fmt/format.h>
@@ -21,17 +22,17 @@ constexpr double budget_share = 0.8;  // of the tolerance; the rest is for numer
 /// Variances per sample in units of the contrast squared.
 struct NoiseBudget {
   std::array<double, all_effects.size()> by_effect{};
-  double white = 0;  ///< that of the observer included
+  double white = 0;  ///< noise of the observer included
   double total = 0;
 };
 
-/// One contrast with everything that the criteria ask of it.
+/// One contrast with all quantities that the criteria use.
 struct Contrast {
   ContrastOutlook outlook;
   NoiseBudget noise;
 };
 
-/// Contrasts whose squares would vanish count as 1e-100 K: as hopeless, and their noise is a number.
+/// Contrasts whose squares would underflow count as 1e-100 K: equally hopeless, but with finite noise.
 double squared(double contrast_k) {
   return std::pow(std::max(std::abs(contrast_k), 1e-100), 2);
 }
@@ -50,7 +51,7 @@ NoiseBudget white_noise(const SensorSpec& sensor, const TemplateObserverSpec& ob
   return noise;
 }
 
-/// Noise that is not white counts as much white noise as it moves the differences between templates.
+/// Coloured noise counts as the white noise that moves the differences between templates equally.
 void add_coloured(NoiseBudget& noise, const SensorSpec& sensor, const SizeTrial& trial, double contrast_k) {
   const NoiseScope scope{.spec = sensor, .contrast_k2 = squared(contrast_k), .variance_ratio = [&](SharedBy shared) {
                            return trial.variance_ratio(shared);
@@ -85,8 +86,8 @@ Result<Contrast> contrast_of(CuedEstimate& cued, const SensorSpec& sensor, const
   if (!slope) return tl::unexpected(slope.error());
   out.outlook.weibull_slope = *slope;
   out.outlook.s75_pitch = *size;
-  // The searching observer loses faster than the one that knows the position: its S75 is up to 1.06 times larger at
-  // q = 0.3 and 1.12 at 0.7. Half as much again and a tenth keep the bound above it.
+  // The searching observer loses faster than the one that knows the position: its S75 is up to 1.06 times larger at q =
+  // 0.3 and 1.12 at 0.7. A factor of 1.5 and an addition of 0.1 keep the bound above it.
   out.outlook.noise_exponent = 1.5 * *exponent + 0.1;
   const auto d = [&](double factor) {
     return std::log(discriminability(sensor, everything, factor * *size, planning_wavelengths));
@@ -102,7 +103,7 @@ SensorPlan without(SensorPlan plan, Effect effect) {
   return plan;
 }
 
-/// Change by the ratio of discriminabilities, for blurs whose extent has no finite mean square.
+/// Change from the ratio of discriminabilities, for blurs without a finite mean square extent.
 double discriminability_change(const Contrast& c, const SensorSpec& sensor, const SensorPlan& everything,
                                Effect effect) {
   const double with = discriminability(sensor, everything, c.outlook.s75_pitch, planning_wavelengths);
@@ -110,7 +111,7 @@ double discriminability_change(const Contrast& c, const SensorSpec& sensor, cons
   return std::abs(std::log(with / less)) / c.outlook.blur_exponent;
 }
 
-/// A bound on the change of ln S75 that skipping the effect makes at one contrast; nothing where none can be promised.
+/// Bound on the change of ln S75 when the effect is skipped at one contrast; empty if there is none.
 std::optional<double> bound(Effect effect, const Contrast& c, const SensorSpec& sensor, const SensorPlan& everything,
                             SceneMotion motion) {
   const EffectRow& row = row_of(effect);
@@ -136,7 +137,7 @@ bool contains(const std::vector<Effect>& effects, Effect effect) {
   return std::find(effects.begin(), effects.end(), effect) != effects.end();
 }
 
-/// Skips the cheapest candidates as long as the budget lasts. Returns what is used of it.
+/// Skips the cheapest candidates as long as the budget lasts. Returns the used part of the budget.
 double share_budget(std::vector<Candidate> candidates, double tolerance_percent, SensorPlan& plan) {
   std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.percent < b.percent; });
   const double budget = budget_share * tolerance_percent;
@@ -147,7 +148,7 @@ double share_budget(std::vector<Candidate> candidates, double tolerance_percent,
       used += candidate.percent;
       decision.decision = Decision::skip;
       decision.reason =
-          fmt::format("changes the acuity by at most {:.2g} %; {:.2g} % of the {:.3g} % tolerance are used up",
+          fmt::format("changes the acuity by at most {:.2g} %; skipped effects use {:.2g} % of the {:.3g} % tolerance",
                       candidate.percent, used, tolerance_percent);
     } else {
       decision.reason = fmt::format("may change the acuity by {:.3g} %, more than is left of the {:.3g} % tolerance",
@@ -163,11 +164,11 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
       d.decision = Decision::skip;
       d.reason = "skipped on request; " + (d.predicted_change_percent
                                                ? fmt::format("predicted change {:.3g} %", *d.predicted_change_percent)
-                                               : std::string("no criterion bounds the change"));
+                                               : std::string("no criterion limits the change"));
       out.requested_change_percent += d.predicted_change_percent.value_or(0);
       if (!d.predicted_change_percent)
         out.warnings.push_back("effect " + std::string(to_string(d.effect)) +
-                               " is skipped on request: the tolerance is not kept");
+                               " is skipped on request: the tolerance is not guaranteed");
     }
     if (contains(options.force, d.effect)) {
       d.decision = Decision::simulate;
@@ -177,21 +178,21 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
   const double together = out.requested_change_percent + out.skipped_change_percent;
   if (out.requested_change_percent > 0 && together > options.tolerance_percent) {
     out.warnings.push_back(fmt::format(
-        "effects skipped on request may change the acuity by {:.3g} %: the tolerance of {:.3g} % is not kept",
+        "effects skipped on request may change the acuity by {:.3g} %: the tolerance of {:.3g} % is not guaranteed",
         out.requested_change_percent, options.tolerance_percent));
   }
 }
 
-/// Bounds take noise as normal and pictures as linear.
+/// Reason why no bound holds; empty if they hold. Bounds assume normal noise and linear pictures.
 std::string why_none_holds(const SensorSpec& sensor, const EffectScene& scene) {
   if (rounds_coarsely(sensor)) {
     return fmt::format(
-        "simulated: the noise is {:.2g} counts, so rounding depends on the signal and no criterion holds",
+        "simulated: the noise is {:.2g} counts, so rounding depends on the signal and no criterion applies",
         noise_in_counts(sensor));
   }
   for (const double delta_t_k : scene.delta_t_k) {
     if (reaches_an_end(sensor, delta_t_k, sensor.scene_temperature_k)) {
-      return fmt::format("simulated: a contrast of {:g} K reaches an end of the counts, so no criterion holds",
+      return fmt::format("simulated: a contrast of {:g} K reaches an end of the counts, so no criterion applies",
                          delta_t_k);
     }
   }
@@ -227,7 +228,7 @@ SceneSurvey survey_scene(const SensorSpec& sensor, TemplateObserver& observer, c
         largest = change && largest ? std::optional(std::max(*largest, *change)) : std::nullopt;
       }
     }
-    // Acuity is 1 / S75: the change of the logarithm as a percentage, in the direction in which it is larger.
+    // Acuity is 1 / S75: change of the logarithm as a percentage, in the direction of the larger value.
     out.change_percent.push_back(largest ? std::optional(100 * std::expm1(std::min(*largest, 5.0))) : std::nullopt);
   }
   return out;
@@ -250,8 +251,8 @@ Result<EffectPlan> plan_effects(const SceneSurvey& survey, const EffectPlannerOp
     auto& decision = out.plan.decisions[i];
     if (decision.decision == Decision::skip) continue;  // neutral
     if (one_without_threshold) {
-      // Noise may be why there is none: without it the simulation would find one.
-      decision.reason = "simulated: a contrast of the scene has no threshold, so no criterion holds for it";
+      // Noise may be the reason for a missing threshold: without noise the simulation would find one.
+      decision.reason = "simulated: a contrast of the scene has no threshold, so no criterion applies";
       continue;
     }
     if (!survey.no_criterion.empty()) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/formula_curves.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 
 constexpr int wavelengths = 16;
 
-/// Along one axis, in cycles per detector pitch. Of the mean of frames: dance is blur to an eye that adds them up.
+/// MTF along one axis, in cycles per detector pitch. The eye averages frames, so image dance acts as blur.
 class AxisMtf {
  public:
   explicit AxisMtf(const SensorSpec& spec)
@@ -30,8 +31,8 @@ class AxisMtf {
   FootprintMtf footprint_;
 };
 
-/// A smooth transfer function that is asked often, up to where it ends or to 4 cycles per sample: linear between 16384
-/// values, off by less than 1e-7.
+/// Table of a smooth transfer function, up to its cut-off or 4 cycles per sample: linear between 16384 values, with
+/// errors below 1e-7.
 class Tabulated {
  public:
   explicit Tabulated(const std::function<double(double)>& transfer) {
@@ -63,15 +64,15 @@ std::vector<double> frequencies_up_to(double highest, int count) {
   return frequencies;
 }
 
-/// int |channel|^2 df over both signs, the eye's channel being exp(-2.2 ln^2(f / centre)): centre sqrt(pi / 4.4)
-/// exp(1 / 17.6) on one side.
+/// Integral of |channel|^2 df over both signs for the eye's channel exp(-2.2 ln^2(f / centre)): centre sqrt(pi / 4.4)
+/// exp(1 / 17.6) per side.
 double channel_width(double centre) {
   return 2 * centre * std::sqrt(std::numbers::pi / 4.4) * std::exp(1 / 17.6);
 }
 
-/// Mean over the eye's channel round a frequency of what sharing a detector makes of the density of noise; across the
-/// bars the displayed samples keep their variance. In ln(f / centre), where |channel|^2 df is a Gaussian of variance
-/// 1 / 8.8 times its frequency, by 33 points over 4 standard deviations to both sides.
+/// Mean over the eye's channel of the change of noise density by samples that share a detector; across the bars the
+/// displayed samples keep their variance. Computed in ln(f / centre), in which |channel|^2 df is a Gaussian of variance
+/// 1 / 8.8 times the frequency, with 33 points over 4 standard deviations to both sides.
 double shared_in_channel(const MrtdFormula& formula, double centre) {
   if (formula.samples_per_detector == 1) return 1;
   constexpr int steps = 16;
@@ -85,20 +86,20 @@ double shared_in_channel(const MrtdFormula& formula, double centre) {
   return sum / weights;
 }
 
-/// MTF of a displayed sample, a square, at a frequency in cycles/mrad of the scene.
+/// MTF of a displayed square sample, at a frequency in cycles/mrad of the scene.
 double sample_mtf(double f_per_mrad, double sample_mrad) {
   const double x = std::numbers::pi * f_per_mrad * sample_mrad;
   return x == 0 ? 1 : std::abs(std::sin(x) / x);
 }
 
 /// Noise of the channel over the scene contrast, squared: density NETD^2 p^2 / F times the channel along the axis and a
-/// displayed sample across it, with those of the other components that the axis sees.
+/// displayed sample across it, plus the other components of this axis.
 double noise_power(const MrtdFormula& formula, const FormulaConditions& conditions, double f, BarAxis axis) {
   const double along = channel_width(f);
   const double across = 1 / formula.pitch_mrad;  // int sinc^2(u p) du
   const double white = formula.netd_k * formula.netd_k * formula.pitch_mrad * formula.pitch_mrad;
   const NoiseRatios& n = formula.noise;
-  const double fixed_s = conditions.eye_integration_s;  // noise that does not change is not averaged by the eye
+  const double fixed_s = conditions.eye_integration_s;  // the eye does not average constant noise
   const double line = axis == BarAxis::horizontal ? n.th : n.tv;
   const double lines_only = axis == BarAxis::horizontal ? n.h : n.v;
   const double density_s = (1 + line * line) / formula.frame_rate_hz +
@@ -109,7 +110,7 @@ double noise_power(const MrtdFormula& formula, const FormulaConditions& conditio
 
 double axis_ctf(const SensorSpec& spec, const AxisMtf& mtf, const MrtdFormula& formula,
                 const FormulaConditions& conditions, double f, BarAxis axis) {
-  // An angle in the scene is shown under so many times itself.
+  // The display magnifies angles of the scene by this factor.
   const double magnification = conditions.sample_at_eye_mrad / formula.pitch_mrad;
   const double cycles_per_degree = f / magnification * 1000 * std::numbers::pi / 180;
   const double passed = mtf(f * spec.ifov_mrad()) * sample_mtf(f, formula.pitch_mrad);
@@ -121,10 +122,10 @@ double axis_ctf(const SensorSpec& spec, const AxisMtf& mtf, const MrtdFormula& f
 
 Result<MrtdFormula> mrtd_formula_of(const SensorSpec& spec, const FormulaConditions& conditions) {
   if (!(spec.netd_k > 0))
-    return fail(ErrorCode::invalid_input, "sensor " + spec.name + ": without temporal noise the formula has no MRTD");
+    return fail(ErrorCode::invalid_input, "sensor " + spec.name + ": the MRTD formula needs temporal noise");
   MrtdFormula formula;
   formula.pitch_mrad = spec.ifov_mrad() / spec.samples_per_pitch();
-  // Averaged exposures lower the noise of a picture and its rate alike; the displaced ones of a finer grid, the rate.
+  // Averaged exposures lower the noise of a picture and its rate; displaced exposures of a finer grid lower the rate.
   const int averaged = spec.exposures_per_sample();
   const int per_picture = averaged * spec.samples_per_pitch() * spec.samples_per_pitch();
   formula.netd_k = spec.netd_k / std::sqrt(averaged);
@@ -162,14 +163,14 @@ Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditi
   if (!formula) return tl::unexpected(formula.error());
   const AxisMtf mtf(spec);
   const int n = spec.samples_per_pitch();
-  // In samples: the lattice of the modulation has the step 1.
+  // In samples: the lattice of the modulation has a step of 1.
   const Tabulated per_sample([&](double f) { return mtf(f * n); });
   std::vector<CurvePoint> horizontal, vertical;
   const auto add = [&](double f, double modulation) {
     horizontal.push_back({f, mtdp_like_k(*formula, f, modulation, BarAxis::horizontal)});
     vertical.push_back({f, mtdp_like_k(*formula, f, modulation, BarAxis::vertical)});
   };
-  // Bars of fifty samples are not touched by blur.
+  // Blur does not affect bars of fifty samples.
   const double nyquist = nyquist_per_mrad(spec);
   add(0.01 * nyquist, 1);
   constexpr int count = 80, phases = 16;
@@ -188,7 +189,7 @@ Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditi
       last = f;
       continue;
     }
-    // Where the curve ends is the range of every target of high contrast: a step would be up to 2 % of it.
+    // The end of the curve is the range of every target of high contrast: a coarse step would change it by up to 2 %.
     for (double beyond = f; last > 0 && beyond - last > 2e-4 * nyquist;) {
       const double middle = 0.5 * (last + beyond);
       (adds(middle) ? last : beyond) = middle;
@@ -202,7 +203,7 @@ Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditi
 }
 
 Result<LogLinearCurve> system_ctf(const SensorSpec& spec, const FormulaConditions& conditions) {
-  // A sensor without temporal noise still has a threshold: that of eye and transfer.
+  // A sensor without temporal noise still has a threshold, from eye and transfer function.
   SensorSpec noisy = spec;
   noisy.netd_k = std::max(spec.netd_k, 1e-12);
   const auto formula = mrtd_formula_of(noisy, conditions);

@@ -1,5 +1,6 @@
-// Curves of a simulated sensor without an observer: MRTD after FLIR92, the MTDP-like one, and the contrast threshold of
-// eye, display and sensor for the TTP metric.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Curves of a simulated sensor without an observer: MRTD after FLIR92, the MTDP-like curve, and the contrast threshold
+// of eye, display and sensor for the TTP metric.
 #pragma once
 
 #include "sim_devices/sensor/sensor_spec.h"
@@ -9,32 +10,32 @@
 
 namespace todbench {
 
-/// What the formulas need beside the sensor.
+/// Parameters of the formulas that do not belong to the sensor.
 struct FormulaConditions {
   double snr_threshold = 2.5;
   double eye_integration_s = 0.1;
   EyeConditions eye{};
-  double sample_at_eye_mrad = 1;  ///< angle of a displayed sample for the viewer: the magnification
-  double scene_contrast_k = 10;   ///< kelvin that give the display its mean luminance: sets the gain
+  double sample_at_eye_mrad = 1;  ///< angle of a displayed sample for the viewer; sets the magnification
+  double scene_contrast_k = 10;   ///< contrast that gives the display its mean luminance; sets the gain
   double alpha_root_hz = 169.6;   ///< calibration of noise in the TTP model of 2004
 };
 
-/// The formula's numbers of a sensor: samples of microscan, averaging of frames, fixed pattern as vh, row noise as tv
-/// and column noise as th. `invalid_input` for a sensor without temporal noise.
+/// Input of the MRTD formula for a sensor: samples with microscan, averaged frames, fixed pattern as vh, row noise as
+/// tv and column noise as th. `invalid_input` for a sensor without temporal noise.
 [[nodiscard]] Result<MrtdFormula> mrtd_formula_of(const SensorSpec& spec, const FormulaConditions& conditions);
 
 struct AxisCurves {
   LogLinearCurve horizontal, vertical;
 };
-/// MRTD in kelvin over cycles/mrad, from 1 % of the sampling's Nyquist frequency up to it, where it is cut by rule. MTF
-/// of optics and detector; display and eye are not in it.
+/// MRTD in kelvin over cycles/mrad, from 1 % of the Nyquist frequency of the sampling to the Nyquist frequency, at
+/// which it is cut by definition. Contains the MTF of optics and detector, but not display and eye.
 [[nodiscard]] Result<AxisCurves> mrtd_curves(const SensorSpec& spec, const FormulaConditions& conditions);
-/// The MTDP-like curve: goes on beyond Nyquist as long as at least two bars are apart at the best phase and modulation
-/// is above 1 %.
+/// MTDP-like curve: continues beyond Nyquist as long as at least two bars are resolved at the best phase and the
+/// modulation is above 1 %.
 [[nodiscard]] Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions);
 /// Contrast threshold of the system over cycles/mrad, up to Nyquist: eye / (display x sensor MTF) x sqrt(1 + alpha^2
-/// sigma^2 / S^2), sigma the noise behind the eye's channel exp(-2.2 ln^2), as in the TTP model of 2004. Geometric mean
-/// of the axes.
+/// sigma^2 / S^2), as in the TTP model of 2004. sigma is the noise behind the eye's channel exp(-2.2 ln^2). Geometric
+/// mean of the axes.
 [[nodiscard]] Result<LogLinearCurve> system_ctf(const SensorSpec& spec, const FormulaConditions& conditions);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/identification.h"
 
 #include <algorithm>
@@ -22,16 +23,16 @@ namespace {
 constexpr int phases_on_axis = 4;
 constexpr int phases = phases_on_axis * phases_on_axis;
 
-// Of the planned effort, per second on one core.
+// Rates per second on one core, for the planned effort.
 constexpr double spectrum_rate = 7e7, product_rate = 1.3e9, projection_rate = 2e10, score_rate = 5e9;
 
-/// Draws of noise at every range: each is met by every view.
+/// Number of noise draws at every range. Each view meets each of them.
 std::size_t draws_of(const IdentificationTask& task) {
   const int aspects = static_cast<int>(task.targets.front().aspects.size());
   return static_cast<std::size_t>(std::max(phases, (task.decisions + aspects - 1) / aspects));
 }
 
-/// One view, independent of range: its edges in metres, and its contrast.
+/// One view, independent of range: edges in metres, and contrast.
 struct SeenAspect {
   std::vector<StepEdge> edges_m;
   double dt_rss_k = 0, size_m = 0;
@@ -47,7 +48,7 @@ bool look_alike(const std::vector<SeenAspect>& a, const std::vector<SeenAspect>&
   });
 }
 
-/// All of the mean size.
+/// Scales all targets to the mean size.
 void make_alike_in_size(SeenTargets& targets) {
   double sum = 0, count = 0;
   for (const auto& target : targets) {
@@ -67,7 +68,7 @@ Result<SeenTargets> seen_targets(const IdentificationTask& task) {
   SeenTargets out;
   for (const auto& target : task.targets) {
     if (target.aspects.empty() || target.aspects.size() != task.targets.front().aspects.size())
-      return fail(ErrorCode::invalid_input, "every target is seen from the same number of sides, at least one");
+      return fail(ErrorCode::invalid_input, "every target must have the same number of aspects, at least one");
   }
   for (const auto& target : task.targets) {
     auto& own = out.emplace_back();
@@ -89,7 +90,7 @@ Result<SeenTargets> seen_targets(const IdentificationTask& task) {
     for (std::size_t other = 0; other < i; ++other) {
       if (look_alike(out[other], out[i])) {
         return fail(ErrorCode::invalid_input, "targets " + task.targets[other].name + " and " + task.targets[i].name +
-                                                  " look alike from every side: nobody can tell them apart");
+                                                  " look alike in every aspect, so no observer can distinguish them");
       }
     }
   }
@@ -101,13 +102,13 @@ std::size_t first_draw_of(std::size_t phase, std::size_t target, std::size_t asp
   return (phase + target + 5 * aspect) % phases;
 }
 
-/// Of a target's origin from the middle of the window, in samples.
+/// Offset of a target's origin from the middle of the window, in samples.
 cv::Point2d view_offset(std::size_t phase) {
   const auto offset = [](std::size_t k) { return (static_cast<double>(k) + 0.5) / phases_on_axis - 0.5; };
   return {offset(phase % phases_on_axis), offset(phase / phases_on_axis)};
 }
 
-/// A number of its own for every picture without noise, for the dance of the air.
+/// Number of a picture without noise, unique for the image dance.
 std::uint64_t presentation_of(std::size_t phase, std::size_t target, std::size_t aspect) {
   return phase + phases * (aspect + 8 * target);
 }
@@ -125,7 +126,7 @@ std::vector<AlternativeAspects> in_samples(const SeenTargets& targets, double sa
   return alternatives;
 }
 
-/// The observer before the camera at one range.
+/// The observer with the camera at one range.
 class RangeTrial {
  public:
   static Result<RangeTrial> create(const IdentificationTask& task, const SeenTargets& targets,
@@ -177,8 +178,8 @@ class RangeTrial {
         window_(spec_, imager),
         samples_per_metre_(samples_per_metre(spec_, range)) {}
 
-  /// Of the camera with its display; nothing where the observer knows nothing of it. Cut at 3 cycles per pitch, which
-  /// leaves out 0.3 % of the contrast at an edge.
+  /// Transfer function of the camera with its display; empty for an observer without knowledge of it. Cut at 3 cycles
+  /// per pitch, which leaves out 0.3 % of the contrast at an edge.
   [[nodiscard]] std::optional<KnownCamera> known_camera() const {
     if (task_.knowledge == TemplateKnowledge::ideal) return std::nullopt;
     const int n = spec_.samples_per_pitch();
@@ -190,7 +191,7 @@ class RangeTrial {
         3.0 / n};
   }
 
-  /// Without its mean.
+  /// Removes the mean.
   static cv::Mat1f centred(cv::Mat1f window) {
     window = window.clone();
     window -= cv::mean(window)[0];
@@ -202,14 +203,14 @@ class RangeTrial {
                                    range_.transmittance, presentation_of(phase, target, aspect)));
   }
 
-  /// Of the observer, in kelvin per sample: its own, and what it sees of the sensor's beyond what there is.
+  /// Noise of the observer in kelvin per sample: internal noise, and the enlargement of the sensor's noise.
   [[nodiscard]] float own_noise(double contrast_k) const {
     const double enlarged = task_.observer.sensor_noise_factor * task_.observer.sensor_noise_factor - 1;
     return static_cast<float>(std::sqrt(std::pow(task_.observer.internal_noise * contrast_k, 2) +
                                         enlarged * white_variance_k2(spec_, task_.plan, 1)));
   }
 
-  /// The same numbers for every range but for the size of the window.
+  /// Every range has the same random numbers, except for the size of the window.
   Result<void> draw_noise(std::size_t draws) {
     const WindowNoise noise(spec_, task_.plan, task_.accuracy, bank_->window_samples(), task_.seed);
     constexpr std::size_t at_once = 32;
@@ -270,12 +271,12 @@ Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
     const double reach = reach_m * 1e3 / (range.range_m * spec.ifov_mrad());  // pitches
     const double side = 2 * n * std::ceil(1.1 * reach + task.observer.window_margin_pitch);
     const double samples = side * side;
-    // Of the templates of one view at all places: 30 of a point, about half of the places of a large target.
+    // Rank of the templates of one view at all places: 30 for a point, about half of the places for a large target.
     const double rank = std::min({30 + 8 * reach * n, places / 2 + 1, samples});
     out.largest_bytes = std::max(out.largest_bytes, samples * rank * views * sizeof(float));
     const double band = task.knowledge == TemplateKnowledge::ideal ? 1.2 / task.observer.blur_sigma_samples : 3.0 / n;
     const double frequencies = 2 * std::pow(band * (0.5 * side + reach * n + 6), 2);
-    // Rates as measured, per second.
+    // Measured rates per second.
     out.processor_s += edges * frequencies / spectrum_rate + views * rank * places * samples / product_rate +
                        (16 * views + 2 * draws) * rank * views * (samples + places) / projection_rate +
                        draws * views * views * places / score_rate;
@@ -299,8 +300,8 @@ Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task
   if (!targets) return tl::unexpected(targets.error());
   if (task.plan.simulates(Effect::quantisation) && rounds_coarsely(as_planned(task.sensor, task.plan)))
     return fail(ErrorCode::invalid_input,
-                "the camera's counts are coarser than its noise: rounding would depend on the "
-                "targets, which this experiment leaves out");
+                "a count of the camera is larger than its noise, so rounding depends on the targets. The experiment "
+                "does not simulate this");
   const SensorSpec spec = as_planned(task.sensor, task.plan);
   const SceneImager imager(spec, task.plan, task.accuracy);
   std::vector<Result<IdentificationPoint>> found(task.ranges.size(), IdentificationPoint{});
@@ -332,7 +333,7 @@ Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task
   return points;
 }
 
-/// One range: everything but the observer.
+/// One range: everything except the observer.
 struct IdentificationFrames::Range {
   Range(const IdentificationTask& task, const SeenTargets& targets, const IdentificationRange& range)
       : spec(sensor_at(task, range.range_m)),

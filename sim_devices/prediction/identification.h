@@ -1,4 +1,5 @@
-// An identification experiment: an observer tells targets of a set apart behind a simulated camera.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Identification experiment: an observer distinguishes the targets of a set behind a simulated camera.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/accuracy.h"
+#include "acquisition/base/accuracy.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/scene/field_scene.h"
 #include "sim_devices/sensor/sensor_plan.h"
@@ -16,7 +17,7 @@
 
 namespace todbench {
 
-/// One alternative with its views, each before the same background, the middle of what is seen at the origin.
+/// One alternative with its views. All have the same background; the middle of the visible target is the origin.
 struct IdentificationTarget {
   std::string name;
   std::vector<FieldScene> aspects;
@@ -27,80 +28,79 @@ struct IdentificationRange {
   double transmittance = 1;
 };
 
-/// What the observer knows of its targets.
+/// The observer's knowledge of its targets.
 enum class TemplateKnowledge {
-  behind_camera,  ///< what they look like behind this camera, as people do who have learnt on its pictures
-  ideal           ///< their ideal pictures only: blur then makes one target look like another
+  behind_camera,  ///< pictures behind this camera, as people have who learned from its pictures
+  ideal           ///< ideal pictures only: blur then makes targets look like others
 };
-/// What differs between targets.
+/// Differences between the targets.
 enum class TargetCues {
-  all,   ///< shape, size and pattern of temperatures
-  shape  ///< every view has its dT_RSS all over and the mean size of the set
+  all,   ///< shape, size and temperature pattern
+  shape  ///< every view has its dT_RSS uniformly, and the mean size of the set
 };
 
 struct IdentificationTask {
   SensorSpec sensor;
-  SensorPlan plan;  ///< of the effects
+  SensorPlan plan;  ///< of effects
   TemplateObserverSpec observer{};
   Accuracy accuracy{};
   std::vector<IdentificationTarget> targets;
   std::vector<IdentificationRange> ranges;
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
   TargetCues cues = TargetCues::all;
-  int decisions = 2000;  ///< for every target at every range, in all aspects together
-  /// Turbulence along the path of each range, in place of that of the sensor; 0: as the sensor has it. The plan
-  /// simulates it. An observer who knows the targets behind the camera knows them behind the air, too.
+  int decisions = 2000;  ///< per target and range, all aspects together
+  /// Turbulence along the path of each range, instead of that of the sensor; 0: as in the sensor. The plan must
+  /// simulate it. An observer with knowledge behind the camera also knows the targets behind this air.
   double cn2_m_minus_2_3 = 0;
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
 
-/// The sensor of the task at a range, as the plan has it.
+/// Sensor of the task at a range, as planned.
 [[nodiscard]] SensorSpec sensor_at(const IdentificationTask& task, double range_m);
 
 struct IdentificationPoint {
   double range_m = 0, transmittance = 1;
   std::vector<std::vector<int>> answers;  ///< [shown][answered]
-  /// Share of right answers of each draw of noise, which all targets and aspects share: what is independent.
+  /// Share of correct answers for each draw of noise. Draws are independent; targets and aspects share them.
   std::vector<double> by_draw;
   [[nodiscard]] double proportion() const;
   [[nodiscard]] double standard_error() const;
 };
 
-/// What an experiment will take.
+/// Predicted effort of an experiment.
 struct IdentificationEffort {
-  double decisions = 0;      ///< of all targets and ranges
-  double largest_bytes = 0;  ///< of the templates of one range
-  double processor_s = 0;    ///< on one core of about 2 x 10^10 template samples a second, to a factor of two
+  double decisions = 0;      ///< all targets and ranges
+  double largest_bytes = 0;  ///< memory of the templates of one range
+  double processor_s = 0;    ///< on one core with about 2 x 10^10 template samples a second, to a factor of two
 };
-/// Before anything is computed. Errors: those of identify() that targets are refused with.
+/// Predicts the effort without computing. Errors: those of identify() about the targets.
 [[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);
 
-/// One point per range, in their order. Every draw of sensor and internal noise is met by every target in every aspect,
-/// in one of 16 sampling phases that all draws take in turn; internal noise and the noise that an observer sees
-/// enlarged are those of the template observer, the contrast is dT_RSS behind the air. Ranges run on as many threads as
-/// there are processors; the result does not depend on their number. Dead detectors are left out; counts are rounded
-/// with the noise, not with the signal. `invalid_input`: fewer than two targets, targets that look alike from every
-/// side, one without contrast, counts that are too coarse for the noise, targets too large for the observer;
-/// `interrupted`.
+/// One point per range, in the same order. Every target in every aspect meets each draw of sensor and internal noise,
+/// in one of 16 sampling phases that the draws take in turn. Internal noise and the enlargement of the sensor's noise
+/// are those of the template observer; the contrast is dT_RSS behind the air. Ranges run in parallel on all processors,
+/// and the result does not depend on their number. Dead detectors are left out. Counts are rounded with the noise, not
+/// with the signal. Errors: `invalid_input` (fewer than two targets, targets that look alike from every side, a target
+/// without contrast, counts too coarse for the noise, targets too large for the observer), `interrupted`.
 [[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
 
-/// What the camera of the experiment shows: the pictures of identify(), for another observer. Immutable, thread-safe.
+/// Pictures of identify() for another observer. Immutable, thread-safe.
 class IdentificationFrames {
  public:
-  /// Errors: those of identify() that targets are refused with.
+  /// Errors: those of identify() about the targets.
   [[nodiscard]] static Result<IdentificationFrames> of(const IdentificationTask& task);
-  /// Kelvin above the background on the display, with the noise of this draw and the sampling phase in which the draw
-  /// meets this view: identify() of the same task takes the same. All frames of a range have one size.
+  /// Displayed kelvin above the background, with the noise of this draw and its sampling phase for this view, as in
+  /// identify() of the same task. All frames of a range have one size.
   [[nodiscard]] cv::Mat1f frame_k(std::size_t range, std::size_t target, std::size_t aspect, std::uint64_t draw) const;
-  /// dT_RSS behind the air.
+  /// Contrast dT_RSS behind the air.
   [[nodiscard]] double contrast_k(std::size_t range, std::size_t target, std::size_t aspect) const;
 
  private:
   struct Range;
   IdentificationFrames() = default;
   std::vector<std::shared_ptr<const Range>> ranges_;
-  std::vector<std::vector<double>> contrasts_k_;  ///< [target][aspect], before the air
+  std::vector<std::vector<double>> contrasts_k_;  ///< [target][aspect], in front of the air
 };
 
 }  // namespace todbench

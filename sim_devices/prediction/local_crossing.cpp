@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/local_crossing.h"
 
 #include <Eigen/Dense>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-/// P and its slope where the transform of P is `eta`.
+/// P and its slope for a value `eta` of the transform of P.
 struct OfTransform {
   explicit OfTransform(double eta) {
     const double odds = std::exp(std::clamp(eta, -12.0, 12.0));
@@ -18,15 +19,14 @@ struct OfTransform {
   double p = 0, slope = 0;
 };
 
-/// The coefficients of the quadratic, and what each proportion has to do with them.
+/// Coefficients of the quadratic, and the influence of each proportion on them.
 struct LocalFit {
   Eigen::Vector3d c{std::numbers::ln2, 5, 0};
-  Eigen::MatrixXd influence;  ///< of every proportion on the coefficients
+  Eigen::MatrixXd influence;  ///< of each proportion on the coefficients
 };
 
-/// Quasi-likelihood with the variance p (1 - p) of the fitted P for weights (McCullagh and Nelder 1989): weights do not
-/// follow what the draws happened to give, and P of 1 is no special case. `kernel` are further weights. Starts at
-/// `fit`.
+/// Quasi-likelihood with the variance p (1 - p) of the fitted P as weights (McCullagh and Nelder 1989): the weights do
+/// not depend on the random results, and P = 1 needs no special case. `kernel`: additional weights. Starts at `fit`.
 std::optional<LocalFit> local_fit(LocalFit fit, const std::vector<double>& xs, const std::vector<Proportion>& ps,
                                   const std::vector<double>& kernel) {
   fit.influence.resize(3, static_cast<Eigen::Index>(xs.size()));
@@ -45,7 +45,7 @@ std::optional<LocalFit> local_fit(LocalFit fit, const std::vector<double>& xs, c
     Eigen::Vector3d step = solver.solve(score);
     fit.influence = solver.solve(fit.influence).eval();
     if (!step.allFinite()) return std::nullopt;
-    // Damped: far from the answer a step may leave the range in which P says anything.
+    // Damped: far from the solution a step may leave the range in which P is informative.
     step *= std::min(1.0, 2 / step.cwiseAbs().cwiseProduct(Eigen::Vector3d(1, 0.1, 0.01)).maxCoeff());
     fit.c += step;
     if (step.cwiseAbs().maxCoeff() < 1e-10) break;
@@ -53,7 +53,7 @@ std::optional<LocalFit> local_fit(LocalFit fit, const std::vector<double>& xs, c
   return fit;
 }
 
-/// Where a rising quadratic meets ln 2, by Newton's method from `x`: it is nearly straight there.
+/// Root of a rising quadratic minus ln 2 by Newton's method from `x`; the quadratic is nearly straight there.
 std::optional<double> root(const Eigen::Vector3d& c, double x) {
   for (int iteration = 0; iteration < 50; ++iteration) {
     const double slope = c(1) + 2 * c(2) * x;
@@ -66,12 +66,12 @@ std::optional<double> root(const Eigen::Vector3d& c, double x) {
   return x;
 }
 
-/// The fit in which sizes count the less the farther they are from `middle`, and three steps away nothing.
+/// Fit with weights that fall with the distance from `middle` and vanish three steps away.
 std::optional<LocalFit> fit_around(double middle, const LocalFit& start, const std::vector<double>& xs,
                                    const std::vector<Proportion>& ps) {
   const double reach = 3 * (xs[1] - xs[0]);
   std::vector<double> kernel;
-  // Beyond the sizes at hand the farthest ones still hold the quadratic.
+  // If `middle` is beyond the available sizes, the farthest ones still determine the quadratic.
   for (const double at : xs) kernel.push_back(std::max(1e-3, 1 - std::pow((at - middle) / reach, 2)));
   return local_fit(start, xs, ps, kernel);
 }

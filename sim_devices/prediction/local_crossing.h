@@ -1,4 +1,5 @@
-// Where a proportion correct, known at a few sizes, is 75 %.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Size with 75 % correct, from proportions correct at a few sizes.
 #pragma once
 
 #include <optional>
@@ -8,15 +9,15 @@
 
 namespace todbench {
 
-/// Where the local quadratic in ln((P - 0.25) / (1 - P)), which is nearly straight in ln size, meets ln 2.
+/// Point at which the local quadratic in ln((P - 0.25) / (1 - P)), which is nearly straight in ln size, equals ln 2.
 struct Crossing {
-  double x = 0, standard_error = 0;  ///< in ln size, as the sizes are given
+  double x = 0, standard_error = 0;  ///< in ln size, like `xs`
 };
 
-/// `xs`: ln size, rising in equal steps; four or more, about the crossing. Sizes count by 1 - (d / 3)^2, d steps from
-/// the crossing, which is found by iteration: which sizes are at hand does not move it. The standard error is that of
-/// the variances between draws, by how the fit follows them and how the crossing follows the middle of the fit. Nothing
-/// where the proportion does not rise through 75 % there.
+/// `xs`: ln size, increasing in equal steps; at least four, about the crossing. Sizes have the weight 1 - (d / 3)^2, d
+/// steps from the crossing, which is found by iteration: the choice of sizes does not move it. The standard error
+/// propagates the variances between draws through the fit and its weights. Empty if the proportion does not rise
+/// through 75 % there.
 [[nodiscard]] std::optional<Crossing> local_crossing(const std::vector<double>& xs, const std::vector<Proportion>& ps);
 
 }  // namespace todbench

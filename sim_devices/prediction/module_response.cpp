@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/module_response.h"
 
 #include <cmath>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-/// Averaged, after the frames that the program remembers.
+/// Frames averaged, after those that the program remembers.
 constexpr int averaged_frames = 4;
 
 Result<cv::Mat1d> settled_mean(ModuleSensor& sensor, const cv::Mat1f& scene_k, int settle_frames,
@@ -43,7 +44,7 @@ Result<double> module_response(const SensorSpec& spec, std::uint64_t seed, const
   scene.delta_t_k = options.delta_t_k;
   double sum = 0;
   int count = 0;
-  // The mountings and phases of contrast_response().
+  // Mountings and phases as in contrast_response().
   for (const Mounting mounting : all_mountings) {
     for (const double phase : {0.0, 0.5}) {
       scene.plate = mounted(plate, mounting);
@@ -69,7 +70,7 @@ Result<std::vector<double>> module_transfer(ModuleSensor& sensor, const SensorSp
   const cv::Size size(spec.width * fine, spec.height * fine);
   const auto empty = settled_mean(sensor, cv::Mat1f(size, 0.0F), settle_frames, {});
   if (!empty) return tl::unexpected(empty.error());
-  // By the distance of the edge left of the first sample of a pitch, in scene samples, from -fine middle - fine + 1.
+  // Indexed by the distance of the edge left of a pitch's first sample, in scene samples, from -fine middle - fine + 1.
   std::vector<double> response(static_cast<std::size_t>(size.width));
   for (int shift = 0; shift < fine; ++shift) {
     cv::Mat1f edge(size, 0.0F);
@@ -86,7 +87,7 @@ Result<std::vector<double>> module_transfer(ModuleSensor& sensor, const SensorSp
     for (std::size_t i = 1; i < response.size(); ++i)
       sum +=
           (response[i] - response[i - 1]) * std::polar(1.0, -2 * std::numbers::pi * f / fine * static_cast<double>(i));
-    // A sample of the scene is the mean over its square.
+    // A sample of the scene is the mean over a square.
     const double half = std::numbers::pi * f / fine;
     moduli.push_back(std::abs(sum) * (f == 0 ? 1 : std::abs(std::sin(half) / half)));
   }

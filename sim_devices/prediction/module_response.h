@@ -1,33 +1,34 @@
-// What the measure of effective contrast makes of a known contrast before a sensor that is a program.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Response of the estimator of effective contrast for a program in place of the sensor.
 #pragma once
 
 #include <cstdint>
 #include <stop_token>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/sensor/module_sensor.h"
 #include "tod/registration/registration.h"
 
 namespace todbench {
 
 struct ModuleResponseOptions {
-  double delta_t_k = 0;  ///< at which it is asked
+  double delta_t_k = 0;  ///< contrast of the test pictures
   double distance_m = 0;
   double min_reference_px = 0;
   RegistrationOptions registration{};
   LevelEstimate level = LevelEstimate::median;
 };
 
-/// As contrast_response(), from pictures of a process of its own less its answers to an empty scene in the same frames
-/// (noise that is a function of the frame cancels in them), over the contrast. Errors: those of ModuleSensor,
-/// register_plate() and effective_contrast(); `interrupted`. Precondition: sensor_module(spec).
+/// As contrast_response(): pictures of a separate process minus its answers to an empty scene in the same frames, over
+/// the contrast. Noise that is a function of the frame cancels. Errors: those of ModuleSensor, register_plate() and
+/// effective_contrast(); `interrupted`. Precondition: sensor_module(spec).
 [[nodiscard]] Result<double> module_response(const SensorSpec& spec, std::uint64_t seed, const TargetPlate& plate,
                                              const ModuleResponseOptions& options, std::stop_token stop = {});
 
-/// Moduli of the whole of image formation along x at frequencies in cycles per pitch: the transform of what an edge of
-/// 1 K adds to an empty scene, less what it adds one scene sample further, at four places of the edge within a pitch;
-/// all rows averaged. Errors: those of ModuleSensor.
+/// Modulus of the transfer function of the whole image formation along x, at frequencies in cycles per pitch. It is the
+/// Fourier transform of the difference between pictures of a 1 K edge at places one scene sample apart, for four places
+/// within a pitch, averaged over all rows. Errors: those of ModuleSensor.
 [[nodiscard]] Result<std::vector<double>> module_transfer(ModuleSensor& sensor, const SensorSpec& spec,
                                                           const std::vector<double>& cycles_per_pitch);
 

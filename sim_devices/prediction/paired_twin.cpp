@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/paired_twin.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <optional>
 #include <tuple>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "sim_devices/sensor/effect_display.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -18,13 +19,13 @@ namespace {
 
 using SetUpKey = std::pair<std::string, Mounting>;
 
-/// Exposures between two pictures of one model: noise that remembers has forgotten.
+/// Exposures between two pictures of one model: enough for noise with memory to become independent.
 constexpr std::uint64_t apart = 1000;
 
-/// Where a window of a presentation lies in the picture of all its windows.
+/// Place of one window of a presentation in the picture of all its windows.
 struct Tile {
-  cv::Rect window;  ///< what the observer sees
-  cv::Rect whole;   ///< with the margin that display and dead pixels look into
+  cv::Rect window;  ///< part that the observer judges
+  cv::Rect whole;   ///< with the margin that display and dead pixels need
 };
 
 /// The windows of a presentation side by side.
@@ -77,7 +78,7 @@ class PairedTwin {
     if (sensor_.dead_pixel_share > 0) margin_ = std::max(margin_, 2 * sensor_.samples_per_pitch());
   }
 
-  /// Trials of one presentation.
+  /// Answers to the trials of one presentation.
   Result<std::vector<TwinAnswer>> answers(std::span<const Trial> shown) {
     std::vector<std::shared_ptr<const PreparedObserver>> observers;
     std::vector<int> sides;
@@ -105,7 +106,7 @@ class PairedTwin {
     return found == options_.rotations_deg.end() ? 0 : found->second;
   }
 
-  /// One for each draw, with fixed patterns of its own.
+  /// Models for the draws, each with its own fixed pattern.
   const Models& models_of(const SetUpKey& set_up, cv::Size size) {
     auto [slot, is_new] = models_.try_emplace({set_up, size.width, size.height});
     if (!is_new) return slot->second;
@@ -134,7 +135,7 @@ class PairedTwin {
     const double sample = 1.0 / sensor_.samples_per_pitch();
     for (std::size_t i = 0; i < shown.size(); ++i) {
       const auto& [window, whole] = tiles.tiles[i];
-      // The middle of the window is a corner between four samples; the triangle is `phase` beside it.
+      // The middle of the window is a corner between four samples; the triangle is displaced from it by `phase`.
       const double first = -0.5 * (window.width - 1) - margin_;
       const cv::Point2d corner((first - shown[i].phase_x_px) * sample, (first - shown[i].phase_y_px) * sample);
       image_of(shown[i], rotation_deg).sample(corner, sample, whole.size()).convertTo(unit(whole), CV_32F);
@@ -142,7 +143,7 @@ class PairedTwin {
     return unit;
   }
 
-  /// What an observer of limited efficiency knows of the noise of a sample: from two pictures of each of a few models.
+  /// Noise of a sample as known to an observer of limited efficiency: from two pictures of each of a few models.
   double noise_k(const Models& models, const cv::Mat1f& unit, double contrast_k) {
     if (noise_k_) return *noise_k_;
     constexpr std::size_t enough = 8;
@@ -204,7 +205,7 @@ class PairedTwin {
 
 Result<std::vector<TwinAnswer>> twin_answers(const SensorSpec& sensor, const SensorPlan& effects, Observer& observer,
                                              std::span<const Trial> trials, const PairedTwinOptions& options) {
-  if (options.draws < 2) return fail(ErrorCode::invalid_input, "the twin needs two draws of noise or more");
+  if (options.draws < 2) return fail(ErrorCode::invalid_input, "the twin needs at least two noise draws");
   PairedTwin twin(sensor, effects, observer, options);
   std::vector<TwinAnswer> out;
   for (std::size_t first = 0; first < trials.size();) {

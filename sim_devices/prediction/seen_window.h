@@ -1,4 +1,5 @@
-// What a camera behind its display shows of a target in a window of samples, without noise.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Displayed picture of a target in a window of samples, without noise.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +12,13 @@
 
 namespace todbench {
 
-/// One of all that a camera shows. Immutable, thread-safe.
+/// Renders the displayed picture of a target for one camera. Immutable, thread-safe.
 class SeenWindow {
  public:
-  /// `spec` as planned; `imager` outlives the object.
+  /// Precondition: `spec` is as_planned(). `imager` outlives the object.
   SeenWindow(const SensorSpec& spec, const SceneImager& imager);
-  /// Edges in samples round the origin, which lies `offset` from the middle of the window; their steps times `factor`.
-  /// Where the air lets pictures dance, it is displaced from there as in presentation `number` of many.
+  /// Picture of edges in samples round the origin, which lies `offset` from the middle of the window. Steps are
+  /// multiplied by `factor`. With image dance, the target is displaced as in presentation `number`.
   [[nodiscard]] cv::Mat1f picture(const std::vector<StepEdge>& edges, int window_samples, cv::Point2d offset,
                                   double factor, std::uint64_t number) const;
 

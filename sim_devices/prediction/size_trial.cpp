@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/size_trial.h"
 
 #include <algorithm>
@@ -24,17 +25,17 @@ std::uint64_t white_part(std::uint64_t draw) {
 std::uint64_t pattern_part(std::uint64_t draw) {
   return 2 * draw + 1;
 }
-/// For dead detectors and for lines, three a draw.
+/// Stream for dead detectors and for lines, three per draw.
 std::uint64_t rare_part(std::uint64_t draw, std::uint64_t part) {
   return (std::uint64_t{1} << 40) + 3 * draw + part;
 }
 
-/// Of the observer, for trials of pixels.
+/// Stream of the observer, for trials of pixels.
 std::uint64_t observer_part(std::uint64_t trial) {
   return (std::uint64_t{1} << 42) + trial;
 }
 
-/// The stream of that name of one draw.
+/// Named stream of one draw.
 RandomStream named(const RandomStream& stream, std::uint64_t draw, std::string_view name) {
   if (name == "fixed") return stream.sub(pattern_part(draw));
   if (name == "rows") return stream.sub(rare_part(draw, 0));
@@ -43,14 +44,14 @@ RandomStream named(const RandomStream& stream, std::uint64_t draw, std::string_v
   return {stream.sub((std::uint64_t{1} << 41) + draw).stream(), name};
 }
 
-/// Square of `side` rows, its rows and columns exchanged.
+/// Exchanges rows and columns of a square with `side` rows.
 template <typename T>
 void transpose(const T* values, int side, T* out) {
   for (int row = 0; row < side; ++row)
     for (int column = 0; column < side; ++column) out[row * side + column] = values[column * side + row];
 }
 
-/// Square of `side` rows, rows or columns or both in reverse order.
+/// Reverses the order of rows, columns or both of a square with `side` rows.
 template <typename T>
 void reverse(const T* values, int side, bool rows, bool columns, T* out) {
   if (rows == columns) {
@@ -71,7 +72,7 @@ void reverse(const T* values, int side, bool rows, bool columns, T* out) {
   }
 }
 
-/// The map as the noise of way `turn` (of turns_) has it: T(turned) . w is T . (w turned back).
+/// Map of dead detectors for the noise in way `turn` (of turns_): T(turned) . w is T . (w turned back).
 cv::Mat1b dead_turned_back(const cv::Mat1b& map, std::size_t turn) {
   cv::Mat1b back = map;
   if (turn >= 4) cv::flip(map, back, 1);
@@ -93,16 +94,16 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   for (const Effect effect : all_effects) {
     const EffectRow& row = row_of(effect);
     if (is_neutral(sensor, effect, conditions_.motion)) continue;
-    turns_alike = turns_alike && row.directions == Directions::alike;
+    turns_alike = turns_alike && row.directions == AxisDirections::alike;
     const auto* noise = std::get_if<stage::Noise>(&row.stage);
     if (noise != nullptr && noise->colour == stage::Colour::coloured) coloured_stages_.push_back(noise);
   }
   if (has_display(sensor)) display_taps_ = taps_of([&](double f) { return display_response(sensor, f); });
-  // The sampling grid and most effects look the same from all four sides.
+  // The sampling grid and most effects are the same from all four sides.
   const bool alike = conditions_.orientations == ShownOrientations::as_needed && turns_alike;
   const int per_axis = phases_per_sample();
   const int per_pitch = chain.points_per_pitch() * (conditions_.by_pixels ? 2 : 1);
-  // Pitches from the middle within which samples of the window and of the display's filter lie.
+  // Distance in pitches from the middle that contains the samples of the window and of the display's filter.
   const int margin = static_cast<int>(display_taps_.size()) / 2;
   const int reach = (bank_->window_samples() / 2 + margin) / conditions_.samples_per_pitch + 2 +
                     static_cast<int>(std::ceil(4 * dance_sd_pitch(sensor)));
@@ -133,8 +134,8 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   find_turns();
 }
 
-/// Template (o, p) turned by a quarter is (o + 1, p turned about the middle); mirrored, right and left are exchanged.
-/// Where the bank is not so (it always is for the four triangles) only the identity is left.
+/// Template (o, p) turned by a quarter is (o + 1, p turned about the middle); a reflection exchanges right and left. If
+/// the bank does not have this symmetry (that of the four triangles always does), only the identity remains.
 void SizeTrial::find_turns() {
   turns_ = {Turn{}};
   const int side = static_cast<int>(std::lround(std::sqrt(bank_->places())));
@@ -148,7 +149,7 @@ void SizeTrial::find_turns() {
     turn.transposed = quarters % 2 == 1;
     turn.rows_reversed = quarters == 1 || quarters == 2;
     turn.columns_reversed = quarters >= 2;
-    // The mirror exchanges columns of what is turned, which are rows where it is transposed.
+    // The reflection exchanges the columns of the turned picture, which are rows if it is transposed.
     if (mirrored && turn.transposed) turn.rows_reversed = !turn.rows_reversed;
     if (mirrored && !turn.transposed) turn.columns_reversed = !turn.columns_reversed;
     return turn;
@@ -181,7 +182,7 @@ void SizeTrial::find_turns() {
     for (int quarters = 0; quarters < 4; ++quarters) turns_.push_back(turn_of(quarters, mirrored));
 }
 
-/// Without noise a rounded picture changes in steps of the phase: twice as many.
+/// Without noise a rounded picture changes in steps with the phase, so there are twice as many phases.
 int SizeTrial::phases_per_sample() const {
   return std::max(1, conditions_.phases_per_axis / conditions_.samples_per_pitch) * (conditions_.by_pixels ? 2 : 1);
 }
@@ -198,7 +199,7 @@ SizeTrial::Response SizeTrial::response(const cv::Mat1d& fine, int per_pitch, cv
   std::vector<cv::Point2d> exposures = spread_dance_pitch(conditions_.sensor, number);
   if (exposures.empty()) exposures.emplace_back(0, 0);
   const auto weight = 1 / static_cast<float>(exposures.size());
-  cv::Point2d displaced{0, 0};  // samples, of the mean
+  cv::Point2d displaced{0, 0};  // in samples, mean over the exposures
   for (const cv::Point2d& displacement : exposures) {
     const cv::Point moved(static_cast<int>(std::lround(displacement.x * per_pitch)),
                           static_cast<int>(std::lround(displacement.y * per_pitch)));
@@ -245,7 +246,7 @@ double SizeTrial::known_position_proportion(double noise, int nodes) const {
         for (std::size_t j = 0; j < 4; ++j) slot->second[i][j] = images[i].dot(images[j]);
       }
     }
-    // The task wants the true alternative first.
+    // The task expects the true alternative first.
     KnownPositionTask task;
     task.noise = noise;
     std::array<std::size_t, 4> order{0, 1, 2, 3};
@@ -284,7 +285,7 @@ double SizeTrial::variance_ratio(SharedBy shared_by) const {
   return largest;
 }
 
-/// Sensor's and internal noise together are white noise with the response sqrt((s^2 |D|^2 + i^2) / (s^2 + i^2)).
+/// The sum of sensor's and internal noise is white noise filtered by sqrt((s^2 |D|^2 + i^2) / (s^2 + i^2)).
 void SizeTrial::shape_white(const WhiteNoise& white) {
   if (display_taps_.empty()) return;
   const double total = white.sensor * white.sensor + white.internal * white.internal;
@@ -307,7 +308,7 @@ cv::Mat1b SizeTrial::dead(std::uint64_t index, int window) const {
   return cv::countNonZero(map) > 0 ? map : cv::Mat1b();
 }
 
-/// Noise that is not white, of one draw, in kelvin.
+/// Coloured noise of one draw, in kelvin.
 cv::Mat1f SizeTrial::coloured(std::uint64_t index, int window) const {
   const double averaged = 1 / std::sqrt(static_cast<double>(conditions_.sensor.exposures_per_sample()));
   const NoiseStreams streams = [&](std::string_view name, std::uint64_t ago) {
@@ -324,7 +325,7 @@ cv::Mat1f SizeTrial::coloured(std::uint64_t index, int window) const {
 
 void SizeTrial::draw_up_to(std::size_t draws) {
   const int window = bank_->window_samples();
-  // So many fit beside a part of the bank into the nearest cache.
+  // This number fits into the nearest cache with a part of the bank.
   constexpr std::size_t together = 32;
   const auto project = [&](const std::vector<cv::Mat1f>& samples, std::vector<std::vector<float>>& to) {
     std::vector<std::span<const float>> patches;
@@ -359,7 +360,7 @@ Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int
   shape_white(white);
   draw_up_to(static_cast<std::size_t>(draws));
   const double total = std::hypot(white.sensor, white.internal);
-  // In units of the white noise, or of the contrast where there is none.
+  // In units of the white noise, or of the contrast if there is none.
   const auto scale = static_cast<float>(total > 0 ? total : 1);
   const auto ratio = static_cast<float>(1 / (contrast_k * static_cast<double>(scale)));
   const float own = total > 0 ? 1.0F : 0.0F;
@@ -401,10 +402,10 @@ double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, fl
   }
   const cv::Mat1b defects = dead(draw, bank_->window_samples());
   const bool has_coloured = !coloured_stages_.empty();
-  // Coloured noise has a direction, and where detectors are dead it was replaced where they are.
+  // Coloured noise has a direction, and dead detectors were replaced at fixed places.
   const std::size_t turns = has_coloured && !defects.empty() ? 1 : turns_.size();
   double all = 0;
-  // Another draw sees the phases in other ways, and goes on among the places of a dance.
+  // Each draw uses other ways for the phases, and continues through the places of the dance.
   const std::size_t ways = 2 * turns;
   std::size_t seen = 0, way = places_of_dance_ > 1 ? draw * ways + draw * ways / phase_group_.size() : draw;
   for (std::size_t turn = 0; turn < turns; ++turn) {
@@ -427,7 +428,7 @@ double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, fl
 double SizeTrial::pixel_trial(const Response& response, const PixelContrast& contrast, std::uint64_t index) const {
   const int window = bank_->window_samples();
   const int margin = (response.before_display.cols - window) / 2;
-  // A whole number of detectors, so that what they share is shared.
+  // A whole number of detectors, so that samples share their common numbers.
   const int n = conditions_.samples_per_pitch;
   const int side = (response.before_display.cols + n - 1) / n * n;
   const cv::Rect signal({0, 0}, response.before_display.size());
@@ -441,7 +442,7 @@ double SizeTrial::pixel_trial(const Response& response, const PixelContrast& con
   const Quantiser quantiser(conditions_.sensor, contrast.background_k);
   cv::Mat1f seen(window, window);
   stream_.sub(observer_part(index)).fill_normal(std::span(seen.ptr<float>(), seen.total()));
-  // In units of the contrast, which the scores of the templates are in too.
+  // In units of the contrast, like the scores of the templates.
   const auto internal = static_cast<float>(contrast.internal_k / std::abs(contrast.seen_k));
   const auto per_kelvin = static_cast<float>(1 / contrast.seen_k);
   for (int row = 0; row < window; ++row) {
@@ -457,7 +458,7 @@ double SizeTrial::pixel_trial(const Response& response, const PixelContrast& con
 
 Proportion SizeTrial::pixel_proportion(const PixelContrast& contrast, int draws) {
   CV_Assert(conditions_.by_pixels);
-  // Phases along a diagonal: every row and column of phases once in a draw, all of them in turn.
+  // Phases along a diagonal: every row and column of phases once per draw, and all of them in turn.
   const int per_axis = phases_per_sample();
   const auto phases = static_cast<std::size_t>(per_axis * per_axis), some = static_cast<std::size_t>(per_axis);
   const auto places = static_cast<std::size_t>(places_of_dance_);

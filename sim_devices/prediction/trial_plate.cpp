@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/trial_plate.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@ namespace todbench {
 namespace {
 
 constexpr double mark_pitch = 10;       ///< size of the registration marks
-constexpr double mark_cell_pitch = 22;  ///< their bounding box and room for blur
+constexpr double mark_cell_pitch = 22;  ///< bounding box and margin for blur
 
 }  // namespace
 
@@ -50,7 +51,7 @@ SensorSpec cropped_to(SensorSpec sensor, const TargetPlate& plate, int margin_px
   };
   sensor.width = std::max(32, pixels(plate.width_mm));
   sensor.height = std::max(32, pixels(plate.height_mm));
-  sensor.distortion_percent = sensor.distortion_r4_percent = 0;  // trials stand for the middle of the picture
+  sensor.distortion_percent = sensor.distortion_r4_percent = 0;  // trials represent the middle of the picture
   return sensor;
 }
 

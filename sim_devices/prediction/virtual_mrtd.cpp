@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/virtual_mrtd.h"
 
 #include <fmt/format.h>
@@ -25,18 +26,18 @@ namespace {
 constexpr std::size_t phases_across = 8, phases_along = 2, bar_phases = phases_across * phases_along;
 constexpr double wanted_share = 0.75, false_alarms = 0.05;
 constexpr double contrast_step = 1.25;
-constexpr int most_steps = 36;  ///< to 2500 times where the ideal observer is right half of the time or so
+constexpr int most_steps = 36;  ///< highest contrast: 1.25^36 = 3081 times ideal_k
 constexpr double known_band_per_pitch = 3;
 
-/// What an observer makes of intervals with a pattern: [phase][draw].
+/// Scores of an observer for intervals with a pattern: [phase][draw].
 using Responses = std::vector<std::vector<float>>;
 
 struct Share {
   double mean = 0, standard_error = 0;
 };
 
-/// Of pairs of different draws, one with the pattern and one with the other: how many have the larger response to the
-/// pattern. The error as DeLong et al. (1988), Biometrics 44.
+/// Share of pairs of draws, one with each pattern, in which the response to `pattern` is larger. Standard error after
+/// DeLong et al. (1988), Biometrics 44.
 Share share_of_pairs(const Responses& pattern, const Responses& other) {
   const std::size_t draws = pattern.front().size();
   std::vector<float> all_pattern, all_other;
@@ -73,7 +74,7 @@ Share share_of_pairs(const Responses& pattern, const Responses& other) {
   return out;
 }
 
-/// Of yes to the pattern where 5 % of the responses to nothing are yes.
+/// Share of yes answers to the pattern, at the limit that gives 5 % yes answers without one.
 Share share_of_yes(const Responses& pattern, const Responses& nothing) {
   std::vector<float> sorted;
   for (const auto& row : nothing) sorted.insert(sorted.end(), row.begin(), row.end());
@@ -98,7 +99,7 @@ double probit(double p) {
   return std::numbers::sqrt2 * boost::math::erf_inv(2 * std::clamp(p, 1e-6, 1 - 1e-6) - 1);
 }
 
-/// Where proportions over rising contrasts pass 75 % for the first time, probit over ln contrast.
+/// First crossing of 75 % over rising contrasts, interpolated in probit over ln contrast.
 struct PassedContrast {
   std::optional<double> contrast_k;
   double relative_error = 0;
@@ -115,12 +116,12 @@ PassedContrast passed_contrast(const std::vector<double>& contrasts_k, const std
   return {};
 }
 
-/// Of the pattern's middle from that of the window, in samples, across the bars.
+/// Offset of the pattern's middle from that of the window across the bars, in samples.
 double offset_across(std::size_t phase) {
   return (static_cast<double>(phase % phases_across) + 0.5) / phases_across - 0.5;
 }
 
-/// The same in the picture.
+/// The same offset in the picture.
 cv::Point2d bar_offset(std::size_t phase, BarAxis axis) {
   const std::size_t row = phase / phases_across;
   const double along = (static_cast<double>(row) + 0.5) / phases_along - 0.5;
@@ -133,7 +134,7 @@ std::vector<StepEdge> bar_edges_in_samples(const SensorSpec& spec, BarPattern pa
   return placed(bar_edges(pattern, frequency_per_pitch, axis), spec.samples_per_pitch(), 0, {0, 0});
 }
 
-/// One frequency before the observer.
+/// The observer at one frequency.
 class BarTrial {
  public:
   static Result<BarTrial> create(const VirtualMrtdTask& task, const SensorSpec& spec, const SceneImager& imager,
@@ -157,7 +158,7 @@ class BarTrial {
   Result<void> measure(VirtualMrtdPoint& point) {
     if (!(noise_k_ > 0)) {
       return fail(ErrorCode::invalid_input,
-                  "a camera without noise has no MRTD: the noise of the observer grows with the contrast");
+                  "a camera without noise has no MRTD, because the noise of the observer grows with the contrast");
     }
     std::vector<double> contrasts_k;
     std::vector<Share> all;
@@ -189,7 +190,7 @@ class BarTrial {
   }
 
  private:
-  /// A picture in every form that a criterion asks for.
+  /// A picture in every form that the criteria use.
   struct Seen {
     std::vector<float> scores, profile;
   };
@@ -234,14 +235,14 @@ class BarTrial {
     return {};
   }
 
-  /// Of the observer, per sample and relative to the contrast.
+  /// Noise of the observer per sample, relative to the contrast.
   [[nodiscard]] float own_noise(double contrast_k) const {
     const double enlarged = task_.observer.sensor_noise_factor * task_.observer.sensor_noise_factor - 1;
     return static_cast<float>(std::hypot(task_.observer.internal_noise,
                                          std::sqrt(enlarged * white_variance_k2(spec_, task_.plan, 1)) / contrast_k));
   }
 
-  /// The number that the criterion asks for, of a pattern (none: nothing) with one draw.
+  /// Score of the criterion for a pattern (null: no pattern) with one draw.
   [[nodiscard]] float response(const Seen* pattern, std::size_t phase, std::size_t draw, float noise_scale,
                                float own) const {
     const Seen& sensor = sensor_[draw];
@@ -295,26 +296,25 @@ class BarTrial {
 };
 
 Result<void> check_bars(const VirtualMrtdTask& task, const SensorSpec& spec) {
-  if (task.frequencies_per_mrad.empty()) return fail(ErrorCode::invalid_input, "there is no frequency");
-  if (task.draws < 64) return fail(ErrorCode::invalid_input, "there must be at least 64 draws");
+  if (task.frequencies_per_mrad.empty()) return fail(ErrorCode::invalid_input, "at least one frequency is needed");
+  if (task.draws < 64) return fail(ErrorCode::invalid_input, "at least 64 draws are needed");
   for (const double f : task.frequencies_per_mrad) {
     const double side = 3.5 / (f * spec.ifov_mrad()) * spec.samples_per_pitch();
     if (!(f > 0) || !(side >= 4 && side <= 400)) {
-      return fail(ErrorCode::invalid_input,
-                  fmt::format("bars of {:g} cycles/mrad: their square must have 4 to 400 samples on a side, {:.4g} to "
-                              "{:.4g} cycles/mrad",
-                              f, 3.5 * spec.samples_per_pitch() / 400 / spec.ifov_mrad(),
-                              3.5 * spec.samples_per_pitch() / 4 / spec.ifov_mrad()));
+      return fail(ErrorCode::invalid_input, fmt::format("bars of {:g} cycles/mrad: their square must have 4 to 400 "
+                                                        "samples per side, which is {:.4g} to {:.4g} cycles/mrad",
+                                                        f, 3.5 * spec.samples_per_pitch() / 400 / spec.ifov_mrad(),
+                                                        3.5 * spec.samples_per_pitch() / 4 / spec.ifov_mrad()));
     }
   }
   if (task.plan.simulates(Effect::quantisation) && rounds_coarsely(spec)) {
     return fail(ErrorCode::invalid_input,
-                "the camera's counts are coarser than its noise: what becomes of small contrasts is not computed");
+                "a count of the camera is larger than its noise: the rounding of small contrasts is not simulated");
   }
   return {};
 }
 
-/// What is known of a frequency without trials.
+/// Quantities of a frequency that need no trials.
 VirtualMrtdPoint point_before_trials(const VirtualMrtdTask& task, const SensorSpec& spec, double frequency_per_mrad) {
   VirtualMrtdPoint point;
   point.frequency_per_mrad = frequency_per_mrad;
@@ -364,7 +364,7 @@ Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task) 
   return points;
 }
 
-/// Everything of a frequency but the observer.
+/// All data of a frequency except the observer.
 struct BarFrames::Frequency {
   Frequency(const VirtualMrtdTask& task, const SensorSpec& sensor, double frequency_per_mrad)
       : spec(sensor),

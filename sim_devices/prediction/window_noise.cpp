@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/window_noise.h"
 
 #include <span>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "sim_devices/sensor/effect_display.h"
 #include "sim_devices/sensor/sensor_model.h"
 

@@ -1,24 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Noise of a camera and of an observer over a window without a scene.
 #pragma once
 
 #include <cstdint>
 #include <opencv2/core.hpp>
 
-#include "acquisition/core/accuracy.h"
+#include "acquisition/base/accuracy.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
 
 namespace todbench {
 
-/// Draws by number; each has a fixed pattern of its own. Dead detectors are left out. Immutable, thread-safe.
+/// Noise by draw number; each draw has its own fixed pattern. Dead detectors are left out. Immutable, thread-safe.
 class WindowNoise {
  public:
-  /// `spec` as planned.
+  /// Precondition: `spec` is as_planned().
   WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, int window_samples,
               std::uint64_t seed);
-  /// Of the camera behind its display, in kelvin.
+  /// Noise of the camera behind its display, in kelvin.
   [[nodiscard]] cv::Mat1f sensor_k(std::uint64_t draw) const;
-  /// White, of sd 1.
+  /// White noise of sd 1.
   [[nodiscard]] cv::Mat1f white(std::uint64_t draw) const;
 
  private:

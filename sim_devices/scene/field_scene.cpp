@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/scene/field_scene.h"
 
 #include <fmt/format.h>
@@ -14,32 +15,33 @@ Result<void> refuse_scene(const std::string& sentence) {
 
 Result<void> check_temperature(const std::string& of, double kelvin) {
   if (kelvin > 0 && kelvin < 1e5) return {};
-  return refuse_scene(fmt::format("{}: a temperature has to be above 0 K and below 100000 K, not {:g} K", of, kelvin));
+  return refuse_scene(
+      fmt::format("{}: the temperature must be above 0 K and below 100000 K, found {:g} K", of, kelvin));
 }
 
 Result<void> check_region(const SceneRegion& region) {
   const std::string name = "region '" + region.name + "'";
   if (auto fine = check_temperature(name, region.temperature_k); !fine) return fine;
   if (!(region.emissivity >= 0 && region.emissivity <= 1))
-    return refuse_scene(fmt::format("{}: an emissivity is from 0 to 1, not {:g}", name, region.emissivity));
-  if (region.outline_m.size() < 3) return refuse_scene(name + ": an outline has at least three corners");
+    return refuse_scene(fmt::format("{}: the emissivity must be from 0 to 1, found {:g}", name, region.emissivity));
+  if (region.outline_m.size() < 3) return refuse_scene(name + ": the outline needs at least three corners");
   for (const auto& v : region.outline_m) {
     if (!(std::abs(v.x) <= 1e6 && std::abs(v.y) <= 1e6))
-      return refuse_scene(name + ": a corner lies more than 1000 km from the middle");
+      return refuse_scene(name + ": a corner lies more than 1000 km from the origin");
   }
-  if (!is_simple(region.outline_m)) return refuse_scene(name + ": its outline crosses itself or encloses nothing");
+  if (!is_simple(region.outline_m)) return refuse_scene(name + ": its outline crosses itself or encloses no area");
   return {};
 }
 
 Result<void> check_picture(const ScenePicture& picture) {
   if (picture.kelvin.empty()) return refuse_scene("the picture is empty");
   if (!(picture.pixel_mrad > 0 && picture.pixel_mrad < 1000 && picture.range_m > 0 && picture.range_m < 1e7))
-    return refuse_scene("the picture has no scale: pixel_mrad and range_m say how large one of its elements is");
+    return refuse_scene("the picture has no valid scale: pixel_mrad and range_m must state the size of its elements");
   for (const double value : picture.kelvin) {
     if (auto fine = check_temperature("the picture", value); !fine) return fine;
   }
   if (!picture.target.empty() && picture.target.size() != picture.kelvin.size())
-    return refuse_scene("the mask of the target is not as large as the picture");
+    return refuse_scene("the mask of the target and the picture have different sizes");
   return {};
 }
 
@@ -48,7 +50,7 @@ double region_radiance(const FieldScene& scene, const SpectralBand& band, double
   return emissivity < 1 ? own + (1 - emissivity) * band_radiance(band, scene.surround_k) : own;
 }
 
-/// Edges of a level of one's own for every region: 0 for those that are no target.
+/// Edges in which every region has a level of its own; 0 for regions that are not targets.
 std::vector<StepEdge> edges_with(const FieldScene& scene, const std::vector<PaintedPolygon>& levels,
                                  double (*level)(double, bool)) {
   std::vector<PaintedPolygon> painted;
@@ -68,7 +70,7 @@ std::optional<TargetSignature> signature_of_polygons(const FieldScene& scene, co
   const double square =
       integral(edges_with(scene, levels, [](double k, bool target) { return target ? k * k : 0.0; })) / out.area_m2;
   out.sd_k = std::sqrt(std::max(0.0, square - mean * mean));
-  // Beside the outline: what would be seen without the target, along it.
+  // Scene without the target, for the mean along the outline.
   std::vector<PaintedPolygon> others;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     if (!scene.regions[i].target) others.push_back(levels[i]);
@@ -77,7 +79,7 @@ std::optional<TargetSignature> signature_of_polygons(const FieldScene& scene, co
   for (const auto& edge : mask) {
     const cv::Point2d d = edge.b - edge.a;
     const double own = std::hypot(d.x, d.y);
-    // A thin strip along the edge, cut with the others: its mean level. The step of a mask is 1 towards the target.
+    // A thin strip along the edge, cut like the others, gives the mean level. A mask steps to 1 towards the target.
     constexpr int places = 8;
     for (int k = 0; k < places; ++k) {
       const double sign = edge.step > 0 ? -1 : 1;
@@ -136,10 +138,10 @@ Result<void> validate(const FieldScene& scene) {
   if (auto fine = check_temperature("background", scene.background_k); !fine) return fine;
   if (auto fine = check_temperature("surround", scene.surround_k); !fine) return fine;
   if (!(scene.background_emissivity >= 0 && scene.background_emissivity <= 1))
-    return refuse_scene("the emissivity of the background is from 0 to 1");
-  if (scene.picture && !scene.regions.empty()) return refuse_scene("a scene is a picture or regions, not both");
+    return refuse_scene("the emissivity of the background must be from 0 to 1");
+  if (scene.picture && !scene.regions.empty()) return refuse_scene("a scene has a picture or regions, not both");
   if (scene.picture) return check_picture(*scene.picture);
-  if (scene.regions.empty()) return refuse_scene("the scene has nothing to see: no region, target, plate or picture");
+  if (scene.regions.empty()) return refuse_scene("the scene is empty: it has no region, target, plate or picture");
   for (const auto& region : scene.regions) {
     if (auto fine = check_region(region); !fine) return fine;
   }

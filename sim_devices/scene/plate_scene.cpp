@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/scene/plate_scene.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 namespace todbench {
 
 cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, double ifov_mrad, cv::Size sensor) {
-  // A plane seen by a distortion-free lens: millimetres over metres are milliradians of the tangent.
+  // A plane through a lens without distortion: millimetres over metres are milliradians of the tangent.
   const cv::Point2d px = (plate_mm + scene.shift_mm) * (1 / (scene.distance_m * ifov_mrad));
   const double angle = scene.rotation_deg * std::numbers::pi / 180;
   const cv::Point2d turned(px.x * std::cos(angle) - px.y * std::sin(angle),

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A plate in front of a simulated camera.
 #pragma once
 
@@ -8,22 +9,22 @@
 
 namespace todbench {
 
-/// A mounted plate, seen from a distance, its middle near the middle of the picture. A value.
+/// A mounted plate at a distance, with its middle near the middle of the picture. A value.
 struct PlateScene {
   TargetPlate plate;          ///< as mounted
   double delta_t_k = 0;       ///< triangle minus surround
   double background_k = 300;  ///< temperature of the surround
   double distance_m = 2;
-  cv::Point2d shift_mm{0, 0};        ///< of the plate in its plane
-  cv::Point2d centre_px{0.3, -0.2};  ///< where the plate's middle is, from the middle of the picture, at shift 0
+  cv::Point2d shift_mm{0, 0};        ///< of the plate in its own plane
+  cv::Point2d centre_px{0.3, -0.2};  ///< middle of the plate at shift 0, from the middle of the picture
   double rotation_deg = 0;           ///< of the plate about the line of sight, clockwise in the picture
-  SceneMotion motion{};              ///< of the whole plate; smears, where the sensor has a time constant
+  SceneMotion motion{};              ///< of the whole plate; smears if the sensor has a time constant
 };
 
-/// Position in pixels (column, row; pixel centres at integers) of a place on the plate.
+/// Position in pixels (column, row; pixel centres are integers) of a place on the plate.
 [[nodiscard]] cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, double ifov_mrad, cv::Size sensor);
 
-/// Whether two scenes differ at most in temperatures and names.
+/// True if two scenes differ only in temperatures and names.
 [[nodiscard]] bool same_geometry(const PlateScene& a, const PlateScene& b);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/scene/target_model.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 namespace todbench {
 namespace {
 
-/// A corner of a prism: forward, to port, up.
+/// Corner of a prism: forward, to port, up.
 struct SolidPlace {
   double forward = 0, port = 0, up = 0;
 };
@@ -17,7 +18,7 @@ struct Face {
   double nearness_m = 0;  ///< of its middle to the viewer
 };
 
-/// From where the target is looked at.
+/// Direction of the viewer.
 struct Viewer {
   double c, s;
   explicit Viewer(double azimuth_deg)
@@ -26,7 +27,7 @@ struct Viewer {
   [[nodiscard]] double nearness(const SolidPlace& p) const { return p.forward * c - p.port * s; }
 };
 
-/// Faces that are seen edge on have no area to speak of.
+/// Faces that are viewed edge on have negligible area.
 constexpr double thinnest_m2 = 1e-9;
 
 void add_face(std::vector<Face>& faces, const TargetPart& part, const Viewer& viewer,
@@ -44,7 +45,7 @@ void add_face(std::vector<Face>& faces, const TargetPart& part, const Viewer& vi
   faces.push_back(std::move(face));
 }
 
-/// Vertices in the order that makes the area positive with y up.
+/// Vertices in the order that gives a positive area with y up.
 Polygon upright(const Polygon& profile) {
   double sum = 0;
   for (std::size_t i = 0; i < profile.size(); ++i) {
@@ -61,7 +62,8 @@ Result<void> validate(const TargetModel& model) {
   FieldScene profiles;
   for (const auto& part : model.parts) {
     if (!(part.width_m > 0 && part.width_m < 1e4 && std::abs(part.side_m) < 1e4))
-      return fail(ErrorCode::invalid_input, "part '" + part.name + "': a width is above 0 and below 10 km");
+      return fail(ErrorCode::invalid_input,
+                  "part '" + part.name + "': the width must be above 0, and width and position below 10 km");
     profiles.regions.push_back({part.name, part.profile_m, part.temperature_k, part.emissivity, true});
   }
   return validate(profiles);
@@ -73,7 +75,7 @@ std::vector<SceneRegion> view_of(const TargetModel& model, double azimuth_deg) {
   for (const auto& part : model.parts) {
     const Polygon profile = upright(part.profile_m);
     const double port = part.side_m + part.width_m / 2, starboard = part.side_m - part.width_m / 2;
-    // The cap on the viewer's side.
+    // Cap on the viewer's side.
     std::vector<SolidPlace> cap;
     for (const auto& v : profile) cap.push_back({v.x, viewer.s >= 0 ? starboard : port, v.y});
     add_face(faces, part, viewer, cap);

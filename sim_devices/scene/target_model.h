@@ -1,4 +1,5 @@
-// Targets as a few prisms: their views from any side are polygons of a scene.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Target models made of a few prisms. Their view from any side is a set of polygons of a scene.
 #pragma once
 
 #include <string>
@@ -8,12 +9,12 @@
 
 namespace todbench {
 
-/// An outline in the plane of length and height, drawn out across it.
+/// Prism: an outline in the plane of length and height, extruded across it.
 struct TargetPart {
   std::string name;
   Polygon profile_m;  ///< x forward, y up from the ground or water
   double width_m = 0;
-  double side_m = 0;  ///< of its middle, to port
+  double side_m = 0;  ///< of its middle; positive to port
   double temperature_k = 300, emissivity = 0.95;
 };
 
@@ -25,9 +26,9 @@ struct TargetModel {
 /// `invalid_input` in one sentence, as validate(FieldScene).
 [[nodiscard]] Result<void> validate(const TargetModel& model);
 
-/// What is seen from far away at the height of the target: 0 degrees from ahead, 90 from its right side (its front is
-/// at the right of the picture), 180 from behind. Faces turned to the viewer, the far ones first; x right, y down,
-/// origin where the model has it. All are targets.
+/// View from far away at the height of the target. Azimuth 0 degrees is from ahead, 90 from its right side (its front
+/// is at the right of the picture), 180 from behind. Returns the faces turned to the viewer, far ones first; x right, y
+/// down, with the origin of the model. All are targets.
 [[nodiscard]] std::vector<SceneRegion> view_of(const TargetModel& model, double azimuth_deg);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/cell_responses.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace todbench {
 namespace {
 
-constexpr int table_period = 32;  ///< samples; responses of coefficients have fallen by (26 / 6)^-4 where they wrap
+constexpr int table_period = 32;  ///< samples; responses of coefficients have fallen by (26 / 6)^-4 at the wrap
 constexpr int radial_nodes = 8192;
 
 /// Fourier transform of the orthonormal polynomial of degree a: sqrt(2a+1) (-i)^a j_a(pi u).
@@ -106,7 +107,7 @@ cv::Mat1f coefficient_responses(const SampleTransfer& transfer, int degree) {
   }
   const auto bin = [](int m) { return ((m % table_period) + table_period) % table_period; };
   cv::Mat1f out(static_cast<int>(pairs.size()), response_side * response_side);
-  // Along x first, folded: shared by all b of an a.
+  // Along x first, folded: all b of an a share the result.
   for (std::size_t first = 0; first < pairs.size();) {
     const int a = pairs[first].first;
     cv::Mat_<std::complex<double>> along(static_cast<int>(count), table_period, std::complex<double>(0, 0));
@@ -160,7 +161,7 @@ cv::Mat2d unit_cell_response(const SampleTransfer& transfer, cv::Size size) {
   const Axis x = axis(size.width), y = axis(size.height);
   const auto per = static_cast<std::size_t>(2 * aliases + 1);
   cv::Mat2d out(size);
-  // Without a direction in the chain a quarter of the plane is enough.
+  // If no effect depends on direction, a quarter of the plane is sufficient.
   const int columns = size.width / 2 + 1, rows = transfer.symmetric() ? size.height / 2 + 1 : size.height;
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < columns; ++l) {

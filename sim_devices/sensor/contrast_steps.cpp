@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/contrast_steps.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace {
 /// exp(-40) of a step is below the last digit of any contrast.
 constexpr double forgotten_time_constants = 40;
 
-/// What is left after `time_s`; 0 without memory.
+/// Fraction of a step that is missing after `time_s`; 0 without memory.
 double still_left(double time_s, double time_constant_s) {
   return time_constant_s > 0 ? std::exp(-time_s / time_constant_s) : 0;
 }
@@ -30,7 +31,7 @@ double ContrastSteps::seen_k(double end_s, const SensorSpec& spec) const {
   if (over(end_s, spec)) return last_k();
   const double tau_s = 1e-3 * spec.time_constant_ms, exposure_s = 1e-3 * spec.exposure_ms;
   const double begin_s = end_s - exposure_s;
-  // From step to step: the level at its beginning, and the part of the exposure that lies behind it.
+  // From step to step: the level at its start, and the part of the exposure after it.
   double level = settled_k_, towards = settled_k_, sum = 0;
   double from_s = steps_.empty() ? end_s : std::min(begin_s, steps_.front().time_s);
   for (std::size_t i = 0; i <= steps_.size(); ++i) {

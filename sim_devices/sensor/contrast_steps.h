@@ -1,4 +1,5 @@
-// Contrast that steps before a detector with memory.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Steps of the contrast in front of a detector with memory.
 #pragma once
 
 #include <vector>
@@ -7,22 +8,22 @@
 
 namespace todbench {
 
-/// What a detector of first order has taken in of a contrast that steps. Image formation is linear in the contrast, so
-/// a picture of it at what is taken in is the picture of the step. All rows see it at the same moment.
+/// Contrast that a first-order detector has reached after steps. Image formation is linear in the contrast, so the
+/// picture at the reached contrast is the picture of the step. All rows observe a step at the same moment.
 class ContrastSteps {
  public:
-  /// At `delta_t_k` for ever.
+  /// Constant contrast `delta_t_k`, without a step.
   explicit ContrastSteps(double delta_t_k = 0) : settled_k_(delta_t_k) {}
 
-  /// To another contrast. Times rise.
+  /// Adds a step to `delta_t_k`. Times must increase from call to call.
   void step(double time_s, double delta_t_k);
-  /// The mean over the exposure of the sensor that ends at `end_s`: its time constant follows the contrast as
-  /// exp(-t / T). The contrast itself, bit for bit, where the detector has neither memory nor exposure, or long after
-  /// the last step. Steps later than `end_s` are not seen yet.
+  /// Reached contrast: the mean over the exposure that ends at `end_s`; the time constant T follows the contrast as
+  /// exp(-t / T). Returns the set contrast bit for bit if the detector has neither memory nor exposure, or long after
+  /// the last step. Steps later than `end_s` have no effect yet.
   [[nodiscard]] double seen_k(double end_s, const SensorSpec& spec) const;
-  /// Where the last step leads.
+  /// The contrast after the last step.
   [[nodiscard]] double last_k() const { return steps_.empty() ? settled_k_ : steps_.back().delta_t_k; }
-  /// Whether a detector at `time_s` has nothing left of any step.
+  /// True if no step affects a detector at `time_s` any more.
   [[nodiscard]] bool over(double time_s, const SensorSpec& spec) const;
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Gaussian blur of the lens beyond diffraction.
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,9 @@ namespace todbench {
 
 EffectRow effect_rows::aberration() {
   EffectRow row;
-  row.title = "Aberration of the lens";
+  row.title = "Lens aberration";
   row.keys = {{"aberration_sigma_pitch", &SensorSpec::aberration_sigma_pitch, NumberRange::between(0, 10),
-               KeyPresence::optional, "sigma of the blur per axis, in detector pitches"}};
+               KeyPresence::optional, "sigma of the Gaussian blur per axis, in detector pitches"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.aberration_sigma_pitch == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.aberration_sigma_pitch = 0; };
   row.neutral = "aberration_sigma_pitch is 0";
@@ -26,7 +27,7 @@ EffectRow effect_rows::aberration() {
     const double sigma = scope.spec.aberration_sigma_pitch;
     return Spread{.period = 0, .window = 8 * sigma, .variance = sigma * sigma};
   };
-  // Where the blur has taken the signal below the tolerance.
+  // Frequency at which the blur has reduced the signal to the tolerance.
   row.band = [](const SensorSpec& spec, const Accuracy& accuracy) {
     const double sigma = spec.aberration_sigma_pitch;
     if (sigma == 0) return std::numeric_limits<double>::infinity();

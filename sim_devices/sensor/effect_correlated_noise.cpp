@@ -1,4 +1,5 @@
-// Temporal noise that remembers: first-order autoregressive from exposure to exposure, of the variance of white noise.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Temporal noise with memory: first-order autoregressive from exposure to exposure, with the variance of white noise.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -9,7 +10,7 @@
 namespace todbench {
 namespace {
 
-/// The picture has its white noise already: what is added turns that into noise that remembers.
+/// The picture already contains the white noise; the added noise gives the sum its memory.
 void add_correlated_noise(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
   std::vector<double> terms = memory_weights(spec.noise_correlation);
   terms[0] -= 1;
@@ -28,8 +29,8 @@ void add_correlated_noise(cv::Mat1f& picture, const SensorSpec& spec, const Nois
   }
 }
 
-/// The mean of n exposures has the variance of one times (1 + 2 sum over k < n of (1 - k / n) rho^k) / n: more than
-/// white noise by the sum. Of a single exposure nothing changes.
+/// The mean of n exposures has the variance of one times (1 + 2 sum over k < n of (1 - k / n) rho^k) / n. The sum is
+/// the excess over white noise. A single exposure is unchanged.
 double excess(const SensorSpec& spec) {
   const int n = spec.exposures_per_sample();
   double sum = 0, power = 1;
@@ -44,10 +45,9 @@ double excess(const SensorSpec& spec) {
 
 EffectRow effect_rows::correlated_noise() {
   EffectRow row;
-  row.title = "Noise that remembers";
+  row.title = "Correlated temporal noise";
   row.keys = {{"noise_correlation", &SensorSpec::noise_correlation, NumberRange::between(0, 0.99),
-               KeyPresence::optional,
-               "correlation of a sample's temporal noise in successive exposures, of first order"}};
+               KeyPresence::optional, "first-order correlation of a sample's temporal noise in successive exposures"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.noise_correlation == 0 || spec.netd_k == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.noise_correlation = 0; };
   row.neutral = "noise_correlation or netd_k is 0";
@@ -59,7 +59,7 @@ EffectRow effect_rows::correlated_noise() {
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     return scene.noise_change(-scene.variance_of(Effect::correlated_noise));
   };
-  row.always = "simulated: it says how the noise of successive frames hangs together, which the run measures";
+  row.always = "simulated: it determines the correlation of the noise of successive frames, which the run measures";
   row.when_bounded = WhenBounded::simulated;
   return row;
 }

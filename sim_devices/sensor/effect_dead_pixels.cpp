@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_dead_pixels.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ EffectRow effect_rows::dead_pixels() {
   EffectRow row;
   row.title = "Dead pixels";
   row.keys = {{"dead_pixel_share", &SensorSpec::dead_pixel_share, NumberRange::between(0, 0.1), KeyPresence::optional,
-               "of the detectors; the camera shows the mean of the live neighbours instead"}};
+               "share of detectors that the camera replaces by the mean of their working neighbours"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.dead_pixel_share == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.dead_pixel_share = 0; };
   row.neutral = "dead_pixel_share is 0";
@@ -54,9 +55,9 @@ EffectRow effect_rows::dead_pixels() {
     return [dead = dead_detectors({spec.width, spec.height}, spec.dead_pixel_share, streams("dead", 0)),
             n = spec.samples_per_pitch()](cv::Mat1f& picture) { replace_dead(picture, dead, n); };
   }};
-  // What replaces a pixel at an edge is off by a third of the contrast, in all of a detector's samples. At high
-  // contrast that is no small noise: a dead detector on the target or next to it may cost all that is above chance,
-  // 0.5 of the answers, and the proportion rises by 1 per ln S.
+  // At an edge the replacement of a pixel has an error of a third of the contrast, in all samples of a detector. At
+  // high contrast this is more than noise: a dead detector on the target or next to it may cost all correct answers
+  // above chance, 0.5 of the answers, and the proportion rises by 1 per ln S.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const double share = scene.spec.dead_pixel_share, n = scene.spec.samples_per_pitch();
     return std::max(scene.noise_change(share * n * n / 9.0), 0.5 * share * std::pow(1.5 * scene.s75_pitch + 2, 2));

@@ -1,17 +1,18 @@
-// Detectors that do not see: the camera shows the mean of their neighbours.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Dead detectors: the camera shows the mean of their neighbours.
 #pragma once
 
 #include <opencv2/core.hpp>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 
 namespace todbench {
 
-/// Which detectors are dead, a byte each, at the share of the sensor; the same numbers for every share.
+/// Mask of the dead detectors, one byte each, not 0 if dead. Every share uses the same random numbers.
 [[nodiscard]] cv::Mat1b dead_detectors(cv::Size detectors, double share, const RandomStream& stream);
 
-/// Samples of dead detectors become the mean of the same sub-exposure's samples of the up to four nearest live
-/// neighbours; without any they stay.
+/// Replaces samples of dead detectors by the mean of up to four nearest live neighbours in the same sub-exposure.
+/// Samples without a live neighbour keep their value.
 void replace_dead(cv::Mat1f& picture, const cv::Mat1b& dead, int samples_per_pitch);
 
 }  // namespace todbench

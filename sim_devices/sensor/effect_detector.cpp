@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_detector.h"
 
 #include <cmath>
@@ -22,7 +23,7 @@ double detector_mtf(double u_per_pitch, double w_per_pitch, double detector_pitc
 EffectRow effect_rows::detector() {
   EffectRow row;
   row.title = "Detector footprint";
-  row.keys = {{"detector_um", &SensorSpec::detector_um, NumberRange::positive(), KeyPresence::required,
+  row.keys = {{"detector_um", &SensorSpec::detector_um, NumberRange::between(0.1, 1000), KeyPresence::required,
                "sensitive side of a detector"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
     return spec.detector_um > spec.pitch_um ? "detector_um is larger than pitch_um: detectors cannot overlap" : "";
@@ -32,7 +33,7 @@ EffectRow effect_rows::detector() {
     const double side = scope.spec.detector_pitch_ratio();
     return Spread{.period = 0, .window = 0, .variance = side * side / 12};
   };
-  row.always = "always simulated: without the footprint aliasing changes the acuity in either direction";
+  row.always = "always simulated: without the footprint, aliasing can raise or lower the acuity";
   return row;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_diffraction.h"
 
 #include <cmath>
@@ -9,11 +10,11 @@
 namespace todbench {
 namespace {
 
-constexpr double widest_spot_pitches = 100;  // lambda N; images of wider ones need more memory than there is
+constexpr double widest_spot_pitches = 100;  // lambda N; images of wider spots exceed the memory
 
 constexpr double second_radiation_constant_um_k = 14387.768775;  // hc/k, exact in SI 2019, to 10 digits
 
-/// dL/dT of a black body over wavelength, up to a factor: lambda^-6 e^x / (e^x - 1)^2, x = c2 / (lambda T).
+/// dL/dT of a black body by wavelength, up to a factor: lambda^-6 e^x / (e^x - 1)^2, x = c2 / (lambda T).
 double planck_derivative(double wavelength_um, double temperature_k) {
   const double x = second_radiation_constant_um_k / (wavelength_um * temperature_k);
   const double e = std::exp(-x);
@@ -21,7 +22,7 @@ double planck_derivative(double wavelength_um, double temperature_k) {
   return std::pow(wavelength_um, -6) * e / (denominator * denominator);
 }
 
-/// Averaged over the band, or at its mean wavelength where the plan leaves the band out.
+/// Averaged over the band, or at its mean wavelength if the plan skips the spectral band.
 std::function<double(double)> factor(const ChainScope& scope) {
   const int count = scope.plan.simulates(Effect::spectral_band) ? scope.wavelengths : 1;
   return [nodes = wavelength_nodes(scope.spec, count), f_number = scope.spec.f_number,
@@ -62,23 +63,23 @@ std::vector<WavelengthNode> wavelength_nodes(const SensorSpec& spec, int count) 
 EffectRow effect_rows::diffraction() {
   EffectRow row;
   row.title = "Diffraction";
-  row.keys = {{"f_number", &SensorSpec::f_number, NumberRange::positive(), KeyPresence::required,
+  row.keys = {{"f_number", &SensorSpec::f_number, NumberRange::between(0.3, 100), KeyPresence::required,
                "focal length over aperture"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
     const double spot = spec.wavelength_max_um * spec.f_number / spec.pitch_um;
     return spot <= widest_spot_pitches ? ""
-                                       : "wavelength_max_um times f_number, the width of diffraction, is more than 100 "
-                                         "pitches: such a camera sees nothing";
+                                       : "wavelength_max_um times f_number, the width of the diffraction blur, is more "
+                                         "than 100 pitches, the maximum";
   };
   row.stage = stage::Optics{factor};
   row.band = [](const SensorSpec& spec, const Accuracy&) {
     return spec.pitch_um / (spec.wavelength_min_um * spec.f_number);
   };
-  // An upper bound for the undersampled sensor, within 0.02 of the truth for a finer sampled one.
+  // An upper bound for an undersampled sensor, within 0.02 of the change for a more finely sampled one.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     return scene.discriminability_change(Effect::diffraction) + (scene.spec.samples_per_pitch() > 1 ? 0.02 : 0);
   };
-  row.always = "simulated: it ends the band, so leaving it out would cost more than it saves";
+  row.always = "simulated: it limits the frequencies, so skipping it would cost more time than it saves";
   row.when_bounded = WhenBounded::simulated;
   return row;
 }

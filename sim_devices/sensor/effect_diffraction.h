@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Diffraction at the aperture, over the wavelengths of the band.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_display.h"
 
 #include <cmath>
@@ -20,7 +21,7 @@ std::vector<double> taps_of(const std::function<double(double)>& response) {
   for (int k = 0; k <= tap_reach; ++k) {
     double integral = 0;
     for (const auto& [x, weight] : gauss_legendre(48)) {
-      const double f = 0.25 + 0.25 * x;  // 0 to 1/2, and as much on the other side
+      const double f = 0.25 + 0.25 * x;  // 0 to 1/2; the negative half is the same
       integral += 0.5 * weight * response(f) * std::cos(2 * std::numbers::pi * f * k);
     }
     taps[static_cast<std::size_t>(tap_reach + k)] = taps[static_cast<std::size_t>(tap_reach - k)] = integral;
@@ -45,7 +46,7 @@ double display_noise_gain(const SensorSpec& spec) {
   if (!has_display(spec)) return 1;
   double squares = 0;
   for (const double tap : taps_of([&](double f) { return display_response(spec, f); })) squares += tap * tap;
-  return squares;  // per axis its root
+  return squares;  // its root for each axis
 }
 
 cv::Mat1f filtered(const cv::Mat1f& picture, const std::vector<double>& taps) {
@@ -58,7 +59,7 @@ EffectRow effect_rows::display() {
   EffectRow row;
   row.title = "Display reconstruction";
   row.keys = {{"display", &SensorSpec::display, NumberRange::any(), KeyPresence::optional,
-               "sample_and_hold or bilinear: how the display makes a picture of samples"},
+               "reconstruction of the picture from samples: sample_and_hold or bilinear"},
               {"display_blur_samples", &SensorSpec::display_blur_samples, NumberRange::between(0, 3),
                KeyPresence::optional, "sigma of the display's blur per axis, in displayed samples"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return !has_display(spec); };
@@ -72,7 +73,7 @@ EffectRow effect_rows::display() {
       picture = filtered(picture, taps);
     };
   }};
-  // Twice what was found: 1.1 % for a blur of 0.2 samples and as its square; and 2.7 % for bilinear interpolation.
+  // Twice the observed change: 1.1 % for a blur of 0.2 samples, rising as its square, and 2.7 % for bilinear.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     return 0.025 * std::pow(scene.spec.display_blur_samples / 0.2, 2) +
            (scene.spec.display == DisplayReconstruction::bilinear ? 0.027 : 0);

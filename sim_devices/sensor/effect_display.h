@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reconstruction and blur of the display, as a filter on samples.
 #pragma once
 
@@ -9,21 +10,21 @@
 
 namespace todbench {
 
-/// Taps -r .. r of a symmetric separable filter on samples whose response at f cycles per sample is response(f):
+/// Taps -r .. r of a symmetric separable filter on samples with the response `response`(f) at f cycles per sample:
 /// integrals over |f| <= 1/2, normalised to sum 1.
 [[nodiscard]] std::vector<double> taps_of(const std::function<double(double)>& response);
 
-/// Response of the display beyond the sample and hold that observers assume: exp(-2 pi^2 sigma^2 f^2), times sinc(f)
+/// Response of the display beyond the sample-and-hold that observers assume: exp(-2 pi^2 sigma^2 f^2), times sinc(f)
 /// for bilinear interpolation.
 [[nodiscard]] double display_response(const SensorSpec& spec, double f_per_sample);
-/// Whether the display differs from sample and hold.
+/// True if the display differs from sample-and-hold.
 [[nodiscard]] bool has_display(const SensorSpec& spec);
 
-/// Standard deviation of white noise of one after the display.
+/// Standard deviation behind the display of white noise with standard deviation 1.
 [[nodiscard]] double display_noise_gain(const SensorSpec& spec);
 
-/// Filters rows and columns with the taps; beyond its edges a picture is mirrored. The middle of a larger picture is
-/// what it would be alone within half the taps of it.
+/// Filters rows and columns with the taps. The picture is mirrored at its edges, so pixels closer to an edge than half
+/// the taps depend on where the picture is cut.
 [[nodiscard]] cv::Mat1f filtered(const cv::Mat1f& picture, const std::vector<double>& taps);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_distortion.h"
 
 #include <algorithm>
@@ -8,21 +9,21 @@
 namespace todbench {
 namespace {
 
-constexpr double polynomial_to = 1.2;  // of R: what the corners of a barrel show lies beyond R
+constexpr double polynomial_to = 1.2;  // of R: the corners of a barrel show places beyond R
 constexpr double farthest_px = 0.5;    // pitches; beyond it the bound does not hold
 
 struct RadialLens {
   double k1, k2;
 
   [[nodiscard]] double factor(double s) const { return 1 + s * (k1 + s * k2); }
-  /// Of a radius over R.
+  /// Relative displacement at a radius over R.
   [[nodiscard]] double stretch(double radius) const {
     if (radius <= polynomial_to) return factor(radius * radius);
     constexpr double s = polynomial_to * polynomial_to;
     const double slope = 1 + s * (3 * k1 + 5 * s * k2);
     return (polynomial_to * factor(s) + slope * (radius - polynomial_to)) / radius;
   }
-  /// A bound on the second derivative of the place along any line, times R.
+  /// Bound on the second derivative of the place along any line, times R.
   [[nodiscard]] double curvature() const {
     return 6 * polynomial_to * std::abs(k1) + 20 * std::pow(polynomial_to, 3) * std::abs(k2);
   }
@@ -59,7 +60,7 @@ Polygon as_lens_shows(const Polygon& outline, const SensorSpec& spec, cv::Size s
   Polygon seen;
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const cv::Point2d from = outline[k], along = outline[(k + 1) % outline.size()] - from;
-    // An arc of this curvature lies so far from its chord: length^2 times an eighth of it.
+    // Distance between an arc and its chord: length^2 / 8 times the curvature.
     const double pieces = std::ceil(std::hypot(along.x, along.y) * std::sqrt(curvature / (8 * within)));
     for (int i = 0; i < std::max(1.0, pieces); ++i)
       seen.push_back(as_lens_shows(from + along * (i / std::max(1.0, pieces)), spec, size));
@@ -69,27 +70,26 @@ Polygon as_lens_shows(const Polygon& outline, const SensorSpec& spec, cv::Size s
 
 EffectRow effect_rows::distortion() {
   EffectRow row;
-  row.title = "Distortion of the lens";
+  row.title = "Lens distortion";
   row.keys = {
       {"distortion_percent", &SensorSpec::distortion_percent, NumberRange::between(-10, 10), KeyPresence::optional,
-       "by which the third power of the radius displaces the corner of the picture, of its radius; positive: "
-       "outwards, pincushion"},
+       "displacement of the corner by the third power of the radius, in percent of its radius; positive: pincushion"},
       {"distortion_r4_percent", &SensorSpec::distortion_r4_percent, NumberRange::between(-3, 3), KeyPresence::optional,
-       "the same of the fifth power"}};
+       "the same for the fifth power of the radius"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return !distorts(spec); };
   row.neutralise = [](SensorSpec& spec) { spec.distortion_percent = spec.distortion_r4_percent = 0; };
   row.neutral = "distortion_percent and distortion_r4_percent are 0";
-  row.directions = Directions::different;
+  row.directions = AxisDirections::different;
   row.stage = stage::Lens{};
-  // What is stretched along the radius by 3 k1 + 5 k2 and across it by k1 + k2 changes its size and turns its edges by
-  // less than the former. It is seen where it is expected as long as no place moves by more than half a pitch.
+  // A stretch of 3 k1 + 5 k2 along the radius and k1 + k2 across it changes sizes and turns edges by less than the
+  // former. The observer finds the target at its place as long as no place moves by more than half a pitch.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const RadialLens lens = lens_of(scene.spec);
     const double k1 = std::abs(lens.k1), k2 = std::abs(lens.k2);
     if ((k1 + k2) * corner_of({scene.spec.width, scene.spec.height}) > farthest_px) return std::nullopt;
     return 3 * k1 + 5 * k2;
   };
-  row.always = "always simulated: the lens moves places by more than half a pitch";
+  row.always = "always simulated: the lens displaces image points by more than half a pitch";
   return row;
 }
 

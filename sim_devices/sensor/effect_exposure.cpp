@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_exposure.h"
 
 #include <cmath>
@@ -37,17 +38,17 @@ EffectRow effect_rows::exposure() {
   EffectRow row;
   row.title = "Exposure time";
   row.keys = {{"exposure_ms", &SensorSpec::exposure_ms, NumberRange::between(0, 1000), KeyPresence::optional,
-               "of a detector that integrates and holds; 0 for one that is short against all motion"}};
+               "exposure time of a detector that integrates and holds; 0: short compared with all motion"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
     if (spec.exposure_ms * spec.frame_rate_hz <= 1000 * (1 + 1e-9)) return "";
-    return "exposure_ms must not be longer than a frame";
+    return "exposure_ms must not be longer than the frame period";
   };
   row.is_neutral = [](const SensorSpec& spec, SceneMotion motion) {
     return spec.exposure_ms == 0 || (!motion.moving() && !lets_dance(spec));
   };
   row.neutralise = [](SensorSpec& spec) { spec.exposure_ms = 0; };
-  row.neutral = "exposure_ms is 0 or nothing moves";
-  row.directions = Directions::different;
+  row.neutral = "exposure_ms is 0, or neither target nor picture moves";
+  row.directions = AxisDirections::different;
   row.stage = stage::Transfer{[](const ChainScope& scope) -> TransferFunction {
     const cv::Point2d way = exposure_way_pitch(scope.spec, scope.motion);
     if (way == cv::Point2d(0, 0)) return {};
@@ -57,7 +58,7 @@ EffectRow effect_rows::exposure() {
     const double way = exposure_way_length(scope.spec, scope.motion);
     return Spread{.period = way, .window = way, .variance = 0};
   };
-  // As for the time constant, 12 times the variance of the smear per axis over S squared: b^2 / 12 along the way.
+  // As for the time constant: 12 / S^2 times the variance of the smear per axis, b^2 / 12 along the path.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const double way = exposure_way_length(scene.spec, scene.motion);
     if (way >= longest_way) return std::nullopt;
@@ -66,7 +67,7 @@ EffectRow effect_rows::exposure() {
     return way * way / 2 / (scene.s75_pitch * scene.s75_pitch) +
            averaged_dance_bound(scene.spec, instant, scene.s75_pitch);
   };
-  row.always = "always simulated: a pitch and more per exposure is beyond the criterion";
+  row.always = "always simulated: motion of at least a pitch per exposure is outside the range of the criterion";
   return row;
 }
 

@@ -1,4 +1,5 @@
-// A detector that integrates and holds, before a moving target.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A detector that integrates and holds, observing a moving target.
 #pragma once
 
 #include <complex>
@@ -8,14 +9,14 @@
 
 namespace todbench {
 
-/// An exposure of length T under a target of velocity v, way b = v T in pitches: the mean over the way, sin(x) / x with
-/// x = pi f.b. It is about the middle of the exposure: the mean lag, b / 2 behind the end of it, is taken out.
+/// Transfer function of an exposure of length T with a target of velocity v: the mean over the path b = v T (pitches),
+/// sin(x) / x with x = pi f.b. The mean lag of b / 2 is removed, so it is centred on the middle of the exposure.
 [[nodiscard]] double exposure_transfer(double u_per_pitch, double w_per_pitch, cv::Point2d way_pitch);
-/// v T in pitches.
+/// Path v T in pitches.
 [[nodiscard]] cv::Point2d exposure_way_pitch(const SensorSpec& spec, SceneMotion motion);
 
-/// How far the picture of a moving target is behind the target at the instant of the sample, which ends the exposure:
-/// v (tau + T / 2), in pitches. The transfers of time constant and exposure have it taken out.
+/// Lag of the picture of a moving target behind the target at the instant of the sample, which is the end of the
+/// exposure: v (tau + T / 2), in pitches. The transfer functions of time constant and exposure have this lag removed.
 [[nodiscard]] cv::Point2d mean_lag_pitch(const SensorSpec& spec, SceneMotion motion);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One offset per detector, the same in every frame; the samples of a microscan cycle share it.
 #include "sim_devices/sensor/effect_row.h"
 
@@ -18,14 +19,14 @@ void add_fixed_pattern(cv::Mat1f& picture, const SensorSpec& spec, const NoiseSt
 
 EffectRow effect_rows::fixed_pattern() {
   EffectRow row;
-  row.title = "Fixed pattern noise";
-  row.keys = {{"fixed_pattern_k", &SensorSpec::fixed_pattern_k, NumberRange::not_negative(), KeyPresence::optional,
+  row.title = "Fixed-pattern noise";
+  row.keys = {{"fixed_pattern_k", &SensorSpec::fixed_pattern_k, NumberRange::between(0, 1000), KeyPresence::optional,
                "standard deviation of the fixed offset of a detector"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.fixed_pattern_k == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.fixed_pattern_k = 0; };
   row.neutral = "fixed_pattern_k is 0";
   row.stage = stage::Noise{stage::Colour::coloured, stage::Recurrence::fixed, add_fixed_pattern};
-  // The bound for a pattern shared by n x n samples.
+  // Bound for a pattern shared by n x n samples.
   row.coloured_variance = [](const NoiseScope& scope) {
     const double n2 = scope.spec.samples_per_pitch() * scope.spec.samples_per_pitch();
     return n2 * scope.spec.fixed_pattern_k * scope.spec.fixed_pattern_k / scope.contrast_k2;

@@ -1,4 +1,5 @@
-// The mean of several exposures (SensorSpec::exposures_per_sample): temporal and line noise fall, the pattern does not.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mean of several exposures (SensorSpec::exposures_per_sample). It reduces temporal and line noise, not fixed pattern.
 #include "sim_devices/sensor/effect_row.h"
 
 namespace todbench {
@@ -12,7 +13,7 @@ EffectRow effect_rows::frame_averaging() {
   row.neutralise = [](SensorSpec& spec) { spec.frames_averaged = 1; };
   row.neutral = "frames_averaged is 1";
   row.stage = stage::Parameter{};
-  // Without it the noise is larger: the bound has the sign the other way.
+  // The noise is larger without the effect, so the sign of the bound is reversed.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     double averaged = 0;
     for (const Effect effect : all_effects) {

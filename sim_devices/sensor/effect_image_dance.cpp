@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_image_dance.h"
 
 #include <algorithm>
@@ -16,12 +17,12 @@ double aperture_m(const SensorSpec& spec) {
   return spec.focal_length_mm / spec.f_number / 1000;
 }
 
-/// Variance of the mean over a time T of what remembers exp(-t / a), in units of its own: x = T / a.
+/// Relative variance of the mean over a time T of a process with correlation exp(-t / a); x = T / a.
 double of_mean(double x) {
   return x < 1e-4 ? 1 - x / 3 : 2 * (x - 1 + std::exp(-x)) / (x * x);
 }
 
-/// What of one exposure to the next is left: pictures come at the frame rate and are so many exposures each.
+/// Correlation between successive exposures. Pictures come at the frame rate and have several exposures each.
 double memory_of_exposure(const SensorSpec& spec) {
   return std::exp(-1000 / (spec.turbulence_correlation_ms * spec.frame_rate_hz * spec.exposures_per_sample()));
 }
@@ -53,7 +54,7 @@ double dance_cut_off(const SensorSpec& spec) {
 
 double dance_sd_pitch(const SensorSpec& spec) {
   if (!lets_dance(spec)) return 0;
-  // 6.88 / (4 pi^2) (D / r0)^(5/3) (lambda / D)^2 in terms of the long exposure's exponent at a cycle per pitch.
+  // 6.88 / (4 pi^2) (D / r0)^(5/3) (lambda / D)^2, expressed by the long exposure's exponent at one cycle per pitch.
   const double variance = turbulence_strength(spec) / (2 * std::numbers::pi * std::numbers::pi) /
                           std::cbrt(dance_cut_off(spec)) * dance_weight(spec) * dance_share(spec);
   return std::sqrt(variance);
@@ -79,7 +80,7 @@ ImageDance::ImageDance(const SensorSpec& spec) : sd_pitch_(dance_sd_pitch(spec))
 cv::Point2d ImageDance::displacement_pitch(const RandomStream& stream, std::uint64_t exposure) const {
   cv::Point2d sum{0, 0};
   for (std::size_t ago = 0; ago < weights_.size(); ++ago) {
-    // Exposures before the first have numbers, too: 2^64 - 1 and so on.
+    // Exposures before the first have random numbers, too: 2^64 - 1 and so on.
     const RandomStream own = stream.sub(exposure - ago);
     sum += weights_[ago] * cv::Point2d(own.normal(0), own.normal(1));
   }
@@ -109,8 +110,8 @@ std::vector<cv::Point2d> spread_dance_pitch(const SensorSpec& spec, std::uint64_
 int dances_per_phase(const SensorSpec& spec, int phases_per_axis) {
   const int n = spec.samples_per_pitch();
   const double sd_samples = dance_sd_pitch(spec) * n, fineness = phases_per_axis / 8.0;
-  // With 16, 64 and 256 displacements of 0.9 samples the threshold of an observer that searches a sample far is 2.7,
-  // 0.9 and 0.1 % off.
+  // For an observer that searches one sample far, and a dance of 0.9 samples, the error of the threshold is 2.7, 0.9
+  // and 0.1 % with 16, 64 and 256 displacements.
   constexpr double needed_at_one_sample = 300;
   constexpr int most = 64;
   const double needed = needed_at_one_sample * std::pow(sd_samples * fineness, 2);
@@ -120,16 +121,16 @@ int dances_per_phase(const SensorSpec& spec, int phases_per_axis) {
 
 EffectRow effect_rows::image_dance() {
   EffectRow row;
-  row.title = "Dance of the picture";
+  row.title = "Image dance";
   row.keys = {{"turbulence_correlation_ms", &SensorSpec::turbulence_correlation_ms, NumberRange::between(0, 10000),
                KeyPresence::optional,
-               "of the dance behind turbulent air: frames that are short against it dance and are sharper; 0: every "
-               "frame is the mean of many"}};
+               "correlation time of the image dance behind turbulent air; shorter frames are displaced and sharper; 0: "
+               "every frame is the long exposure"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return !lets_dance(spec); };
   row.neutralise = [](SensorSpec& spec) { spec.turbulence_correlation_ms = 0; };
-  row.neutral = "turbulence_correlation_ms is 0 or the air is calm";
+  row.neutral = "turbulence_correlation_ms is 0, or there is no turbulence";
   row.stage = stage::Dance{};
-  // Left out, what danced is blur: 12 times its variance per axis over S squared, as for every blur.
+  // Without the effect the dance is blur: 12 / S^2 times its variance per axis, as for every blur.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const double sd = dance_sd_pitch(scene.spec);
     return 12 * sd * sd / (scene.s75_pitch * scene.s75_pitch);

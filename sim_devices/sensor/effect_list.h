@@ -1,4 +1,5 @@
-// The effects of the sensor chain in its order: the table. Each line is a row that the file effect_NAME.cpp fills in.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Table of the effects, in the order of the sensor chain. The file effect_NAME.cpp defines the row of each effect.
 #pragma once
 
 #include <array>
@@ -31,8 +32,8 @@
 
 namespace todbench {
 
-/// A stage of the sensor chain. An effect at its neutral value equals the effect left out, bit for bit. What it is, is
-/// in its row (effect_row.h).
+/// A stage of the sensor chain, described by its row (effect_row.h). An effect at its neutral value equals the effect
+/// left out, bit for bit.
 #define TODBENCH_EFFECT_NAME(name) name,
 enum class Effect { TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME) };
 #undef TODBENCH_EFFECT_NAME
@@ -41,7 +42,7 @@ enum class Effect { TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME) };
 inline constexpr std::array all_effects{TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME)};
 #undef TODBENCH_EFFECT_NAME
 
-/// The name in plans, options and files: that of the enumerator.
+/// The name in plans, options and files, equal to that of the enumerator.
 [[nodiscard]] std::string_view to_string(Effect effect);
 [[nodiscard]] std::optional<Effect> effect_from(std::string_view name);
 

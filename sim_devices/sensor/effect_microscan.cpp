@@ -1,4 +1,5 @@
-// The array displaced n x n times per picture.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Microscan: n x n displacements of the array per picture.
 #include "sim_devices/sensor/effect_row.h"
 
 namespace todbench {
@@ -7,12 +8,12 @@ EffectRow effect_rows::microscan() {
   EffectRow row;
   row.title = "Microscan";
   row.keys = {{"microscan", &SensorSpec::microscan, NumberRange::between(1, 4), KeyPresence::optional,
-               "samples per detector pitch and axis: the array is displaced so often squared for a picture"}};
+               "samples per detector pitch and axis; n: the array is displaced n x n times per picture"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.microscan == 1; };
   row.neutralise = [](SensorSpec& spec) { spec.microscan = 1; };
   row.neutral = "microscan is 1";
   row.stage = stage::Parameter{};
-  row.always = "always simulated: it changes the sampling, for which there is no criterion";
+  row.always = "always simulated: it changes the sampling, and no criterion covers this";
   return row;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_motion.h"
 
 #include <cmath>
@@ -32,19 +33,19 @@ EffectRow effect_rows::motion() {
   EffectRow row;
   row.title = "Motion and time constant";
   row.keys = {{"time_constant_ms", &SensorSpec::time_constant_ms, NumberRange::between(0, 1000), KeyPresence::optional,
-               "of the bolometer; 0 for a detector without memory"}};
+               "time constant of the bolometer; 0: a detector without memory"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion motion) {
     return spec.time_constant_ms == 0 || (!motion.moving() && !lets_dance(spec));
   };
   row.neutralise = [](SensorSpec& spec) { spec.time_constant_ms = 0; };
-  row.neutral = "time_constant_ms is 0 or nothing moves";
-  row.directions = Directions::different;
+  row.neutral = "time_constant_ms is 0, or neither target nor picture moves";
+  row.directions = AxisDirections::different;
   row.stage = stage::Transfer{[](const ChainScope& scope) -> TransferFunction {
     const cv::Point2d smear = smear_pitch(scope.spec, scope.motion);
     if (smear == cv::Point2d(0, 0)) return {};
     return [smear](double u, double w) { return motion_transfer(u, w, smear); };
   }};
-  // The tail of a moving target has fallen to e^-14, 1e-6, after fourteen smears.
+  // After fourteen smears the tail of a moving target has fallen to e^-14 = 1e-6.
   row.spread = [](const ChainScope& scope) {
     const double tail = 14 * length_of(scope.spec, scope.motion);
     return Spread{.period = tail, .window = tail, .variance = 0};
@@ -57,7 +58,8 @@ EffectRow effect_rows::motion() {
     return 12 * v_tau * v_tau / 2 / (scene.s75_pitch * scene.s75_pitch) +
            averaged_dance_bound(scene.spec, instant, scene.s75_pitch);
   };
-  row.always = "always simulated: half a pitch and more per time constant is beyond the criterion";
+  row.always =
+      "always simulated: motion of at least half a pitch per time constant is outside the range of the criterion";
   return row;
 }
 

@@ -1,4 +1,5 @@
-// The memory of a bolometer before a moving target.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Memory of a bolometer that observes a moving target.
 #pragma once
 
 #include <complex>
@@ -8,11 +9,11 @@
 
 namespace todbench {
 
-/// A bolometer with time constant tau under a target of velocity v, smear s = v tau in pitches: the detector
-/// remembers exp(-t / tau) / tau of what it saw, so the tail is behind the target: 1 / (1 - 2 pi i f.s), times
-/// exp(-2 pi i f.s), which takes the mean lag out: the target is tracked.
+/// Transfer function of a bolometer with time constant tau and a target of velocity v; smear s = v tau in pitches. The
+/// detector weights the past with exp(-t / tau) / tau, so the tail lies behind the target: 1 / (1 - 2 pi i f.s). The
+/// factor exp(-2 pi i f.s) removes the mean lag, because the target is tracked.
 [[nodiscard]] std::complex<double> motion_transfer(double u_per_pitch, double w_per_pitch, cv::Point2d smear_pitch);
-/// v tau in pitches.
+/// Smear v tau in pitches.
 [[nodiscard]] cv::Point2d smear_pitch(const SensorSpec& spec, SceneMotion motion);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_quantisation.h"
 
 #include <numbers>
@@ -48,8 +49,8 @@ Quantiser::Reading Quantiser::reading(double kelvin, double sd_k) const {
 EffectRow effect_rows::quantisation() {
   EffectRow row;
   row.title = "Quantisation";
-  row.keys = {{"kelvin_per_count", &SensorSpec::kelvin_per_count, NumberRange::positive(), KeyPresence::optional,
-               "linear temperature output: a step of one count"}};
+  row.keys = {{"kelvin_per_count", &SensorSpec::kelvin_per_count, NumberRange::between(1e-6, 1000),
+               KeyPresence::optional, "linear temperature output: step of one count"}};
   row.stage = stage::Counts{};
   row.white_variance_k2 = [](const SensorSpec& spec, double /*noise_factor*/) {
     return spec.kelvin_per_count * spec.kelvin_per_count / 12;
@@ -59,7 +60,7 @@ EffectRow effect_rows::quantisation() {
     return scene.noise_change(-scene.variance_of(Effect::quantisation));
   };
   row.always =
-      "simulated: a count is more than the noise, so rounding depends on the signal, for which there is no criterion";
+      "simulated: a count is larger than the noise, so rounding depends on the signal and no criterion applies";
   return row;
 }
 

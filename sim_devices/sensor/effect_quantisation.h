@@ -1,4 +1,5 @@
-// Whole counts: the one place that rounds a picture.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rounding to whole counts: the only place that rounds a picture.
 #pragma once
 
 #include <algorithm>
@@ -9,17 +10,17 @@
 
 namespace todbench {
 
-/// Temporal noise of a displayed sample before it is rounded, in counts.
+/// Temporal noise of a displayed sample in counts, before rounding.
 [[nodiscard]] double noise_in_counts(const SensorSpec& spec);
-/// Whether a count is more than a standard deviation of the noise. Below it rounding errors are noise of variance 1/12,
-/// to 3e-9 of a count; above, they depend on the signal.
+/// True if a count is larger than one standard deviation of the noise. If not, rounding errors are noise of variance
+/// 1/12, to 3e-9 of a count; otherwise they depend on the signal.
 [[nodiscard]] bool rounds_coarsely(const SensorSpec& spec);
-/// Whether surround or targets of this contrast come within six standard deviations of the noise to an end of the
+/// True if the surround or targets of this contrast lie within six standard deviations of the noise of an end of the
 /// counts.
 [[nodiscard]] bool reaches_an_end(const SensorSpec& spec, double delta_t_k, double background_k);
 
-/// Rounds kelvin above the surround to the counts of a sensor, halves upwards. A count has the same limits for every
-/// pixel, wherever the surround lies between two of them. A value, any thread.
+/// Rounds kelvin above the surround to the counts of a sensor, halves upwards. The limits of a count are the same for
+/// every pixel, wherever the surround lies within its count. A value; any thread.
 class Quantiser {
  public:
   Quantiser(const SensorSpec& spec, double background_k)
@@ -29,15 +30,15 @@ class Quantiser {
         half_up_(background_ + 0.5),
         full_scale_(static_cast<double>((1u << spec.bits) - 1u) + 0.5) {}
 
-  /// The count, clipped to the significant bits.
+  /// Count, clipped to the significant bits.
   [[nodiscard]] std::uint16_t count(float kelvin) const {
     return static_cast<std::uint16_t>(static_cast<int>(std::clamp(level(kelvin), 0.0, full_scale_)));
   }
-  /// The temperature of the count above the surround, not clipped.
+  /// Temperature of the unclipped count above the surround.
   [[nodiscard]] float rounded(float kelvin) const {
     return static_cast<float>((std::floor(level(kelvin)) - background_) * step_k_);
   }
-  /// The same of the clipped count: what a frame says.
+  /// Temperature of the clipped count, as a frame shows it.
   [[nodiscard]] float shown(float kelvin) const {
     return static_cast<float>((std::floor(std::clamp(level(kelvin), 0.0, full_scale_)) - background_) * step_k_);
   }
@@ -48,7 +49,7 @@ class Quantiser {
   [[nodiscard]] Reading reading(double kelvin, double sd_k) const;
 
  private:
-  /// Its whole part is the count.
+  /// The whole part is the count.
   [[nodiscard]] double level(float kelvin) const { return half_up_ + static_cast<double>(kelvin) * per_kelvin_; }
 
   double step_k_, per_kelvin_, background_, half_up_, full_scale_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_readout.h"
 
 #include <cmath>
@@ -17,7 +18,7 @@ cv::Point2d readout_slope(const SensorSpec& spec, SceneMotion motion) {
 }
 
 cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row) {
-  // The row y' that samples a place sees it moved: y' - middle = (y - middle) + slope.y (y' - middle).
+  // The row y' that samples a place observes it displaced: y' - middle = (y - middle) + slope.y (y' - middle).
   if (slope == cv::Point2d(0, 0)) return place;
   const double row = (place.y - middle_row) / (1 - slope.y);
   return {place.x + slope.x * row, middle_row + row};
@@ -25,26 +26,27 @@ cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row)
 
 EffectRow effect_rows::readout() {
   EffectRow row;
-  row.title = "Readout row by row";
+  row.title = "Row-by-row readout";
   row.keys = {{"row_time_us", &SensorSpec::row_time_us, NumberRange::between(0, 1e4), KeyPresence::optional,
-               "from the sampling of one row of detectors to that of the next; 0 for all at once"}};
+               "time between the sampling of successive rows; 0: all rows at once"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
     if (spec.row_time_us * spec.height * spec.frame_rate_hz <= 1e6 * (1 + 1e-9)) return "";
-    return "row_time_us times height must not be longer than a frame";
+    return "row_time_us times height must not be longer than the frame period";
   };
   row.is_neutral = [](const SensorSpec& spec, SceneMotion motion) { return spec.row_time_us == 0 || !motion.moving(); };
   row.neutralise = [](SensorSpec& spec) { spec.row_time_us = 0; };
-  row.neutral = "row_time_us is 0 or nothing moves";
-  row.directions = Directions::different;
+  row.neutral = "row_time_us is 0, or the target does not move";
+  row.directions = AxisDirections::different;
   row.stage = stage::Readout{[](const SensorSpec& spec, SceneMotion motion) { return readout_slope(spec, motion); }};
-  // A shear by a turns edges by at most a, a stretch changes the size by a: the change is below a.
+  // A shear by a turns edges by at most a, and a stretch by a changes the size by a: the change is below a.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const cv::Point2d slope = readout_slope(scene.spec, scene.motion);
     const double length = std::hypot(slope.x, slope.y);
     if (length >= steepest) return std::nullopt;
     return length;
   };
-  row.always = "always simulated: a tenth of a pitch and more from row to row is beyond the criterion";
+  row.always =
+      "always simulated: motion of at least a tenth of a pitch from row to row is outside the range of the criterion";
   return row;
 }
 

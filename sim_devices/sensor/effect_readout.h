@@ -1,4 +1,5 @@
-// Rows of detectors that are sampled one after the other, before a moving target.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sequential readout: rows of detectors sample one after the other, while the target moves.
 #pragma once
 
 #include <opencv2/core/types.hpp>
@@ -7,12 +8,11 @@
 
 namespace todbench {
 
-/// v t with t from one row to the next: what the target moves meanwhile, in pitches. The row in the middle of the
-/// picture samples when the picture is said to be taken.
+/// Motion of the target from one row to the next, v t, in pitches. The middle row samples at the time of the picture.
 [[nodiscard]] cv::Point2d readout_slope(const SensorSpec& spec, SceneMotion motion);
 
-/// Where a place of the picture is that would be at `place` if all rows were sampled with `middle_row`: a shear along
-/// the rows, a stretch across. Unit free (pitches or samples); a slope of 0 leaves the place bit for bit.
+/// Place with sequential readout of a point that lies at `place` if all rows sample with `middle_row`: a shear along
+/// the rows and a stretch across them. In pitches or samples. A slope of 0 returns the place bit for bit.
 [[nodiscard]] cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row);
 
 }  // namespace todbench

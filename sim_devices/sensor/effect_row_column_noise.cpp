@@ -1,5 +1,6 @@
-// One offset per row or column of detectors, new in every exposure and in every position of the microscan: sample =
-// detector * n + position.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Row and column noise: one offset per row or column of detectors, new in every exposure and at every position of the
+// microscan. sample = detector * n + position.
 #include <cmath>
 #include <vector>
 
@@ -17,7 +18,7 @@ std::vector<float> normals(const RandomStream& stream, int count) {
 void add_row_column_noise(cv::Mat1f& picture, const SensorSpec& spec, const NoiseStreams& streams, double weight) {
   const int n = spec.samples_per_pitch();
   if (spec.row_noise_k > 0) {
-    // One number per sample row and position along it.
+    // One random number per sample row and position along it.
     const auto offsets = normals(streams("rows", 0), picture.rows * n);
     const auto sd = static_cast<float>(weight * spec.row_noise_k);
     for (int row = 0; row < picture.rows; ++row) {
@@ -35,8 +36,8 @@ void add_row_column_noise(cv::Mat1f& picture, const SensorSpec& spec, const Nois
   }
 }
 
-/// Lines count as much white noise as they move the differences between templates. The search may find places where
-/// they move them more: half as much again.
+/// Equivalent white noise: the variance that moves the differences between templates equally. The search may find
+/// places with a larger effect, hence the factor of 1.5.
 double as_white(const NoiseScope& scope, double sd_k, SharedBy line) {
   if (sd_k == 0) return 0;
   return 1.5 * scope.variance_ratio(line) * std::pow(sd_k, 2) / scope.spec.exposures_per_sample() / scope.contrast_k2;
@@ -47,16 +48,16 @@ double as_white(const NoiseScope& scope, double sd_k, SharedBy line) {
 EffectRow effect_rows::row_column_noise() {
   EffectRow row;
   row.title = "Row and column noise";
-  row.keys = {{"row_noise_k", &SensorSpec::row_noise_k, NumberRange::not_negative(), KeyPresence::optional,
-               "standard deviation of an offset of a row of detectors, new in every exposure"},
-              {"column_noise_k", &SensorSpec::column_noise_k, NumberRange::not_negative(), KeyPresence::optional,
-               "the same of a column"}};
+  row.keys = {{"row_noise_k", &SensorSpec::row_noise_k, NumberRange::between(0, 1000), KeyPresence::optional,
+               "standard deviation of the offset of a row of detectors, new in every exposure"},
+              {"column_noise_k", &SensorSpec::column_noise_k, NumberRange::between(0, 1000), KeyPresence::optional,
+               "the same for a column"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) {
     return spec.row_noise_k == 0 && spec.column_noise_k == 0;
   };
   row.neutralise = [](SensorSpec& spec) { spec.row_noise_k = spec.column_noise_k = 0; };
   row.neutral = "row_noise_k and column_noise_k are 0";
-  row.directions = Directions::different;
+  row.directions = AxisDirections::different;
   row.stage = stage::Noise{stage::Colour::coloured, stage::Recurrence::every_exposure, add_row_column_noise};
   row.coloured_variance = [](const NoiseScope& scope) {
     return as_white(scope, scope.spec.row_noise_k, SharedBy::row) +

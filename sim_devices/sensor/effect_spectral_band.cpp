@@ -1,4 +1,5 @@
-// Diffraction over the wavelengths of the band; without it, at their mean alone.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Spectral band: diffraction averaged over the wavelengths. Without the effect it is computed at their mean.
 #include "sim_devices/sensor/effect_row.h"
 
 namespace todbench {
@@ -6,10 +7,10 @@ namespace todbench {
 EffectRow effect_rows::spectral_band() {
   EffectRow row;
   row.title = "Spectral band";
-  row.keys = {{"wavelength_min_um", &SensorSpec::wavelength_min_um, NumberRange::positive(), KeyPresence::required,
-               "where the band begins"},
-              {"wavelength_max_um", &SensorSpec::wavelength_max_um, NumberRange::positive(), KeyPresence::required,
-               "where the band ends"}};
+  row.keys = {{"wavelength_min_um", &SensorSpec::wavelength_min_um, NumberRange::between(0.1, 100),
+               KeyPresence::required, "lower end of the band"},
+              {"wavelength_max_um", &SensorSpec::wavelength_max_um, NumberRange::between(0.1, 100),
+               KeyPresence::required, "upper end of the band"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
     return spec.wavelength_max_um > spec.wavelength_min_um ? "" : "wavelength_min_um must be below wavelength_max_um";
   };

@@ -1,4 +1,5 @@
-// A grid twice as fine from exposures displaced by half a pitch (SensorSpec::samples_per_pitch).
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Super-resolution: a grid twice as fine, from exposures displaced by half a pitch (SensorSpec::samples_per_pitch).
 #include "sim_devices/sensor/effect_row.h"
 
 namespace todbench {
@@ -19,7 +20,7 @@ EffectRow effect_rows::super_resolution() {
   row.neutralise = [](SensorSpec& spec) { spec.super_resolution_frames = 0; };
   row.neutral = "super_resolution_frames is 0";
   row.stage = stage::Parameter{};
-  row.always = "always simulated: it changes the sampling, for which there is no criterion";
+  row.always = "always simulated: it changes the sampling, and no criterion covers this";
   return row;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_turbulence.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double widest_turbulence_pitch = 10;
 
-/// Sigma of the Gaussian blur that is as strong where either has fallen to 1 / e.
+/// Sigma of the Gaussian blur that equals the long exposure at its fall to 1 / e.
 double turbulence_sigma_pitch(const SensorSpec& spec) {
   return std::pow(turbulence_strength(spec), 0.6) / (std::numbers::pi * std::numbers::sqrt2);
 }
@@ -42,16 +43,16 @@ double turbulence_bound(const SensorSpec& spec, double s75_pitch) {
 
 EffectRow effect_rows::turbulence() {
   EffectRow row;
-  row.title = "Turbulence of the air";
+  row.title = "Atmospheric turbulence";
   row.keys = {{"turbulence_cn2_m_minus_2_3", &SensorSpec::turbulence_cn2_m_minus_2_3, NumberRange::between(0, 1e-11),
-               KeyPresence::optional, "structure parameter Cn2 along the path; 0: none"},
+               KeyPresence::optional, "structure parameter Cn2 along the path; 0: no turbulence"},
               {"turbulence_path_m", &SensorSpec::turbulence_path_m, NumberRange::between(0, 1e5), KeyPresence::optional,
                "length of the turbulent path"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
     if (!(spec.ifov_mrad() > 0) || !(spec.wavelength_max_um > spec.wavelength_min_um) ||
         turbulence_sigma_pitch(spec) <= widest_turbulence_pitch)
       return {};
-    return "turbulence_cn2_m_minus_2_3 and turbulence_path_m blur by more than 10 pitches: nothing is left to see";
+    return "turbulence_cn2_m_minus_2_3 and turbulence_path_m blur by more than 10 pitches, the maximum";
   };
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) {
     return spec.turbulence_cn2_m_minus_2_3 == 0 || spec.turbulence_path_m == 0;
@@ -60,17 +61,17 @@ EffectRow effect_rows::turbulence() {
   row.neutral = "turbulence_cn2_m_minus_2_3 or turbulence_path_m is 0";
   row.stage = stage::Optics{[](const ChainScope& scope) -> std::function<double(double)> {
     const double strength = turbulence_strength(scope.spec);
-    // What exposure and time constant average of the dance is theirs: without them it is that of an instant.
+    // Exposure and time constant average the dance; if their effects are skipped, the dance is instantaneous.
     const double left_out = dance_weight(scope.spec) * dance_share(as_planned(scope.spec, scope.plan));
     if (left_out == 0) return [strength](double rho) { return std::exp(-strength * std::pow(rho, 5.0 / 3)); };
-    // Fried's short exposure; beyond the end of the lens, where no wavelength of the mean passes, as at it.
+    // Fried's short exposure. Beyond the cut-off of the lens, which no wavelength of the mean passes, it is constant.
     return [strength, left_out, cut_off = dance_cut_off(scope.spec)](double rho) {
       const double f = std::min(rho, cut_off);
       return std::exp(-strength * std::pow(f, 5.0 / 3) * (1 - left_out * std::cbrt(f / cut_off)));
     };
   }};
-  // The tail of -c rho^(5/3) is c pi^(-8/3) Gamma(11/6) / -Gamma(-5/6) r^(-11/3) = 0.00665 c r^(-11/3), faster than
-  // that of diffraction; over a plane beyond r it adds 0.0251 c r^(-5/3).
+  // The tail of -c rho^(5/3) is c pi^(-8/3) Gamma(11/6) / -Gamma(-5/6) r^(-11/3) = 0.00665 c r^(-11/3). It falls faster
+  // than that of diffraction. The plane beyond r adds 0.0251 c r^(-5/3).
   row.spread = [](const ChainScope& scope) {
     const double sigma = turbulence_sigma_pitch(scope.spec);
     return Spread{.period = 8 * sigma,
@@ -80,7 +81,7 @@ EffectRow effect_rows::turbulence() {
   };
   row.band = [](const SensorSpec& spec, const Accuracy& accuracy) {
     const double strength = turbulence_strength(spec);
-    // Short frames may show what the long exposure takes away.
+    // Short frames may contain frequencies that the long exposure suppresses.
     if (strength == 0 || spec.turbulence_correlation_ms > 0) return std::numeric_limits<double>::infinity();
     return std::max(std::pow(-std::log(accuracy.band_tolerance) / strength, 0.6), 0.5);
   };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/far_field.h"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ std::vector<double> crossings(const Polygon& shape, cv::Point2d from, cv::Point2
   std::vector<double> distances;
   for (std::size_t i = 0; i < shape.size(); ++i) {
     const cv::Point2d a = shape[i] - from, b = shape[(i + 1) % shape.size()] - from;
-    // On which side of the ray; an end on it counts to one side only, so that a vertex is met once or twice, not both.
+    // Side of the ray. An end on the ray counts to one side only, so that both edges of a vertex agree.
     const double side_a = direction.cross(a), side_b = direction.cross(b);
     if ((side_a < 0) == (side_b < 0)) continue;
     const double along = direction.dot(a + side_a / (side_a - side_b) * (b - a));
@@ -57,7 +58,7 @@ double far_integral(const Polygon& shape, cv::Point2d from, double half_width) {
     };
     const double wall = std::min(to_wall(from.x, direction.x), to_wall(from.y, direction.y));
     const auto distances = crossings(shape, from, direction);
-    // From outside inwards: inside between the last and the one before it, and so on.
+    // From the farthest crossing inwards: the ray is inside between the last crossing and the one before it, and so on.
     for (std::size_t i = distances.size(); i > 0; i -= std::min<std::size_t>(i, 2)) {
       const double leaves = distances[i - 1], enters = std::max(i > 1 ? distances[i - 2] : 0.0, wall);
       if (leaves > enters) sum += 1 / enters - 1 / leaves;

@@ -1,16 +1,17 @@
-// What the parts of a huge shape that are far away add to a sample: the tail of the diffraction spot, integrated.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contribution of the distant parts of a huge shape to a sample: the integrated tail of the diffraction spot.
 #pragma once
 
 #include "hvs/shape/polygon.h"
 
 namespace todbench {
 
-/// The part of a shape within the square |x|, |y| <= half_width (Sutherland and Hodgman 1974). Parts of a concave shape
-/// that the square separates stay joined along its edge, which encloses nothing.
+/// The part of a shape within the square |x|, |y| <= half_width (Sutherland and Hodgman 1974). If the square separates
+/// parts of a concave shape, they stay joined along its edge without enclosed area.
 [[nodiscard]] Polygon clipped(const Polygon& shape, double half_width);
 
-/// The integral of |y - from|^-3 over the part of the shape outside that square; `from` lies inside it. By rays from
-/// `from`: each adds 1/r where it enters the shape and takes 1/r where it leaves. Relative error 1e-5. Unit 1/length.
+/// Integral of |y - from|^-3 over the part of the shape outside that square, in 1/length; relative error 1e-5. `from`
+/// is in the square. Each ray from `from` adds 1/r at its entries into the shape and subtracts 1/r at its exits.
 [[nodiscard]] double far_integral(const Polygon& shape, cv::Point2d from, double half_width);
 
 }  // namespace todbench

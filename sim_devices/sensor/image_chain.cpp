@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/image_chain.h"
 
 #include <algorithm>
@@ -12,9 +13,9 @@
 namespace todbench {
 namespace {
 
-/// Highest frequency that matters, in cycles per pitch: where the optics end, or where they have taken the signal below
-/// the tolerance. Without either the spectrum of a sharp shape never ends; 16 cycles per pitch then leave an error near
-/// 1/(pi^2 16) at edges.
+/// Highest relevant frequency in cycles per pitch: the cut-off of the optics, or the frequency at which they have
+/// reduced the signal to the tolerance. Without either the spectrum of a sharp shape is unlimited; a limit of 16 cycles
+/// per pitch leaves an error near 1/(pi^2 16) at edges.
 double needed_band(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy) {
   double band = 16;
   for (const Effect effect : all_effects) {
@@ -53,8 +54,8 @@ ChainScope ImageChain::scope() const {
 }
 
 FrequencyLattice ImageChain::lattice(double size_pitch) const {
-  // Diffraction tails fall as r^-3 and carry energy in proportion to the area and to the width of the blur spot in
-  // pitches: wrapped signal 1.6e-4 at period 16 for size 2.6 and a spot of 13 um x f/1 on 47.5 um.
+  // Diffraction tails fall as r^-3. Their energy is proportional to the area and to the width of the blur spot in
+  // pitches: wrapped signal 1.6e-4 at period 16, for size 2.6 and a spot of 13 um x f/1 on 47.5 um.
   const double relative_area = std::max(1.0, std::pow(size_pitch / 2.6, 2));
   const double spot = spec_.wavelength_max_um * spec_.f_number / spec_.pitch_um;
   const double relative_spot = plan_.simulates(Effect::diffraction) ? std::max(1.0, spot / (13 / 47.5)) : 1.0;
@@ -71,8 +72,8 @@ std::shared_ptr<const FilterTable> ImageChain::filter(const FrequencyLattice& la
   return slot;
 }
 
-/// Rows that are read one after the other see the image at M p, M = [[1, -a], [0, 1 - b]] with (a, b) the slope. Its
-/// spectrum is that of the shape at M^-1 p, times the transfer at M^-T f: both exact.
+/// With sequential readout the samples are those of the image at M p, M = [[1, -a], [0, 1 - b]], (a, b) the slope. The
+/// spectrum is that of the shape at M^-1 p, times the transfer function at M^-T f. Both are exact.
 TransferFunction ImageChain::transfer_on(const FrequencyLattice& lattice) const {
   if (readout_slope_ == cv::Point2d(0, 0)) return tabulated_transfer(lattice, scope());
   return [transfer = sensor_transfer(spec_, plan_, accuracy_.wavelengths, motion_), slope = readout_slope_](
@@ -106,9 +107,9 @@ ImageChain::InfinitePlane ImageChain::infinite_plane(const Polygon& whole_shape_
   return out;
 }
 
-/// The transfer function of a diffraction spot has a cusp at zero, 1 - a |f|: far away the spot falls as
-/// a / (4 pi^2 r^3), the inverse transform of -a |f|. Averaged over detector and aberration, of variance v per axis,
-/// that changes by 9 v / (2 r^2) of itself.
+/// The transfer function of a diffraction spot has a cusp at zero, 1 - a |f|. Far away the spot therefore falls as a /
+/// (4 pi^2 r^3), the inverse transform of -a |f|. The average over detector and aberration, with variance v per axis,
+/// changes this by the fraction 9 v / (2 r^2).
 void ImageChain::add_far_field(InfinitePlane& near, const Polygon& shape_pitch, cv::Point2d first, double step,
                                double half_width) const {
   const OpticsMtf optics(scope());
@@ -142,7 +143,7 @@ ImageChain::InfinitePlane ImageChain::extrapolated(const Polygon& shape_pitch, c
     for (int column = 0; column < a.cols; ++column)
       difference = std::max(difference, std::abs(a(row, column) - b(row, column)));
   }
-  // The next term of the series falls as P^-5, the extrapolated one as P^-3: what remains is a small part of the
+  // The next term of the series falls as P^-5, the extrapolated one as P^-3. The remaining error is a small part of the
   // correction itself.
   out.max_error_estimate = difference / 7;
   return out;

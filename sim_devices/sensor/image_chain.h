@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Degraded pictures of single shapes: image formation of one sensor at one accuracy.
 #pragma once
 
@@ -5,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "acquisition/core/accuracy.h"
+#include "acquisition/base/accuracy.h"
 #include "hvs/shape/polygon_image.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/sensor_plan.h"
@@ -13,31 +14,31 @@
 
 namespace todbench {
 
-/// Optics and detector of one sensor before a scene of one motion. Lengths in detector pitches. Thread-safe; filter
+/// Optics and detector of one sensor, for a scene of one motion. Lengths in detector pitches. Thread-safe. Filter
 /// tables are computed once per lattice.
 class ImageChain {
  public:
   /// Precondition: validate(spec) succeeds.
   ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, SceneMotion motion = {});
 
-  /// The lattice that keeps wrapped signal and truncated band within the tolerances for shapes of `size_pitch` (square
+  /// Lattice that keeps wrapped signal and truncated band within the tolerances, for shapes of `size_pitch` (square
   /// root of area).
   [[nodiscard]] FrequencyLattice lattice(double size_pitch) const;
-  /// Points per pitch at which the fine image holds the whole band: a multiple of 16, so that all 16 x 16 phases lie on
-  /// it.
+  /// Points per pitch at which the fine image contains the whole band: a multiple of 16, so that all 16 x 16 phases lie
+  /// on it.
   [[nodiscard]] int points_per_pitch() const { return points_per_pitch_; }
-  /// The degraded image of a shape of contrast 1 near the origin, which is in the row that samples when the picture is
-  /// said to be taken.
+  /// Degraded image of a shape of contrast 1 near the origin. The origin lies in the row that samples at the time of
+  /// the picture.
   [[nodiscard]] PolygonImage image(const Polygon& shape_pitch) const;
-  /// Whether the images of a shape turned by quarters are `image` of the shape turned so.
+  /// True if the image of the shape turned by a quarter is `image` turned by a quarter.
   [[nodiscard]] bool turns_alike(const PolygonImage& image) const {
     return readout_slope_ == cv::Point2d(0, 0) && image.turns_alike();
   }
 
   /// Samples for an infinite plane, by Richardson extrapolation from periods P and 2P (the wrapped signal falls as
-  /// P^-3), with a bound on the remaining error estimated from their difference. Of a shape that reaches far beyond the
-  /// window only the part near it is computed so; the rest adds the tail of the diffraction spot, c r^-3, integrated:
-  /// memory and time do not grow with the shape. Readout row by row is about the origin.
+  /// P^-3). The bound on the remaining error is estimated from their difference. If a shape reaches far beyond the
+  /// window, only the part near the window is computed in this way. The rest adds the integrated tail of the
+  /// diffraction spot, c r^-3, so memory and time do not grow with the shape. Sequential readout refers to the origin.
   struct InfinitePlane {
     cv::Mat1d values;
     double max_error_estimate = 0;

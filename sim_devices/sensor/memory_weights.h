@@ -1,14 +1,14 @@
-// Numbers that remember: first-order autoregressive from exposure to exposure, made of independent ones.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Random numbers with memory: first-order autoregressive from exposure to exposure, made of independent numbers.
 #pragma once
 
 #include <vector>
 
 namespace todbench {
 
-/// What the independent numbers of this exposure and of those before it add up to: x(t) = sum over j of w(j) z(t - j),
-/// w(j) proportional to rho^j, squares that sum to 1. Memory below 1 % is cut off, so that an exposure takes bounded
-/// work wherever it is in the sequence: every correlation is right to it, that of successive exposures to its square.
-/// `rho` in [0, 1).
+/// Weights w(j) of the independent numbers z of this exposure and of earlier ones: x(t) = sum over j of w(j) z(t - j),
+/// w(j) proportional to rho^j, squares sum to 1. Memory below 1 % is cut off, so that each exposure takes bounded work.
+/// Correlations are in error by at most 1 %, that of successive exposures by at most 0.01 %. `rho` in [0, 1).
 [[nodiscard]] std::vector<double> memory_weights(double rho);
 
 }  // namespace todbench

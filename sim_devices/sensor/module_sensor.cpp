@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/module_sensor.h"
 
 #include <algorithm>
@@ -23,9 +24,9 @@ Result<void> check_sensor_module(const SensorSpec& spec, SceneMotion motion) {
   if (sensor_module(spec) == nullptr) return {};
   if (spec.samples_per_pitch() != 1)
     return fail(ErrorCode::invalid_input,
-                "a sensor that is a module answers one sample a detector: neither microscan nor super-resolution");
+                "a sensor module answers one sample per detector and supports neither microscan nor super-resolution");
   if (motion != SceneMotion{})
-    return fail(ErrorCode::invalid_input, "a sensor that is a module sees a scene that rests");
+    return fail(ErrorCode::invalid_input, "a sensor module supports only a scene without motion");
   return {};
 }
 
@@ -89,7 +90,7 @@ Result<cv::Mat1f> ModuleSensor::picture(const cv::Mat1f& scene_k, std::uint64_t 
   cv::Mat1f picture(spec_.height, spec_.width);
   std::transform(answer->begin(), answer->end(), picture.begin(),
                  [](double value) { return static_cast<float>(value); });
-  // What is finite as a double may be none as a float.
+  // A finite double may be infinite as a float.
   if (!cv::checkRange(picture))
     return tl::unexpected(
         module_error(module, {ErrorCode::integrity, "the module answered with a number that is not finite"}));

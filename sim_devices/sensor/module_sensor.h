@@ -1,4 +1,5 @@
-// A sensor that is a program of the user's: scene in, frame out.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A program of the user as the sensor: scene in, frame out.
 #pragma once
 
 #include <cstdint>
@@ -16,33 +17,32 @@
 
 namespace todbench {
 
-/// Samples of the scene per detector pitch and axis that such a program is given.
+/// Samples of the scene per detector pitch and axis that the program receives.
 inline constexpr int scene_samples_per_pitch = 4;
 
-/// The program that is the sensor; null: there is none.
+/// The program in place of the sensor; null if there is none.
 [[nodiscard]] const ModulePlan* sensor_module(const SensorSpec& spec);
-/// `invalid_input` in one sentence where such a program would be asked for what it cannot do: microscan,
-/// super-resolution, a scene that moves. Success where there is none.
+/// Checks that the program can simulate this sensor and scene. `invalid_input` in one sentence for microscan,
+/// super-resolution or a moving scene. Succeeds if there is no program.
 [[nodiscard]] Result<void> check_sensor_module(const SensorSpec& spec, SceneMotion motion = {});
 
-/// Every number of the sensor file by its key, `ifov_mrad`, `scene_samples_per_pitch` and the seed: what the header
-/// says.
+/// Facts for the header: the numbers of the sensor file by key, `ifov_mrad`, `scene_samples_per_pitch` and the seed.
 [[nodiscard]] std::vector<SensorFact> sensor_facts(const SensorSpec& spec, std::uint64_t seed);
 
-/// The scene in kelvin above its surround, the exact mean over each square of a grid scene_samples_per_pitch times as
-/// fine as the detectors: (width, height) times that many samples, sample (0, 0) in the corner of detector (0, 0).
+/// Scene in kelvin above its surround: exact means over the squares of a grid scene_samples_per_pitch times as fine as
+/// the detectors. Size: (width, height) times that number; sample (0, 0) is in the corner of detector (0, 0).
 [[nodiscard]] cv::Mat1f scene_picture_k(const PlateScene& scene, const SensorSpec& spec);
 
-/// The program of a sensor, started with the first picture. One thread at a time.
+/// The program of a sensor. It starts with the first picture. One thread at a time.
 class ModuleSensor {
  public:
   using OnLine = std::function<void(std::string_view line)>;
   /// Precondition: sensor_module(spec).
   ModuleSensor(SensorSpec spec, std::uint64_t seed, OnLine on_error_line);
 
-  /// What it makes of a scene_picture_k() as frame `index`, in kelvin above the surround. Errors: module_error().
+  /// Frame `index` of a scene_picture_k(), in kelvin above the surround. Errors: module_error().
   [[nodiscard]] Result<cv::Mat1f> picture(const cv::Mat1f& scene_k, std::uint64_t index);
-  /// The same of a scene, in whole counts. `invalid_input`: it moves.
+  /// Frame `index` of a scene, in whole counts. Errors: also `invalid_input` (the scene moves).
   [[nodiscard]] Result<cv::Mat1w> expose(const PlateScene& scene, std::uint64_t index);
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/module_sensor_check.h"
 
 #include <fmt/format.h>
@@ -6,7 +7,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 
 namespace todbench {
 namespace {
@@ -25,7 +26,7 @@ cv::Mat1f random_scene(cv::Size frame, std::uint64_t index) {
   return scene;
 }
 
-/// The answers of a new process to the scenes as frames 0, 1, ...
+/// Answers of a new process to the scenes as frames 0, 1, ...
 Result<std::vector<cv::Mat1f>> frames_of(const SensorSpec& spec, const std::vector<cv::Mat1f>& scenes) {
   ModuleSensor sensor(spec, check_seed, {});
   std::vector<cv::Mat1f> frames;
@@ -47,7 +48,7 @@ Result<double> frame_time_ms(const SensorSpec& spec) {
     if (auto frame = sensor.picture(scene, i); !frame) return tl::unexpected(frame.error());
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
-  std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first starts the program
+  std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first includes the start
   return times[11];
 }
 

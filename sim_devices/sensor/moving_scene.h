@@ -1,4 +1,5 @@
-// A plate that a stage moves, as a sensor sees it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plate on a moving stage, as a sensor observes it.
 #pragma once
 
 #include "sim_devices/scene/plate_scene.h"
@@ -6,8 +7,8 @@
 
 namespace todbench {
 
-/// The scene of a plate that is in its place and moves along its own x at `speed_mm_s`: smeared by time constant and
-/// exposure, and behind its place by their mean lag, which image formation has taken out. At rest: the scene as it is.
+/// Scene of a plate at its place that moves along its own x at `speed_mm_s`. Time constant and exposure smear it, and
+/// it is shifted back by their mean lag, because image formation removes that lag. At rest the scene is unchanged.
 [[nodiscard]] PlateScene in_motion(PlateScene scene, double speed_mm_s, const SensorSpec& spec);
 
 }  // namespace todbench

@@ -1,4 +1,5 @@
-// Faults of single detectors that a camera does not hide: which, where and how large, from a seed of the array.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faults of single detectors that a camera does not hide. A seed of the array determines place, kind and size.
 #pragma once
 
 #include <array>
@@ -7,13 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "sim_devices/sensor/sensor_spec.h"
 
 namespace todbench {
 
 enum class PixelFaultKind {
-  stuck,     ///< shows one level whatever it sees
+  stuck,     ///< shows one level for every scene
   hot,       ///< a fixed offset
   noisy,     ///< more temporal noise than the others
   blinking,  ///< jumps between two levels
@@ -22,23 +23,23 @@ inline constexpr std::array pixel_fault_kinds{PixelFaultKind::stuck, PixelFaultK
                                               PixelFaultKind::blinking};
 [[nodiscard]] std::string_view to_string(PixelFaultKind kind);
 
-/// In units of the sensor's NETD.
+/// Sizes of the faults in units of the sensor's NETD.
 inline constexpr double hot_offset_netd = 20, stuck_reach_netd = 10, noisy_added_netd = 6, blink_netd = 8;
 
 struct PixelFault {
   PixelFaultKind kind = PixelFaultKind::stuck;
   cv::Point detector;
-  double level_k = 0;  ///< of stuck and hot: above the surround; of blinking: between the two levels
-  int dwell = 0;       ///< of blinking: pictures on one level, 4 to 24
-  int phase = 0;       ///< of blinking: pictures by which it is ahead
+  double level_k = 0;  ///< stuck, hot: above the surround; blinking: between the two levels
+  int dwell = 0;       ///< blinking: pictures on one level, 4 to 24
+  int phase = 0;       ///< blinking: offset of the cycle in pictures
 };
 
-/// `defective_pixel_share` of the detectors, a quarter of each kind on average, at places and with sizes that follow
-/// from `defect_seed` alone.
+/// Faulty detectors: `defective_pixel_share` of all, a quarter of each kind on average. Places and sizes depend only on
+/// `defect_seed`.
 [[nodiscard]] std::vector<PixelFault> pixel_faults(const SensorSpec& spec);
 
-/// Puts them into picture `index`, in kelvin above the surround; all samples of a detector alike, but for noise.
-/// `noise`: random numbers of this picture.
+/// Adds the faults to picture `index`, in kelvin above the surround. All samples of a detector change alike, except for
+/// noise. `noise`: random numbers of this picture.
 void show_faults(cv::Mat1f& picture, const std::vector<PixelFault>& faults, const SensorSpec& spec,
                  const RandomStream& noise, std::uint64_t index);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/scene_image.h"
 
 #include <Eigen/Dense>
@@ -15,7 +16,7 @@ using FloatRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 constexpr int margin_pitches = 48;
 
-/// The elements of a picture that a cell meets along one axis, with the integral of each polynomial over each of them.
+/// Elements of a picture that overlap a cell along one axis, with the integral of each polynomial over each of them.
 struct Overlap {
   int first = 0, count = 0;
   std::vector<double> integrals;  ///< [element][order]
@@ -63,9 +64,9 @@ struct SceneImager::Tables {
         responses(coefficient_responses(transfer, degree)) {}
 };
 
-/// Means of the cells, and coefficients of those that have any.
+/// Means of the cells, and coefficients of the cells that have any.
 struct SceneImager::Cells {
-  cv::Mat1d inside, steps;        ///< of the column itself, and of everything to its right
+  cv::Mat1d inside, steps;        ///< of the column itself, and of all columns to its right
   cv::Mat1i rows;                 ///< of `coefficients`; -1: none
   std::vector<cv::Point> places;  ///< by row
   std::vector<float> coefficients;
@@ -100,7 +101,7 @@ struct SceneImager::Cells {
   void add_piece(cv::Point2d p, cv::Point2d q, double step);
 };
 
-/// What lies left of the picture is a step before its first column.
+/// A part left of the picture is a step in front of its first column.
 void SceneImager::Cells::add_left_of_picture(double y0, double y1, double step) {
   const double sign = y1 > y0 ? 1 : -1;
   const double top = std::min(y0, y1), bottom = std::max(y0, y1);
@@ -112,7 +113,7 @@ void SceneImager::Cells::add_left_of_picture(double y0, double y1, double step) 
   }
 }
 
-/// A piece within one cell.
+/// Adds a piece of an edge within one cell.
 void SceneImager::Cells::add_piece(cv::Point2d p, cv::Point2d q, double step) {
   const cv::Point2d middle = (p + q) / 2, d = q - p;
   const int column = static_cast<int>(std::floor(middle.x)), row = static_cast<int>(std::floor(middle.y));
@@ -136,7 +137,7 @@ void SceneImager::Cells::add_piece(cv::Point2d p, cv::Point2d q, double step) {
 
 void SceneImager::Cells::add(StepEdge edge) {
   const cv::Point2d d = edge.b - edge.a;
-  // Shares of the length between which the edge is in the rows, and where it crosses lines of the grid.
+  // Fractions of the length between which the edge lies in the rows, and at which it crosses lines of the grid.
   double from = 0, to = 1;
   if (d.y == 0) {
     if (edge.a.y < 0 || edge.a.y >= inside.rows) return;
@@ -157,7 +158,7 @@ void SceneImager::Cells::add(StepEdge edge) {
     }
   };
   add_lines(edge.a.x, d.x, width);
-  // Rows matter within the picture only; left of it whole stretches are taken at once.
+  // Rows matter only within the picture; left of it, whole stretches are added at once.
   add_lines(edge.a.y, d.y, inside.rows);
   std::sort(cuts.begin(), cuts.end());
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
@@ -279,7 +280,7 @@ cv::Mat1d SceneImager::image(const cv::Mat1d& picture, double pixel_samples, cv:
         }
       }
       cells.inside(row, column) = sums[0];
-      // What is further from the frame than its responses reach does not count.
+      // Skip elements that are further from the frame than their responses reach.
       const bool near = row >= tables_->margin - cell_reach && row < tables_->margin + size.height + cell_reach &&
                         column >= tables_->margin - cell_reach && column < tables_->margin + size.width + cell_reach;
       if (!near) continue;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/scene_signal.h"
 
 #include <fmt/format.h>
@@ -8,12 +9,12 @@ namespace todbench {
 namespace {
 
 Result<void> check_view(const SensorSpec& spec, const FieldScene& scene, const SceneView& view) {
-  if (!(view.range_m > 0)) return fail(ErrorCode::invalid_input, "a range is above 0 m");
+  if (!(view.range_m > 0)) return fail(ErrorCode::invalid_input, "the range must be above 0 m");
   const double pitch_m = view.range_m * spec.ifov_mrad() * 1e-3;
   const cv::Size2d extent = extent_m(scene);
   if (std::max(extent.width, extent.height) < pitch_m) {
     return fail(ErrorCode::invalid_input,
-                fmt::format("the scene, {:.3g} m large, is smaller than a pixel of {:.3g} m at {:g} m",
+                fmt::format("the size of the scene, {:.3g} m, is smaller than a pixel, {:.3g} m at {:g} m",
                             std::max(extent.width, extent.height), pitch_m, view.range_m));
   }
   if (!scene.picture) return {};
@@ -21,10 +22,10 @@ Result<void> check_view(const SensorSpec& spec, const FieldScene& scene, const S
   if (element_m > 0.25 * pitch_m * (1 + 1e-9)) {
     return fail(ErrorCode::invalid_input,
                 fmt::format("elements of the picture, {:.3g} m, are larger than a quarter of a pixel, {:.3g} m at {:g} "
-                            "m: what is lost in it decides aliasing",
+                            "m: the detail that decides aliasing is missing",
                             element_m, pitch_m, view.range_m));
   }
-  if (view.rotation_deg != 0) return fail(ErrorCode::invalid_input, "a picture cannot be turned, only polygons can");
+  if (view.rotation_deg != 0) return fail(ErrorCode::invalid_input, "a picture cannot be rotated, only polygons can");
   return {};
 }
 

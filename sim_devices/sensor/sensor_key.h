@@ -1,32 +1,33 @@
-// The keys of a sensor description: name, unit, range, default and what they mean, once for reader, check and tests.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keys of a sensor description: name, unit, range, default and meaning, stated once for reader, check and tests.
 #pragma once
 
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "acquisition/core/number_range.h"
+#include "acquisition/base/number_range.h"
 #include "sim_devices/sensor/sensor_spec.h"
 
 namespace todbench {
 
-/// The parameter that a key sets: a number, a whole number, or the name of a display.
+/// Parameter that a key sets: a number, a whole number, or the name of a display.
 using KeyMember = std::variant<double SensorSpec::*, int SensorSpec::*, DisplayReconstruction SensorSpec::*>;
 
-/// Whether a description has to have the key. Others have the value of a SensorSpec as it is made.
+/// Whether a description must contain the key. An optional key has the default value of SensorSpec.
 enum class KeyPresence { required, optional };
 
 struct SensorKey {
-  std::string_view name;  ///< as in the file; its ending is the unit
+  std::string_view name;  ///< as in the file; the ending is the unit
   KeyMember member;
   NumberRange range;
   KeyPresence presence = KeyPresence::optional;
-  std::string_view meaning;  ///< a sentence without its full stop
+  std::string_view meaning;  ///< a sentence without full stop
 };
 
-/// Geometry and output of a camera: the keys that belong to no effect.
+/// Keys of geometry and output of a camera, which belong to no effect.
 [[nodiscard]] const std::vector<SensorKey>& camera_keys();
-/// All of them, those of effects in the order of the chain.
+/// All keys. Those of effects follow the order of the chain.
 [[nodiscard]] std::vector<SensorKey> sensor_keys();
 
 }  // namespace todbench

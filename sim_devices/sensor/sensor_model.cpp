@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/sensor_model.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ Polygon turned(const Polygon& polygon, double degrees) {
   return out;
 }
 
-/// Adds values to the part of the picture that is inside it.
+/// Adds the values that lie inside the picture.
 void add_clipped(cv::Mat1f& picture, const cv::Mat1d& values, cv::Point origin) {
   for (int j = std::max(0, -origin.y); j < values.rows && origin.y + j < picture.rows; ++j) {
     for (int i = std::max(0, -origin.x); i < values.cols && origin.x + i < picture.cols; ++i) {
@@ -53,7 +54,7 @@ struct SensorModel::State {
   Accuracy accuracy;
   std::uint64_t seed;
   std::vector<const stage::Noise*> noises;  ///< new in every exposure
-  cv::Mat1f fixed_noise;                    ///< of all that is the same in every frame, kelvin; empty: none
+  cv::Mat1f fixed_noise;                    ///< sum of all fixed noise, kelvin; empty: none
   ImageDance dance;
   std::vector<PixelFault> faults;
   std::vector<PictureStage> picture_stages;
@@ -96,7 +97,7 @@ struct SensorModel::State {
     return *slot;
   }
 
-  /// The four apexes share one spectrum where they can: what costs in a new scene is to read spectra.
+  /// The four apexes share one spectrum if possible, because reading spectra dominates the cost of a new scene.
   [[nodiscard]] PolygonImage shape(double size_pitch, Apex apex, double rotation_deg, SceneMotion motion) const {
     const ImageChain& own_chain = chain(motion);
     const auto image_of = [&](Apex shown) -> const PolygonImage& {
@@ -109,7 +110,7 @@ struct SensorModel::State {
     return own_chain.turns_alike(upright) ? upright.turned(static_cast<int>(apex)) : image_of(apex);
   }
 
-  /// The picture before noise that exposures `index` show of the scene, each where the air has it.
+  /// Picture before noise of the exposures of picture `index`, each displaced by the image dance.
   [[nodiscard]] cv::Mat1f danced_signal(const PlateScene& scene, std::uint64_t index) const {
     const std::vector<cv::Point2d> displacements = displacements_px(index);
     cv::Mat1f sum(size(), 0.0F);
@@ -137,17 +138,17 @@ struct SensorModel::State {
   /// Picture `index` before quantisation.
   [[nodiscard]] cv::Mat1f analog(const cv::Mat1f& unit, double delta_t_k, std::uint64_t index) const;
 
-  /// Where the samples that see a place of the plate are.
+  /// Samples at which a place of the plate appears.
   [[nodiscard]] cv::Point2d place_of(const PlateScene& scene, cv::Point2d plate_mm, cv::Size size) const {
     const cv::Point2d place = as_lens_shows(projected(scene, plate_mm, size), spec, size);
     return as_read_out(place, readout_slope(spec, scene.motion), 0.5 * (size.height - 1));
   }
-  /// The same through a lens without distortion, of an instant.
+  /// The same for a lens without distortion and simultaneous readout.
   [[nodiscard]] cv::Point2d projected(const PlateScene& scene, cv::Point2d plate_mm, cv::Size size) const {
     return scene_pixel(scene, plate_mm, spec.ifov_mrad() / spec.samples_per_pitch(), size);
   }
 
-  /// A triangle as the lens bends it, about where its middle is seen.
+  /// A triangle with the distortion of the lens, relative to the displayed place of its middle.
   [[nodiscard]] PolygonImage bent(const PlateScene& scene, const PlateTriangle& t, cv::Size size) const {
     const cv::Point2d middle = as_lens_shows(projected(scene, t.position_mm, size), spec, size);
     Polygon outline = triangle(t.size_mm, t.apex, t.position_mm);
@@ -157,7 +158,7 @@ struct SensorModel::State {
     return chain(scene.motion).image(outline);
   }
 
-  /// Rectangles may be large against the picture: not each by itself, but the whole frame at once.
+  /// Rectangles may be large compared with the picture, so they are drawn together on the whole frame.
   void draw_rectangles(const PlateScene& scene, cv::Mat1f& picture) const {
     const std::vector<PlateRectangle> cut_outs = straight_cut_outs(scene.plate);
     if (cut_outs.empty()) return;
@@ -180,7 +181,7 @@ struct SensorModel::State {
   [[nodiscard]] cv::Mat1f draw(const PlateScene& scene, cv::Size size) const {
     const double sample_pitch = 1.0 / spec.samples_per_pitch();
     const std::vector<PlateTriangle>& triangles = scene.plate.triangles;
-    // Sampled size by size, so that the spectrum that they share is in the cache; added in the order of the plate.
+    // Sampled size by size, so that their common spectrum stays in the cache; added in the order of the plate.
     std::vector<std::size_t> order(triangles.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -245,7 +246,7 @@ cv::Mat1f SensorModel::State::analog(const cv::Mat1f& unit, double delta_t_k, st
   auto* pixels = out.ptr<float>();
   const auto contrast = static_cast<float>(delta_t_k);
   for (std::size_t i = 0; i < count; ++i) pixels[i] = contrast * signal[i];
-  // A sample is the mean of so many exposures of the sequence.
+  // A sample is the mean of this number of exposures of the sequence.
   const auto exposures = static_cast<std::uint64_t>(spec.exposures_per_sample());
   const double weight = 1.0 / static_cast<double>(exposures);
   for (std::uint64_t k = 0; k < exposures; ++k) {

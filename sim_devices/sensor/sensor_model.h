@@ -1,4 +1,5 @@
-// The simulated sensor: a pure function from scene and index to a frame.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simulated sensor: a pure function from scene and index to a frame.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +7,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "acquisition/core/accuracy.h"
-#include "acquisition/core/rng.h"
+#include "acquisition/base/accuracy.h"
+#include "acquisition/base/rng.h"
 #include "hvs/shape/polygon_image.h"
 #include "sim_devices/scene/plate_scene.h"
 #include "sim_devices/sensor/sensor_plan.h"
@@ -15,7 +16,7 @@
 
 namespace todbench {
 
-/// Immutable but for internal caches; thread-safe. The same (scene, index) gives the same frame on every machine and
+/// Immutable except for internal caches; thread-safe. The same (scene, index) gives the same frame on every machine and
 /// thread.
 class SensorModel {
  public:
@@ -25,29 +26,29 @@ class SensorModel {
   SensorModel(const SensorModel&) = delete;
   SensorModel& operator=(const SensorModel&) = delete;
 
-  /// The sensor as planned: parameters of skipped effects at their neutral values.
+  /// The sensor as planned: parameters of skipped effects have their neutral values.
   [[nodiscard]] const SensorSpec& spec() const;
   [[nodiscard]] const SensorPlan& plan() const;
   [[nodiscard]] std::uint64_t seed() const;
 
-  /// Picture elements: detectors times samples per pitch.
+  /// Size of a picture in samples: detectors times samples per pitch.
   [[nodiscard]] cv::Size size() const;
-  /// The picture before noise at a contrast of 1 K, above the surround, where it is in the mean of pictures. The last
+  /// Picture before noise at a contrast of 1 K, above the surround, without the displacement by image dance. The last
   /// few geometries are cached.
   [[nodiscard]] std::shared_ptr<const cv::Mat1f> unit_signal(const PlateScene& scene) const;
-  /// By how much the dance of the air displaces each of the exposures of picture `index`, in samples; 0 in the mean.
+  /// Displacement by image dance of each exposure of picture `index`, in samples; the mean is 0.
   [[nodiscard]] std::vector<cv::Point2d> displacements_px(std::uint64_t index) const;
-  /// Picture `index` in kelvin above the surround: signal, temporal and line noise, fixed pattern, dead
-  /// pixels, display, quantisation; each as planned.
+  /// Picture `index` in kelvin above the surround, with the planned effects: signal, temporal and line noise, fixed
+  /// pattern, dead pixels, display, quantisation.
   [[nodiscard]] cv::Mat1f picture(const PlateScene& scene, std::uint64_t index) const;
-  /// The same for a signal that comes from elsewhere: size() kelvin per kelvin of contrast, before a surround of
-  /// `background_k`. It is taken as displaced already.
+  /// The same for an external signal of size() in kelvin per kelvin of contrast, with a surround of `background_k`. The
+  /// signal must already contain the image dance.
   [[nodiscard]] cv::Mat1f picture(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
                                   std::uint64_t index) const;
-  /// Frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant bits.
-  /// Rounds also where the plan skips quantisation, because a frame holds whole counts.
+  /// Frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant bits. A
+  /// frame always holds whole counts, even if the plan skips quantisation.
   [[nodiscard]] cv::Mat1w expose(const PlateScene& scene, std::uint64_t index) const;
-  /// The same for a signal that comes from elsewhere, as for picture().
+  /// The same for an external signal, as for picture().
   [[nodiscard]] cv::Mat1w expose(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
                                  std::uint64_t index) const;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/sensor_spec.h"
 
 #include <type_traits>
@@ -25,7 +26,7 @@ std::string out_of_range(const SensorSpec& spec, const SensorKey& key) {
   return key.range.contains(value) ? "" : std::string(key.name) + " must be " + key.range.describe();
 }
 
-/// What cannot be, as a sentence; empty: a sensor that can exist.
+/// Reason why a sensor is impossible, as a sentence; empty for a possible sensor.
 std::string impossible(const SensorSpec& spec) {
   if (spec.name.empty()) return "name is missing";
   for (const SensorKey& key : sensor_keys()) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/simulated_camera.h"
 
 #include <algorithm>
@@ -5,8 +6,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "acquisition/base/host_clock.h"
 #include "acquisition/core/camera_id.h"
-#include "acquisition/core/host_clock.h"
 #include "sim_devices/sensor/moving_scene.h"
 #include "sim_devices/sensor/super_resolution_stage.h"
 
@@ -127,8 +128,9 @@ class SceneTarget final : public Target, private MovingTarget, private SteppingT
 
  private:
   [[nodiscard]] Result<void> step_to(double delta_t_k, std::stop_token stop) override {
-    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the contrast stepped");
-    if (!std::isfinite(delta_t_k)) return fail(ErrorCode::invalid_input, "the simulated scene cannot step so");
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the contrast step");
+    if (!std::isfinite(delta_t_k))
+      return fail(ErrorCode::invalid_input, "the simulated scene needs a finite contrast to step to");
     scene_->step_to(delta_t_k);
     return {};
   }
@@ -136,10 +138,10 @@ class SceneTarget final : public Target, private MovingTarget, private SteppingT
     return std::array{1e-6, 1e6};
   }
   [[nodiscard]] Result<PlateRun> run_along_x(double to_mm, double speed_mm_s, std::stop_token stop) override {
-    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the plate ran");
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the plate moved");
     // Written so that NaN fails.
     if (!(speed_mm_s > 0) || !std::isfinite(to_mm) || to_mm == scene_->scene()->shift_mm.x)
-      return fail(ErrorCode::invalid_input, "the simulated plate cannot run so");
+      return fail(ErrorCode::invalid_input, "the simulated plate needs a speed above 0 and another finite position");
     return scene_->run_along_x(to_mm, speed_mm_s);
   }
 
@@ -178,7 +180,7 @@ void SceneHolder::step_to(double delta_t_k) {
 PlateScene SceneHolder::scene_at(double time_s, const SensorSpec& spec) {
   const std::scoped_lock lock(mutex_);
   if (steps_next_) {
-    // Multiples of the golden section's part leave no phase of the frame out.
+    // Multiples of the golden ratio spread the steps over all phases of the frame.
     const double phase = std::fmod(0.5 + 0.6180339887498949 * steps_made_++, 1);
     steps_->step(time_s_ + phase * (time_s - time_s_), scene_->delta_t_k);
     steps_next_ = false;

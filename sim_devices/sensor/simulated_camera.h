@@ -1,5 +1,5 @@
-// The sensor model as a camera of the bench, and the scene before it as a target. They share the scene; nothing else
-// connects them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sensor model as a camera of the bench, and the scene in front of it as a target. Only the scene connects them.
 #pragma once
 
 #include <memory>
@@ -14,19 +14,19 @@
 
 namespace todbench {
 
-/// What is in front of a simulated or emulated camera now. Thread-safe.
+/// The present scene of a simulated or emulated camera. Thread-safe.
 class SceneHolder {
  public:
   explicit SceneHolder(PlateScene scene);
   [[nodiscard]] std::shared_ptr<const PlateScene> scene() const;
-  /// The scene has been there long enough for any detector.
+  /// Sets a scene that counts as settled for any detector.
   void set(PlateScene scene);
-  /// The contrast steps at a moment between the last frame and the next: such moments are spread evenly over frames.
+  /// Steps the contrast between the last frame and the next, at moments spread evenly over the frame period.
   void step_to(double delta_t_k);
-  /// The scene in a run, if there is one, at a time of the camera's clock, which is remembered as the time that it is;
-  /// after a step with the contrast that the sensor has taken in.
+  /// Scene at a time of the camera's clock, which becomes the present time. During a run the plate is in motion. After
+  /// a step the contrast is the one that the detector has reached.
   [[nodiscard]] PlateScene scene_at(double time_s, const SensorSpec& spec);
-  /// Runs along x from where the plate is, from now on; the next set() ends it.
+  /// Starts a run along x from the present place of the plate; the next set() ends it.
   PlateRun run_along_x(double to_mm, double speed_mm_s);
 
  private:
@@ -35,22 +35,22 @@ class SceneHolder {
   std::optional<PlateRun> run_;
   std::optional<ContrastSteps> steps_;  ///< since the scene was set
   int steps_made_ = 0;
-  bool steps_next_ = false;  ///< to the contrast of the scene, before the next frame
+  bool steps_next_ = false;  ///< step to the contrast of the scene, before the next frame
   double time_s_ = 0;
 };
 
 struct SimulatedSourceOptions {
-  ModuleSensor::OnLine on_error_line{};  ///< of the program that is the sensor
+  ModuleSensor::OnLine on_error_line{};  ///< receives error output of the program in place of the sensor
   int dither = 1;                        ///< n: frame k shows the scene displaced by dither_px(n, k)
 };
 
-/// Exposes as fast as it is asked: frame k is expose(scene at that moment, k), of the model or of the program that is
-/// the sensor. `serial` distinguishes twins.
+/// Camera without delay: frame k is expose(present scene, k) of the model or of the program in place of the sensor.
+/// `serial` distinguishes twins.
 [[nodiscard]] std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
                                                             std::shared_ptr<SceneHolder> scene, std::string serial,
                                                             const SimulatedSourceOptions& options = {});
 
-/// Puts states into the scene at once. Plates in identity mounting.
+/// Target that sets states into the scene at once. Plates in identity mounting.
 [[nodiscard]] std::unique_ptr<Target> scene_target(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates);
 
 }  // namespace todbench

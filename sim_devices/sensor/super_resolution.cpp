@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/super_resolution.h"
 
 #include <algorithm>
@@ -14,14 +15,14 @@ namespace {
 
 constexpr int smallest_side = 16;
 
-/// Cubic Lagrange weights for the four neighbours -1, 0, 1, 2 of a place between 0 and 1. Exact for cubics; the blur
-/// leaves nothing that they do not follow.
+/// Cubic Lagrange weights for the four neighbours -1, 0, 1, 2 of a place between 0 and 1. Exact for cubics, which
+/// follow the blurred picture.
 std::array<double, 4> cubic_weights(double t) {
   return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
           (t + 1) * t * (t - 1) / 6};
 }
 
-/// image(x + shift) for x in `region`, which with its margin lies inside.
+/// image(x + shift) for x in `region`, which lies inside including its margin.
 cv::Mat1f displaced(const cv::Mat1f& image, cv::Point2d shift, cv::Rect region) {
   const int ix = static_cast<int>(std::floor(shift.x)), iy = static_cast<int>(std::floor(shift.y));
   const auto wx = cubic_weights(shift.x - ix);
@@ -42,7 +43,7 @@ cv::Mat1f displaced(const cv::Mat1f& image, cv::Point2d shift, cv::Rect region) 
   return out;
 }
 
-/// Where all of x, x + shift and the neighbours needed lie inside.
+/// Region in which x, x + shift and the required neighbours lie inside.
 cv::Rect common_region(cv::Size size, cv::Point2d shift) {
   const int left = 2 + std::max(0, static_cast<int>(std::ceil(-shift.x)));
   const int top = 2 + std::max(0, static_cast<int>(std::ceil(-shift.y)));
@@ -51,7 +52,7 @@ cv::Rect common_region(cv::Size size, cv::Point2d shift) {
   return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
 }
 
-/// One Gauss-Newton step for the shift; nothing where the picture does not fix both directions.
+/// One Gauss-Newton step for the shift; empty if the picture does not determine both directions.
 std::optional<cv::Point2d> step(const cv::Mat1f& reference, const cv::Mat1f& frame, cv::Point2d shift,
                                 cv::Rect region) {
   const cv::Mat1f moved = displaced(frame, shift, region);
@@ -76,7 +77,7 @@ std::optional<cv::Point2d> step(const cv::Mat1f& reference, const cv::Mat1f& fra
   return cv::Point2d(-(yy * xe - xy * ye) / determinant, -(xx * ye - xy * xe) / determinant);
 }
 
-/// Fractional part of the grid that fits the places best: circular mean of places modulo 1 / factor, in units of that.
+/// Offset of the best grid for the places, as a fraction of its step: circular mean of the places modulo 1 / factor.
 double best_offset(const std::vector<double>& places, int factor) {
   std::complex<double> sum = 0;
   for (const double place : places) sum += std::polar(1.0, 2 * std::numbers::pi * place * factor);
@@ -100,14 +101,14 @@ Axis placed_on_grid(const std::vector<double>& places, int factor) {
     axis.squares += std::pow((cell - axis.first_cell.back()) / factor, 2);
     if (k == 0 || axis.first_cell.back() < lowest) lowest = axis.first_cell.back();
   }
-  // The picture covers the reference frame: its cell 0 is the lowest one inside that pixel row.
+  // The picture covers the reference frame: its cell 0 is the lowest one inside that row of pixels.
   const int origin = std::max(lowest, axis.first_cell.front() - (factor - 1));
   for (int& cell : axis.first_cell) cell -= origin;
   axis.first_px = (origin + offset) / factor;
   return axis;
 }
 
-/// Cells without a sample take the value of the nearest cell with one, searched in growing squares.
+/// Fills cells without a sample with the nearest cell that has one, searching in growing squares.
 void fill_edges(cv::Mat1f& picture, const cv::Mat1i& counts) {
   const cv::Mat1f source = picture.clone();
   for (int row = 0; row < picture.rows; ++row) {
@@ -141,17 +142,18 @@ Result<void> check(const std::vector<cv::Mat1f>& frames, std::size_t shifts) {
 }  // namespace
 
 Result<cv::Point2d> frame_shift(const cv::Mat1f& reference, const cv::Mat1f& frame, double blur_sigma_px) {
-  if (reference.size() != frame.size()) return fail(ErrorCode::invalid_input, "registering frames of different size");
+  if (reference.size() != frame.size())
+    return fail(ErrorCode::invalid_input, "frames of different sizes cannot be registered");
   if (reference.rows < smallest_side || reference.cols < smallest_side)
-    return fail(ErrorCode::invalid_input, "registering frames of fewer than 16 pixels on a side");
-  // Without their level, so that a background of thousands of counts costs no digits.
+    return fail(ErrorCode::invalid_input, "frames of fewer than 16 pixels per side cannot be registered");
+  // The level is removed, because a background of thousands of counts would cost digits.
   cv::Mat1f a = reference - cv::mean(reference)[0];
   cv::Mat1f b = frame - cv::mean(frame)[0];
   cv::GaussianBlur(a, a, {}, blur_sigma_px, blur_sigma_px, cv::BORDER_REPLICATE);
   cv::GaussianBlur(b, b, {}, blur_sigma_px, blur_sigma_px, cv::BORDER_REPLICATE);
   cv::Mat1f window;
   cv::createHanningWindow(window, a.size(), CV_32F);
-  // Some versions apply the window to the pictures themselves: they get copies.
+  // Some versions of OpenCV apply the window to their arguments, so they get copies.
   const cv::Point2d start = cv::phaseCorrelate(a.clone(), b.clone(), window);
   const auto converged_from = [&](cv::Point2d shift) -> std::optional<cv::Point2d> {
     for (int iteration = 0; iteration < 50; ++iteration) {
@@ -169,7 +171,7 @@ Result<cv::Point2d> frame_shift(const cv::Mat1f& reference, const cv::Mat1f& fra
     if (2 * region.area() < a.size().area()) return 1e300;
     return cv::norm(displaced(b, shift, region), a(region), cv::NORM_L2SQR) / region.area();
   };
-  // Noise may lead the phase correlation astray; frames of one sequence are seldom far apart.
+  // The phase correlation may fail in noise. Frames of one sequence are rarely far apart.
   std::optional<cv::Point2d> best;
   for (const cv::Point2d from : {start, cv::Point2d(0, 0)}) {
     if (!std::isfinite(from.x) || !std::isfinite(from.y)) continue;
@@ -200,10 +202,10 @@ Result<std::vector<cv::Point2d>> frame_shifts(const std::vector<cv::Mat1f>& fram
 Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames, const std::vector<cv::Point2d>& shifts_px,
                                     int factor) {
   if (auto checked = check(frames, shifts_px.size()); !checked) return tl::unexpected(checked.error());
-  if (factor < 1 || factor > 8) return fail(ErrorCode::invalid_input, "super-resolution by a factor of 1 to 8");
+  if (factor < 1 || factor > 8) return fail(ErrorCode::invalid_input, "the factor of super-resolution must be 1 to 8");
   std::vector<double> xs, ys;
   for (const auto& shift : shifts_px) {
-    // Sample 0 of a frame shows what the reference has at -shift.
+    // Sample 0 of a frame shows the place -shift of the reference.
     const cv::Point2d place = shifts_px.front() - shift;
     if (!(std::abs(place.x) < frames.front().cols && std::abs(place.y) < frames.front().rows))
       return fail(ErrorCode::invalid_input, "a shift of super-resolution is larger than the picture");

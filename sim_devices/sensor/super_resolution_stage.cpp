@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/super_resolution_stage.h"
 
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <vector>
 
 #include "sim_devices/sensor/super_resolution.h"
@@ -31,6 +33,10 @@ class SuperResolutionStage final : public ChainStage {
   [[nodiscard]] int memory_frames() const override { return options_.frames - 1; }
   [[nodiscard]] int samples_per_pixel() const override { return options_.factor; }
   [[nodiscard]] cv::Point2d first_px() const override { return first_px_; }
+  [[nodiscard]] std::optional<cv::Point2d> believed_px() const override {
+    if (options_.shifts != FrameShifts::scan || seen_ == 0) return std::nullopt;
+    return dither_px(options_.factor, seen_ - 1);
+  }
 
  private:
   cv::Mat1f repeated(const cv::Mat1f& picture) {
@@ -40,7 +46,7 @@ class SuperResolutionStage final : public ChainStage {
     first_px_ = {-half, -half};
     return answer;
   }
-  /// Of the frames against the first of them.
+  /// Shifts of the frames against the first of them.
   [[nodiscard]] std::vector<cv::Point2d> scanned() const {
     const std::uint64_t first = seen_ - frames_.size();
     std::vector<cv::Point2d> shifts;

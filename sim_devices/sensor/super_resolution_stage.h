@@ -1,4 +1,5 @@
-// Super-resolution as a stage of the chain: the last frames, which are shifted against each other, to one finer
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Super-resolution as a stage of the chain: combines the last frames, displaced against each other, into a finer
 // picture.
 #pragma once
 
@@ -8,24 +9,24 @@
 
 namespace todbench {
 
-/// Where the shifts of the frames come from.
+/// Source of the shifts of the frames.
 enum class FrameShifts {
   measured,  ///< frame_shifts()
-  scan,      ///< known: dither_px() of the number of the picture, the first picture being number 0
+  scan,      ///< known: dither_px() of the number of the picture, counted from 0
 };
 
 struct SuperResolutionStageOptions {
-  int frames = 4;  ///< the last so many; factor^2 or more
+  int frames = 4;  ///< number of frames combined, the most recent ones; at least factor^2
   int factor = 2;  ///< samples per pixel and axis
   FrameShifts shifts = FrameShifts::measured;
 };
 
-/// The displacement of picture `index` of a camera that is dithered over n x n places of a pixel, along x first.
+/// Displacement of picture `index` of a camera that is dithered over n x n places of a pixel, along x first.
 [[nodiscard]] cv::Point2d dither_px(int n, std::uint64_t index);
 
-/// super_resolve() of the last frames; before there are as many, each sample is a pixel repeated. A place of the answer
-/// is that in the mean of the frames that it was made of. Errors of process(): `not_identifiable` with what
-/// super_resolve() and frame_shifts() say; the next picture may do.
+/// super_resolve() of the last frames. Until there are enough frames, each pixel is repeated. Places in the picture are
+/// means over its frames. Errors of process(): `not_identifiable` with the message of super_resolve() or
+/// frame_shifts(); the next picture may succeed.
 [[nodiscard]] std::unique_ptr<ChainStage> super_resolution_stage(const SuperResolutionStageOptions& options);
 
 }  // namespace todbench

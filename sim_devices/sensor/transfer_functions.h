@@ -1,5 +1,5 @@
-// Image formation in the frequency domain, in cycles per detector pitch: the product of the rows that the plan
-// simulates.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Image formation in the frequency domain, in cycles per detector pitch: the product of the effects in the plan.
 #pragma once
 
 #include <complex>
@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Optics as a function of radial frequency: the rows of stage::Optics, each as the plan says.
+/// Optics as a function of radial frequency: product of the planned rows of stage::Optics.
 class OpticsMtf {
  public:
   explicit OpticsMtf(const ChainScope& scope);
@@ -23,7 +23,7 @@ class OpticsMtf {
   std::vector<std::function<double(double)>> factors_;
 };
 
-/// The footprint along one axis: the rows of stage::Footprint, each as the plan says.
+/// Footprint along one axis: product of the planned rows of stage::Footprint.
 class FootprintMtf {
  public:
   explicit FootprintMtf(const ChainScope& scope);
@@ -34,20 +34,20 @@ class FootprintMtf {
   std::vector<stage::Footprint> factors_;
 };
 
-/// The rows of stage::Transfer that have something to do in this scene.
+/// Transfer functions of the planned rows of stage::Transfer that act in this scene.
 [[nodiscard]] std::vector<TransferFunction> other_transfers(const ChainScope& scope);
 
-/// All of image formation; readout row by row has no transfer, it moves samples.
+/// Transfer function of all of image formation. Sequential readout is not included, because it moves samples.
 [[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths,
                                                SceneMotion motion = {});
-/// The same at the frequencies m / period, |m| <= band, to the last bit. Optics know only the radius and the footprint
-/// is a product over the axes, so an eighth of the plane and one axis are computed.
+/// The same at the frequencies m / period, |m| <= band, bit for bit. Optics depend only on the radius and the footprint
+/// is a product over the axes, so only an eighth of the plane and one axis are computed.
 [[nodiscard]] TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope);
 
-/// What the target moves from one row of samples to the next, in pitches: the rows of stage::Readout, added up.
+/// Motion of the target from one row of samples to the next, in pitches: the sum over the rows of stage::Readout.
 [[nodiscard]] cv::Point2d readout_slope_of(const ChainScope& scope);
 
-/// What the simulated stages of image formation spread, added up.
+/// Sum of the spreads of the planned stages of image formation.
 [[nodiscard]] Spread spread_of(const ChainScope& scope);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // main() of the benchmarks. What they cannot show: first-use costs inside a run (caches are warm unless a name says
 // otherwise), and more than one thread.
 #include <benchmark/benchmark.h>

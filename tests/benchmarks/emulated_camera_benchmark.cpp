@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The emulated laboratory at full rate: its GigE camera through the Aravis back end, every frame taken for a minute.
 // One such camera per host (the control port of GigE Vision is fixed): the benchmark is skipped when the port is taken.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One psychometric fit with both intervals: profile likelihood and posterior.
 #include <benchmark/benchmark.h>
 

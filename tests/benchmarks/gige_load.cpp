@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Load and soak of the GigE Vision path: a camera on plain sockets, the Aravis back end, and a recording of every
 // frame.
 //   gige_load SECONDS [RATE_HZ WIDTH HEIGHT [RECORDING or - [FAULT_SHARE]]]

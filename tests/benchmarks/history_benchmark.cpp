@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The history of ten thousand sessions: made again from their folders, and a chart of one unit.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An identification experiment: 24 targets in three aspects at 8 ranges, 2000 decisions each.
 #include <benchmark/benchmark.h>
 

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Single measures: the noise by direction of a whole recording, and the MTF of an edge.
 #include <benchmark/benchmark.h>
 
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/tod/measures/edge_picture.h"
 #include "tod/measures/slanted_edge.h"
 #include "tod/measures/three_d_noise.h"

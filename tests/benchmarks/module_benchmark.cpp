@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A picture to a program of the user's and back.
 #include <benchmark/benchmark.h>
 #include <signal.h>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "sim_devices/module/module_process.h"
 
 namespace todbench {

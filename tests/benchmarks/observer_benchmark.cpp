@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The template observer: building a bank, deciding, and the random numbers both rest on.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Predicted against actual time of several plans: simulated ones, and one measured with a simulated camera. Processor
 // time of this process, so that other programs count as little as they can. Exit code 1 when a ratio is outside 1.35.
 #include <cmath>

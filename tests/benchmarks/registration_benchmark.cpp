@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Finding the plate in a picture, following it, and reading its contrast.
 #include <benchmark/benchmark.h>
 

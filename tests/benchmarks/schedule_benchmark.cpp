@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The next stimulus of the adaptive schedules.
 #include <benchmark/benchmark.h>
 

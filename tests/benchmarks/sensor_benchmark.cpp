@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The simulated sensor: pictures of single triangles, whole frames, and the 75 % size without trials.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A whole TOD on the simulated camera: two plates in four mountings at three contrasts in twelve phases, 5760 trials
 // from 288 presentations, and three fits. Everything is built anew each time.
 #include <benchmark/benchmark.h>

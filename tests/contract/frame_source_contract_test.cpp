@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every FrameSource promises, whatever is behind it: the same tests run on a simulation, on recordings, on an
 // emulated camera behind the real protocol, and on a real camera when TODBENCH_CONTRACT_CAMERA names one
 // ("gige:VENDOR-SERIAL", "u3v:...").

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Debian's Grid Engine, a master and an execution daemon on this host in namespaces of their own, on copies of their folders: an array job, an
 # element that is deleted in the middle of a task while the others go on, the same script again; one table, byte for byte, as one process.
 # Usage: gridengine_test.sh TODBENCH. Exit 0: passed, 77: Grid Engine cannot run here (said why on stdout), 1: failed.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What the tests of schedulers have in common, to be sourced: a small sweep, the table that one process makes of it, and that another way made
 # the same. Of whoever sources it: $todbench, the program; fail SENTENCE, which ends the test; and, for all_done, jobs_left, which prints what
 # the scheduler still has.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The same table, byte for byte, from one process, from four at a time, and from GNU parallel that is killed with one of its jobs and resumed.
 # Usage: parallel_test.sh TODBENCH. Exit 0: passed, 77: there is no GNU parallel (said on stdout), 1: failed.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Debian's Slurm, one controller and two nodes on this host in namespaces of their own: an array job, an array that is too long, an element
 # whose node is killed, one that is requeued; the same table, byte for byte, as one process.
 # Usage: slurm_test.sh TODBENCH. Exit 0: passed, 77: Slurm cannot run here (said why on stdout), 1: failed.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The printed Makefile and Snakefile, for real: a job that fails once and ends its workflow, the workflow again; one table, byte for byte, as
 # one process.
 # Usage: workflow_test.sh TODBENCH make|snakemake. Exit 0: passed, 77: it is not installed (said on stdout), 1: failed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The plans of docs/examples, read as the program reads them.
 #include <gmock/gmock.h>
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs every command of docs/first-hour.md, in order, in one empty folder: first_hour_test.py PROGRAM WINDOW SOURCES PICTURES.
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs every command of docs/guide/first-hour.md, in order, in one empty folder: first_hour_test.py PROGRAM WINDOW SOURCES PICTURES.
 
 The window is shown on an X server where xvfb-run is installed; the pictures of its pages are left in the folder PICTURES.
 
@@ -81,7 +82,7 @@ def put_window(tools, window):
 
 def main():
     program, window, sources, pictures = sys.argv[1:5]
-    page = pathlib.Path(sources, "docs/first-hour.md").read_text(encoding="utf-8")
+    page = pathlib.Path(sources, "docs/guide/first-hour.md").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         tools = pathlib.Path(folder, "bin")
         tools.mkdir()

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # installed_libraries_test.sh CMAKE BUILD SOURCE COMPILER: installs the libraries under a prefix, moves it, and builds an example with each
 # of the two packages, CMake's and pkg-config's.
 set -eu

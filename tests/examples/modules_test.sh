@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A shipped example of a module keeps the contract and sharpens as the others do.
 # Usage: modules_test.sh TODBENCH INTERPRETER PACKAGE COMMAND. Exit 0: passed, 77: there is no interpreter (said why on stdout), 1: failed.
 set -eu

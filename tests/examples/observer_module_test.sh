@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The shipped example of an observer as a program finds about the acuity of the built-in observer in the same frames.
 # Usage: observer_module_test.sh TODBENCH EXAMPLES. Exit 0: passed, 77: there is no interpreter (said why on stdout), 1: failed.
 set -eu

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """python_examples_test.py PROGRAM SOURCE: the Python reader of docs/examples against what the program writes. Exit code 77: skipped."""
 import json
 import shutil

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The shipped example of a sensor as a program keeps the contract and has the acuity of the built-in sensor of the same numbers, without its diffraction.
 # Usage: sensor_module_test.sh TODBENCH EXAMPLES. Exit 0: passed, 77: there is no interpreter (said why on stdout), 1: failed.
 set -eu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Feeds the kept inputs of a fuzzing target to it, and as many changed copies of them as asked for: the same ones every
 // time. A short form of
 // ./run fuzz for compilers without libFuzzer, which also knows what was covered. Usage: fuzz_NAME DIR [CHANGED].

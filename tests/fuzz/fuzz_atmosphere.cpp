@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any text as a table of transmittances, a spectrum or a tape7; what is accepted is a transmittance at every range.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whole GenICam descriptions: the guard first, then, where it has nothing against them, Aravis itself. Every feature is
 // evaluated on a camera whose registers hold anything, as the back end would. What ends or stops Aravis is a hole in
 // the guard.

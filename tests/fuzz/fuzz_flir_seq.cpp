@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a FLIR SEQ file: opened, and every frame read.
 #include "acquisition/recording/flir_seq.h"
 #include "tests/fuzz/fuzz_input.h"

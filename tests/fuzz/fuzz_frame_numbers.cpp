@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any numbers and times as those of a stream of frames: each gets a place, and where numbers began anew it is behind
 // all that were given before.
 #include <algorithm>

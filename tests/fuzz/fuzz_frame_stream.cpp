@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a recording of the bench: opened, and every frame read.
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/stream_header.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Streaming packets into the GigE Vision client: a camera opens the way, then every input is a run of packets, each two
 // bytes of length (big-endian) and that many bytes, sent to the client's stream port as anybody on the network could.
 #include <arpa/inet.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as what came for an image of any stated size: the pixels lie within them, or there are none.
 #include "acquisition/aravis/image_layout.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The bytes of a fuzzing run as what the parsers of the project take.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any text as the words of an instrument, as an answer of one, and as records of its remote procedure calls.
 #include "bench/plan/instrument_description.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as the file of one picture: .npy or TIFF.
 #include "acquisition/recording/picture_file.h"
 #include "tests/fuzz/fuzz_input.h"

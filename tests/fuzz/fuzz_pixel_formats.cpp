@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a picture in any format: decoded, and encoded again to the same counts.
 #include <algorithm>
 #include <array>

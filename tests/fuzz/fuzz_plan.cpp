@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any text as a plan; one that is accepted is written and read again to the same plan.
 #include "bench/plan/plan.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as what a Seek camera sends: as they are; repeated until they fill a frame; and as a small picture whose
 // dead pixels are found and filled, corrected by a shutter picture.
 #include <algorithm>

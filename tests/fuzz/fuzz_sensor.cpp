@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any text as the description of a sensor.
 #include "bench/plan/descriptions.h"
 #include "tests/fuzz/fuzz_input.h"

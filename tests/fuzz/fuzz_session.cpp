@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any text as the JSON files of a session: provenance, fits, comparison, verdict.
 #include <nlohmann/json.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any text as a sweep; what is accepted expands, and every task has a name of its own.
 #include <algorithm>
 #include <set>

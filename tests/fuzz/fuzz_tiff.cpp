@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a TIFF file: opened, and every page read.
 #include "acquisition/recording/tiff_stack.h"
 #include "tests/fuzz/fuzz_input.h"

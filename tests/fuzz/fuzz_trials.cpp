@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any text as trials and as counts; trials that are accepted are written and read again to the same.
 #include "bench/session/trials_csv.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a frame of a UVC camera that offers any sizes: the layout is chosen, the frame read, its telemetry too.
 #include <vector>
 
@@ -13,10 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint32_t code = codes[data[0] % 4];
   const int width = data[1];
   const int height = data[2];
-  const auto family = static_cast<VideoFamily>(data[3] % 3);
+  const auto family = static_cast<VideoFamily>(data[3] % 4);
   const std::vector<VideoMode> modes{{code, width, height}, {code, width, height + lepton_telemetry_rows(width)}};
 
-  auto layout = choose_layout(modes, family, "");
+  auto layout = choose_layout(modes, family, {});
   if (!layout) return 0;
   layout->row_bytes += data[0] / 4U;  // padding is the driver's
   fuzz::require(layout->picture.area() > 0);

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Runs one fuzzing target, beginning with its kept inputs. Usage: run_target.sh NAME SECONDS, from the root of the tree.
 # New inputs go to build/fuzz/corpus/NAME, what is found to build/fuzz/findings/NAME-*, what it says to build/fuzz/NAME.log.
 set -eu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs as the first program of a virtual machine, as root: emulated cameras are plugged into the kernel's virtual USB
 // host controller. The real uvcvideo driver stands between them and the V4L2 back end, the real usbfs between them and
 // libusb under the USB3 Vision back end.
@@ -22,20 +23,24 @@ using namespace std::chrono_literals;
 /// A virtual machine without hardware support is thirty times slower than its host.
 constexpr auto patience = 180s;
 
+/// Counts of 14 bits: temperature rows of 1/64 K stay below 256 K, as those of a real camera stay below 453 K.
+constexpr unsigned count_mask = 0x3FFF;
+
 cv::Mat1w picture(std::uint64_t index, int width, int height) {
   cv::Mat1w out(height, width);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      out(y, x) = static_cast<ushort>(257U * static_cast<unsigned>(index) + 7U * static_cast<unsigned>(x) +
-                                      1031U * static_cast<unsigned>(y));
+      const auto value =
+          257U * static_cast<unsigned>(index) + 7U * static_cast<unsigned>(x) + 1031U * static_cast<unsigned>(y);
+      out(y, x) = static_cast<ushort>(value & count_mask);
     }
   }
   return out;
 }
 
-/// 257 * 65281 = 1 modulo 2^16: the first pixel tells which exposure a picture is.
+/// 257 * 65281 = 1 modulo 2^16 and 2^14: the first pixel tells which exposure a picture is.
 std::uint64_t exposure_of(const cv::Mat1w& counts) {
-  return (counts(0, 0) * 65281U) & 0xFFFFU;
+  return (counts(0, 0) * 65281U) & count_mask;
 }
 
 /// A camera plugged into a port, and what sees it.

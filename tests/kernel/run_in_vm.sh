@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Runs a test program in a virtual machine under software emulation, with Debian's kernel and its virtual USB host controller.
 # Usage: run_in_vm.sh PROGRAM FOLDER [ARGUMENT ...]; FOLDER keeps the kernel between runs. Exit 0: every test passed, 77: there is no qemu
 # or no kernel to be had (said why on stdout), 1: a test failed or the machine did not come to an end.

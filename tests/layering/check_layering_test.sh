@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The layering check must find what it is there to find.
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
@@ -7,7 +8,7 @@ mkdir -p "$work/hvs/shape" "$work/tod/plate" "$work/tod/new" "$work/bench/sessio
 printf '#include "tod/presentation/trial.h"\n' >"$work/hvs/shape/upward.h"
 printf '#include <arv.h>\n' >"$work/tod/plate/camera.h"
 printf '#include <QWidget>\n' >"$work/bench/session/widget.h"
-printf '#include "acquisition/core/result.h"\n#include <vector>\n' >"$work/tod/plate/fine.h"
+printf '#include "acquisition/base/result.h"\n#include <vector>\n' >"$work/tod/plate/fine.h"
 printf '#include <vector>\n#include "tod/plate/fine.h"\n' >"$work/tod/plate/fine.cpp"
 printf '#include <vector>\n' >"$work/tod/new/room.h"
 found=$(sh "$here/check_layering.sh" "$work")
@@ -17,3 +18,9 @@ status=$?
 printf '#include "tod/plate/fine.h"\n#include <vector>\n' >"$work/tod/plate/fine.cpp"
 rm "$work/tod/new/room.h" "$work/hvs/shape/upward.h" "$work/tod/plate/camera.h" "$work/bench/session/widget.h"
 sh "$here/check_layering.sh" "$work" || { echo "a clean tree was refused"; exit 1; }
+unique() { python3 "$here/check_unique_types.py" "$work"; }
+printf 'namespace a {\nstruct Twice { int x; };\n}\nnamespace {\nstruct Once {};\n}\n' >"$work/hvs/shape/one.h"
+printf 'namespace a {\nclass Outer {\n struct Once {};\n};\nenum class Once { one };\n}\n' >"$work/hvs/shape/two.h"
+unique || { echo "types with names of their own were refused"; exit 1; }
+printf 'namespace a {\n// struct Once {\nenum class Twice : int { one };\n}\n' >"$work/tod/plate/three.h"
+! unique >/dev/null || { echo "two types of one name were not found"; exit 1; }

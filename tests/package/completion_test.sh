@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # completion_test.sh PROGRAM SOURCE: what the program offers the shell, and what bash makes of it. Exit code 77: bash-completion is missing.
 set -u
 program=$1 source=$2

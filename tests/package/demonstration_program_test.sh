@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # demonstration_program_test.sh TODBENCH TODBENCH_DEMO: the program that "./run demo" builds has the same demonstration as the whole one, and
 # nothing else.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # session_of_0_1_test.sh PROGRAM SESSION: a session that version 0.1 wrote is read, and says what it said then.
 set -eu
 program=$1

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # versions_test.sh SOURCE VERSION: what states a version or its date beside CMakeLists.txt states the same.
 set -eu
 cd "$1"

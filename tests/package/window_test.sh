@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # window_test.sh PROGRAM: the manual of the window, and a session that is not there.
 set -eu
 export QT_QPA_PLATFORM=offscreen

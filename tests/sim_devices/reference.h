@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Access to the reference numbers of tests/golden/sensor_reference.json.
 #pragma once
 

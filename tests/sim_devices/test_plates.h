@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Plates for tests: five rows of four triangles, spaced like the shipped ones.
 #pragma once
 

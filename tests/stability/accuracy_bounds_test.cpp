@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Wrapped signal and truncated band at every accuracy level against the tolerances that the level states.
 #include <gtest/gtest.h>
 

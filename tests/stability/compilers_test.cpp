@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers of every part of the computation, found again within 1e-12 by another compiler. The file was written by GCC
 // 12; TODBENCH_WRITE_GOLDEN=FILE in the environment writes a new one.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Counts without a maximum of the likelihood: the answer is a verdict and, where one exists, a limit known in closed
 // form.
 #include <gtest/gtest.h>

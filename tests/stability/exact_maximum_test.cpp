@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Data whose maximum is well defined but hard to reach in double precision, against 50-digit arithmetic.
 #include <gtest/gtest.h>
 

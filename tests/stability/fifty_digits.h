@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The psychometric function and its maximum in 50-digit arithmetic, from the definition: the second opinion.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every test of this family runs with trapped floating-point exceptions: a NaN that is made, a division by zero or an
 // overflow ends the program at the instruction that does it.
 #include <fenv.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The observer where noise vanishes or rules, where scores are equal, and where its decision variables are nearly one.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Spectra and images of shapes that meet the singular cases of the closed form, against 50-digit arithmetic.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ranges where the target line never meets the TOD curve, or meets it at the edge of what is known.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The simulated sensor at the ends of its counts, without noise and drowned in it, and on two threads.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Opens pages in headless Chromium and says what is wrong with them: browser_check.py URL...
 
 Wrong is: an error on the console or an exception, a request to another origin, something wider than the window at any of

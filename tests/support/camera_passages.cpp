@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/camera_passages.h"
 
 #include <gmock/gmock.h>

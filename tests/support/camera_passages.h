@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tests of cameras repeat, whatever the interface: a picture with a known value everywhere, and passages that hold
 // for every source.
 #pragma once
@@ -9,9 +10,9 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "acquisition/base/result.h"
 #include "acquisition/core/camera_registry.h"
 #include "acquisition/core/frame_source.h"
-#include "acquisition/core/result.h"
 
 namespace todbench::testing_support {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // main() of test programs with emulated GigE cameras. The control port of GigE Vision is fixed, so two such programs on
 // one host would drive each other's cameras: each one moves into a network namespace of its own where the system
 // permits it, and shares the host's loopback otherwise (ctest then runs one at a time).

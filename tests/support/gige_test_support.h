@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tests with an emulated GigE camera share: a private network, a camera in a process of its own.
 #pragma once
 

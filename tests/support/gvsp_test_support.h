@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tests with the GigE Vision camera on plain sockets share.
 #pragma once
 

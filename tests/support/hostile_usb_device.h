@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A USB device that misbehaves at one step of its conversation, and is itself otherwise.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Names of values that tests take as parameters: without them GoogleTest lists a test with the bytes of its parameter.
 #pragma once
 
@@ -26,7 +27,7 @@ inline void PrintTo(SeekModel model, std::ostream* out) {
 namespace test {
 
 [[nodiscard]] inline const char* name_of(VideoCameraKind kind) {
-  constexpr std::array<const char*, 5> kinds{"Y16", "Y14", "Grey", "Lepton", "TemperatureRows"};
+  constexpr std::array<const char*, 6> kinds{"Y16", "Y14", "Grey", "Lepton", "Boson", "TemperatureRows"};
   return kinds.at(static_cast<std::size_t>(kind));
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How long a test waits for something before it has failed.
 #pragma once
 

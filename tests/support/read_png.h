@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a PNG file shows, by the reading side of libpng.
 #pragma once
 

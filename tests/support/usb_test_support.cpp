@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/usb_test_support.h"
 
 #include "acquisition/usb/usb_backend.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tests with emulated USB cameras share. Programs run under umockdev's preload library.
 #pragma once
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A USB device served to a kernel over USB/IP: the device's side of the protocol of the Linux drivers vhci-hcd and
 // usbip-core (Documentation/usb/usbip_protocol.rst), control and bulk transfers.
 #pragma once
 
 #include <memory>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/lab/usb/usb_device.h"
 
 namespace todbench {

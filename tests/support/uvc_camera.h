@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A USB Video Class camera as a model: what a kernel's uvcvideo driver needs to see of a thermal camera. USB Video
 // Class 1.0, uncompressed payload, bulk streaming.
 #pragma once
@@ -7,7 +8,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/lab/usb/usb_device.h"
 #include "sim_devices/lab/video/video_frames.h"
 

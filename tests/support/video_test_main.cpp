@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // main() of test programs with emulated video cameras: they run under umockdev's preload library.
 #include <gmock/gmock.h>
 

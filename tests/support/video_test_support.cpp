@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/video_test_support.h"
 
 #include <gtest/gtest.h>
@@ -6,11 +7,15 @@
 
 namespace todbench::testing_support {
 
+int picture_bits(VideoCameraKind kind) {
+  return kind == VideoCameraKind::temperature_rows ? 14 : significant_bits(kind);
+}
+
 VideoBench start_video(const VideoCameraConfig& config, const VideoDriverQuirks& quirks) {
   VideoBench bench{.system = MockSystem::create(), .camera = nullptr};
   auto camera = EmulatedV4l2Camera::start(
       bench.system, config,
-      [width = config.width, height = config.height, bits = significant_bits(config.kind)](std::uint64_t index) {
+      [width = config.width, height = config.height, bits = picture_bits(config.kind)](std::uint64_t index) {
         return test_picture(index, width, height, bits);
       },
       quirks);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tests with emulated video cameras share: main() under umockdev's preload library.
 #pragma once
 
@@ -14,6 +15,10 @@ struct VideoBench {
   std::shared_ptr<MockSystem> system;
   std::unique_ptr<EmulatedV4l2Camera> camera;
 };
+
+/// Bits of the test pictures of a camera of this kind. Temperature rows get 14 of their 16: counts of 1/64 K below 256
+/// K. More bits would be above what the camera can measure, and steps as high as those beside the picture for people.
+[[nodiscard]] int picture_bits(VideoCameraKind kind);
 
 /// A camera that shows test_picture(); fails the test when it cannot start.
 [[nodiscard]] VideoBench start_video(const VideoCameraConfig& config = {}, const VideoDriverQuirks& quirks = {});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The same plan on every emulated camera, one line changed: every run comes to its end, every replay gives the same
 // bits, and the TOD is the same on every path within its interval.
 #include <cmath>

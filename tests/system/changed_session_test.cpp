@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions that somebody changed after they had ended: refused by every command that reads one, or read and said.
 #include <algorithm>
 #include <memory>
@@ -152,8 +153,8 @@ TEST_F(ChangedSessions, AReplayOfOneSaysSoInTheNewSession) {
 
   EXPECT_TRUE(completed(ended));
   EXPECT_EQ(one_object(ended)["accepted_changes"], Json({"log.txt"}));
-  EXPECT_THAT(content_of(at("r/provenance.json")), HasSubstr("changed after it had ended: log.txt"));
-  EXPECT_THAT(content_of(at("r/report.html")), HasSubstr("changed after it had ended: log.txt"));
+  EXPECT_THAT(content_of(at("r/provenance.json")), HasSubstr("changed after its end: log.txt"));
+  EXPECT_THAT(content_of(at("r/report.html")), HasSubstr("changed after its end: log.txt"));
   expect_whole_session(at("r"), "complete");
 }
 
@@ -172,7 +173,7 @@ TEST_F(ChangedSessions, WithoutAManifestAreChangedUnlessTheRunWasCutOff) {
   EXPECT_EQ(one_object(verify)["condition"], "cut_off");
   EXPECT_EQ(report.code, 0) << report.err;
   EXPECT_THAT(report.err, HasSubstr("cut off"));
-  EXPECT_THAT(content_of(at("m/report.html")), HasSubstr("nothing vouches for its files"));
+  EXPECT_THAT(content_of(at("m/report.html")), HasSubstr("its files cannot be verified"));
   expect_refused(run(range_of_m), 2, "was cut off");
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A program run as a user runs it: its own process, its output captured, its end awaited.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What accuracy costs, what a plan cannot reach, and sensors that cannot exist: as a user meets them.
 #include <cmath>
 
@@ -50,14 +51,14 @@ TEST(Cost, OfASessionIsKeptThereAndShownInItsReport) {
   const TemporaryFolder folder;
   folder.write("plan.toml", small_plan(1, "phases = 2\n"));
   ASSERT_TRUE(completed(todbench({"simulate", "./plan.toml", "--out", "s"}, {.folder = folder.path()})));
-  ASSERT_THAT(content_of(folder.path() / "s" / "report.html"), Not(HasSubstr("What accuracy costs")));
+  ASSERT_THAT(content_of(folder.path() / "s" / "report.html"), Not(HasSubstr("Cost of accuracy")));
 
   const Ended ended = todbench({"cost", "--session", "s", "--budget-s", "10", "--json"}, {.folder = folder.path()});
 
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(Json::parse(content_of(folder.path() / "s" / "cost.json")), one_object(ended));
   const std::string report = content_of(folder.path() / "s" / "report.html");
-  EXPECT_THAT(report, HasSubstr("What accuracy costs"));
+  EXPECT_THAT(report, HasSubstr("Cost of accuracy"));
   EXPECT_THAT(report, HasSubstr("id=\"cost-result-title\""));
   expect_whole_session(folder.path() / "s", "complete");
   // The report rebuilt from the folder alone is the same.
@@ -93,7 +94,7 @@ TEST(Cost, RefusesWhatItCannotTake) {
 
   expect_refused(todbench({"cost"}, here), 2, "cost: PLAN.toml or --session is required");
   expect_refused(todbench({"cost", "dmeo"}, here), 2, "unknown plan 'dmeo', did you mean 'demo'?");
-  expect_refused(todbench({"cost", "./plan.toml", "--session", "s"}, here), 2, "--session: the plan is that of the");
+  expect_refused(todbench({"cost", "./plan.toml", "--session", "s"}, here), 2, "--session already provides the plan");
   expect_refused(todbench({"cost", "--session", "s"}, here), 2, "s: not a session folder");
   expect_refused(todbench({"cost", "./plan.toml", "--budget-s", "nan"}, here), 2,
                  "--budget-s: expected a number from 0.1 to 86400");
@@ -120,8 +121,7 @@ TEST(ToleranceOutOfReach, IsRefusedWithTheBestThatIsReachableAndItsPrice) {
 
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "s"));
     expect_refused(ended, 2, "a tolerance of 0.05 % cannot be met at 16.9 K");
-    EXPECT_THAT(ended.err,
-                ::testing::ContainsRegex("reach about 0\\.[0-9]+ %, for about [0-9.]+ s over all contrasts"));
+    EXPECT_THAT(ended.err, ::testing::ContainsRegex("reach about 0\\.[0-9]+ %, in about [0-9.]+ s over all contrasts"));
   }
 }
 
@@ -139,7 +139,7 @@ TEST(ToleranceOutOfReach, IsNamedForTheWorstContrastHoweverSmallItIs) {
   for (const std::string tolerance : {"1e-9", "0.05"}) {
     const Ended ended = todbench({"plan", "demo", "--accuracy", "auto", "--tolerance-percent", tolerance}, {});
 
-    expect_refused(ended, 2, "% cannot be met at 0.23 K: the most noise draws per size, 8000, reach about ");
+    expect_refused(ended, 2, "% cannot be met at 0.23 K: the maximum of 8000 noise draws per size can reach about ");
   }
 }
 
@@ -185,8 +185,8 @@ TEST(PlanWithoutThreshold, IsInconclusiveBeforeItStarts) {
   EXPECT_EQ(json.code, 3) << json.err;
   EXPECT_TRUE(one_object(json)["predicted_uncertainty_percent"].is_null());
   EXPECT_EQ(words.code, 3) << words.err;
-  EXPECT_THAT(words.err, HasSubstr("the plan has no identifiable threshold: at 0.001 K: no size up to 40 pitches is "
-                                   "judged 75 % correct"));
+  EXPECT_THAT(words.err, HasSubstr("the plan has no identifiable threshold: at 0.001 K: no size up to 40 pitches "
+                                   "reaches 75 % correct answers"));
 }
 
 struct ImpossibleSensor {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The whole job on the emulated laboratory.
 #include "tests/system/system_test_support.h"
 

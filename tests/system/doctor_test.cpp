@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // todbench doctor as a user runs it: on this system, and on one of files.
 #include "tests/system/system_test_support.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The program before a GigE Vision camera whose description would end, fill or stop it: one sentence, exit code 4.
 #include <signal.h>
 
@@ -17,7 +18,7 @@ std::unique_ptr<GvspCamera> start(GvspCameraConfig config) {
   return camera ? std::move(*camera) : nullptr;
 }
 
-/// A description whose width depends on itself.
+/// A description whose width has a circular reference.
 std::string endless_description() {
   std::string xml = genicam_xml(describe_camera(CameraModel::ax5, {}).genicam);
   const std::string value = "<pValue>WidthRegister</pValue>";
@@ -45,9 +46,9 @@ TEST(HostileCamera, EndsNoCommand) {
   const Ended listed = todbench({"devices"}, {.folder = folder.path()});
 
   EXPECT_EQ(recorded.code, 4) << recorded.err;
-  EXPECT_THAT(lines_of(recorded.err).back(), HasSubstr("of Width: its value depends on itself"));
+  EXPECT_THAT(lines_of(recorded.err).back(), HasSubstr("node Width: its value has a circular reference"));
   EXPECT_EQ(measured.code, 4) << measured.err;
-  EXPECT_THAT(lines_of(measured.err).back(), HasSubstr("of Width: its value depends on itself"));
+  EXPECT_THAT(lines_of(measured.err).back(), HasSubstr("node Width: its value has a circular reference"));
   EXPECT_EQ(listed.code, 0) << listed.err;
   EXPECT_THAT(listed.out, HasSubstr("gige:FLIR-TB0002"));
 }
@@ -61,7 +62,7 @@ TEST(HostileCamera, HasNoDeviceOfTheHostRead) {
   const Ended ended = todbench(record_command(), {.folder = folder.path()});
 
   EXPECT_EQ(ended.code, 4) << ended.err;
-  EXPECT_THAT(lines_of(ended.err).back(), HasSubstr("/dev/zero, which is no regular file"));
+  EXPECT_THAT(lines_of(ended.err).back(), HasSubstr("/dev/zero, which is empty or not a regular file"));
 }
 
 TEST(SlowCamera, TellsHowFarItIsAndIsLeftOnAStopRequest) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Single measures, as a user and other programs ask for them.
 #include <array>
 #include <bit>
@@ -79,7 +80,7 @@ TEST(NoiseComponents, RefuseACubeAcrossACorrectionUnlessAskedToTakeIt) {
   const std::string recording = raw_recording(folder, cube);
 
   expect_refused(todbench({"noise", recording, "--components-only", "--json"}), 2,
-                 "correction of the camera lies before frame 13");
+                 "the camera performed a correction (NUC) before frame 13");
   EXPECT_EQ(todbench({"noise", recording, "--components-only", "--across-corrections"}).code, 0);
 }
 
@@ -121,7 +122,7 @@ TEST(Sfr, RefusesEveryEdgeThatItCannotMeasureWithOneSentence) {
   broken(1, 1) = std::nan("");
   refuse(upright.picture(), "less than one pixel");
   refuse(cv::min(picture, 0.8), "clipped");
-  refuse(broken, "no number");
+  refuse(broken, "not finite");
   refuse(cv::Mat1d::zeros(80, 41), "no edge");
   refuse(picture, "slanted by", {"--axis", "y"});
   refuse(picture, "beyond the picture", {"--region", "10,10,100,20"});
@@ -163,8 +164,8 @@ TEST(Sitf, RefusesStepsThatGiveNoLine) {
   refuse("delta_t_k,counts\n1,1\n1,2\n1,3\n", "no spread");
   refuse("delta_t_k,counts\n1,1\n2,nan\n3,3\n", "steps.csv:3: column counts: expected a number");
   refuse("delta_t_k,counts,counts_se\n1,1,1\n2,2,0\n3,3,1\n",
-         "steps.csv:3: the uncertainty of the signal has to be above 0");
-  refuse("delta_t_k,counts,counts_se\n1,1,1\n2,2,\n3,3,1\n", "some steps and not for others");
+         "steps.csv:3: the uncertainty of the signal must be above 0");
+  refuse("delta_t_k,counts,counts_se\n1,1,1\n2,2,\n3,3,1\n", "for all steps or for none");
   refuse("celsius,counts\n1,1\n2,2\n3,3\n", "delta_t_k");
 }
 
@@ -189,7 +190,7 @@ TEST(ConformityCommand, DecidesAndEndsWithTheFittingCode) {
       one_object(todbench({"conformity", "--value", "2", "--u", "0.1", "--nu", "2", "--at-least", "1.8", "--json"}));
   EXPECT_NEAR(few["guard_band"].get<double>(), 0.453, 0.0005);
   EXPECT_EQ(few["decision"], "inconclusive");
-  expect_refused(todbench({"conformity", "--value", "1", "--u", "0", "--at-least", "0"}), 2, "above 0");
+  expect_refused(todbench({"conformity", "--value", "1", "--u", "0", "--at-least", "0"}), 2, "greater than 0");
   expect_refused(todbench({"conformity", "--value", "nan", "--u", "1", "--at-least", "0"}), 2, "--value");
   expect_refused(todbench({"conformity", "--value", "1", "--u", "1"}), 2, "no limit");
   expect_refused(todbench({"conformity", "--value", "1", "--u", "1", "--at-least", "0", "--rule", "mild"}), 2,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Modules in plans and sensor files, as a user runs them: what changes nothing, what breaks in the middle of a run.
 #include <cmath>
 #include <numbers>
@@ -46,6 +47,64 @@ TEST_F(Modules, ThatChangeNothingLeaveEveryAnswerAsItIs) {
   EXPECT_THAT(content_of(at("with") / "report.html"), HasSubstr("Module (picture)"));
 }
 
+/// A contrast of 4 K with a limit that the acuity does not clearly meet.
+std::string at_4_k(std::string plan) {
+  const std::string key = "delta_t_k = [16.9]";
+  plan.replace(plan.find(key), key.size(), "delta_t_k = [4]");
+  return plan + "[[limits.acuity]]\ndelta_t_k = 4\nleast_acuity_per_mrad = 0.49\n";
+}
+
+TEST_F(Modules, ThatAreAGainAndAnOffsetChangeNoAcuityAndNoVerdict) {
+  // Whole counts behind a gain of 0.3 are half of the noise; hvs-1 has ten times as much of its own.
+  const std::vector<std::string> stages = {"identity", "affine=0.3,0", "affine=3,0", "affine=0.3,4000",
+                                           "affine=1,-2000"};
+  for (const std::string& command : {std::string("simulate"), std::string("measure")}) {
+    std::vector<Json> points;
+    for (const std::string& stage : stages) {
+      const std::string name = command + std::to_string(points.size());
+      const std::string section = module_section(stage);
+      folder_.write(name + ".toml", at_4_k(command == "measure" ? small_measurement(6, section)
+                                                                : small_plan(6, "phases = 6\n" + section)));
+      const Ended ended = run({command, "./" + name + ".toml", "--out", name, "--json"});
+      ASSERT_TRUE(completed(ended)) << stage;
+      const Json json = one_object(ended);
+      points.push_back(json["points"][0]);
+      points.back()["decision"] = json["verdict"];
+    }
+    for (std::size_t i = 1; i < stages.size(); ++i) {
+      EXPECT_EQ(points[i]["decision"], points[0]["decision"]) << command << " " << stages[i];
+      EXPECT_NEAR(points[i]["acuity_per_mrad"].get<double>() / points[0]["acuity_per_mrad"].get<double>(), 1, 0.02)
+          << command << " " << stages[i];
+      EXPECT_EQ(points[i]["adequacy"], points[0]["adequacy"]) << command << " " << stages[i];
+    }
+  }
+}
+
+TEST_F(Modules, ThatCutOffByThemselvesLeaveNoVerdict) {
+  // The surround is at 5000 counts, the triangles at 5400; 16383 is the end of the counts.
+  for (const std::string& stage : {std::string("ceiling=5100"), std::string("affine=3.2,0")}) {
+    folder_.write(stage + ".toml", at_4_k(small_plan(6, "phases = 6\n" + module_section(stage))));
+    const Ended ended = run({"simulate", "./" + stage + ".toml", "--out", stage, "--json"});
+
+    EXPECT_EQ(ended.code, 3) << stage << ended.err;
+    const Json json = one_object(ended);
+    EXPECT_EQ(json["verdict"], "inconclusive") << stage;
+    EXPECT_THAT(json["points"][0]["adequacy"].dump(), HasSubstr("\"clipping\"")) << stage;
+  }
+}
+
+TEST_F(Modules, ThatCutOffLeaveNoAcuityInTheHistory) {
+  folder_.write("fine.toml", at_4_k(small_measurement(6, module_section("identity"))));
+  folder_.write("cut.toml", at_4_k(small_measurement(6, module_section("ceiling=5100"))));
+  for (const std::string& name : {std::string("fine"), std::string("cut")}) {
+    ASSERT_TRUE(completed(run({"measure", "./" + name + ".toml", "--out", name})));
+    EXPECT_EQ(run({"history", "add", name, "--index", name + ".sqlite"}).code, 0);
+  }
+
+  EXPECT_THAT(run({"history", "export", "--index", "fine.sqlite"}).out, HasSubstr(",acuity,"));
+  EXPECT_THAT(run({"history", "export", "--index", "cut.sqlite"}).out, ::testing::Not(HasSubstr(",acuity,")));
+}
+
 TEST_F(Modules, OfASessionRunInAReplayOnlyWhereTheyAreAllowedTo) {
   folder_.write("plan.toml", small_measurement(2, "[measurement]\nrecord_frames = true\n" +
                                                       module_section("double", "parameters = { strength = \"2\" }\n")));
@@ -73,6 +132,11 @@ TEST_F(Modules, AndPackagesAreComparedOnTheRecordedFramesOfASession) {
   EXPECT_EQ(json["results"][2]["trials"], json["results"][0]["trials"]);
   EXPECT_EQ(json["warnings"].size(), 1u) << "the filter remembers longer than the run left out";
   expect_refused(run({"enhance", ".", "--packages", "same.toml", "--out", "no"}), 2, "");
+
+  folder_.write("scan.toml", "[[stage]]\nkind = \"super-resolution\"\nshifts = \"scan\"\n");
+  const Ended at_rest = run({"enhance", "m", "--packages", "scan.toml", "--out", "s"});
+  EXPECT_EQ(at_rest.code, 6) << at_rest.err;
+  EXPECT_THAT(at_rest.err, HasSubstr("the frames do not follow the scan"));
 }
 
 TEST_F(Modules, AndPackagesAreComparedOnTheFramesOfACameraThatIsMeasuredForThem) {
@@ -153,7 +217,8 @@ TEST_F(Modules, ThatAreTheSensorHaveTheAcuityAndTheTransferOfTheBuiltInOne) {
   }
   const Json record = Json::parse(content_of(at("program") / "provenance.json"));
   EXPECT_EQ(record["modules"][0]["place"], "sensor");
-  ASSERT_EQ(compared.code, 0) << compared.err;
+  // Two phases are too few for thresholds that are fit for a decision.
+  ASSERT_EQ(compared.code, 3) << compared.err;
   const Json models = one_object(compared);
   EXPECT_TRUE(models["pixels"][0]["rms_k"].is_null()) << "a program shows no signal without its noise";
   EXPECT_LT(models["pixels"][1]["rms_k"], 0.5);
@@ -173,7 +238,7 @@ TEST_F(Modules, ThatAreTheSensorAndBreakAreNamedAndTheTrialsKept) {
   } cases[] = {{"ends", "ends 49", "", "that is enough", 5, true},
                {"nan", "nan 49", "", "not finite", 5, true},
                {"shape", "shape 49", "", "shape", 5, true},
-               {"text", "text 49", "", "no .npy array", 5, true},
+               {"text", "text 49", "", "not a .npy array", 5, true},
                {"hang", "hang 49", "limit_ms = 3000\n", "3000 ms", 5, true},
                {"endless", "endless", "", "", 5, false}};
   for (const auto& [name, arguments, more, sentence, code, trials] : cases) {
@@ -222,7 +287,7 @@ TEST_F(Modules, ThatBreakInTheMiddleOfARunAreNamedAndTheTrialsKept) {
   } cases[] = {{"ends", "ends 49", "", "that is enough"},
                {"nan", "nan 49", "", "not finite"},
                {"shape", "shape 49", "", "shape"},
-               {"text", "text 49", "", "no .npy array"},
+               {"text", "text 49", "", "not a .npy array"},
                {"hang", "hang 49", "limit_ms = 3000\n", "3000 ms"},
                {"scores", "hvs nan 25", "place = \"observer\"\n", "not finite"},
                {"few", "hvs shape 25", "place = \"observer\"\n", "shape"}};
@@ -244,7 +309,7 @@ TEST_F(Modules, AreRefusedInASentenceWhereTheyCannotBe) {
     folder_.write("bad.toml", small_plan(1, section));
     expect_refused(run({"simulate", "./bad.toml", "--out", "bad"}), 2, sentence);
   };
-  refusal("[[module]]\ncommand = \"\"\n", "is empty");
+  refusal("[[module]]\ncommand = \"\"\n", "found an empty text");
   refusal("[[module]]\nplace = \"picture\"\n", "command");
   refusal("[[module]]\ncommand = \"cat\"\nplace = \"air\"\n", "place");
   refusal("[schedule]\nanswers = \"graded\"\n" + module_section("hvs", "place = \"observer\"\n"), "graded");
@@ -293,7 +358,7 @@ TEST(DynamicCommand, MeasuresAPlanThatMovesAndRefusesInASentence) {
   expect_refused(run({"dynamic"}), 2, "--speeds-mrad-s");
   expect_refused(run({"dynamic", "./moving.toml", "--speeds-mrad-s", "3"}), 2, "");
   folder.write("fast.toml", small_plan(1, "[motion]\nspeeds_mrad_s = [9000]\n"));
-  expect_refused(run({"dynamic", "./fast.toml"}), 2, "pixels a frame");
+  expect_refused(run({"dynamic", "./fast.toml"}), 2, "pixels per frame");
   folder.write("long.toml", content_of(source_file("sim_devices/sensors/sc2000.toml")) + "exposure_ms = 21\n");
   expect_refused(run({"dynamic", "--speeds-mrad-s", "3", "--sensor", "./long.toml"}), 2, "exposure_ms");
 }

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The noise of recordings, as a user asks for it.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/system/system_test_support.h"
@@ -122,7 +123,57 @@ TEST(NoiseCommand, StatesNoNoiseOfCountsThatHoldNone) {
     EXPECT_TRUE(json["temporal_noise"].is_null()) << json["temporal_noise"];
     EXPECT_EQ(json["points"].size(), 0u);
   }
-  expect_refused(todbench({"noise", still}), 2, "two frames that differ");
+  expect_refused(todbench({"noise", still}), 2, "at least two different frames");
+}
+
+/// Frames of 80 x 60 pixels, each changed by its number.
+template <typename Change>
+std::string changed_frames(Change change) {
+  constexpr std::size_t frame_bytes = std::size_t{2} * 80 * 60;
+  std::string frames = white_frames(8000, 5);
+  std::string out;
+  for (std::size_t k = 0; k * frame_bytes < frames.size(); ++k)
+    out += change(k, frames.substr(k * frame_bytes, frame_bytes));
+  return out;
+}
+
+TEST(NoiseCommand, RefusesFramesThatAreByteSwappedRotatedOrRepeated) {
+  const TemporaryFolder folder;
+  const auto swapped = [](std::size_t, std::string frame) {
+    for (std::size_t i = 0; i < frame.size(); i += 2) std::swap(frame[i], frame[i + 1]);
+    return frame;
+  };
+  // A warm half makes the rows tell where they belong.
+  const auto rotated = [](std::size_t k, std::string frame) {
+    for (std::size_t i = 0; i < frame.size() / 2; i += 2) frame[i + 1] = static_cast<char>(frame[i + 1] + 1);
+    const std::size_t shift = k % 4 == 3 ? std::size_t{2} * 80 * 17 : 0;
+    return frame.substr(shift) + frame.substr(0, shift);
+  };
+  std::vector<std::string> seen;
+  const auto repeated = [&](std::size_t k, const std::string& frame) {
+    seen.push_back(frame);
+    return k >= 30 ? seen[k - 4] : frame;
+  };
+  for (const auto& [frames, sentence] :
+       {std::pair{changed_frames(swapped), "40 of 40 frames have the two bytes of their pixels swapped"},
+        {changed_frames(rotated), "10 of 40 frames are oriented or shifted differently from the frames before them"},
+        {changed_frames(repeated), "repeat an earlier frame"}}) {
+    const std::string file = folder.write("damaged.raw", frames).string() + "?width=80&height=60";
+    expect_refused(todbench({"noise", file}), 5, sentence);
+    expect_refused(todbench({"noise", file, "--components-only"}), 5, sentence);
+  }
+}
+
+TEST(NoiseCommand, TakesEachExposureOnceOfACameraThatSendsItTwice) {
+  const TemporaryFolder folder;
+  const auto twice = [](std::size_t, const std::string& frame) { return frame + frame; };
+  const std::string file = folder.write("twice.raw", changed_frames(twice)).string() + "?width=80&height=60";
+
+  const Ended ended = todbench({"noise", file, "--contrast-over-noise", "8", "--json"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("sends each exposure 2 times"));
+  EXPECT_NEAR(one_object(ended)["temporal_noise"].get<double>() / std::sqrt(25 + 1.0 / 12), 1, 0.012);
 }
 
 TEST(NoiseCommand, FindsNothingWrongWithWhiteNoise) {
@@ -155,7 +206,7 @@ TEST(NoiseCommand, TakesTheSamePixelsForAllNumbersWhereAThirdIsDead) {
   // Of 4800 pixels, four standard deviations of the share.
   EXPECT_NEAR(json["pixels_left_out"].get<double>() / 4800, 0.33, 4 * std::sqrt(0.33 * 0.67 / 4800));
   EXPECT_NEAR(json["usable_share"].get<double>(), 1 - json["pixels_left_out"].get<double>() / 4800, 1e-12);
-  EXPECT_THAT(ended.err, HasSubstr("in no number"));
+  EXPECT_THAT(ended.err, HasSubstr("all results exclude them"));
   // The pixels' part is known to 0.3 %, that of 40 whole frames to 11 %: the frames are the same in both.
   const Json& c = json["components"];
   EXPECT_NEAR(c["tvh"].get<double>() / std::sqrt(25 + 1.0 / 12), 1, 0.02);
@@ -198,7 +249,7 @@ TEST(NoiseCommand, WithholdsTheAcuityWhereTheSceneMoved) {
   const Ended ended = todbench({"noise", recordings + "flir_sc660.seq", "--json"});
 
   EXPECT_EQ(ended.code, 3) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("this is not the camera's noise"));
+  EXPECT_THAT(ended.err, HasSubstr("this is not the noise of the camera"));
   const Json json = one_object(ended);
   EXPECT_EQ(json["verdict"], "scene_moved");
   EXPECT_EQ(json["points"].size(), 0u);

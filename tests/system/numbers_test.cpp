@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // JSON of fit, mtf and render: exactly the keys that others rely on, and values with closed forms.
 #include <cmath>
 #include <numbers>
@@ -26,7 +27,8 @@ TEST(FitJson, HasTheKeysOfTheContractAndAThresholdBetweenTheLevels) {
 
   EXPECT_THAT(keys_of(json), UnorderedElementsAre("verdict", "threshold", "ci95", "slope", "lapse", "log_likelihood",
                                                   "deviance", "degrees_of_freedom", "posterior", "slope_at_cap",
-                                                  "adequacy", "estimator", "estimator_reason"));
+                                                  "adequacy", "estimator", "estimator_reason", "sensitivity"));
+  EXPECT_THAT(keys_of(json["sensitivity"]), UnorderedElementsAre("free_lapse_threshold", "shift_in_half_widths"));
   EXPECT_EQ(json["adequacy"], Json::parse(R"({"adequate": true, "findings": []})"));
   EXPECT_THAT(keys_of(json["posterior"]), UnorderedElementsAre("median", "ci95", "prior_bound"));
   EXPECT_EQ(json["verdict"], "ok");

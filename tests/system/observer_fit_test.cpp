@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An observer fitted to people, as a user asks for it.
 #include <gmock/gmock.h>
 
@@ -99,7 +100,7 @@ TEST_F(ObserverFitCommand, RefusesWhatCannotBeFittedInOneSentence) {
   const std::vector<std::string> fit{"observer", "fit", "a", "--out", "x.toml", "--free"};
 
   expect_refused(run(with(fit, {"blurr_sigma_samples"})), 2, "did you mean 'blur_sigma_samples'");
-  expect_refused(run(with(fit, {"lapse,lapse"})), 2, "there twice");
+  expect_refused(run(with(fit, {"lapse,lapse"})), 2, "listed twice");
   expect_refused(run(with(fit, {"lapse", "--from", "nobody"})), 2, "unknown observer");
   expect_refused(run({"observer", "fit", "a", "a", "--out", "x.toml", "--free", "lapse"}), 2, "the same answers");
   expect_refused(run({"observer", "fit", "none", "--out", "x.toml", "--free", "lapse"}), 2, "none");
@@ -127,12 +128,12 @@ TEST_F(ObserverFitCommand, WritesNoObserverForAnswersOfAnotherKind) {
   const Ended ended = run(with(quick, {"--out", "x.toml"}));
 
   EXPECT_EQ(ended.code, 3) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("no observer was written"));
+  EXPECT_THAT(ended.err, HasSubstr("no parameter file was written"));
   const Json json = one_object(ended);
   EXPECT_FALSE(json["accepted"]);
   EXPECT_TRUE(json["parameter_file"].is_null());
   EXPECT_FALSE(std::filesystem::exists(at("x.toml")));
-  EXPECT_THAT(content_of(at("x.html")), HasSubstr("MODEL REFUSED"));
+  EXPECT_THAT(content_of(at("x.html")), HasSubstr("MODEL REJECTED"));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the program says before it measures: effects, trials, uncertainty, time, and what a comparison can show.
 #include "sim_devices/sensor/effect_list.h"
 #include "tests/system/system_test_support.h"
@@ -84,7 +85,7 @@ TEST_F(Planning, SkipAndForceAreObeyedAndTheReportSaysSo) {
   const Ended simulated = with_asked({"simulate", "./plan.toml", "--out", "s", "--json"});
 
   ASSERT_EQ(planned.code, 0) << planned.err;
-  EXPECT_THAT(planned.err, HasSubstr("effect detector is skipped on request: the tolerance is not kept"));
+  EXPECT_THAT(planned.err, HasSubstr("effect detector is skipped on request: the tolerance is not guaranteed"));
   ASSERT_TRUE(completed(simulated));
   const Json before = one_object(planned)["effects"], after = one_object(simulated)["plan"];
   EXPECT_EQ(before, after);  // what was said is what was done
@@ -94,7 +95,7 @@ TEST_F(Planning, SkipAndForceAreObeyedAndTheReportSaysSo) {
   EXPECT_THAT(effect_of(after, "temporal_noise")["reason"].get<std::string>(), HasSubstr("simulated on request"));
   const std::string report = content_of(at("s") / "report.html");
   EXPECT_THAT(report, AllOf(HasSubstr("skipped on request"), HasSubstr("simulated on request"),
-                            HasSubstr("the tolerance is not kept")));
+                            HasSubstr("the tolerance is not guaranteed")));
   const Json provenance = Json::parse(content_of(at("s") / "provenance.json"));
   EXPECT_EQ(effect_of(provenance["effects"], "detector")["decision"], "skip");
 }
@@ -131,16 +132,17 @@ TEST_F(Planning, AComparisonThatThePlanCannotDecideIsWarnedOfBeforeAndAfter) {
   const Ended compared = run({"compare", "m", "n", "--json"});
 
   ASSERT_EQ(few.code, 0) << few.err;
-  EXPECT_THAT(few.err, AllOf(HasSubstr("warning: the plan can hardly show equivalence within 10 %"),
+  EXPECT_THAT(few.err, AllOf(HasSubstr("warning: the plan is unlikely to show equivalence within 10 %"),
                              HasSubstr("80 % needs"), HasSubstr("(160 planned)")));
   ASSERT_EQ(many.code, 0) << many.err;
-  EXPECT_THAT(many.err, AllOf(HasSubstr("equivalent within 30 %"), Not(HasSubstr("warning: the plan can hardly"))));
+  EXPECT_THAT(many.err,
+              AllOf(HasSubstr("equivalent within 30 %"), Not(HasSubstr("warning: the plan is unlikely to show"))));
   ASSERT_TRUE(completed(measured));
   ASSERT_TRUE(completed(again));
-  EXPECT_THAT(measured.err, HasSubstr("the plan can hardly show equivalence within 10 %"));
-  EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("the plan can hardly show equivalence within 10 %"));
+  EXPECT_THAT(measured.err, HasSubstr("the plan is unlikely to show equivalence within 10 %"));
+  EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("the plan is unlikely to show equivalence within 10 %"));
   ASSERT_TRUE(completed(compared));
-  EXPECT_THAT(compared.err, AllOf(HasSubstr("warning: trials like these"), HasSubstr("(160 made)")));
+  EXPECT_THAT(compared.err, AllOf(HasSubstr("warning: with this number of trials"), HasSubstr("(160 made)")));
 }
 
 TEST_F(Planning, NumbersOfFramesGoWithTheirContrasts) {

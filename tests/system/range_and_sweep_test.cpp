@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ranges through air, test pictures and sweeps as a user runs them.
 #include <cmath>
 #include <fstream>
@@ -5,8 +6,8 @@
 
 #include "acquisition/recording/picture_file.h"
 #include "acquisition/recording/tiff_writer.h"
+#include "bench/picture_files/encoded_picture.h"
 #include "bench/plan/descriptions.h"
-#include "bench/text/encoded_picture.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {
@@ -117,7 +118,7 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   expect_refused(range({"--cn2", "1e-14", "--grid-sizes-m", "2", "--grid-contrasts-k", "5"}), 2, "--cn2");
   expect_refused(range({"--cn2", "-1"}), 2, "--cn2");
   expect_refused(range({"--models", "tod,nvthermip"}), 2, "unknown model");
-  expect_refused(range({"--atmosphere", "tropical", "--extinction-per-km", "0.2"}), 2, "beside");
+  expect_refused(range({"--atmosphere", "tropical", "--extinction-per-km", "0.2"}), 2, "has its own extinction");
 }
 
 TEST(PatternCommand, WritesPictureAndPlate) {
@@ -140,9 +141,9 @@ TEST(PatternCommand, WritesPictureAndPlate) {
   EXPECT_EQ(plate->width_mm, 320);
   EXPECT_GE(plate->triangles.size(), 20u);
   expect_refused(todbench({"pattern", "tod", "--pixels", "3", "3", "--out", "x.png"}, {.folder = folder.path()}), 2,
-                 "do not hold");
+                 "are too few for");
   expect_refused(todbench({"pattern", "tod", "--pixels", "300", "300", "--out", "no/x.png"}, {.folder = folder.path()}),
-                 2, "no folder");
+                 2, "not a folder");
 }
 
 TEST(PatternCommand, ReplacesItsOwnTruthAndNoOtherFile) {
@@ -243,11 +244,11 @@ TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
   ASSERT_EQ(decisions.size(), 4);
   EXPECT_EQ(decisions[2]["name"], "turbulence");
   EXPECT_EQ(decisions[3]["name"], "image_dance");
-  // The page says each once, as what the air does.
+  // The page states each once, as an effect of the atmosphere.
   const std::string page = content(folder.path() / "p/pictures.html");
   const auto rows = [&](const std::string& name) { return occurrences(page, "<th scope=\"row\">" + name + "</th>"); };
-  EXPECT_EQ(rows("air: turbulence"), 1);
-  EXPECT_EQ(rows("air: image_dance"), 1);
+  EXPECT_EQ(rows("atmosphere: turbulence"), 1);
+  EXPECT_EQ(rows("atmosphere: image_dance"), 1);
   EXPECT_EQ(rows("turbulence"), 1) << "its numbers";
   EXPECT_EQ(rows("image_dance"), 0);
   EXPECT_EQ(rows("diffraction"), 1);
@@ -277,7 +278,7 @@ TEST(PictureCommand, RefusesScenesAndRangesThatCannotBe) {
   expect_refused(picture("./crossing.toml", "100"), 2, "crosses itself");
   expect_refused(picture("./cold.toml", "100"), 2, "temperature_k");
   expect_refused(picture("./coarse.toml", "100"), 2, "quarter of a pixel");
-  expect_refused(picture("./bare.toml", "100"), 2, "no scale");
+  expect_refused(picture("./bare.toml", "100"), 2, "needs a scale");
   expect_refused(picture("craft-at-sea", "100000", "us-standard"), 2, "table ends");
   expect_refused(picture("craft-at-sea", "100", "./short.csv"), 2, "table ends at 50 m");
   expect_refused(picture("tcat-a", "5000"), 2, "smaller than a pixel");
@@ -333,7 +334,7 @@ TEST(IdentifyCommand, SaysWhereASetIsToldApartAndWhatTheTodCurveWouldHaveSaid) {
   // Wilson 1927, of 64 draws that all agree.
   EXPECT_NEAR(near["ci95"][0].get<double>(), 64 / (64 + 1.959964 * 1.959964), 1e-6);
   EXPECT_EQ(near["ci95"][1].get<double>(), 1);
-  expect_refused(identify("./twins.toml", "500,800"), 2, "named twice");
+  expect_refused(identify("./twins.toml", "500,800"), 2, "listed twice");
   expect_refused(identify("./set.toml", "800,500"), 2, "increase");
   expect_refused(identify("no-such-set", "500,800"), 2, "small-craft");
 }
@@ -378,7 +379,7 @@ TEST(MrtdCommand, TellsWhatIsAnMrtdFromWhatAMachineDoesBeyond) {
               json["axes"]["vertical"][0]["threshold_ci95_k"][1].get<double>() * std::exp(1.05), 1e-9);
   expect_refused(mrtd({"--atmosphere", "tropical"}), 2, "--range-m");
   expect_refused(mrtd({"--atmosphere", "tropical", "--range-m", "1e6"}), 2, "table ends");
-  expect_refused(mrtd({"--extinction-per-km", "1e3", "--range-m", "1e6"}), 2, "nothing is left");
+  expect_refused(mrtd({"--extinction-per-km", "1e3", "--range-m", "1e6"}), 2, "the air transmits no contrast");
   // Microscan does not make the detectors smaller: next to Nyquist bars are told apart, but not resolved.
   const std::vector<std::string> resolved{"--axis",      "vertical", "--criterion", "bars-resolved",
                                           "--microscan", "2",        "--of-nyquist"};
@@ -389,7 +390,7 @@ TEST(MrtdCommand, TellsWhatIsAnMrtdFromWhatAMachineDoesBeyond) {
   };
   EXPECT_EQ(at("0.4"), 0);
   EXPECT_EQ(at("0.99"), 3);
-  expect_refused(mrtd({"--frequencies-per-mrad", "50"}), 2, "samples on a side");
+  expect_refused(mrtd({"--frequencies-per-mrad", "50"}), 2, "samples per side");
   expect_refused(mrtd({"--criterion", "flir92"}), 2, "four-or-five");
   expect_refused(mrtd({"--frequencies-per-mrad", "nan"}), 2, "--frequencies-per-mrad");
 }
@@ -437,7 +438,7 @@ TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {
   expect_refused(run({"sweep", "expand", "bad.toml"}), 2, "unknown parameter 'netd'");
   expect_refused(run({"sweep", "expand", "none.toml"}), 2, "none.toml");
   expect_refused(run({"sweep", "run", "s.toml", "--range", "9-3"}), 2, "--range");
-  expect_refused(run({"sweep", "run", "s.toml", "--index", "4"}), 2, "beyond");
+  expect_refused(run({"sweep", "run", "s.toml", "--index", "4"}), 2, "is too large");
   expect_refused(run({"sweep"}), 2, "sweep");
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Recording and replay as a user has them: the same answers bit for bit, also of a run that did not end well.
 #include <signal.h>
 
@@ -72,7 +73,7 @@ TEST_F(Replays, RefuseSessionsWithoutFramesAndFramesThatWereChanged) {
   const auto frames = at("changed") / "frames" / "camera.todrec";
   std::filesystem::resize_file(frames, std::filesystem::file_size(frames) - 1);
 
-  expect_refused(run({"replay", "without"}), 2, "no frames were recorded in this session");
+  expect_refused(run({"replay", "without"}), 2, "this session has no recorded frames");
   expect_refused(run({"replay", "changed"}), 2, "the session was changed");
 }
 
@@ -90,7 +91,7 @@ TEST_F(Replays, OfASessionWhoseAnswersWereEditedAreReportedAsDifferent) {
   const Ended ended = run({"replay", "m", "--out", "r"});
 
   EXPECT_EQ(ended.code, 1);
-  EXPECT_THAT(ended.err, HasSubstr("answers differently"));
+  EXPECT_THAT(ended.err, HasSubstr("answers of the replay differ from those of the session"));
 }
 
 TEST_F(Replays, RecordedFramesAreACamera) {
@@ -127,7 +128,8 @@ TEST_F(Replays, RecordNeverOverwritesTheFramesThatItReads) {
   ASSERT_EQ(run({"record", "sim:sc2000", "--frames", "3", "--out", "a.todrec"}).code, 0);
   const auto size = std::filesystem::file_size(at("a.todrec"));
 
-  expect_refused(run({"record", "file:a.todrec", "--out", "./a.todrec", "--force"}), 2, "where the frames come from");
+  expect_refused(run({"record", "file:a.todrec", "--out", "./a.todrec", "--force"}), 2,
+                 "the frames are read from there");
 
   EXPECT_EQ(std::filesystem::file_size(at("a.todrec")), size);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A published experiment repeated, as a user asks for it.
 #include "tests/system/system_test_support.h"
 
@@ -50,7 +51,7 @@ TEST(ReproduceCommand, WritesAPageWithThePublishedFiguresBesideOurs) {
     EXPECT_THAT(page, HasSubstr(figure));
   }
   EXPECT_THAT(page, AllOf(HasSubstr("<svg"), HasSubstr("A fit, not a confirmation"),
-                          HasSubstr("What the paper does not state")));
+                          HasSubstr("Assumptions not stated in the paper")));
   for (const char* outside : {"<script", "http://", "https://"}) {
     // The name of the markup language is the only address in it.
     std::string text = page;

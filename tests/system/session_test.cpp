@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions of simulated cameras: what is in them, that they repeat, what they pass and fail.
 #include <cmath>
 
@@ -20,12 +21,25 @@ using ::testing::UnorderedElementsAre;
 
 const std::set<std::string> curve_keys{"observer", "sensor", "points",  "plan",
                                        "wall_s",   "frames", "verdict", "judgement"};
-const std::set<std::string> point_keys{
-    "delta_t_k",          "s75_mrad",         "s75_ci95_mrad", "s75_direct_mrad",
-    "s75_direct_se_mrad", "acuity_per_mrad",  "trials",        "verdict",
-    "adequacy",           "estimator",        "interval",      "dispersion",
-    "clusters",           "estimator_reason", "answers",       "frames_per_presentation",
-    "answers_reason"};
+const std::set<std::string> point_keys{"delta_t_k",
+                                       "set_delta_t_k",
+                                       "seen_delta_t_k",
+                                       "s75_mrad",
+                                       "s75_ci95_mrad",
+                                       "s75_direct_mrad",
+                                       "s75_direct_se_mrad",
+                                       "acuity_per_mrad",
+                                       "trials",
+                                       "verdict",
+                                       "adequacy",
+                                       "estimator",
+                                       "interval",
+                                       "dispersion",
+                                       "clusters",
+                                       "estimator_reason",
+                                       "answers",
+                                       "frames_per_presentation",
+                                       "answers_reason"};
 const std::set<std::string> effect_keys{"name", "decision", "reason", "predicted_change_percent"};
 
 /// A folder with a plan, and the program run in it.
@@ -89,7 +103,7 @@ TEST_F(Sessions, AContrastThatWasMeasuredOnceHasTheErrorOfThatMeasurement) {
 
   const Ended ended = run({"measure", "./plan.toml", "--out", "m"});
 
-  EXPECT_THAT(ended.out, HasSubstr("scatter of the measured contrast is in the interval"));
+  EXPECT_THAT(ended.out, HasSubstr("interval includes the scatter of the measured contrast"));
   EXPECT_THAT(ended.out, Not(HasSubstr("measured once")));
   const Json point = Json::parse(content_of(at("m") / "fits.json"))["main"]["points"][0];
   EXPECT_EQ(point["delta_t_measurements"], 1);
@@ -101,7 +115,7 @@ TEST_F(Sessions, AContrastThatWasMeasuredOnceHasTheErrorOfThatMeasurement) {
   const Json verdict = Json::parse(content_of(at("m") / "verdict.json"));
   EXPECT_THAT(verdict["uncertainty_not_stated"].dump(), Not(HasSubstr("measured once")));
   const std::string report = content_of(at("m") / "report.html");
-  EXPECT_THAT(report, HasSubstr("standard error over the measurements of it and their triangles"));
+  EXPECT_THAT(report, HasSubstr("standard error over the measurements of the contrast and their triangles"));
   EXPECT_THAT(report, Not(HasSubstr("(measured once)")));
 }
 
@@ -206,7 +220,7 @@ TEST_F(Sessions, AnOldSessionIsJudgedOnceAndSaysSo) {
   const std::string kept = content_of(at("s") / "verdict.json");
   const Ended second = run({"report", "s"});
 
-  const std::string sentence = "The run of this session stored no verdict; it was judged afterwards";
+  const std::string sentence = "The run of this session stored no verdict. The session was judged afterwards";
   EXPECT_EQ(one_object(first)["judged"], "afterwards");
   EXPECT_THAT(first.err, HasSubstr(sentence));
   EXPECT_THAT(second.err, HasSubstr(sentence));
@@ -226,7 +240,7 @@ TEST_F(Sessions, AFolderInUseIsRefusedAndOverwrittenOnlyByForce) {
   const std::string kept = content_of(at("s") / "trials.csv");
   const Ended forced = run({"simulate", "--out", "s", "--seed", "2", "--force", "./plan.toml"});
 
-  expect_refused(refused, 2, "s: the folder is not empty; choose another or allow overwriting (--force)");
+  expect_refused(refused, 2, "s: the folder is not empty. Choose another one or overwrite it with --force");
   EXPECT_TRUE(kept == first);
   EXPECT_TRUE(completed(forced));
   EXPECT_TRUE(content_of(at("s") / "trials.csv") != first);
@@ -382,8 +396,9 @@ TEST_F(Sessions, CompareTellsEquivalentDifferentAndUndecidedApart) {
   EXPECT_EQ(open.code, 3) << open.out;
   const Json json = one_object(other);
   EXPECT_THAT(keys_of(json), UnorderedElementsAre("points", "verdict", "adequacy"));
-  EXPECT_THAT(keys_of(json["points"][0]), UnorderedElementsAre("delta_t_k", "ratio", "ratio_ci95", "p_difference",
-                                                               "p_equivalence", "margin_percent", "verdict"));
+  EXPECT_THAT(keys_of(json["points"][0]),
+              UnorderedElementsAre("delta_t_k", "set_delta_t_k", "seen_delta_t_k", "ratio", "ratio_ci95",
+                                   "p_difference", "p_equivalence", "margin_percent", "verdict"));
   EXPECT_GT(json["points"][0]["ratio"].get<double>(), 1);  // the sharper one sees more
   EXPECT_EQ(json["verdict"], "different");
 }

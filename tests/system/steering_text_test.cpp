@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Names that cameras, instruments, files and networks chose to move the cursor of whoever reads them.
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/safe_text.h"
 #include "acquisition/recording/frame_stream.h"
 #include "bench/session/session_folder.h"
 #include "sim_devices/lab/instruments/black_body.h"

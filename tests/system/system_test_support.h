@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the system tests share: plans that run in a second or two, and what holds for every output of the program.
 #pragma once
 

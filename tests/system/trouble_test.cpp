@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What goes wrong in the middle of a run on one machine: Ctrl-C, a full disk, a reader that went away.
 #include <signal.h>
 #include <sys/mount.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Wrong use and wrong files: one sentence on standard error, exit code 2, nothing begun.
 #include <fstream>
 
@@ -61,7 +62,9 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"no_such_plan", {"measure", "none/plan.toml"}, "none/plan.toml: no such file"},
         Misuse{"folder_as_plan", {"simulate", "/"}, "/: is a folder, expected a file"},
         Misuse{"device_as_plan", {"simulate", "/dev/null/x.toml"}, "/dev/null/x.toml: no such file"},
-        Misuse{"zero_contrast", {"simulate", "--delta-t-k", "16.9,0"}, "--delta-t-k: a contrast of 0 K shows nothing"},
+        Misuse{"zero_contrast",
+               {"simulate", "--delta-t-k", "16.9,0"},
+               "--delta-t-k: a contrast of 0 K makes the triangles invisible"},
         Misuse{"contrast_nan", {"simulate", "--delta-t-k", "nan"}, "--delta-t-k: expected a number from -500 to 500"},
         Misuse{"contrast_huge", {"simulate", "--delta-t-k", "1e300"}, "--delta-t-k: expected a number from -500"},
         Misuse{
@@ -84,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"skip_and_force",
                {"simulate", "--skip", "detector", "--force", "detector"},
                "--force: 'detector' is also in skip"},
-        Misuse{"out_on_a_device", {"simulate", "--out", "/dev/full"}, "/dev/full: is a file, expected a folder"},
+        Misuse{"out_on_a_device", {"simulate", "--out", "/dev/full"}, "/dev/full: expected a folder, found a file"},
         Misuse{"out_below_a_file", {"simulate", "--out", "/dev/null/x"}, "/dev/null/x: cannot be created"},
         Misuse{"compare_no_session", {"compare", "a", "b"}, "a: not a session folder (there is no session.toml)"},
         Misuse{"compare_margin", {"compare", "a", "b", "--margin-percent", "nan"}, "expected a number from 0.1 to 100"},
@@ -108,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
                "--window: expected a whole number from 1 to 1024"},
         Misuse{"render_below_a_file",
                {"render", "--sensor", "sc2000", "--size-pitch", "3", "--tiff", "/dev/null/x.tiff"},
-               "--tiff /dev/null/x.tiff: /dev/null is no folder"}),
+               "--tiff /dev/null/x.tiff: /dev/null is not a folder"}),
     [](const auto& row) { return std::string(row.param.name); });
 
 struct BrokenFile {
@@ -163,23 +166,23 @@ INSTANTIATE_TEST_SUITE_P(
                    {"simulate", "FILE"},
                    "plan.toml",
                    "[target]\ndistance_m = -2\n",
-                   "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found -2"},
+                   "plan.toml:2: key 'distance_m' in [target]: expected a number from 0.001 to 100000, found -2"},
         BrokenFile{"distance_nan",
                    {"simulate", "FILE"},
                    "plan.toml",
                    "[target]\ndistance_m = nan\n",
-                   "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found nan"},
+                   "plan.toml:2: key 'distance_m' in [target]: expected a number from 0.001 to 100000, found nan"},
         BrokenFile{"distance_text",
                    {"simulate", "FILE"},
                    "plan.toml",
                    "[target]\ndistance_m = \"2 m\"\n",
-                   "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found \"2 m\""},
+                   "plan.toml:2: key 'distance_m' in [target]: expected a number from 0.001 to 100000, found \"2 m\""},
         BrokenFile{"too_far",
                    {"simulate", "FILE"},
                    "far.toml",
                    small_plan(4, "[[limits.acuity]]\ndelta_t_k = 5\nleast_acuity_per_mrad = 1\n"),
                    "5 K is not among the contrasts of [target]"},
-        BrokenFile{"no_camera", {"measure", "FILE"}, "plan.toml", target, "plan.toml: names no camera"},
+        BrokenFile{"no_camera", {"measure", "FILE"}, "plan.toml", target, "plan.toml: the plan names no camera"},
         BrokenFile{"missing_plate",
                    {"simulate", "FILE"},
                    "plan.toml",
@@ -221,7 +224,7 @@ TEST(WrongGeometry, SizesThatDoNotFitAreNamed) {
 
   expect_refused(ended, 2, "not measurable at 0.5 m ([target] distance_m): ");
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "session"));
-  EXPECT_THAT(ended.err, HasSubstr("plate tcat-a: its 200 x 280 mm are 306 x 428 pixels at 0.50 m"));
+  EXPECT_THAT(ended.err, HasSubstr("plate tcat-a: its 200 x 280 mm cover 306 x 428 pixels at 0.50 m"));
 }
 
 TEST(WrongTarget, ASimulatedCameraSeesNoMonitor) {
@@ -232,7 +235,7 @@ TEST(WrongTarget, ASimulatedCameraSeesNoMonitor) {
                "display_span_k = 20\n");
 
   expect_refused(todbench({"measure", "./plan.toml", "--out", "session"}, {.folder = folder.path()}), 2,
-                 "camera sim:sc2000 is simulated and sees no monitor");
+                 "camera sim:sc2000 is simulated and cannot observe a monitor");
 }
 
 TEST(WrongGeometry, APlateThatIsNotThereIsACalibrationErrorBeforeAnyTrial) {
@@ -243,7 +246,7 @@ TEST(WrongGeometry, APlateThatIsNotThereIsACalibrationErrorBeforeAnyTrial) {
   const Ended ended =
       todbench({"simulate", "./plan.toml", "--delta-t-k", "0.02", "--out", "session"}, {.folder = folder.path()});
 
-  expect_refused(ended, 6, "plate \"tcat-a\" not found");
+  expect_refused(ended, 6, "plate \"tcat-a\" was not found");
   const Json provenance = Json::parse(content_of(folder.path() / "session" / "provenance.json"));
   EXPECT_EQ(provenance["state"], "interrupted");
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A measurement with an emulated V4L2 camera in a process of its own: the plan of the laboratory with one line changed.
 #include "tests/system/system_test_support.h"
 

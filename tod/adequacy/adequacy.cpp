@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/adequacy/adequacy.h"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <string>
 
 #include "tod/adequacy/alternatives.h"
+#include "tod/adequacy/guessing.h"
 #include "tod/adequacy/model_test.h"
 #include "tod/adequacy/twin_scatter.h"
 #include "tod/psychometric/psychometric_model.h"
@@ -16,23 +18,23 @@ namespace {
 
 // "8.1 %"
 std::string percent(double share) {
-  return fmt::format("{:.2g} %", 100 * share);
+  return fmt::format("{:.{}g} %", 100 * share, share < 0.995 ? 2 : 3);
 }
 
-// Half the 95 % interval in ln threshold on the side of a shift; nothing where it is open.
+// Half the 95 % interval in ln threshold on the side of a shift; empty if that side is open.
 std::optional<double> half_width(const PsychometricFit& fit, double ln_shift) {
   const std::optional<double>& side = ln_shift < 0 ? fit.ci95.low : fit.ci95.high;
   if (!side || !fit.threshold || !(*side > 0)) return std::nullopt;
   return std::abs(std::log(*side / *fit.threshold));
 }
 
-// Half the interval where both sides are there.
+// Half the interval if both sides are closed.
 std::optional<double> half_width(const PsychometricFit& fit) {
   const auto low = half_width(fit, -1), high = half_width(fit, 1);
   return low && high ? std::optional((*low + *high) / 2) : std::nullopt;
 }
 
-// What another description of the answers does to the threshold.
+// Effect of an alternative description of the answers on the threshold.
 struct Consequence {
   std::string words;
   bool unfit = false;
@@ -40,15 +42,15 @@ struct Consequence {
 
 Consequence consequence(const PsychometricFit& fit, double ln_shift, const std::string& description) {
   const auto half = half_width(fit, ln_shift);
-  // An open side allows for everything.
+  // An open side allows any shift.
   const double allowed = half ? std::max(immaterial_shift, immaterial_share_of_half_width * *half) : INFINITY;
   const bool unfit = std::abs(ln_shift) > allowed;
-  const std::string moved = fmt::format("{} puts the threshold {} {}", description,
+  const std::string moved = fmt::format("with {} the threshold is {} {}", description,
                                         percent(std::abs(std::expm1(ln_shift))), ln_shift < 0 ? "lower" : "higher");
-  if (!half) return {moved + ", where the interval is open", false};
-  if (unfit) return {moved + ", more than the " + percent(allowed) + " that are allowed", true};
+  if (!half) return {moved + ", and the interval is open on that side", false};
+  if (unfit) return {moved + ", more than the allowed " + percent(allowed), true};
   if (std::abs(ln_shift) <= *half) return {moved + ", within the 95 % interval", false};
-  return {moved + ", outside the 95 % interval but within the " + percent(allowed) + " that a form may cost", false};
+  return {moved + ", outside the 95 % interval but within the allowed " + percent(allowed), false};
 }
 
 class Examination {
@@ -58,7 +60,12 @@ class Examination {
   }
 
   Adequacy made() {
+    if (fit_.verdict == FitVerdict::flat_or_decreasing) {
+      add(FindingKind::slope, fit_.slope.value_or(min_slope), min_slope,
+          "correct answers do not increase with size: there is no threshold", true);
+    }
     if (fit_.threshold) {
+      examine_chance();
       const bool regular = fit_.verdict == FitVerdict::ok || fit_.verdict == FitVerdict::extrapolated;
       if (!fit_.twin_shape) examine_slope();
       examine_extrapolation();
@@ -81,11 +88,22 @@ class Examination {
   void examine_slope() {
     if (asks_for_steeper(point_.levels, fit_, options_, false_alarms.departure)) {
       add(FindingKind::slope, *fit_.slope, max_slope,
-          "the answers ask for a steeper slope than any in the model: the threshold is that of a step", false);
-    } else if (fit_.verdict == FitVerdict::flat_or_decreasing) {
-      add(FindingKind::slope, *fit_.slope, min_slope, "the answers do not rise with size: the threshold has no meaning",
-          true);
+          "the answers call for a steeper slope than the model allows: the threshold is that of a step function",
+          false);
     }
+  }
+
+  // The interval refers a likelihood ratio to its limit for many answers. With few answers it may be finite although
+  // guessing often gives these answers.
+  void examine_chance() {
+    if (options_.graded) return;
+    const double p = p_guessed(point_.levels);
+    if (!(p > false_alarms_of_guessing)) return;
+    add(FindingKind::slope, p, false_alarms_of_guessing,
+        fmt::format("with a probability of {:.2g}, guessed answers increase as much with size: there are too few "
+                    "answers for a threshold",
+                    p),
+        true);
   }
 
   void examine_extrapolation() {
@@ -98,8 +116,9 @@ class Examination {
     if (!(largest > 0) || (*fit_.threshold >= smallest && *fit_.threshold <= largest)) return;
     const bool below = *fit_.threshold < smallest;
     add(FindingKind::extrapolation, *fit_.threshold, below ? smallest : largest,
-        fmt::format("the threshold lies {} every size that was shown: it rests on the form of the function alone",
-                    below ? "below" : "above"),
+        fmt::format(
+            "the threshold lies {} all sizes shown: it is extrapolated and depends on the form of the function alone",
+            below ? "below" : "above"),
         true);
   }
 
@@ -130,8 +149,8 @@ class Examination {
     const char* asked = use.slope_fitted ? "a bend" : "another slope";
     const Consequence of = consequence(fit_, use.departure_shift, asked);
     add(FindingKind::deviance, use.departure, use.departure_limit,
-        fmt::format("the answers ask for {} than the function of the twin has, by {:.2g} standard errors (chance: "
-                    "{:.2g}): its shape does not fit; {}",
+        fmt::format("the function of the twin does not fit the answers: they call for {} ({:.2g} standard errors, "
+                    "limit for chance {:.2g}); {}",
                     use.slope_fitted ? "another bend" : asked, std::abs(use.departure), use.departure_limit, of.words),
         of.unfit);
   }
@@ -139,20 +158,21 @@ class Examination {
   void add_departure(const Departure& departure) {
     const auto other = best_alternative(point_.levels, fit_, options_);
     const Consequence of = other ? consequence(fit_, other->ln_shift, other->name)
-                                 : Consequence{"no other function describes them either", true};
+                                 : Consequence{"no other function fits them either", true};
     add(FindingKind::deviance, departure.score, departure.limit,
-        fmt::format("the answers depart from the fitted function {} by {:.2g} standard deviations (chance: {:.2g}); {}",
+        fmt::format("the answers depart from the fitted function {} by {:.2g} standard deviations (limit for chance: "
+                    "{:.2g}); {}",
                     departure.towards, departure.score, departure.limit, of.words),
         of.unfit);
   }
 
   void add_lapse(const LapseTest& test, const PsychometricFit& free_fit) {
-    const std::string description = fmt::format("a free lapse of {:.2g}", test.lapse);
+    const std::string description = fmt::format("a free lapse rate of {:.2g}", test.lapse);
     const Consequence of = free_fit.threshold
                                ? consequence(fit_, std::log(*free_fit.threshold / *fit_.threshold), description)
-                               : Consequence{description + " leaves no threshold", true};
+                               : Consequence{"with " + description + " there is no threshold", true};
     add(FindingKind::lapse, test.statistic, test.limit,
-        fmt::format("the answers have lapses that the fit does not allow for ({:.2g} assumed): {}",
+        fmt::format("the answers contain more lapses than the fit allows for (fixed lapse rate {:.2g}): {}",
                     *options_.fixed_lapse, of.words),
         of.unfit);
   }
@@ -161,14 +181,14 @@ class Examination {
     if (scatter.more.p_more() < false_alarms.scatter) {
       const double widening = half_width(fit_).value_or(0) * (std::sqrt(scatter.more.ratio) - 1);
       add(FindingKind::overdispersion, scatter.more.ratio, scatter.more.upper_limit(false_alarms.scatter),
-          fmt::format("the answers scatter about the fitted function with {:.3g} times the variance that {} gives: the "
-                      "interval is {:.2g} times too short",
-                      scatter.more.ratio, fit_.clusters > 0 ? "the clusters" : "chance", std::sqrt(scatter.more.ratio)),
+          fmt::format("the scatter of the answers about the fitted function has {:.3g} times the variance expected "
+                      "from {}: the interval is too narrow by a factor of {:.2g}",
+                      scatter.more.ratio, fit_.clusters > 0 ? "clusters" : "chance", std::sqrt(scatter.more.ratio)),
           scatter.more.ratio > immaterial_dispersion && widening > immaterial_widening);
     } else if (scatter.less.p_less() < false_alarms.scatter) {
       add(FindingKind::underdispersion, scatter.less.ratio, scatter.less.lower_limit(false_alarms.scatter),
-          fmt::format("the answers scatter about the fitted function with {:.2g} of the variance of independent "
-                      "answers: the interval is longer than it need be",
+          fmt::format("the scatter of the answers about the fitted function has {:.2g} times the variance of "
+                      "independent answers: the interval is wider than necessary",
                       scatter.less.ratio),
           false);
     }
@@ -185,8 +205,8 @@ class Examination {
     const double allowed = direct_estimate_tolerance + claimed_errors * standard_error;
     if (std::abs(difference) <= allowed) return;
     add(FindingKind::direct_estimate, 100 * std::expm1(difference), 100 * allowed,
-        fmt::format("trials and direct estimate of the same sensor differ by {}, more than the {} that the errors of "
-                    "both allow: one of them is wrong",
+        fmt::format("the threshold from the trials and the direct estimate of the same sensor differ by {}, more than "
+                    "the {} that their errors allow: one of them is wrong",
                     percent(std::abs(std::expm1(difference))), percent(allowed)),
         true);
   }
@@ -194,25 +214,28 @@ class Examination {
   void examine_frames() {
     if (point_.saturated_share > 0) {
       add(FindingKind::clipping, point_.saturated_share, 0,
-          fmt::format("pixels are saturated inside the window of the triangle in {} of the trials: the contrast that "
-                      "was judged is not the one that was shown",
+          fmt::format("in {} of the trials, pixels in the window of the triangle are saturated: the observer did not "
+                      "judge the contrast that was shown",
                       percent(point_.saturated_share)),
           true);
     }
     if (point_.noise_counts && *point_.noise_counts < least_noise_counts) {
       add(FindingKind::rounding, *point_.noise_counts, least_noise_counts,
-          fmt::format(
-              "the noise of a pixel is {:.2g} counts: rounding to whole counts is no white noise and belongs to "
-              "the answers of this camera",
-              *point_.noise_counts),
+          fmt::format("the noise of a pixel is {:.2g} counts: rounding to whole counts does not act as white noise and "
+                      "affects the answers of this camera",
+                      *point_.noise_counts),
           false);
     }
     if (point_.lag1_correlation && std::abs(*point_.lag1_correlation) > most_lag1_correlation) {
+      // Intervals of clusters and of graded answers come from the scatter between presentations, which includes the
+      // correlation. Those of independent answers do not.
+      const bool interval_knows = !fit_.threshold || fit_.interval != IntervalKind::independent;
       add(FindingKind::temporal_correlation, *point_.lag1_correlation, most_lag1_correlation,
-          fmt::format("the noise of successive frames is correlated ({:.2g}): their trials are not independent, and a "
-                      "noise figure of single frames does not describe the camera",
-                      *point_.lag1_correlation),
-          false);
+          fmt::format("the noise of successive frames is correlated ({:.2g}): their trials are not independent, and "
+                      "the noise of single frames does not describe the camera{}",
+                      *point_.lag1_correlation,
+                      interval_knows ? "" : "; the interval treats all answers as independent"),
+          !interval_knows);
     }
   }
 

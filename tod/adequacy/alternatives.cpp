@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/adequacy/alternatives.h"
 
 #include <fmt/format.h>
@@ -49,7 +50,7 @@ struct CubicModel {
     return e;
   }
 
-  // The relative ln size nearest to t at which the cubic is 0; within the sizes and one step of the fit beyond.
+  // The relative ln size nearest to t at which the cubic is 0, within the sizes and one step of the fit outside them.
   [[nodiscard]] std::optional<double> threshold(const Cubic& c) const {
     const double low = std::min(counts.first(), t) - 1 / slope, high = std::max(counts.last(), t) + 1 / slope;
     constexpr int steps = 400;
@@ -83,7 +84,7 @@ std::optional<Candidate> refitted(std::span<const Level> levels, const Psychomet
 std::optional<Candidate> bent(const PooledCounts& counts, const PsychometricFit& fit, PsychometricForm form,
                               double lapse, double parameters) {
   const CubicModel model{counts, make_link(form, lapse), *fit.slope, counts.relative(*fit.threshold)};
-  const Box<4> box{{-50, -50, -50, -50}, {50, 50, 50, 50}};
+  const ParameterBox<4> box{{-50, -50, -50, -50}, {50, 50, 50, 50}};
   const Maximum<4> best = climb<4>([&](const Cubic& c) { return model.expand(c); }, {0, 1, 0, 0}, box);
   const auto t = model.threshold(best.place);
   if (!t || !std::isfinite(best.expansion.value)) return std::nullopt;
@@ -107,11 +108,12 @@ std::optional<Alternative> best_alternative(std::span<const Level> levels, const
   const double lapses = options.fixed_lapse ? 0 : 1;
   std::vector<std::optional<Candidate>> candidates;
   candidates.push_back(refitted(levels, fit, {other, options.fixed_lapse, false},
-                                options.fixed_lapse ? name_of_other : name_of_other + " with a free lapse",
+                                options.fixed_lapse ? name_of_other : name_of_other + " and a free lapse rate",
                                 2 + lapses));
   if (options.fixed_lapse) {
-    candidates.push_back(refitted(levels, fit, {form, std::nullopt, false}, "a free lapse", 3));
-    candidates.push_back(refitted(levels, fit, {other, std::nullopt, false}, name_of_other + " with a free lapse", 3));
+    candidates.push_back(refitted(levels, fit, {form, std::nullopt, false}, "a free lapse rate", 3));
+    candidates.push_back(
+        refitted(levels, fit, {other, std::nullopt, false}, name_of_other + " and a free lapse rate", 3));
   }
   const PooledCounts counts = grouped(pool(levels), most_levels);
   candidates.push_back(bent(counts, fit, form, fit.lapse, 4 + lapses));

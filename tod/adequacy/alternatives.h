@@ -1,4 +1,5 @@
-// Other functions for the same answers: where would they put the threshold?
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Alternative functions for the same answers, and where they put the threshold.
 #pragma once
 
 #include <optional>
@@ -9,17 +10,16 @@
 
 namespace todbench {
 
-/// The function of the alternatives that describes the answers best, by likelihood and number of parameters (Akaike
-/// 1974).
+/// The alternative function that describes the answers best, by likelihood and number of parameters (Akaike 1974).
 struct Alternative {
-  std::string name;               ///< in a sentence: "the acuity form", "a free lapse of 0.031"
-  double ln_shift = 0;            ///< ln of its threshold over that of the fit
-  double ln_likelihood_gain = 0;  ///< over the fit
+  std::string name;               ///< for a sentence: "the acuity form", "a free lapse rate of 0.031"
+  double ln_shift = 0;            ///< ln(its threshold / threshold of the fit)
+  double ln_likelihood_gain = 0;  ///< relative to the fit
 };
 
-/// Tries the other form, a free lapse, both, and a curve with a bend and a twist more than the model (a cubic in ln
-/// size in place of the straight line), without and with a free lapse. Nothing where none has a threshold. `fit`: of
-/// the levels, with a threshold, by `options`.
+/// Tries the other form, a free lapse, both, and a curve that adds a bend and a twist to the model (a cubic in ln size
+/// instead of the straight line) with fixed and with free lapse. Empty if none has a threshold. `fit`: fit of the
+/// levels with `options`; it has a threshold.
 [[nodiscard]] std::optional<Alternative> best_alternative(std::span<const Level> levels, const PsychometricFit& fit,
                                                           const FitOptions& options);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/adequacy/dispersion.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 namespace {
@@ -15,10 +16,10 @@ struct SumOfSquares {
   double value = 0, mean = 0, variance = 0;
 };
 
-// Neighbouring levels together until each group has this variance of its number of right answers.
+// Groups neighbouring levels until each group has this variance of its number of right answers.
 std::vector<std::vector<double>> groups_of(const ModelResiduals& model) {
   constexpr double least_variance = 4;  // about five expected answers of the rarer kind
-  constexpr double most_groups = 40;    // beyond, single groups have nothing to say
+  constexpr double most_groups = 40;    // with more, single groups carry no information
   double whole = 0;
   for (const LevelResidual& level : model.levels) whole += level.variance();
   const double enough = std::max(least_variance, whole / most_groups);
@@ -33,7 +34,7 @@ std::vector<std::vector<double>> groups_of(const ModelResiduals& model) {
     groups.back()[i] = 1;
     collected += level.variance();
   }
-  // What is left at the end joins its neighbour.
+  // The remainder joins its neighbour.
   if (groups.size() > 1 && collected < enough && !model.levels.back().catch_trials) {
     for (std::size_t i = 0; i < model.levels.size(); ++i) groups[groups.size() - 2][i] += groups.back()[i];
     groups.pop_back();
@@ -46,7 +47,7 @@ std::vector<Direction> orthogonal_groups(const ModelResiduals& model, std::span<
   std::vector<Direction> all(besides.begin(), besides.end());
   const std::size_t first = all.size();
   for (std::vector<double>& group : groups_of(model)) {
-    // The last groups are what parameters and earlier groups leave of them: next to nothing.
+    // The last groups are reduced to almost zero by the parameters and earlier groups.
     if (auto direction = make.direction(std::move(group), all)) all.push_back(*std::move(direction));
   }
   return {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()};
@@ -93,7 +94,7 @@ Dispersion ratio_of(const SumOfSquares& sum, double denominator_freedom) {
   return {sum.value / sum.mean, 2 * sum.mean * sum.mean / sum.variance, denominator_freedom};
 }
 
-// The argument of the law for a ratio.
+// The argument of the distribution for a ratio.
 double scaled(const Dispersion& dispersion, double ratio) {
   return dispersion.denominator_freedom > 0 ? ratio : ratio * dispersion.degrees_of_freedom;
 }

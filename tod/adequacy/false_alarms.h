@@ -1,9 +1,10 @@
-// How often chance may look like a wrong model.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Permitted false alarms of the model tests.
 #pragma once
 
 namespace todbench {
 
-/// Probability that chance exceeds a limit.
+/// Probabilities that a test exceeds its limit by chance.
 struct FalseAlarms {
   double departure = 0, lapse = 0;
   double scatter = 0;  ///< on each side

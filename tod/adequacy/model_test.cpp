@@ -1,28 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/adequacy/model_test.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 namespace {
 
-// Exceeded with `probability` on one side, by a normal variable or Student's t of clusters.
+// Limit that a normal variable, or Student's t with clusters, exceeds on one side with `probability`.
 double limit_of(double probability, double clusters) {
   return distribution::quantile_above(probability, clusters > 1 ? std::optional(clusters - 1) : std::nullopt);
 }
 
-// The member of another family nearest to the fitted function: fitted to the answers that the fit expects, so that it
-// does not depend on the answers' scatter.
+// The member of another family nearest to the fitted function: fitted to the expected answers of the fit, so that it
+// does not depend on the scatter of the answers.
 PsychometricPlace nearest_of(const ModelResiduals& model, PsychometricForm form, double lapse) {
   PooledCounts expected = model.counts;
   for (std::size_t i = 0; i < expected.levels.size(); ++i) {
     expected.levels[i].right = model.levels[i].trials * model.levels[i].right;
     expected.levels[i].wrong = model.levels[i].trials * model.levels[i].wrong;
   }
-  Box<3> box = search_box(lapse);
+  ParameterBox<3> box = search_box(lapse);
   const auto likelihood = [&](const PsychometricPlace& place) { return expand_likelihood(expected, form, place); };
   return climb<3>(likelihood, {model.place[place_t], model.place[place_q], lapse}, box).place;
 }
@@ -44,7 +45,8 @@ std::vector<double> towards_chance(const ModelResiduals& model, double chance) {
   return weights;
 }
 
-// The square of the distance from the threshold in widths of the function, cut where the function has no slope left.
+// Squared distance from the threshold in widths of the function, limited to the range in which the function has a
+// slope.
 std::vector<double> towards_bend(const ModelResiduals& model) {
   std::vector<double> weights;
   const double slope = std::exp(model.place[place_q]);
@@ -57,7 +59,7 @@ std::vector<double> towards_bend(const ModelResiduals& model) {
 
 // The best threshold (and lapse) at one slope, from starts over one width of the function about t.
 Maximum<3> profile_maximum_over_t(const PooledCounts& counts, const FitOptions& options, double t, double q) {
-  Box<3> box = search_box(options.fixed_lapse);
+  ParameterBox<3> box = search_box(options.fixed_lapse);
   box.lower[place_q] = box.upper[place_q] = q;
   const auto likelihood = [&](const PsychometricPlace& place) {
     return expand_likelihood(counts, options.form, place);
@@ -110,7 +112,7 @@ class Tester {
     return found;
   }
 
-  // Directions that the answers have left significantly.
+  // Directions in which the answers depart significantly.
   [[nodiscard]] std::vector<Direction> left(double probability) const {
     std::vector<Direction> directions;
     for (const Test& test : tests_) {
@@ -152,7 +154,7 @@ ModelTest test_model(std::span<const Level> levels, const PsychometricFit& fit,
   ModelTest result;
   if (fit.clusters == 1 || !fit.threshold || !fit.slope) return result;
   const PooledCounts counts = pool(levels);
-  // A free lapse at the end of its range is a fixed one.
+  // A free lapse at the end of its range counts as fixed.
   const bool lapse_fitted = !options.fixed_lapse && fit.lapse > 0 && fit.lapse < max_free_lapse;
   const PsychometricPlace place{counts.relative(*fit.threshold), std::log(*fit.slope), fit.lapse};
   const ModelResiduals model = model_residuals(counts, options.form, place, {true, true, lapse_fitted});
@@ -161,10 +163,10 @@ ModelTest test_model(std::span<const Level> levels, const PsychometricFit& fit,
   const PsychometricForm other = size ? PsychometricForm::acuity : PsychometricForm::size;
   tester.add(std::string("towards the ") + (size ? "acuity" : "size") + " form", "", Sides::one, 0.5,
              difference(logits_at(model, other, nearest_of(model, other, fit.lapse)), model));
-  tester.add("towards more right answers at small sizes than chance gives",
-             "towards fewer right answers at small sizes than chance gives", Sides::both, 0.25,
+  tester.add("towards more correct answers at small sizes than guessing gives",
+             "towards fewer correct answers at small sizes than guessing gives", Sides::both, 0.25,
              towards_chance(model, 0.3));
-  tester.add("towards a bend upwards", "towards a bend downwards", Sides::both, 0.25, towards_bend(model));
+  tester.add("towards an upward bend", "towards a downward bend", Sides::both, 0.25, towards_bend(model));
   result.departure = tester.strongest(probability.departure);
 
   if (options.fixed_lapse && free_fit && free_fit->log_likelihood && fit.log_likelihood) {
@@ -176,7 +178,7 @@ ModelTest test_model(std::span<const Level> levels, const PsychometricFit& fit,
     if (direction && free_fit->lapse > *options.fixed_lapse)
       result.lapse = LapseTest{free_fit->lapse, std::max(0.0, gain) / tester.variance(*direction), limit * limit};
   }
-  // How much graded answers scatter is estimated, not expected.
+  // The scatter of graded answers is estimated, so that it cannot be tested.
   if (is_quasi(fit.interval)) return result;
   result.scatter = dispersions(model, levels, tester.left(probability.departure), fit.clusters);
   return result;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/adequacy/residual_directions.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ void subtract_projection(std::vector<double>& from, const std::vector<double>& u
   for (std::size_t i = 0; i < from.size(); ++i) from[i] -= product * unit[i];
 }
 
-// The level of a row; catch trials are the last one.
+// Index of a row's level; catch trials are the last one.
 std::size_t level_of(const ModelResiduals& model, const Level& row) {
   if (row.size <= 0) return model.levels.size() - 1;
   const double ln_size = model.counts.relative(row.size);

@@ -1,4 +1,5 @@
-// Answers minus what a fitted function expects, and how far they lie in given directions of departure.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Residuals of answers from a fitted function, and their projections on given directions of departure.
 #pragma once
 
 #include <optional>
@@ -9,16 +10,16 @@
 
 namespace todbench {
 
-/// One size under a fitted function.
+/// Residual at one size.
 struct LevelResidual {
   double ln_size = 0;  ///< relative; meaningless for catch trials
   double trials = 0;
-  double right = 0, wrong = 0;  ///< probabilities of the function
-  double logit = 0;             ///< ln(right / wrong), cut to +-50
-  double residual = 0;          ///< right answers minus their expectation
+  double right = 0, wrong = 0;  ///< probabilities by the function
+  double logit = 0;             ///< ln(right / wrong), limited to +-50
+  double residual = 0;          ///< correct answers minus their expectation
   bool catch_trials = false;
 
-  /// Of the number of right answers.
+  /// Variance of the number of correct answers.
   [[nodiscard]] double variance() const { return trials * right * wrong; }
 };
 
@@ -27,26 +28,27 @@ struct ModelResiduals {
   PooledCounts counts;
   PsychometricForm form = PsychometricForm::size;
   PsychometricPlace place{};
-  std::array<bool, 3> fitted{};       ///< parameters that follow the answers
+  std::array<bool, 3> fitted{};       ///< parameters that were fitted
   std::vector<LevelResidual> levels;  ///< sizes increasing, catch trials last
 };
-/// At a place of maximum likelihood; `fitted` says which parameters were searched.
+/// Residuals at a place of maximum likelihood. `fitted`: the parameters that were searched.
 [[nodiscard]] ModelResiduals model_residuals(const PooledCounts& counts, PsychometricForm form,
                                              const PsychometricPlace& place, const std::array<bool, 3>& fitted);
 
-/// ln(psi / (1 - psi)) of a function at every level of the residuals, cut to +-50; catch trials as they are.
+/// ln(psi / (1 - psi)) of a function at every level of the residuals, limited to +-50; catch trials are kept as they
+/// are.
 [[nodiscard]] std::vector<double> logits_at(const ModelResiduals& model, PsychometricForm form,
                                             const PsychometricPlace& place);
 
-/// A departure from the fitted function, made orthogonal to its fitted parameters (the efficient score), with unit
-/// variance where trials are independent.
+/// A departure from the fitted function, orthogonal to its fitted parameters (the efficient score), with unit variance
+/// if trials are independent.
 struct Direction {
-  std::vector<double> weights;  ///< one for each level
+  std::vector<double> weights;  ///< one per level
   double score = 0;             ///< standard normal under the model
 };
 
-/// Makes directions of weights for residuals: nothing where the parameters, or the directions `besides`, leave less
-/// than a hundredth of the variance of one.
+/// Makes directions from weights of the residuals. Empty if the parameters, or the directions `besides`, leave less
+/// than a hundredth of the variance of the weights.
 class Directions {
  public:
   explicit Directions(const ModelResiduals& model);
@@ -60,8 +62,8 @@ class Directions {
   std::vector<std::vector<double>> parameters_;  ///< orthonormal
 };
 
-/// Covariance of the scores of directions over clusters (Liang and Zeger 1986), times G / (G - 1); row by row. Rows
-/// without a cluster are one cluster per trial. `clusters` > 1.
+/// Covariance of the scores of directions over clusters (Liang and Zeger 1986), times G / (G - 1), row by row. For rows
+/// without a cluster each trial is a cluster. Precondition: `clusters` > 1.
 [[nodiscard]] std::vector<double> cluster_covariance(const ModelResiduals& model, std::span<const Level> levels,
                                                      std::span<const Direction> directions, double clusters);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/adequacy/twin_scatter.h"
 
 #include <algorithm>
@@ -6,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/psychometric/psychometric_model.h"
 #include "tod/psychometric/twin_mean.h"
 
 namespace todbench {
 namespace {
 
-/// Residuals about the function; its parameters are no part of them.
+/// Residuals from the function. No parameter is marked as fitted.
 ModelResiduals twin_residuals(const PooledCounts& counts, const TwinMean& means) {
   ModelResiduals model{.counts = counts, .form = {}, .place = {}, .fitted = {}, .levels = {}};
   const auto add = [&](double ln_size, double right, double wrong, double mu, bool blank) {
@@ -32,7 +33,7 @@ ModelResiduals twin_residuals(const PooledCounts& counts, const TwinMean& means)
   return model;
 }
 
-/// Of the fitted parameters: what they took of the residuals.
+/// Directions of the fitted parameters, which reduce the residuals.
 std::vector<Direction> fitted_directions(const ModelResiduals& model, const TwinMean& means,
                                          std::span<const std::size_t> fitted) {
   const Directions make(model);

@@ -1,4 +1,5 @@
-// What a fit with the function of a twin leaves of right and wrong answers.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Residuals of right and wrong answers from a fit with the function of a twin.
 #pragma once
 
 #include <optional>
@@ -9,13 +10,13 @@
 
 namespace todbench {
 
-/// Scatter about the fitted function, as dispersions(). Nothing of graded answers, whose scatter is estimated, of a fit
-/// that has no function of a twin, and where all answers are one cluster.
+/// Scatter about the fitted function, as dispersions(). Empty for graded answers (their scatter is estimated), for a
+/// fit without a twin's function, and if all answers are one cluster.
 [[nodiscard]] std::optional<Dispersions> twin_dispersions(std::span<const Level> levels, const PsychometricFit& fit,
                                                           const FitOptions& options);
 
-/// A free lapse against the fixed one of `fit`, at this probability of a false alarm; both with the function of the
-/// twin. Nothing where the answers ask for no larger lapse.
+/// Test of a free lapse against the fixed one of `fit` at this probability of a false alarm; both fits use the function
+/// of the twin. Empty if the answers do not call for a larger lapse.
 [[nodiscard]] std::optional<LapseTest> twin_lapse_test(const PsychometricFit& fit, const PsychometricFit& free_fit,
                                                        double probability);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/bars_measure.h"
 
 #include <fmt/format.h>
@@ -8,8 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "acquisition/core/normal.h"
-#include "acquisition/core/rng.h"
+#include "acquisition/base/normal.h"
+#include "acquisition/base/rng.h"
 #include "hvs/shape/polygon_coverage.h"
 #include "tod/camera_measures/bars_profile.h"
 #include "tod/camera_measures/edge_measure.h"
@@ -20,16 +21,16 @@ namespace todbench {
 namespace {
 
 constexpr double clear_of_ends_px = 3.5;
-constexpr double clear_of_area_px = 5;   // of the pixels that give the contrast from every edge
-constexpr double near_px = 4.5;          // half a pixel less: pixels are counted by their centres
+constexpr double clear_of_area_px = 5;   // least distance from every edge of the pixels that give the contrast
+constexpr double near_px = 4.5;          // half a pixel less, because pixels are counted by their centres
 constexpr double beyond_pattern = 1.75;  // pitches of profile on both sides of the outermost bars
 constexpr double knot_step = 0.15;       // of the line spread, in pitches
-constexpr double coarser_step = 0.2;     // what a profile with these knots says otherwise is allowed for
+constexpr double coarser_step = 0.2;     // the difference to a profile with these knots is part of the interval
 constexpr double widest_gap = 0.21;      // between samples along the profile
-constexpr double method_error = 0.002;   // of a modulation: knots, and what is not linear in the correction
+constexpr double method_error = 0.002;   // of a modulation: knots, and the nonlinear part of the correction
 constexpr int repetitions = 100;
 
-/// Where a group is and how its bars lie in the picture, from the derivative of the mapping at its middle.
+/// Place of a group and direction of its bars in the picture, from the derivative of the mapping at its middle.
 struct GroupFrame {
   cv::Point2d middle;    ///< px
   cv::Matx22d to_mm;     ///< pixels from the middle -> mm across and along the bars
@@ -57,7 +58,7 @@ GroupFrame frame_of(const PlateBars& group, const Registration& where, cv::Point
   return frame;
 }
 
-/// Pixels: their places along the normal in pitches from where the mapping has the middle, and their values.
+/// Pixels: their places along the normal in pitches from the mapped middle, and their values.
 struct ProfileSamples {
   std::vector<double> places, values;
   double width = 0;  ///< of a bar, in pitches
@@ -68,7 +69,7 @@ Result<ProfileSamples> samples_of(const cv::Mat1d& picture, const PlateBars& gro
   out.width = group.bar_mm * frame.px_per_mm;
   const double reach = 3.5 * out.width + beyond_pattern;
   const double half_length_mm = 0.5 * group.length_mm - clear_of_ends_px / frame.px_per_mm;
-  if (half_length_mm <= 0) return fail(ErrorCode::invalid_input, "its bars are too short in pixels");
+  if (half_length_mm <= 0) return fail(ErrorCode::invalid_input, "its bars are too short in the picture");
   const double box = std::hypot(reach, 0.5 * group.length_mm * frame.px_per_mm) + 1;
   for (int row = static_cast<int>(frame.middle.y - box); row <= frame.middle.y + box; ++row) {
     for (int x = static_cast<int>(frame.middle.x - box); x <= frame.middle.x + box; ++x) {
@@ -76,7 +77,7 @@ Result<ProfileSamples> samples_of(const cv::Mat1d& picture, const PlateBars& gro
       const double t = mm[0] * frame.px_per_mm;
       if (std::abs(t) > reach || std::abs(mm[1]) > half_length_mm) continue;
       if (x < 0 || row < 0 || x >= picture.cols || row >= picture.rows)
-        return fail(ErrorCode::calibration, "it leaves the picture");
+        return fail(ErrorCode::calibration, "part of it is outside the picture");
       out.places.push_back(t), out.values.push_back(picture(row, x));
     }
   }
@@ -84,11 +85,11 @@ Result<ProfileSamples> samples_of(const cv::Mat1d& picture, const PlateBars& gro
   std::sort(sorted.begin(), sorted.end());
   const auto gap = [](double a, double b) { return b - a > widest_gap; };
   if (sorted.size() < 10 || std::adjacent_find(sorted.begin(), sorted.end(), gap) != sorted.end())
-    return fail(ErrorCode::invalid_input, "its bars are too short in pixels to show every sampling phase");
+    return fail(ErrorCode::invalid_input, "its bars are too short in the picture to show every sampling phase");
   return out;
 }
 
-/// The middle of the pattern in a profile, near `from`: where the profile is most like bars and spaces.
+/// The middle of the pattern in a profile, near `from`: the place of best agreement with bars and spaces.
 double middle_of(const BarsProfile& profile, double width, double sign, double from) {
   const auto likeness = [&](double middle) {
     constexpr int steps = 8;  // of a bar
@@ -113,7 +114,7 @@ BarModulation modulation_of(const BarsProfile& profile, double middle, double wi
   return bar_modulation([&](double x) { return sign * profile.value(x + middle); }, 1 / (2 * width));
 }
 
-/// Of repetitions with noise: how far the mean lies from what the noise was added to, and the spread.
+/// Repetitions with noise: difference of the mean from the noiseless value, and the spread.
 struct Repeated {
   double sum = 0, squares = 0;
   void add(double value) { sum += value, squares += value * value; }
@@ -121,7 +122,7 @@ struct Repeated {
   [[nodiscard]] double sd() const {
     return std::sqrt(std::max(0.0, squares / repetitions - mean() * mean()) * repetitions / (repetitions - 1));
   }
-  /// `coarser`: what wider knots find.
+  /// `coarser`: result with wider knots.
   [[nodiscard]] Modulation around(double found, double coarser, double contrast, double relative_u95) const {
     const double bias = mean() - found;
     Modulation out;
@@ -135,19 +136,19 @@ struct Repeated {
 };
 
 struct LargeAreas {
-  double contrast = 0;      ///< with its sign, corrected
+  double contrast = 0;      ///< signed, corrected
   double far_spread = 0;    ///< correction, relative
   double relative_u95 = 0;  ///< of the contrast
 };
 
-/// Takes the place of the middle within the group from the mapping, moved as the groups before on this axis were.
+/// Takes the place of the middle within the group from the mapping, with the shift of the earlier groups on this axis.
 Result<BarsCtf> group_ctf(const cv::Mat1d& picture, const PlateBars& group, const GroupFrame& frame,
                           const LargeAreas& areas, double& offset_pitch, const RandomStream& random) {
   const auto samples = samples_of(picture, group, frame);
   if (!samples) return tl::unexpected(samples.error());
   const auto fit = BarsFit::of(samples->places, samples->width, offset_pitch, knot_step);
   const auto coarse_fit = BarsFit::of(samples->places, samples->width, offset_pitch, coarser_step);
-  if (!fit || !coarse_fit) return fail(ErrorCode::invalid_input, "too few pixels show it");
+  if (!fit || !coarse_fit) return fail(ErrorCode::invalid_input, "its image has too few pixels");
   const double sign = areas.contrast < 0 ? -1 : 1, contrast = std::abs(areas.contrast);
   const BarsProfile profile = fit->profile(samples->values);
   const double middle = middle_of(profile, samples->width, sign, offset_pitch);
@@ -193,7 +194,7 @@ Polygon moved_outline(Polygon outline, const Registration& where, cv::Point2d mo
   return outline;
 }
 
-/// The share of each pixel that cut-outs cover.
+/// Covered share of each pixel by cut-outs.
 cv::Mat1d coverage_of(const std::vector<Polygon>& outlines, cv::Size size) {
   cv::Mat1d covered(size, 0.0);
   for (Polygon cells : outlines) {
@@ -203,7 +204,7 @@ cv::Mat1d coverage_of(const std::vector<Polygon>& outlines, cv::Size size) {
   return covered;
 }
 
-/// Wanted pixels that are further than clear_of_area_px from every one that is not.
+/// Wanted pixels at least clear_of_area_px from every unwanted one.
 std::vector<cv::Point> clear_pixels(const cv::Mat1b& wanted, const cv::Rect& within) {
   cv::Mat1f distance;
   cv::distanceTransform(wanted, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
@@ -221,7 +222,7 @@ double mean_at(const cv::Mat1d& picture, const std::vector<cv::Point>& pixels) {
   return sum / static_cast<double>(pixels.size());
 }
 
-/// At most so many of them, evenly chosen.
+/// A limited number of the pixels, evenly chosen.
 std::vector<cv::Point> some_of(const std::vector<cv::Point>& pixels) {
   constexpr std::size_t most = 60;
   const std::size_t step = (pixels.size() + most - 1) / most;
@@ -230,7 +231,7 @@ std::vector<cv::Point> some_of(const std::vector<cv::Point>& pixels) {
   return some;
 }
 
-/// The share that an MTF of 1 - a f brings to these pixels from cut-outs further than near_px, per a.
+/// Share of light that an MTF of 1 - a f spreads into these pixels from cut-outs further than near_px, per a.
 double far_from_cut_outs(const cv::Mat1d& covered, const std::vector<cv::Point>& pixels) {
   double sum = 0;
   for (const cv::Point& p : pixels) {
@@ -244,16 +245,16 @@ double far_from_cut_outs(const cv::Mat1d& covered, const std::vector<cv::Point>&
   return sum / (4 * std::numbers::pi * std::numbers::pi * static_cast<double>(pixels.size()));
 }
 
-/// What large areas lose of their contrast, per a: within a cut-out everything beyond near_px that is not cut out, on
-/// the plate what comes from cut-outs. Nearer there is nothing of the other kind.
+/// Loss of contrast of large areas, per a: inside a cut-out from the plate further than near_px, on the plate from
+/// cut-outs. There is no area of the other kind nearer than that.
 double far_exchange(const cv::Mat1d& covered, const std::vector<cv::Point>& within,
                     const std::vector<cv::Point>& outside) {
   constexpr double everything = 1 / (2 * std::numbers::pi * near_px);
   return everything - far_from_cut_outs(covered, some_of(within)) + far_from_cut_outs(covered, some_of(outside));
 }
 
-/// How the MTF begins: exp(-a f - c f^2), a; a normal blur is c alone. Mean over the edges of the squares; from 0.1 and
-/// 0.2 cycles per pitch.
+/// Initial slope a of the MTF, exp(-a f - c f^2); a normal blur has c only. Mean over the edges of the squares, from
+/// 0.1 and 0.2 cycles per pitch.
 std::optional<double> slope_of_mtf(const PlateEdges& edges) {
   if (edges.edges.empty()) return std::nullopt;
   double sum = 0;
@@ -273,7 +274,7 @@ Result<LargeAreas> large_areas(const cv::Mat1d& picture, const TargetPlate& plat
   const cv::Rect whole = cv::Rect(cv::Point(static_cast<int>(std::ceil(box.x)), static_cast<int>(std::ceil(box.y))),
                                   cv::Point(static_cast<int>(box.br().x), static_cast<int>(box.br().y))) &
                          cv::Rect({0, 0}, picture.size());
-  if (whole.area() <= 0) return fail(ErrorCode::calibration, "the plate leaves the picture");
+  if (whole.area() <= 0) return fail(ErrorCode::calibration, "the plate is outside the picture");
   std::vector<Polygon> shifted = outlines;
   for (Polygon& outline : shifted)
     for (cv::Point2d& p : outline) p -= cv::Point2d(whole.tl());
@@ -284,7 +285,7 @@ Result<LargeAreas> large_areas(const cv::Mat1d& picture, const TargetPlate& plat
   const auto outside = clear_pixels(covered < 0.001, inner & cv::Rect({0, 0}, whole.size()));
   constexpr std::size_t least_pixels = 9;
   if (within.size() < least_pixels || outside.size() < least_pixels)
-    return fail(ErrorCode::calibration, "the squares of plate '" + plate.name + "' are too small in pixels");
+    return fail(ErrorCode::calibration, "the squares of plate '" + plate.name + "' are too small in the picture");
   const auto edges = plate_edges(picture, plate, where.moved(moved_px));
   if (!edges) return tl::unexpected(edges.error());
   const auto slope = slope_of_mtf(*edges);
@@ -299,7 +300,8 @@ Result<LargeAreas> large_areas(const cv::Mat1d& picture, const TargetPlate& plat
   double noise = 0;
   for (const EdgeMtf& edge : edges->edges) noise = std::max(noise, edge.noise_over_step);
   const auto fewest = static_cast<double>(std::min(within.size(), outside.size()));
-  areas.relative_u95 = std::hypot(0.5 * areas.far_spread, normal_z95 * noise * std::sqrt(2 / fewest));
+  // A halo of 5 % changes the contrast by 0.7 (4 pixels) to 1.2 (10 pixels) times the correction.
+  areas.relative_u95 = std::hypot(areas.far_spread, normal_z95 * noise * std::sqrt(2 / fewest));
   return areas;
 }
 
@@ -308,8 +310,9 @@ Result<LargeAreas> large_areas(const cv::Mat1d& picture, const TargetPlate& plat
 Result<PlateBarsCtf> plate_bars_ctf(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                     const Registration& where, std::uint64_t seed) {
   if (mounted_plate.bars.empty() || mounted_plate.rectangles.empty())
-    return fail(ErrorCode::invalid_input, "plate '" + mounted_plate.name + "' has no bars, or no squares beside them");
-  if (!cv::checkRange(picture)) return fail(ErrorCode::invalid_input, "the picture holds a value that is no number");
+    return fail(ErrorCode::invalid_input, "plate '" + mounted_plate.name + "' needs both bars and squares for the CTF");
+  if (!cv::checkRange(picture))
+    return fail(ErrorCode::invalid_input, "the picture contains a value that is not finite");
   std::vector<Polygon> outlines;
   for (const PlateRectangle& cut_out : straight_cut_outs(mounted_plate))
     outlines.push_back(moved_outline(outline_mm(cut_out), where, {0, 0}));
@@ -325,7 +328,7 @@ Result<PlateBarsCtf> plate_bars_ctf(const cv::Mat1d& picture, const TargetPlate&
   std::vector<std::pair<GroupFrame, const PlateBars*>> groups;
   for (const PlateBars& group : mounted_plate.bars) groups.emplace_back(frame_of(group, where, *moved), &group);
   const auto upright = [](const GroupFrame& frame) { return std::abs(frame.normal.x) >= std::abs(frame.normal.y); };
-  // Wide bars first: they say where narrow ones are to within a fraction of a bar.
+  // Wide bars first: they locate narrow ones to a fraction of a bar.
   std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
     if (upright(a.first) != upright(b.first)) return upright(a.first);
     return a.second->bar_mm > b.second->bar_mm;

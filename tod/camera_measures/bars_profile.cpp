@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/bars_profile.h"
 
 #include <algorithm>
@@ -55,7 +56,7 @@ double BarsProfile::edge(double place) const {
   const double at = (place - first_knot_) / step_;
   const int cell = static_cast<int>(std::floor(at)), count = static_cast<int>(coefficients_.size());
   if (cell < 0) return 0;
-  const int whole = std::min(std::max(cell - 3, 0), count);  // splines that lie left of the place as a whole
+  const int whole = std::min(std::max(cell - 3, 0), count);  // splines entirely to the left of the place
   double sum = sums_[static_cast<std::size_t>(whole)];
   for (int i = whole; i <= std::min(cell, count - 1); ++i)
     sum += coefficients_[static_cast<std::size_t>(i)] * spline_integral(at - i);
@@ -94,7 +95,7 @@ std::optional<BarsFit> BarsFit::of(const std::vector<double>& places, double bar
         normal(k + i, k + j) += weight * third[static_cast<std::size_t>(i)] * third[static_cast<std::size_t>(j)];
     }
   }
-  // Straight line spreads cost nothing above; beyond what the samples show they are held to 0.
+  // Straight line spreads cost nothing above; outside the range of the samples they are pulled to 0.
   for (int k = 1; k < unknowns; ++k) normal(k, k) += 0.01 * weight;
   if (!cv::solve(normal, design.t(), fit.solution_, cv::DECOMP_CHOLESKY)) return std::nullopt;
   fit.freedom_ = rows - cv::trace(fit.solution_ * design)[0];

@@ -1,4 +1,5 @@
-// The profile across four bars from samples at many places: one line spread for all of their edges.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Profile across four bars from samples at many places, with one line spread for all edges.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -7,33 +8,33 @@
 
 namespace todbench {
 
-/// A line spread of cubic B-splines over evenly spaced knots, its integral the edge spread, and four bars made of
-/// eight edges.
+/// A line spread of cubic B-splines over evenly spaced knots, its integral the edge spread, and four bars made of eight
+/// edges.
 class BarsProfile {
  public:
   BarsProfile(double first_knot, double step, double bar_width, double middle, double ground,
               std::vector<double> coefficients);
-  /// At a place; smooth everywhere.
+  /// Value at a place; smooth everywhere.
   [[nodiscard]] double value(double place) const;
 
  private:
   [[nodiscard]] double edge(double place) const;
   double first_knot_, step_, width_, middle_, ground_;
-  std::vector<double> coefficients_, sums_;  ///< sums_[i]: of the coefficients before i
+  std::vector<double> coefficients_, sums_;  ///< sums_[i]: sum of the coefficients before i
 };
 
-/// Least squares for samples at fixed places: ground level and line spread. What four bars do not show of the line
-/// spread is held by a small cost on its third differences (1e-6 of the mean diagonal); of the profile that changes
-/// nothing. Immutable, thread-safe.
+/// Least-squares fit of ground level and line spread to samples at fixed places. A small cost on the third differences
+/// of the line spread (1e-6 of the mean diagonal) determines the parts that four bars do not show; it does not change
+/// the profile. Immutable, thread-safe.
 class BarsFit {
  public:
-  /// Places, bar width, middle and knots in one unit; the line spread reaches 4 units to both sides, so an error of the
-  /// middle moves it and changes no value. Nothing where there are too few places.
+  /// Places, bar width, middle and knots have one unit. The line spread reaches 4 units to both sides, so an error of
+  /// the middle moves it and changes no value. Empty if there are too few places.
   [[nodiscard]] static std::optional<BarsFit> of(const std::vector<double>& places, double bar_width, double middle,
                                                  double knot_step);
   /// Precondition: as many values as places.
   [[nodiscard]] BarsProfile profile(const std::vector<double>& values) const;
-  /// Samples less what the fit takes of them (trace of the matrix that smooths them).
+  /// Number of samples minus the trace of the smoothing matrix.
   [[nodiscard]] double degrees_of_freedom() const { return freedom_; }
 
  private:

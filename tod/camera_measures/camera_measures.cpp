@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/camera_measures.h"
 
 #include <fmt/format.h>
@@ -5,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/measurement/target_change.h"
 #include "tod/measures/pixel_noise.h"
 #include "tod/measures/shading.h"
@@ -15,9 +16,9 @@ namespace todbench {
 namespace {
 
 constexpr int least_side_px = 8;
-constexpr int attempts = 3;  // to take a cube with no correction in it
+constexpr int attempts = 3;  // to take a cube without a correction in it
 
-/// Standard deviation in time of each pixel, changes of whole frames left out.
+/// Standard deviation in time of each pixel, without changes of whole frames.
 class PixelSquares {
  public:
   void add(const cv::Mat1d& frame) {
@@ -29,7 +30,7 @@ class PixelSquares {
     squares_ += change.mul(change);
     ++frames_;
   }
-  /// Precondition: two frames or more.
+  /// Precondition: at least two frames.
   [[nodiscard]] cv::Mat1d sd() const {
     cv::Mat1d variance = (squares_ - sum_.mul(sum_) / frames_) / (frames_ - 1.0), root;
     cv::sqrt(cv::max(variance, 0.0), root);
@@ -43,7 +44,7 @@ class PixelSquares {
 
 class Run {
  public:
-  Run(FrameSource& source, Target& target, const CameraMeasuresOptions& options, MeasurementHost& host,
+  Run(FrameSource& source, Target& target, const CameraMeasuresOptions& options, RunController& host,
       std::stop_token stop)
       : source_(source),
         target_(target),
@@ -104,7 +105,7 @@ class Run {
       else if (auto kept = keep("smallest triangles", strip.error()); !kept)
         return tl::unexpected(kept.error());
     }
-    // Last: the plate changes.
+    // Last, because the plate changes.
     if (options_.mtf_plate) {
       auto mtf = measure_mtf(measures.reasons);
       if (mtf)
@@ -136,7 +137,7 @@ class Run {
 
   [[nodiscard]] const TargetPlate& plate() const { return options_.measurement.plates.front(); }
 
-  /// Shows the first plate at a contrast; what the target said.
+  /// Shows the first plate at a contrast; returns the state that the target reported.
   Result<PresentedTarget> show(double delta_t_k) { return show(plate().name, delta_t_k); }
 
   Result<PresentedTarget> show(const std::string& plate_name, double delta_t_k) {
@@ -151,11 +152,12 @@ class Run {
     return *change->presented;
   }
 
-  /// Where the plate is, at the contrast that shows it best.
+  /// Locates the plate at the contrast that shows it best.
   Result<void> locate() {
     double largest = 0;
     for (const double step : options_.transfer_steps_k) largest = std::abs(step) > std::abs(largest) ? step : largest;
-    if (largest == 0) return fail(ErrorCode::invalid_input, "no contrast shows where the plate is");
+    if (largest == 0)
+      return fail(ErrorCode::invalid_input, "the plate cannot be located, because all contrasts of the steps are 0 K");
     if (auto shown = show(largest); !shown) return tl::unexpected(shown.error());
     auto picture = taker_.average(options_.measurement.registration_frames, stop_);
     if (!picture) return tl::unexpected(picture.error());
@@ -233,7 +235,7 @@ class Run {
     return strip;
   }
 
-  /// Sides that could not be measured are reasons.
+  /// Sides that could not be measured add reasons.
   Result<MtfMeasure> measure_mtf(std::vector<std::string>& reasons) {
     const TargetPlate& edge_plate = *options_.mtf_plate;
     const auto shown = show(edge_plate.name, options_.mtf_delta_t_k);
@@ -254,7 +256,7 @@ class Run {
     return mtf;
   }
 
-  /// Groups that could not be measured are reasons.
+  /// Groups that could not be measured add reasons.
   Result<CtfMeasure> measure_ctf(std::vector<std::string>& reasons) {
     const TargetPlate& bars_plate = *options_.ctf_plate;
     const auto shown = show(bars_plate.name, options_.ctf_delta_t_k);
@@ -289,15 +291,16 @@ class Run {
     const int x1 = std::min(source_.info().width, static_cast<int>(std::floor(right)));
     const int y1 = std::min(source_.info().height, static_cast<int>(std::floor(bottom)));
     if (x1 - x0 < least_side_px || y1 - y0 < least_side_px)
-      return fail(ErrorCode::invalid_input, "the plate covers too little of the picture");
+      return fail(ErrorCode::invalid_input,
+                  fmt::format("the plate covers less than {0} x {0} pixels of the picture", least_side_px));
     return cv::Rect(x0, y0, x1 - x0, y1 - y0);
   }
 
-  /// Lets a camera that is told when to correct itself do so; whether it was.
+  /// Commands a correction if the camera takes commands; returns whether it did.
   Result<bool> correct() {
     if (options_.measurement.nuc_interval_s <= 0) return false;
     if (auto corrected = taker_.correct_nonuniformity(); !corrected) {
-      // A camera that takes no command corrects itself; what it tells of that is seen in its frames.
+      // A camera that takes no command corrects itself; its frames report that.
       if (corrected.error().code == ErrorCode::invalid_input) return false;
       return tl::unexpected(corrected.error());
     }
@@ -335,10 +338,10 @@ class Run {
     NoiseCube frames;
     NoiseMeasure measure;
     PixelSquares squares;
-    std::vector<cv::Mat1f> pixel_frames{};  ///< of the window in which pixels are looked at
+    std::vector<cv::Mat1f> pixel_frames{};  ///< of the window in which pixels are examined
   };
 
-  /// Where pixels are told apart.
+  /// Window in which pixels are examined.
   [[nodiscard]] cv::Rect pixel_window(const cv::Rect& field) const {
     return options_.pixels->whole_frame ? cv::Rect(0, 0, source_.info().width, source_.info().height) : field;
   }
@@ -353,7 +356,7 @@ class Run {
     return {};
   }
 
-  /// Frames with no correction between them; nothing where one came.
+  /// Frames with no correction between them; empty if one occurred.
   Result<std::optional<Cube>> take_cube(const cv::Rect& field) {
     Cube cube;
     double last_s = -1;
@@ -386,9 +389,13 @@ class Run {
       if (!taken) return tl::unexpected(taken.error());
       cube = *std::move(taken);
     }
-    if (!cube) return fail(ErrorCode::integrity, "the camera corrects itself too often for a cube of frames");
+    if (!cube)
+      return fail(
+          ErrorCode::integrity,
+          "the camera corrects its non-uniformity so often that no uninterrupted series of frames could be recorded");
     if (const auto change = cube->frames.abrupt_change())
-      return fail(ErrorCode::integrity, fmt::format("the picture changed before frame {} of the cube", *change + 1));
+      return fail(ErrorCode::integrity,
+                  fmt::format("the picture changed abruptly before frame {} of the series", *change + 1));
     auto noise = summed_up(*cube);
     if (!noise) return tl::unexpected(noise.error());
     noise->field = *where;
@@ -396,7 +403,7 @@ class Run {
     return noise;
   }
 
-  /// Temperature of a count where the frames are; nothing: the scale is not known.
+  /// Temperature of a count at the level of the frames; empty: the scale is not known.
   [[nodiscard]] std::optional<double> kelvin_per_count(double at_k) const {
     const auto& scale = source_.info().scale;
     const auto counts = scale.counts(at_k);
@@ -439,7 +446,7 @@ class Run {
   FrameSource& source_;
   Target& target_;
   const CameraMeasuresOptions& options_;
-  MeasurementHost& host_;
+  RunController& host_;
   std::stop_token stop_;
   FrameTaker taker_;
   Registration where_;
@@ -496,8 +503,8 @@ std::optional<double> CameraMeasures::netd_relative_half_width() const {
 }
 
 Result<CameraMeasures> measure_camera(FrameSource& source, Target& target, const CameraMeasuresOptions& options,
-                                      MeasurementHost& host, std::stop_token stop) {
-  if (options.measurement.plates.empty()) return fail(ErrorCode::invalid_input, "there is no plate to show");
+                                      RunController& host, std::stop_token stop) {
+  if (options.measurement.plates.empty()) return fail(ErrorCode::invalid_input, "no plate is given");
   if (auto started = source.start(); !started) {
     CameraMeasures none;
     none.reasons.push_back("physical measures: " + started.error().message);

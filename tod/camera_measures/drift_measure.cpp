@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/drift_measure.h"
 
 #include <fmt/format.h>
@@ -11,11 +12,11 @@
 namespace todbench {
 namespace {
 
-/// A watch that the next correction cuts off after a fifth still has eight of these groups.
+/// A recording that the next correction ends after a fifth still has eight of these groups.
 constexpr int short_groups = 40;
 constexpr std::size_t most_short_groups = 24;  // more are joined in pairs
 
-/// Sums up frames by the time since the correction.
+/// Sums frames by the time since the correction.
 class DriftGroups {
  public:
   explicit DriftGroups(double group_s) : group_s_(group_s) {}
@@ -34,7 +35,7 @@ class DriftGroups {
     DriftGroup& group = groups_.back();
     group.time_s += since_s, group.mean_k += kelvin, ++group.frames;
   }
-  /// Means of the groups that have at least half as many frames as the fullest: the last one may be cut off.
+  /// Means of the groups that have at least half as many frames as the largest: the last one may be cut off.
   [[nodiscard]] std::vector<DriftGroup> finished(double frame_rate_hz) && {
     if (camera_has_clock(frame_rate_hz)) {
       for (std::size_t k = 0; k < groups_.size(); ++k) groups_[k].time_s = by_camera_s_[k];
@@ -55,7 +56,7 @@ class DriftGroups {
   static double seconds_between(const CameraMoment& from, const CameraMoment& to) {
     return 1e-9 * static_cast<double>(to.device_time_ns - from.device_time_ns);
   }
-  /// Frames arrive late on a busy host; a clock that counts them at the stated rate knows when they were exposed.
+  /// Frames arrive late on a busy host; a clock that counts them at the stated rate gives their exposure times.
   [[nodiscard]] bool camera_has_clock(double frame_rate_hz) const {
     constexpr double tolerance = 0.02;
     const auto frames = static_cast<double>(last_.sequence - first_.sequence);
@@ -82,9 +83,9 @@ class DriftGroups {
   std::vector<double> by_camera_s_;  ///< sums, as the times of the groups are while frames are added
 };
 
-/// What a camera says of its correction comes with the delays of its frames: less is no new correction.
+/// A reported correction arrives with the delays of the frames: a smaller difference is not a new correction.
 constexpr double told_jitter_s = 0.5;
-constexpr double longest_lag_s = 5;  // of that time behind the host's clock
+constexpr double longest_lag_s = 5;  // of that time after the host's clock
 
 double host_s(const Frame& frame) {
   return static_cast<double>(frame.host_time_ns) * 1e-9;
@@ -103,7 +104,8 @@ Result<Frame> after_own_correction(FrameTaker& taker, double wait_s, const std::
     if (!began_s) began_s = host_s(*frame);
     last_s = since_s;
     if (host_s(*frame) - *began_s > wait_s) {
-      return fail(ErrorCode::integrity, fmt::format("no correction was commanded, told or seen within {:g} s", wait_s));
+      return fail(ErrorCode::integrity,
+                  fmt::format("no correction of the camera was commanded, reported or detected within {:g} s", wait_s));
     }
   }
 }
@@ -120,7 +122,7 @@ Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, con
     return options.simulated ? 1e-9 * static_cast<double>(taken.device_time_ns - began_ns) : taker.since_nuc_s(taken);
   };
   const double first_s = since_correction_s(*frame);
-  if (first_s < 0) return fail(ErrorCode::integrity, "the time of the camera's correction is not known");
+  if (first_s < 0) return fail(ErrorCode::integrity, "the time of the camera's correction is unknown");
   DriftGroups groups(options.drift_s / short_groups);
   DriftMeasure measure;
   double last_s = first_s;
@@ -135,14 +137,16 @@ Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, con
     measure.ended_by_correction = since_s < last_s - told_jitter_s;
     if (measure.ended_by_correction || since_s - first_s >= options.drift_s) break;
     if (!options.simulated && host_s(*frame) - began_s > options.drift_s + longest_lag_s)
-      return fail(ErrorCode::integrity, "the time since the correction that the camera tells does not go on");
+      return fail(ErrorCode::integrity, "the camera reports a time since its correction that does not advance");
     last_s = std::max(last_s, since_s);
   }
   const std::vector<DriftGroup> means = std::move(groups).finished(options.frame_rate_hz);
   if (means.size() < least_drift_groups) {
-    return fail(ErrorCode::integrity,
-                fmt::format("{} groups of frames within {:.1f} s after a correction are too few for a law of drift",
-                            means.size(), last_s));
+    return fail(
+        ErrorCode::integrity,
+        fmt::format(
+            "the fit of the drift needs at least {2} groups of frames, but the {1:.1f} s after a correction gave {0}",
+            means.size(), last_s, least_drift_groups));
   }
   auto law = drift_law(means);
   if (!law) return tl::unexpected(law.error());

@@ -1,18 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/edge_measure.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "tod/camera_measures/plate_offset.h"
+#include "tod/camera_measures/plate_tails.h"
 
 namespace todbench {
 namespace {
 
-constexpr double clear_px = 3.5;      // of a region from the corners of its rectangle and from what is beside it
+constexpr double clear_px = 3.5;      // of a region from the corners of its rectangle and from neighbouring cut-outs
 constexpr double longest_reach = 26;  // of a region to both sides of its edge
 
 Polygon in_picture(const PlateRectangle& rectangle, const Registration& where) {
@@ -21,13 +22,13 @@ Polygon in_picture(const PlateRectangle& rectangle, const Registration& where) {
   return outline;
 }
 
-/// What the region of an edge must stay clear of.
+/// Objects that the region of an edge must stay clear of.
 struct Surroundings {
-  cv::Rect2d plate;                ///< within which there is nothing but cut-outs
+  cv::Rect2d plate;                ///< contains only cut-outs
   std::vector<cv::Rect2d> others;  ///< of other rectangles
 };
 
-/// The upright region round the middle of a side of which the MTF runs along `axis`.
+/// The upright region round the middle of a side whose MTF is along `axis`.
 cv::Rect region_of(const Polygon& outline, std::size_t side, EdgeAxis axis, const Surroundings& around) {
   const cv::Point2d a = outline[side], b = outline[(side + 1) % 4], opposite = outline[(side + 2) % 4];
   const cv::Point2d middle = 0.5 * (a + b), along = b - a, depth = opposite - b;
@@ -42,7 +43,7 @@ cv::Rect region_of(const Polygon& outline, std::size_t side, EdgeAxis axis, cons
   for (const cv::Rect2d& other : around.others) {
     const cv::Rect2d shared = region & other;
     if (shared.area() <= 0) continue;
-    // As much less on both sides.
+    // Reduced equally on both sides.
     const double less = (upright ? shared.width : shared.height) + clear_px;
     region = upright ? cv::Rect2d(region.x + less, region.y, region.width - 2 * less, region.height)
                      : cv::Rect2d(region.x, region.y + less, region.width, region.height - 2 * less);
@@ -63,54 +64,32 @@ std::optional<double> first_half(const EdgeMtf& edge) {
   return std::nullopt;
 }
 
-/// By how much of itself a side's MTF may be too large, because what the optics spread beyond the window counts as
-/// nothing: an MTF that begins as exp(-a f - c f^2) has a line spread of a / (2 pi^2 t^2) far away, of which a / (pi^2
-/// T) lies beyond T on both sides. Beyond the ends of a short side lies up to as much again on either. From 0 up to
-/// that; a from the MTF at 0.1 and 0.2 cycles per pitch.
-double beyond_window(const SlantedEdge& side) {
-  constexpr std::size_t low = 10;
-  constexpr double with_ends = 3, largest = 0.05;
-  // Of the logarithm: a normal blur is c alone, however wide.
-  constexpr double least = 1e-3;
-  const double near = -std::log(std::max(side.mtf[low], least)), far = -std::log(std::max(side.mtf[2 * low], least));
-  const double slope = (4 * near - far) / (2 * side.frequency_per_pitch[low]);
-  const double reach = std::max(0.5 * side.window_pitch, 1.0);
-  return std::clamp(with_ends * slope / (std::numbers::pi * std::numbers::pi * reach), 0.0, largest);
-}
-
-/// The middle of what may be; the other half is in the interval. At frequency 0 there is nothing to take out.
-void allow_for_window(SlantedEdge& side) {
-  const double most = beyond_window(side), reach = 0.5 * side.window_pitch;
-  for (std::size_t k = 0; k < side.mtf.size(); ++k) {
-    const double half = 0.5 * most * std::min(1.0, 4 * side.frequency_per_pitch[k] * reach) * side.mtf[k];
-    const double below = side.mtf[k] - side.mtf_low[k], above = side.mtf_high[k] - side.mtf[k];
-    side.mtf[k] -= half;
-    side.mtf_low[k] = side.mtf[k] - std::hypot(below, std::numbers::sqrt2 * half);
-    side.mtf_high[k] = side.mtf[k] + std::hypot(above, std::numbers::sqrt2 * half);
-  }
-}
-
+/// Mean over the sides. Tails are common to the sides: the mean does not shorten their intervals.
 EdgeMtf mean_of(const std::vector<SlantedEdge>& sides) {
   EdgeMtf mean;
   mean.axis = sides.front().axis;
   mean.sides = static_cast<int>(sides.size());
   mean.frequency_per_pitch = sides.front().frequency_per_pitch;
+  mean.widest_halo_pitch = sides.front().widest_halo_pitch;
   const auto count = static_cast<double>(sides.size());
   for (const SlantedEdge& side : sides) {
     mean.angle_deg += side.angle_deg / count;
     mean.noise_over_step = std::max(mean.noise_over_step, side.noise_over_step);
+    mean.halo_allowance = std::max(mean.halo_allowance, side.halo_allowance);
   }
   for (std::size_t k = 0; k < mean.frequency_per_pitch.size(); ++k) {
     double sum = 0, below = 0, above = 0, least = sides.front().mtf[k], most = least;
+    bool low_known = true;
     for (const SlantedEdge& side : sides) {
       sum += side.mtf[k];
-      below += std::pow(side.mtf[k] - side.mtf_low[k], 2), above += std::pow(side.mtf_high[k] - side.mtf[k], 2);
+      below += (side.mtf[k] - side.mtf_low[k]) / count, above += (side.mtf_high[k] - side.mtf[k]) / count;
       least = std::min(least, side.mtf[k]), most = std::max(most, side.mtf[k]);
+      low_known = low_known && side.low_known[k];
     }
     const double value = sum / count, apart = 0.5 * (most - least);
     mean.mtf.push_back(value);
-    mean.low.push_back(value - std::max(std::sqrt(below) / count, apart));
-    mean.high.push_back(value + std::max(std::sqrt(above) / count, apart));
+    mean.low.push_back(low_known ? std::max(0.0, value - std::max(below, apart)) : 0);
+    mean.high.push_back(value + std::max(above, apart));
   }
   mean.mtf50_per_pitch = first_half(mean);
   return mean;
@@ -127,7 +106,8 @@ double tabulated(const std::vector<double>& frequency, const std::vector<double>
 
 /// Both axes of one rectangle.
 void add_rectangle(const cv::Mat1d& picture, const std::string& name, const Polygon& outline,
-                   const Surroundings& around, PlateEdges& out) {
+                   const Surroundings& around, const std::optional<PlateTails>& tails, const TailBounds& bounds,
+                   PlateEdges& out) {
   for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
     std::vector<SlantedEdge> sides;
     std::vector<std::string> reasons;
@@ -135,13 +115,14 @@ void add_rectangle(const cv::Mat1d& picture, const std::string& name, const Poly
       const cv::Point2d along = outline[(side + 1) % 4] - outline[side];
       if ((std::abs(along.y) > std::abs(along.x)) != (axis == EdgeAxis::x)) continue;
       const cv::Rect region = region_of(outline, side, axis, around) & cv::Rect(0, 0, picture.cols, picture.rows);
-      auto edge = region.area() > 0 ? slanted_edge(picture(region).clone(), {.axis = axis})
-                                    : fail(ErrorCode::invalid_input, "there is no room round the edge");
+      const auto here = tails ? std::optional(moved_to(*tails, region.tl())) : std::nullopt;
+      const SlantedEdgeOptions options{.axis = axis, .tails = bounds, .plate = here ? &*here : nullptr};
+      auto edge = region.area() > 0 ? slanted_edge(picture(region).clone(), options)
+                                    : fail(ErrorCode::invalid_input, "the edge has no free surround in the picture");
       if (!edge) {
         reasons.push_back(edge.error().message);
         continue;
       }
-      allow_for_window(*edge);
       sides.push_back(*std::move(edge));
     }
     std::sort(reasons.begin(), reasons.end());
@@ -170,10 +151,13 @@ double EdgeMtf::high_at(double f) const {
   return tabulated(frequency_per_pitch, high, f);
 }
 
-Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& mounted_plate, const Registration& where) {
+Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& mounted_plate, const Registration& where,
+                               const TailBounds& bounds) {
   if (mounted_plate.rectangles.empty())
-    return fail(ErrorCode::invalid_input, "plate '" + mounted_plate.name + "' has no rectangles");
-  if (!cv::checkRange(picture)) return fail(ErrorCode::invalid_input, "the picture holds a value that is no number");
+    return fail(ErrorCode::invalid_input,
+                "plate '" + mounted_plate.name + "' has no rectangles: the MTF needs at least one");
+  if (!cv::checkRange(picture))
+    return fail(ErrorCode::invalid_input, "the picture contains a value that is not finite");
   std::vector<Polygon> outlines;
   for (const PlateRectangle& rectangle : mounted_plate.rectangles) outlines.push_back(in_picture(rectangle, where));
   const auto moved = plate_offset(picture, outlines, mounted_plate.name);
@@ -183,11 +167,13 @@ Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& moun
   for (Polygon& outline : outlines)
     for (cv::Point2d& corner : outline) corner += *moved;
   std::vector<cv::Rect2d> bars;
+  std::vector<Polygon> cut_outs = outlines;
   for (const PlateRectangle& bar : straight_cut_outs(mounted_plate)) {
-    // Those behind the rectangles.
+    // Bars come after the rectangles.
     Polygon outline = in_picture(bar, where);
     for (cv::Point2d& corner : outline) corner += *moved;
     bars.push_back(box_of(outline));
+    if (bars.size() > outlines.size()) cut_outs.push_back(std::move(outline));
   }
   bars.erase(bars.begin(), bars.begin() + static_cast<std::ptrdiff_t>(outlines.size()));
   const double w = mounted_plate.width_mm / 2, h = mounted_plate.height_mm / 2;
@@ -205,7 +191,8 @@ Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& moun
     for (std::size_t k = 0; k < outlines.size(); ++k)
       if (k != i) around.others.push_back(box_of(outlines[k]));
     around.others.insert(around.others.end(), bars.begin(), bars.end());
-    add_rectangle(picture, mounted_plate.rectangles[i].name, outlines[i], around, out);
+    const auto tails = plate_tails(picture, cut_outs, i, around.plate, bounds);
+    add_rectangle(picture, mounted_plate.rectangles[i].name, outlines[i], around, tails, bounds, out);
   }
   return out;
 }

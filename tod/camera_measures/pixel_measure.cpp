@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/pixel_measure.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "acquisition/core/median.h"
+#include "acquisition/base/median.h"
 #include "tod/measures/shading.h"
 #include "tod/plate/plate_outlines.h"
 
@@ -50,11 +51,11 @@ cv::Rect ZoneArea::pixels(cv::Size frame) const {
 
 Result<PixelMeasure> measure_pixels(std::span<const cv::Mat1f> frames, cv::Size frame, const cv::Rect& field,
                                     PixelScene scene, const PixelOptions& options) {
-  if (frames.empty()) return fail(ErrorCode::invalid_input, "no frames to tell pixels apart");
+  if (frames.empty()) return fail(ErrorCode::invalid_input, "the test for defective pixels needs frames");
   cv::Mat1d mean = cv::Mat1d::zeros(frames[0].size());
   for (const cv::Mat1f& one : frames) cv::add(mean, one, mean, cv::noArray(), CV_64F);
   mean /= static_cast<double>(frames.size());
-  // A pixel far off would bend the surface: it counts with the median of its neighbours.
+  // An extreme pixel would bend the surface: it is replaced by the median of its neighbours.
   cv::Mat1f smooth;
   mean.convertTo(smooth, CV_32F);
   cv::medianBlur(smooth.clone(), smooth, 5);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/plate_geometry.h"
 
 #include <fmt/format.h>
@@ -10,8 +11,8 @@
 #include <span>
 #include <utility>
 
-#include "acquisition/core/distributions.h"
-#include "acquisition/core/median.h"
+#include "acquisition/base/distributions.h"
+#include "acquisition/base/median.h"
 #include "tod/plate/plate_outlines.h"
 #include "tod/registration/shift_fit.h"
 
@@ -22,21 +23,21 @@ constexpr int lens_parameters = 9;  // eight of the homography, one of the disto
 constexpr std::size_t least_triangles = 10;
 constexpr double least_triangle_px = 1.5;
 constexpr double triangle_reach_px = 1.5;
-constexpr double outline_px = 0.004;     // by which blur and sampling move a triangle's place
+constexpr double outline_px = 0.004;     // shift of a triangle's place by blur and sampling
 constexpr double least_signal = 10;      // contrast of a triangle over its standard error
 constexpr double widest_place_px = 0.1;  // standard error
 using LensParameters = cv::Matx<double, lens_parameters, 1>;
 
-/// Of the derivatives: parameters are of the size of pixels, or of 1.
+/// Step of the derivatives: parameters are of the size of pixels, or of 1.
 double step_of(int parameter) {
   return parameter < 6 ? 1e-3 : 1e-6;
 }
 
-/// What the fit works in: the plate in units of its half-height, so that all parameters are of one size.
+/// Units of the fit: the plate in units of its half-height, so that all parameters are of one size.
 struct Lens {
   double unit_mm = 1;
   cv::Point2d centre;    ///< of the picture
-  double corner_px = 1;  ///< from it
+  double corner_px = 1;  ///< from the centre
 
   [[nodiscard]] cv::Point2d undistorted(const LensParameters& p, cv::Point2d mm) const {
     const double x = mm.x / unit_mm, y = mm.y / unit_mm, w = p(6) * x + p(7) * y + 1;
@@ -55,7 +56,7 @@ struct LocatedTriangle {
   cv::Point2d u_px;
 };
 
-/// The outline as the lens shows it: distortion bends the sides.
+/// The outline through the lens: distortion bends the sides.
 Polygon outline_behind(const Lens& lens, const LensParameters& p, const PlateTriangle& t) {
   const Polygon corners = triangle(t.size_mm, t.apex, t.position_mm);
   constexpr int pieces = 4;
@@ -67,7 +68,7 @@ Polygon outline_behind(const Lens& lens, const LensParameters& p, const PlateTri
   return outline;
 }
 
-/// Those that stand out of the noise near where the lens has them.
+/// Triangles that stand out of the noise near their expected places.
 std::vector<LocatedTriangle> locate_triangles(const cv::Mat1d& picture, const TargetPlate& plate,
                                               const Registration& where, const Lens& lens, const LensParameters& p) {
   std::vector<LocatedTriangle> located;
@@ -95,7 +96,7 @@ LensParameters start_of(const Registration& where, const Lens& lens) {
   return p;
 }
 
-/// Of the places in units of their uncertainties, by central differences.
+/// Derivatives of the places in units of their uncertainties, by central differences.
 cv::Mat1d weighted_slopes(const std::vector<LocatedTriangle>& located, const Lens& lens, const LensParameters& p) {
   cv::Mat1d slopes(static_cast<int>(2 * located.size()), lens_parameters);
   for (int k = 0; k < lens_parameters; ++k) {
@@ -131,7 +132,7 @@ struct LensFit {
   LensParameters parameters;
   std::vector<cv::Point2d> left_px;
   double chi2 = 0;       ///< of the places in units of their uncertainties
-  cv::Mat1d covariance;  ///< where chi2 is its number of degrees of freedom
+  cv::Mat1d covariance;  ///< for a chi2 equal to its number of degrees of freedom
 };
 
 std::optional<LensFit> fit_lens(const std::vector<LocatedTriangle>& located, const Lens& lens, LensParameters p) {
@@ -152,7 +153,7 @@ std::optional<LensFit> fit_lens(const std::vector<LocatedTriangle>& located, con
   return fit;
 }
 
-/// The triangle that lies farthest off, where that is no chance.
+/// The triangle with the largest residual, if that is significant.
 std::optional<std::size_t> outlier(const std::vector<LocatedTriangle>& located, const LensFit& fit) {
   std::vector<double> lengths;
   for (std::size_t i = 0; i < located.size(); ++i)
@@ -163,7 +164,7 @@ std::optional<std::size_t> outlier(const std::vector<LocatedTriangle>& located, 
   return worst;
 }
 
-/// A quantity that follows from the parameters, with its interval.
+/// A quantity derived from the parameters, with its interval.
 class DerivedQuantity {
  public:
   DerivedQuantity(const LensFit& fit, double factor) : fit_(fit), factor_(factor) {}
@@ -198,7 +199,7 @@ PlateGeometry described(const std::vector<LocatedTriangle>& located, const Lens&
                         const TargetPlate& plate) {
   const double freedom = static_cast<double>(2 * located.size()) - lens_parameters;
   const double t = quantile(distribution::StudentsT(freedom), 0.975);
-  // Few residuals that are small by chance do not make a place better than its noise.
+  // A few residuals that are small by chance do not make a place more certain than its noise.
   const DerivedQuantity derived(fit, t * std::max(1.0, std::sqrt(fit.chi2 / freedom)));
   const double w = plate.width_mm / 2, h = plate.height_mm / 2;
   const auto mm_per_px = [&](const cv::Vec2d& direction) {
@@ -230,17 +231,17 @@ PlateGeometry described(const std::vector<LocatedTriangle>& located, const Lens&
   return out;
 }
 
-/// The fit without triangles that lie off; those are taken out of `located`.
+/// The fit without outlying triangles, which are removed from `located`.
 Result<LensFit> fitted_lens(std::vector<LocatedTriangle>& located, const Lens& lens, const LensParameters& start,
                             const TargetPlate& plate) {
   for (;;) {
     if (located.size() < least_triangles) {
       return fail(ErrorCode::calibration,
-                  fmt::format("{} triangles of plate '{}' can be located, {} are needed for its geometry",
+                  fmt::format("the geometry of plate '{1}' needs at least {2} located triangles, found {0}",
                               located.size(), plate.name, least_triangles));
     }
     auto fit = fit_lens(located, lens, start);
-    if (!fit) return fail(ErrorCode::calibration, "the triangles do not tell distortion and perspective apart");
+    if (!fit) return fail(ErrorCode::calibration, "the located triangles do not separate distortion from perspective");
     const auto off = outlier(located, *fit);
     if (!off) return *std::move(fit);
     located.erase(located.begin() + static_cast<std::ptrdiff_t>(*off));
@@ -256,7 +257,7 @@ Result<PlateGeometry> plate_geometry(const cv::Mat1d& picture, const TargetPlate
   lens.centre = {(picture.cols - 1) / 2.0, (picture.rows - 1) / 2.0};
   lens.corner_px = 0.5 * std::hypot(picture.cols, picture.rows);
   LensParameters p = start_of(where, lens);
-  // The second time with outlines as the lens bends them.
+  // The second time with outlines bent by the lens.
   for (int round = 0;; ++round) {
     std::vector<LocatedTriangle> located = locate_triangles(picture, mounted_plate, where, lens, p);
     const auto fit = fitted_lens(located, lens, p, mounted_plate);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/plate_offset.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ Result<cv::Point2d> plate_offset(const cv::Mat1d& picture, const std::vector<Pol
     return fail(ErrorCode::calibration, "plate '" + plate + "' is larger than the picture");
   cv::Mat1d expected(size, 0.0);
   for (const Polygon& outline : outlines) {
-    Polygon cells = outline;  // pixel_coverage() has corners of pixels at whole numbers, the picture centres
+    Polygon cells = outline;  // pixel_coverage() has corners of pixels at whole numbers, the picture has centres
     for (cv::Point2d& p : cells) p += cv::Point2d(0.5 - origin.x, 0.5 - origin.y);
     expected += pixel_coverage(cells, size);
   }
@@ -48,7 +49,7 @@ Result<cv::Point2d> plate_offset(const cv::Mat1d& picture, const std::vector<Pol
   cv::Point at;
   cv::minMaxLoc(match, nullptr, &best, nullptr, &at);
   if (!(best >= least_match))
-    return fail(ErrorCode::calibration, "the rectangles of plate '" + plate + "' are not in the picture");
+    return fail(ErrorCode::calibration, "the rectangles of plate '" + plate + "' were not found in the picture");
   return cv::Point2d(at - origin);
 }
 

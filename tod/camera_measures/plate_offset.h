@@ -1,21 +1,22 @@
-// Where a plate without triangles is in a picture.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Location of a plate without triangles in a picture.
 #pragma once
 
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "hvs/shape/polygon.h"
 
 namespace todbench {
 
-/// The upright box of a polygon.
+/// Upright bounding box of a polygon.
 [[nodiscard]] cv::Rect2d box_of(const Polygon& polygon);
 
-/// By how much cut-outs of these outlines (pixels, centres at whole numbers) lie beside them in the picture: whole
-/// pixels, by normalised correlation, any sign of contrast. `calibration` where they are not in the picture; `plate` is
-/// its name for the sentence.
+/// Returns the offset in whole pixels of the cut-outs in the picture from these outlines (pixels, centres at whole
+/// numbers), by normalised correlation with any sign of contrast. `plate`: its name for the message. Errors:
+/// `calibration` (not in the picture).
 [[nodiscard]] Result<cv::Point2d> plate_offset(const cv::Mat1d& picture, const std::vector<Polygon>& outlines,
                                                const std::string& plate);
 

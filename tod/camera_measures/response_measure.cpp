@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/response_measure.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/median.h"
+#include "acquisition/base/median.h"
 
 namespace todbench {
 namespace {
@@ -15,16 +16,16 @@ namespace {
 constexpr int frames_before = 8;
 constexpr double changed_part = 0.7, still_part = 0.1;  // of the largest change
 constexpr int least_pixels = 12;
-/// What a camera says of its correction comes with the delays of its frames: less is no new correction.
+/// A reported correction arrives with the delays of the frames: a smaller difference is not a new correction.
 constexpr double told_delay_s = 0.5;
 
-/// Of a camera without a clock frames are counted, and the time is that of its stated rate.
+/// Time by the camera's clock; for a camera without one, the number of frames at the stated rate.
 double camera_s(const Frame& frame, double frame_rate_hz) {
   return frame.device_time_ns != 0 || frame_rate_hz <= 0 ? static_cast<double>(frame.device_time_ns) * 1e-9
                                                          : static_cast<double>(frame.sequence) / frame_rate_hz;
 }
 
-/// Weights whose sum over the field is the mean of what changes less the mean of what does not.
+/// Weights whose sum over the field is the mean of the changing pixels minus the mean of the constant ones.
 struct SignalWeights {
   cv::Mat1d weight;
   int bright = 0;
@@ -45,7 +46,7 @@ Result<SignalWeights> signal_weights(const cv::Mat1d& change) {
     still += std::abs(part) < still_part ? 1 : 0;
   });
   if (largest == 0 || out.bright < least_pixels)
-    return fail(ErrorCode::calibration, "nothing in the picture changes with the target");
+    return fail(ErrorCode::calibration, "no part of the picture changes with the contrast of the target");
   each([&](double part, double& weight) {
     if (part > changed_part) weight = 1.0 / out.bright;
     if (std::abs(part) < still_part && still >= least_pixels) weight = -1.0 / still;
@@ -55,7 +56,7 @@ Result<SignalWeights> signal_weights(const cv::Mat1d& change) {
 
 class ResponseRun {
  public:
-  ResponseRun(FrameTaker& taker, Target& target, MeasurementHost& host, const cv::Rect& field,
+  ResponseRun(FrameTaker& taker, Target& target, RunController& host, const cv::Rect& field,
               const ResponseOptions& options, double frame_rate_hz, std::stop_token stop)
       : taker_(taker),
         target_(target),
@@ -68,7 +69,8 @@ class ResponseRun {
   Result<ResponseMeasure> operator()() {
     SteppingTarget* stepping = target_.stepping();
     if (stepping == nullptr && !options_.settling_s)
-      return fail(ErrorCode::invalid_input, "how long the target needs for a step is not stated");
+      return fail(ErrorCode::invalid_input,
+                  "the settling time of the target is unknown: state [measures] response_settling_ms");
     ResponseMeasure measure{
         .delta_t_k = options_.delta_t_k, .settling_s = stepping != nullptr ? 0 : *options_.settling_s, .response = {}};
     if (auto known = learn_pixels(measure); !known) return tl::unexpected(known.error());
@@ -114,16 +116,16 @@ class ResponseRun {
     const cv::Mat1d change = *bright - *dark;
     auto weights = signal_weights(change);
     if (!weights) return tl::unexpected(weights.error());
-    // A polarity that is negative makes a step up one of the picture down.
+    // With a negative polarity, a step up of the contrast is a step down in the picture.
     weights_ = weights->weight * (change.dot(weights->weight) < 0 ? -1.0 : 1.0);
     measure.bright_pixels = weights->bright;
     return {};
   }
 
-  /// Calls `with` for each good frame that comes while the target changes.
+  /// Calls `with` for each good frame that arrives while the target changes.
   template <typename Function>
   Result<void> present(const TargetState& state, const Function& with) {
-    if (host_.frames_while_presenting() != FramesMeanwhile::take) {
+    if (host_.frames_while_presenting() != FramesWhilePresenting::take) {
       if (auto presented = target_.present(state, stop_); !presented)
         return fail("presenting the target", presented.error());
       return {};
@@ -188,7 +190,7 @@ class ResponseRun {
     return step;
   }
 
-  /// Median from frame to frame.
+  /// Median frame interval.
   static double frame_s(const std::vector<StepSeries>& series) {
     std::vector<double> apart;
     for (const StepSeries& step : series)
@@ -198,7 +200,7 @@ class ResponseRun {
 
   FrameTaker& taker_;
   Target& target_;
-  MeasurementHost& host_;
+  RunController& host_;
   const cv::Rect field_;
   const ResponseOptions& options_;
   const double frame_rate_hz_;
@@ -210,8 +212,8 @@ class ResponseRun {
 
 }  // namespace
 
-Result<ResponseMeasure> measure_response(FrameTaker& taker, Target& target, MeasurementHost& host,
-                                         const cv::Rect& field, const ResponseOptions& options, double frame_rate_hz,
+Result<ResponseMeasure> measure_response(FrameTaker& taker, Target& target, RunController& host, const cv::Rect& field,
+                                         const ResponseOptions& options, double frame_rate_hz,
                                          const std::stop_token& stop) {
   return ResponseRun(taker, target, host, field, options, frame_rate_hz, stop)();
 }

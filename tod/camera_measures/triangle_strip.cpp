@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/camera_measures/triangle_strip.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ TriangleStrip smallest_triangles(const cv::Mat1d& picture, const TargetPlate& mo
                    [](const PlateTriangle& a, const PlateTriangle& b) { return a.size_mm < b.size_mm; });
   triangles.resize(std::min(triangles.size(), static_cast<std::size_t>(std::max(1, count))));
   const double scale = where.scale_px_per_mm;
-  // An equilateral triangle is 1.52 roots of its area wide.
+  // The width of an equilateral triangle is 1.52 times the root of its area.
   const int side = std::max(least_side, static_cast<int>(std::ceil(1.52 * triangles.back().size_mm * scale)) + margin);
   const auto windows = static_cast<int>(triangles.size());
   TriangleStrip strip;

@@ -1,4 +1,5 @@
-// The smallest triangles of a plate as a camera saw them, side by side.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The smallest triangles of a plate as the camera shows them, side by side.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -13,12 +14,12 @@ struct TriangleStrip {
   double set_delta_t_k = 0;
   int frames = 0;               ///< averaged
   std::vector<double> size_px;  ///< square root of the area, from left to right
-  cv::Mat1d kelvin;             ///< windows of one size, two columns of the largest value between them
+  cv::Mat1d kelvin;             ///< windows of one size, separated by two columns of the largest value
 };
 
-/// Windows round the `count` smallest triangles of a plate, smallest first, from a mean picture in kelvin: as large as
-/// the largest of them needs, 16 pixels at least. What lies beyond the picture has its median. Precondition: the plate
-/// has a triangle.
+/// Windows round the `count` smallest triangles of a plate, smallest first, from a mean picture in kelvin. Their size
+/// is that of the largest triangle's window, at least 16 pixels. Pixels outside the picture have its median.
+/// Precondition: the plate has a triangle.
 [[nodiscard]] TriangleStrip smallest_triangles(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                const Registration& where, int count);
 

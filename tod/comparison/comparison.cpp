@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/comparison/comparison.h"
 
 #include <fmt/format.h>
@@ -6,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/psychometric/contrast_slope.h"
 #include "tod/psychometric/threshold_pair.h"
 
@@ -15,13 +16,12 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// Largest of the two one-sided probabilities that a ratio at or beyond the margin gives this estimate (Schuirmann
-// 1987).
+// Larger of the two one-sided probabilities of this estimate for a ratio at or beyond the margin (Schuirmann 1987).
 double wald_equivalence_probability(double ln_ratio, double se, double margin_percent) {
   return distribution::tail_above((std::log1p(margin_percent / 100) - std::abs(ln_ratio)) / se, infinite);
 }
 
-// A threshold that a ratio may be made of. A slope at its lower bound or a ridge has a number but not a meaning.
+// A threshold that may be used for a ratio. A slope at its lower bound or a ridge has a meaningless threshold.
 std::optional<double> ln_threshold(const PsychometricFit& fit) {
   const bool meaningful =
       fit.verdict == FitVerdict::ok || fit.verdict == FitVerdict::extrapolated || fit.verdict == FitVerdict::step;
@@ -30,8 +30,8 @@ std::optional<double> ln_threshold(const PsychometricFit& fit) {
 }
 
 // Interval of exp(tb - ta) from the intervals of both, asymmetric on the log scale (method of variance estimates
-// recovery, Zou and Donner 2008), and a half-width that belongs to either side. A side needs the two sides it is made
-// of.
+// recovery, Zou and Donner 2008), and a half-width added to either side. A side is open if one of its two source sides
+// is.
 Interval ratio_interval(double ta, const Interval& a, double tb, const Interval& b, double half) {
   Interval ratio;
   const double d = tb - ta;
@@ -40,7 +40,7 @@ Interval ratio_interval(double ta, const Interval& a, double tb, const Interval&
   return ratio;
 }
 
-// What clustering and the scatter of the contrast do to the difference of two ln thresholds.
+// Effect of clusters and of the scatter of the contrast on the difference of two ln thresholds.
 struct DifferenceSpread {
   double inflation = 1;                  // of the variance of the difference
   double degrees_of_freedom = infinite;  // Welch and Satterthwaite; infinite without clusters
@@ -66,8 +66,8 @@ DifferenceSpread spread_of(const PsychometricFit& a, const PsychometricFit& b, c
   return spread;
 }
 
-// The same from the interval: on each side the log ratio is taken as normal (or t) with the spread that the side of the
-// 90 % interval has, so that 0.05 is where the interval touches the margin.
+// The same from the interval: on each side the log ratio is normal (or t) with the spread of that side of the 90 %
+// interval, so that the probability is 0.05 if the interval touches the margin.
 std::optional<double> equivalence_probability(double ln_ratio, const Interval& ci90, double margin_percent,
                                               double degrees_of_freedom) {
   if (!ci90.low || !ci90.high) return std::nullopt;
@@ -93,12 +93,12 @@ bool unfit(const TodPoint& point) {
   return point.adequacy && !point.adequacy->adequate();
 }
 
-// Where one function is that of the twin and the other is none, their difference is not that of the cameras.
+// If only one function is that of the twin, the difference of the functions is not that of the cameras.
 bool other_functions(const TodPoint& a, const TodPoint& b) {
   return estimator_of(a.fit) != estimator_of(b.fit);
 }
 
-// Answers of two runs are never the same row by row.
+// Answers of two runs never agree row by row.
 bool same_answers(const TodPoint& a, const TodPoint& b) {
   const auto same = [](const Level& x, const Level& y) {
     return x.size == y.size && x.correct == y.correct && x.total == y.total;
@@ -106,7 +106,7 @@ bool same_answers(const TodPoint& a, const TodPoint& b) {
   return !a.levels.empty() && std::equal(a.levels.begin(), a.levels.end(), b.levels.begin(), b.levels.end(), same);
 }
 
-// What makes a point unfit, with the curve and contrast that it is about.
+// Adds the findings that make a point unfit, with curve and contrast.
 void add_unfit(Adequacy& adequacy, const TodPoint& point, const char* which) {
   if (!unfit(point)) return;
   for (AdequacyFinding finding : point.adequacy->findings) {
@@ -116,14 +116,14 @@ void add_unfit(Adequacy& adequacy, const TodPoint& point, const char* which) {
   }
 }
 
-// The point of the other curve at this contrast, where each is the nearest of the other.
+// The point of the other curve at this contrast, if each is the nearest of the other.
 const TodPoint* partner(const TodPoint& point, const TodCurve& own, const TodCurve& other) {
   const TodPoint* found = point_at(other, point.set_delta_t_k);
   return found != nullptr && point_at(own, found->set_delta_t_k) == &point ? found : nullptr;
 }
 
-// Two-sided, of a ratio as far from 1 as this one if there were none: by likelihood ratio, or, where the function of a
-// twin has no likelihood in common with another, from the standard errors.
+// Two-sided probability of a ratio at least as far from 1 for equal cameras: by likelihood ratio, or from the standard
+// errors if one function is that of a twin and there is no common likelihood.
 Result<double> difference_probability(const TodPoint& a, const TodPoint& b, const DifferenceSpread& spread,
                                       const ComparisonOptions& options) {
   if ((a.fit.twin_shape || b.fit.twin_shape) && a.fit.se_ln_threshold && b.fit.se_ln_threshold) {
@@ -146,13 +146,14 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
   point.delta_t_a_k = a.delta_t_k;
   point.delta_t_b_k = b.delta_t_k;
   point.margin_percent = options.margin_percent;
+  point.withheld = unfit(a) || unfit(b);
   const auto ta = ln_threshold(a.fit), tb = ln_threshold(b.fit);
   if (!ta || !tb) return point;
   point.ratio = std::exp(*tb - *ta);
+  // The part that the interval of the first already contains is not added again.
+  const double rest = std::sqrt(std::max(0.0, std::pow(contrast.se_ln_acuity, 2) - std::pow(a.fit.joined_u, 2)));
   const auto of_contrast = [&](double tail) {
-    return contrast.se_ln_acuity > 0
-               ? contrast.se_ln_acuity * distribution::quantile_above(tail, contrast.degrees_of_freedom)
-               : 0;
+    return rest > 0 ? rest * distribution::quantile_above(tail, contrast.degrees_of_freedom) : 0;
   };
   point.ratio_ci95 = ratio_interval(*ta, a.fit.ci95, *tb, b.fit.ci95, of_contrast(0.025));
   point.ratio_ci90 = ratio_interval(*ta, a.fit.ci90, *tb, b.fit.ci90, of_contrast(0.05));
@@ -162,7 +163,8 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
   point.p_difference = *p_difference;
   point.p_equivalence =
       equivalence_probability(*tb - *ta, point.ratio_ci90, options.margin_percent, spread.degrees_of_freedom);
-  point.verdict = unfit(a) || unfit(b) || other_functions(a, b) ? ComparisonVerdict::inconclusive : verdict_of(point);
+  point.withheld = point.withheld || other_functions(a, b);
+  point.verdict = point.withheld ? ComparisonVerdict::inconclusive : verdict_of(point);
   return point;
 }
 
@@ -192,7 +194,7 @@ std::string_view to_string(ComparisonVerdict verdict) {
 Result<ThresholdTest> test_thresholds(std::span<const Level> a, std::span<const Level> b, SlopeModel slopes,
                                       double margin_percent, const FitOptions& options) {
   if (!(margin_percent > 0) || !std::isfinite(margin_percent))
-    return fail(ErrorCode::invalid_input, "equivalence margin must be positive");
+    return fail(ErrorCode::invalid_input, "the equivalence margin must be positive");
   FitOptions single = options;
   single.with_posterior = false;
   const auto fit_a = fit_psychometric(a, single);
@@ -220,9 +222,10 @@ Result<ThresholdTest> test_thresholds(std::span<const Level> a, std::span<const 
 
 Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const ComparisonOptions& options) {
   if (!(options.margin_percent > 0) || !std::isfinite(options.margin_percent))
-    return fail(ErrorCode::invalid_input, "equivalence margin must be positive");
+    return fail(ErrorCode::invalid_input, "the equivalence margin must be positive");
   if (a.observer != b.observer)
-    return fail(ErrorCode::invalid_input, "the curves have different observers: " + a.observer + " and " + b.observer);
+    return fail(ErrorCode::invalid_input,
+                "the curves were measured with different observers: " + a.observer + " and " + b.observer);
   Comparison comparison{.points = {}, .verdict = {}, .adequacy = Adequacy{}};
   bool same = true;
   const std::vector<ContrastScatter> contrasts =
@@ -244,12 +247,13 @@ Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const Compariso
     }
     comparison.points.push_back(*compared);
   }
-  if (comparison.points.empty()) return fail(ErrorCode::invalid_input, "no contrast was measured in both curves");
+  if (comparison.points.empty()) return fail(ErrorCode::invalid_input, "the two curves have no contrast in common");
   comparison.verdict = overall(comparison.points);
   if (same) {
-    add_finding(comparison, {.kind = FindingKind::identity,
-                             .sentence = "both curves are of the same answers: their agreement shows nothing",
-                             .unfit = true});
+    add_finding(comparison,
+                {.kind = FindingKind::identity,
+                 .sentence = "both curves contain the same answers: their agreement is no evidence of equivalence",
+                 .unfit = true});
   }
   return comparison;
 }
@@ -257,6 +261,7 @@ Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const Compariso
 void add_finding(Comparison& comparison, AdequacyFinding finding) {
   if (finding.unfit) {
     for (ComparisonPoint& point : comparison.points) {
+      point.withheld = true;
       point.verdict = ComparisonVerdict::inconclusive;
       if (point.paired) point.paired->verdict = ComparisonVerdict::inconclusive;
     }
@@ -267,7 +272,9 @@ void add_finding(Comparison& comparison, AdequacyFinding finding) {
 }
 
 void add_paired(Comparison& comparison, std::size_t point, const RatioOfPairs& paired) {
-  comparison.points[point].paired = paired;
+  ComparisonPoint& at = comparison.points[point];
+  at.paired = paired;
+  if (at.withheld) at.paired->verdict = ComparisonVerdict::inconclusive;
   comparison.verdict = overall(comparison.points);
 }
 

@@ -1,17 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/comparison/paired_ratio.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/psychometric/clustered_variance.h"
 #include "tod/psychometric/twin_shape.h"
 
 namespace todbench {
 namespace {
 
-/// Everything that follows from the ratio and its standard error.
+/// All results that follow from the ratio and its standard error.
 RatioOfPairs judged_pairs(double ln_ratio, double se, double degrees_of_freedom, double margin_percent) {
   const auto interval = [&](double tail) {
     const double half = distribution::quantile_above(tail, degrees_of_freedom) * se;
@@ -35,11 +36,12 @@ RatioOfPairs judged_pairs(double ln_ratio, double se, double degrees_of_freedom,
 Result<void> check_pairs(std::span<const PairedAnswer> answers, double margin_percent) {
   const auto probable = [](double p) { return p >= 0 && p <= 1; };
   if (!(margin_percent > 0) || !std::isfinite(margin_percent))
-    return fail(ErrorCode::invalid_input, "equivalence margin must be positive");
+    return fail(ErrorCode::invalid_input, "the equivalence margin must be positive");
   for (const PairedAnswer& answer : answers) {
     if (!probable(answer.camera.probability_correct) || !probable(answer.twin_probability) ||
         !(answer.twin_variance >= 0 && std::isfinite(answer.twin_variance)))
-      return fail(ErrorCode::invalid_input, "paired answers: a probability is not in 0 to 1, or its variance is none");
+      return fail(ErrorCode::invalid_input,
+                  "paired answers: a probability is outside 0 to 1, or a variance is negative or not finite");
   }
   return {};
 }
@@ -47,17 +49,16 @@ Result<void> check_pairs(std::span<const PairedAnswer> answers, double margin_pe
 }  // namespace
 
 std::string not_cancelled_by_pairs(bool measured_once) {
-  return std::string("Pairing cancels what both saw alike, the phases. ") +
+  return std::string("Pairing cancels the variation that both have in common, mainly that of the phases. ") +
          (measured_once
-              ? "The contrast was measured once, in one set-up: how it scatters is not known and not in the interval. "
-              : "The scatter of the measured contrast is in the interval. ") +
-         "What is wrong with the contrast everywhere alike, with the distance or with the plate is not: that belongs "
-         "to the "
-         "budget.";
+              ? "The contrast was measured once, in one set-up: its scatter is unknown and not part of the interval. "
+              : "The interval includes the scatter of the measured contrast. ") +
+         "The interval does not include systematic errors of contrast, distance or plate: state those in the budget.";
 }
 
 Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const ProportionTable& table, bool with_slope,
-                                  int draws, double margin_percent, const ContrastScatter& contrast) {
+                                  int draws, double margin_percent, const ContrastScatter& contrast,
+                                  const std::optional<OwnFunctions>& own) {
   if (auto fine = check_pairs(answers, margin_percent); !fine) return tl::unexpected(fine.error());
   std::vector<GradedAnswer> camera, twin;
   for (const PairedAnswer& answer : answers) {
@@ -67,7 +68,8 @@ Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const P
   }
   const auto of_camera = twin_shape_estimate(camera, table, with_slope);
   if (!of_camera) return fail("the camera's answers", of_camera.error());
-  const auto of_twin = twin_shape_estimate(twin, table, with_slope);
+  const auto of_twin =
+      own ? twin_shape_estimate(twin, own->twin, own->with_slope) : twin_shape_estimate(twin, table, with_slope);
   if (!of_twin) return fail("the twin's answers", of_twin.error());
 
   double information = 0, variance_of_draws = 0;
@@ -76,7 +78,7 @@ Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const P
   for (std::size_t i = 0; i < answers.size(); ++i) {
     variance_of_draws += std::pow(of_twin->weight[i], 2) * answers[i].twin_variance;
     const double direction = of_camera->direction[i];
-    // Where the function is flat an answer has no influence, and its score is 0 over 0.
+    // On a flat part of the function an answer has no influence, and its score is 0 over 0.
     if (!(std::abs(direction) > 1e-12 * std::sqrt(information))) continue;
     const double influence = of_camera->influence[i] - of_twin->influence[i];
     scores.push_back({.direction = {direction},
@@ -87,11 +89,12 @@ Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const P
   }
   const ClusteredVariance found = clustered_variance(scores, 1, 0);
   if (!std::isfinite(found.variance) || !(found.variance > 0))
-    return fail(ErrorCode::invalid_input, "paired answers: too few set-ups, presentations or places for a variance");
-  // The scatter over set-ups has that of their contrasts, but not what all of them have in common.
+    return fail(ErrorCode::invalid_input,
+                "paired answers: there are too few set-ups, presentations or places to estimate a variance");
+  // The scatter over set-ups contains that of their contrasts, but not their common part.
   const double of_contrast =
       std::pow(found.kind == IntervalKind::set_ups ? contrast.shared_se_ln_acuity : contrast.se_ln_acuity, 2);
-  const double variance = found.variance + of_contrast;
+  const double variance = found.variance + of_contrast + (own ? own->variance : 0);
   double rest = found.variance * found.variance / found.degrees_of_freedom;
   if (contrast.degrees_of_freedom) rest += of_contrast * of_contrast / *contrast.degrees_of_freedom;
   RatioOfPairs out = judged_pairs(of_twin->ln_threshold - of_camera->ln_threshold, std::sqrt(variance),

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/comparison/planning.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/psychometric/psychometric_model.h"
 
 namespace todbench {
@@ -33,14 +34,16 @@ double power_of(std::span<const PlannedComparison> contrasts, double margin_perc
 }  // namespace
 
 Result<ExpectedFit> expected_fit(std::span<const PlannedLevel> design, const FitOptions& options) {
-  // Counts have to be whole: a million times as many trials round to 1e-6 of one.
+  // Counts have to be whole: with a million times as many trials, rounding is 1e-6 of a trial.
   constexpr double many = 1e6;
   std::vector<Level> levels;
   double trials = 0;
   for (const PlannedLevel& level : design) {
     const bool possible = level.size > 0 && std::isfinite(level.size) && level.trials >= 0 &&
                           std::isfinite(level.trials) && level.proportion_correct >= 0 && level.proportion_correct <= 1;
-    if (!possible) return fail(ErrorCode::invalid_input, "a planned level is out of range");
+    if (!possible)
+      return fail(ErrorCode::invalid_input,
+                  "a planned level has a size, a number of trials or a proportion outside its range");
     const double total = std::round(level.trials * many);
     levels.push_back({level.size, std::min(std::round(level.trials * level.proportion_correct * many), total), total});
     trials += level.trials;

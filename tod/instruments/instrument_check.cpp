@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/instrument_check.h"
 
 #include <fmt/format.h>
@@ -16,16 +17,16 @@ std::string joined(const std::vector<std::string>& texts, std::string_view betwe
   return fmt::format("{}", fmt::join(texts, between));
 }
 
-/// The steps as they are made. A stop request ends them.
+/// Records the steps. A stop request ends them.
 class Talk {
  public:
   explicit Talk(const std::stop_token& stop) : stop_(stop) {}
 
-  /// `ask` says what was understood.
+  /// `ask` returns the understood answer.
   void step(InstrumentDevice& device, std::string name, std::string sent,
             const std::function<Result<std::string>()>& ask) {
     InstrumentStep made{std::move(name), std::move(sent), StepOutcome::not_tried, ""};
-    if (made.sent.empty()) made.said = "not in the table";
+    if (made.sent.empty()) made.said = "not in the instrument table";
     if (made.sent.empty() || interrupted()) {
       steps.push_back(std::move(made));
       return;
@@ -66,7 +67,8 @@ void talk_to_black_body(Talk& talk, BlackBodyDevice& device, InstrumentCommands 
   talk.step(device, "limits", sent(words.limits), [&]() -> Result<std::string> {
     const auto ends = device.limits(stop);
     if (!ends) return tl::unexpected(ends.error());
-    if (!((*ends)[0] < (*ends)[1])) return fail(ErrorCode::disconnected, "the lowest is not below the highest");
+    if (!((*ends)[0] < (*ends)[1]))
+      return fail(ErrorCode::disconnected, "the lower limit is not below the upper limit");
     return fmt::format("{:.3f} to {:.3f} K", (*ends)[0], (*ends)[1]);
   });
   std::optional<double> there_k;
@@ -80,19 +82,19 @@ void talk_to_black_body(Talk& talk, BlackBodyDevice& device, InstrumentCommands 
     if (value && !words.set_point.asks()) there_k = *value;
     return kelvin_text(value);
   });
-  talk.step(device, "temperature of the plate", sent(words.plate),
+  talk.step(device, "plate temperature", sent(words.plate),
             [&] { return kelvin_text(device.temperature(words.plate, stop)); });
-  talk.step(device, "temperature of the radiator", sent(words.radiator),
+  talk.step(device, "radiator temperature", sent(words.radiator),
             [&] { return kelvin_text(device.temperature(words.radiator, stop)); });
   settled_step(talk, device, stop);
   if (commands == InstrumentCommands::none || !there_k) return;
-  talk.step(device, "command of a difference", device.set_command(*there_k), [&]() -> Result<std::string> {
+  talk.step(device, "difference command", device.set_command(*there_k), [&]() -> Result<std::string> {
     if (auto done = device.send(device.set_command(*there_k), stop); !done) return tl::unexpected(done.error());
     return std::string("accepted");
   });
 }
 
-/// A command with the value that is there.
+/// A command with the present value.
 void command_step(Talk& talk, StageDevice& device, const std::string& name, const std::vector<std::string>& texts,
                   const std::stop_token& stop) {
   talk.step(device, name, joined(texts, "; "), [&]() -> Result<std::string> {
@@ -114,15 +116,15 @@ void talk_to_stage(Talk& talk, StageDevice& device, InstrumentCommands commands,
     return joined(*names, ", ");
   });
   for (const auto& [name, query] :
-       {std::pair("plate asked for", &words.plate.set_point), std::pair("plate in place", &words.plate.measured)}) {
+       {std::pair("requested plate", &words.plate.set_point), std::pair("actual plate", &words.plate.measured)}) {
     talk.step(device, name, *query, [&, text = *query]() -> Result<std::string> {
       auto found = device.plate(text, stop);
       if (found) plate = *found;
       return found;
     });
   }
-  for (const auto& [name, query] : {std::pair("mounting asked for", &words.mounting.set_point),
-                                    std::pair("mounting in place", &words.mounting.measured)}) {
+  for (const auto& [name, query] : {std::pair("requested mounting", &words.mounting.set_point),
+                                    std::pair("actual mounting", &words.mounting.measured)}) {
     talk.step(device, name, *query, [&, text = *query]() -> Result<std::string> {
       const auto found = device.mounting(text, stop);
       if (!found) return tl::unexpected(found.error());
@@ -137,8 +139,8 @@ void talk_to_stage(Talk& talk, StageDevice& device, InstrumentCommands commands,
       if (!ends) return tl::unexpected(ends.error());
       return fmt::format("{:.3f} to {:.3f} mm, {:.3f} to {:.3f} mm", (*ends)[0], (*ends)[1], (*ends)[2], (*ends)[3]);
     });
-    for (const auto& [name, question] : {std::pair("place asked for", &words.position->set_point),
-                                         std::pair("place measured", &words.position->measured)}) {
+    for (const auto& [name, question] : {std::pair("requested position", &words.position->set_point),
+                                         std::pair("measured position", &words.position->measured)}) {
       talk.step(device, name, sent(*question), [&, asked = *question]() -> Result<std::string> {
         const auto found = device.position(asked, stop);
         if (!found) return tl::unexpected(found.error());
@@ -150,10 +152,10 @@ void talk_to_stage(Talk& talk, StageDevice& device, InstrumentCommands commands,
   settled_step(talk, device, stop);
   if (commands == InstrumentCommands::none) return;
   if (plate && !words.plate.set.empty())
-    command_step(talk, device, "command of a plate", {device.plate_command(*plate)}, stop);
+    command_step(talk, device, "plate command", {device.plate_command(*plate)}, stop);
   if (mounting && !words.mounting.set.empty())
-    command_step(talk, device, "command of a mounting", {device.mounting_command(*mounting)}, stop);
-  if (place) command_step(talk, device, "command of a place", device.position_commands(*place), stop);
+    command_step(talk, device, "mounting command", {device.mounting_command(*mounting)}, stop);
+  if (place) command_step(talk, device, "position command", device.position_commands(*place), stop);
 }
 
 template <typename Device, typename Talking>

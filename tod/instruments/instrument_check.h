@@ -1,45 +1,46 @@
-// What an instrument answers to each word of its table, one after the other.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Check of an instrument against its table, one command or query after the other.
 #pragma once
 
 #include <stop_token>
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/instruments/instrument_table.h"
 #include "tod/instruments/scpi_client.h"
 
 namespace todbench {
 
 enum class StepOutcome {
-  answered,   ///< as the table says
-  failed,     ///< not, or not so
-  not_tried,  ///< the instrument was not reached, or the table has no such words
+  answered,   ///< as the table states
+  failed,     ///< no answer, or another one
+  not_tried,  ///< instrument not reached, or not in the table
 };
 
-/// One step of the talk.
+/// One step of the check.
 struct InstrumentStep {
   std::string name;  ///< "measured difference"
-  std::string sent;  ///< the words, several with "; "
+  std::string sent;  ///< commands as sent, joined by "; "
   StepOutcome outcome = StepOutcome::not_tried;
-  std::string said;  ///< what was understood, in the units of this program, or what went wrong, in a sentence
+  std::string said;  ///< the answer in this program's units, or an error message
 };
 
 struct InstrumentCheck {
-  ScpiIdentity identity;  ///< empty when it was not reached
+  ScpiIdentity identity;  ///< empty if it was not reached
   bool reached = false;   ///< connected and identified
   std::vector<InstrumentStep> steps;
-  /// True when nothing failed and the instrument was reached.
+  /// True if the instrument was reached and no step failed.
   [[nodiscard]] bool passed() const;
 };
 
 enum class InstrumentCommands {
-  none,      ///< questions only: nothing moves
-  in_place,  ///< each command too, with the value that the instrument has
+  none,      ///< queries only: nothing moves
+  in_place,  ///< commands too, each with the instrument's present value
 };
 
-/// Talks to an instrument. A step that fails ends nothing: the next one connects anew where that is needed. Errors:
-/// `invalid_input` (address), `interrupted`.
+/// Checks an instrument. Continues after a failed step and reconnects if needed. Errors: `invalid_input` (address),
+/// `interrupted`.
 [[nodiscard]] Result<InstrumentCheck> check_instrument(const InstrumentTable& table, const std::string& address,
                                                        InstrumentCommands commands, const ScpiClientOptions& options,
                                                        const std::stop_token& stop);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/instrument_device.h"
 
 #include <fmt/format.h>
@@ -10,13 +11,13 @@
 namespace todbench {
 namespace {
 
-// Below these a set-point counts as the one asked for: half the last digit instruments of this class show.
+// Differences below these count as equal set-points: half the last digit of instruments of this class.
 constexpr double same_temperature_k = 0.0005;
 constexpr double same_position_mm = 0.0005;
 // No plate or radiator of a bench is hotter.
 constexpr double hottest_k = 5000;
 
-/// A number as it is sent: in the unit of the file, with its decimals.
+/// A number as sent: in the unit of the file, with its decimals.
 std::string sent_number(double value, const InstrumentUnit& unit, int decimals) {
   return fmt::format("{:.{}f}", (value - unit.offset) / unit.scale, decimals);
 }
@@ -25,7 +26,7 @@ double in_ours(double value, const InstrumentUnit& unit) {
   return value * unit.scale + unit.offset;
 }
 
-/// The name of an enumerator that counts from 0.
+/// Index of an enumerator that counts from 0.
 std::size_t place_of(Mounting mounting) {
   return static_cast<std::size_t>(std::find(all_mountings.begin(), all_mountings.end(), mounting) -
                                   all_mountings.begin());
@@ -46,8 +47,9 @@ Result<void> InstrumentDevice::ensure_connected(const std::stop_token& stop) {
     return fail(role_, error);
   }
   if (client_ && client_->identity() != client->identity())
-    return fail(ErrorCode::disconnected, role_ + " at " + endpoint_ + ": was " + to_text(client_->identity()) +
-                                             ", is now " + to_text(client->identity()));
+    return fail(ErrorCode::disconnected, role_ + " at " + endpoint_ + ": the instrument was " +
+                                             to_text(client_->identity()) + " and is now " +
+                                             to_text(client->identity()));
   client_.emplace(std::move(*client));
   return {};
 }
@@ -62,8 +64,8 @@ namespace {
 template <typename T>
 Result<T> of_instrument(const InstrumentDevice& device, Result<T> result) {
   if (result) return result;
-  // An instrument that refuses what it was asked before, or should know, cannot be measured with: that is no mistake
-  // of the plan, whose states were checked against the limits that the instrument stated.
+  // An instrument that refuses a supported request cannot be used for measurement. It is not an error of the plan,
+  // because its states were checked against the limits stated by the instrument.
   const bool refuses = result.error().code == ErrorCode::invalid_input;
   return fail(device.name(), refuses ? with_code(ErrorCode::disconnected, result.error()) : result.error());
 }
@@ -89,7 +91,7 @@ Result<std::vector<double>> InstrumentDevice::numbers(const NumberQuestion& ques
   }
   if (all.size() != count)
     return fail(ErrorCode::disconnected,
-                name() + fmt::format(": answered {} numbers in place of {}", all.size(), count));
+                name() + fmt::format(": answered {} numbers instead of {}", all.size(), count));
   return all;
 }
 
@@ -105,7 +107,8 @@ Result<bool> InstrumentDevice::is_settled(const std::stop_token& stop) {
   if (!condition) return tl::unexpected(condition.error());
   const double bits = condition->front();
   if (bits < 0 || bits > std::numeric_limits<std::uint16_t>::max())
-    return fail(ErrorCode::disconnected, name() + ": " + rule.query + " is not a 16-bit register");
+    return fail(ErrorCode::disconnected,
+                name() + ": the answer to " + rule.query + " is not the value of a 16-bit register");
   const bool set = (static_cast<unsigned>(bits) >> *rule.bit & 1U) != 0;
   return set != rule.bit_means_settling;
 }
@@ -150,7 +153,7 @@ Result<double> BlackBodyDevice::temperature(const NumberQuestion& question, cons
   const double kelvin = in_ours(value->front(), words().absolute_unit);
   if (kelvin > 0 && kelvin <= hottest_k) return kelvin;
   return fail(ErrorCode::disconnected, name() + ": " + question.queries.front() + " answered " +
-                                           fmt::format("{:.3f}", kelvin) + " K, which no plate can have");
+                                           fmt::format("{:.3f}", kelvin) + " K, which is not a possible temperature");
 }
 
 Result<BlackBodyReading> BlackBodyDevice::read(const std::stop_token& stop) {
@@ -200,9 +203,9 @@ Result<PlateRun> StageDevice::run_along_x(double to_mm, double speed_mm_s, const
                .to_mm = in_ours((*said)[1], unit),
                .speed_mm_s = in_ours((*said)[2], per_second)};
   if ((*said)[3] < not_a_number) run.start_s = (*said)[3];
-  // Written so that NaN fails.
+  // This form also rejects NaN.
   if (!(run.speed_mm_s > 0) || run.from_mm == run.to_mm)
-    return fail(ErrorCode::disconnected, name() + ": says that it does not run after " + text);
+    return fail(ErrorCode::disconnected, name() + ": reports no run after " + text);
   return run;
 }
 

@@ -1,4 +1,5 @@
-// A black body and a plate stage by the words of their tables: numbers in K and mm, plates by name.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A black body and a plate stage, controlled by their tables: numbers in K and mm, plates by name.
 #pragma once
 
 #include <array>
@@ -8,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/instruments/instrument_table.h"
 #include "tod/instruments/scpi_client.h"
 #include "tod/presentation/target.h"
 
 namespace todbench {
 
-/// An instrument that is connected anew when it went away, and is then required to be the same one. Errors name it.
-/// An instrument that refuses what its table says cannot be measured with: `disconnected`. One thread at a time.
+/// An instrument. Reconnects after a lost connection and then requires the same identity. Errors contain its name. An
+/// instrument that refuses a command or query of its table gives `disconnected`. One thread at a time.
 class InstrumentDevice {
  public:
   InstrumentDevice(std::string role, std::string endpoint, ScpiClientOptions options, InstrumentTable table);
@@ -29,10 +30,10 @@ class InstrumentDevice {
 
   [[nodiscard]] Result<void> send(const std::string& text, const std::stop_token& stop);
   [[nodiscard]] Result<std::string> ask(const std::string& text, const std::stop_token& stop);
-  /// The numbers of a question, as they were answered.
+  /// The numbers that answer a question, unconverted.
   [[nodiscard]] Result<std::vector<double>> numbers(const NumberQuestion& question, std::size_t count,
                                                     const std::stop_token& stop);
-  /// True also where the instrument has no such query.
+  /// True also if the instrument has no such query.
   [[nodiscard]] Result<bool> is_settled(const std::stop_token& stop);
 
  private:
@@ -42,7 +43,7 @@ class InstrumentDevice {
   std::optional<ScpiClient> client_;  ///< kept after the connection closed, for its identity
 };
 
-/// What a black body says.
+/// Values reported by a black body.
 struct BlackBodyReading {
   double delta_t_k = 0;
   std::optional<double> plate_k, radiator_k;
@@ -54,11 +55,11 @@ class BlackBodyDevice : public InstrumentDevice {
   /// Lowest and highest difference, in K.
   [[nodiscard]] Result<std::array<double, 2>> limits(const std::stop_token& stop);
   [[nodiscard]] Result<double> set_point(const std::stop_token& stop);
-  /// Commands a difference unless it is the set-point already.
+  /// Commands a difference unless it already is the set-point.
   [[nodiscard]] Result<void> command(double delta_t_k, const std::stop_token& stop);
   [[nodiscard]] Result<BlackBodyReading> read(const std::stop_token& stop);
   [[nodiscard]] Result<double> measured(const std::stop_token& stop);
-  /// `disconnected` for one that nothing can have: below 0 K, above 5000 K.
+  /// Errors: `disconnected` for an impossible temperature (below 0 K, above 5000 K).
   [[nodiscard]] Result<double> temperature(const NumberQuestion& question, const std::stop_token& stop);
 
   [[nodiscard]] std::string set_command(double delta_t_k) const;
@@ -78,16 +79,16 @@ class StageDevice : public InstrumentDevice {
   using InstrumentDevice::InstrumentDevice;
   [[nodiscard]] Result<StageLimits> limits(const std::stop_token& stop);
   [[nodiscard]] bool holds(Mounting mounting) const;
-  /// Commands plate, mounting and place where they differ from the set-points.
+  /// Commands plate, mounting and place if they differ from the set-points.
   [[nodiscard]] Result<void> command(const TargetState& state, const std::stop_token& stop);
-  /// Plate, mounting and place; what the stage does not say is taken from `asked`.
+  /// Plate, mounting and place; values that the stage does not report are taken from `asked`.
   [[nodiscard]] Result<TargetState> read(const TargetState& asked, const std::stop_token& stop);
 
   [[nodiscard]] Result<std::string> plate(const std::string& query, const std::stop_token& stop);
   [[nodiscard]] Result<Mounting> mounting(const std::string& query, const std::stop_token& stop);
-  /// Lowest and highest speed of a run, in mm/s. Precondition: the stage has runs; as for the next.
+  /// Lowest and highest speed of a run, in mm/s. Precondition, also of run_along_x(): the stage has runs.
   [[nodiscard]] Result<std::array<double, 2>> run_speeds(const std::stop_token& stop);
-  /// Commands a run along x and reads what the stage says of it.
+  /// Commands a run along x and reads the run that the stage reports.
   [[nodiscard]] Result<PlateRun> run_along_x(double to_mm, double speed_mm_s, const std::stop_token& stop);
   /// Precondition: the stage has positions.
   [[nodiscard]] Result<cv::Point2d> position(const NumberQuestion& question, const std::stop_token& stop);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/instrument_line.h"
 
 #include <fcntl.h>
@@ -14,9 +15,6 @@
 #include <optional>
 #include <system_error>
 #include <utility>
-
-#include "tod/instruments/serial_port.h"
-#include "tod/instruments/vxi11_line.h"
 
 namespace todbench {
 namespace {
@@ -37,7 +35,7 @@ std::optional<std::uint16_t> port_from(std::string_view text) {
   return port;
 }
 
-/// Host, and port where there is one.
+/// Host, and port if present.
 std::optional<InstrumentAddress> host_and_port(std::string_view text, std::uint16_t port) {
   InstrumentAddress address;
   address.port = port;
@@ -66,7 +64,7 @@ Result<Descriptor> connect_one(const addrinfo& address, TimePoint deadline, cons
       case Waited::stopped:
         return fail(ErrorCode::interrupted, "stopped on request");
       case Waited::timeout:
-        return fail(ErrorCode::not_found, "no connection in time");
+        return fail(ErrorCode::not_found, "no connection within the time limit");
       case Waited::ready:
         break;
     }
@@ -75,34 +73,14 @@ Result<Descriptor> connect_one(const addrinfo& address, TimePoint deadline, cons
     ::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size);
     if (error != 0) return fail(ErrorCode::not_found, line_reason(error));
   }
-  const int on = 1;  // commands are a few bytes: never hold them back for a fuller packet
+  const int on = 1;  // commands are a few bytes: never delay them to fill a packet
   ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   return socket;
 }
 
-/// Bytes as they come.
-class ByteLine final : public InstrumentLine {
- public:
-  explicit ByteLine(Descriptor descriptor) : descriptor_(std::move(descriptor)) {}
-  Result<void> send(std::string_view bytes, TimePoint deadline, const std::stop_token& stop) override {
-    return send_all(descriptor_.get(), bytes, deadline, stop);
-  }
-  Result<std::string> receive(TimePoint deadline, const std::stop_token& stop) override {
-    return receive_some(descriptor_.get(), deadline, stop);
-  }
-
- private:
-  Descriptor descriptor_;
-};
-
-Result<std::unique_ptr<InstrumentLine>> byte_line(Result<Descriptor> opened) {
-  if (!opened) return tl::unexpected(opened.error());
-  return std::make_unique<ByteLine>(std::move(*opened));
-}
-
 tl::unexpected<Error> not_ready(Waited waited) {
   if (waited == Waited::stopped) return fail(ErrorCode::interrupted, "stopped on request");
-  return fail(ErrorCode::timeout, "not in time");
+  return fail(ErrorCode::timeout, "no answer within the time limit");
 }
 
 }  // namespace
@@ -113,7 +91,7 @@ Result<InstrumentAddress> instrument_address(const std::string& text, std::uint1
     rest.remove_prefix(serial_scheme.size());
     const bool printable = std::all_of(rest.begin(), rest.end(), [](char c) { return c > ' ' && c <= '~'; });
     if (!rest.starts_with('/') || !printable)
-      return fail(ErrorCode::invalid_input, "'" + text + "' is not serial:/dev/NAME");
+      return fail(ErrorCode::invalid_input, "'" + text + "' is not an address of the form serial:/dev/NAME");
     return InstrumentAddress{InstrumentAddress::Kind::serial, "", 0, std::string(rest)};
   }
   const bool vxi11 = rest.starts_with(vxi11_scheme);
@@ -125,28 +103,15 @@ Result<InstrumentAddress> instrument_address(const std::string& text, std::uint1
     rest = rest.substr(0, slash);
     const bool printable = std::all_of(device.begin(), device.end(), [](char c) { return c > ' ' && c <= '~'; });
     if (device.empty() || device.size() > 64 || !printable)
-      return fail(ErrorCode::invalid_input, "'" + text + "' is not vxi11:HOST[:PORT][/DEVICE]");
+      return fail(ErrorCode::invalid_input, "'" + text + "' is not an address of the form vxi11:HOST[:PORT][/DEVICE]");
   }
   auto address = host_and_port(rest, vxi11 ? 0 : port);
   if (!address)
     return fail(ErrorCode::invalid_input,
-                "'" + text + "' is not " + (vxi11 ? "vxi11:HOST[:PORT][/DEVICE]" : "host:port"));
+                "'" + text + "' is not an address of the form " + (vxi11 ? "vxi11:HOST[:PORT][/DEVICE]" : "host:port"));
   if (vxi11) address->kind = InstrumentAddress::Kind::vxi11;
   address->device = device;
   return *address;
-}
-
-Result<std::unique_ptr<InstrumentLine>> open_line(const InstrumentAddress& address, const SerialSettings& serial,
-                                                  TimePoint deadline, const std::stop_token& stop) {
-  switch (address.kind) {
-    case InstrumentAddress::Kind::tcp:
-      return byte_line(connect_tcp(address.host, address.port, deadline, stop));
-    case InstrumentAddress::Kind::serial:
-      return byte_line(open_serial_port(address.device, serial));
-    case InstrumentAddress::Kind::vxi11:
-      return open_vxi11_line(address, deadline, stop);
-  }
-  return fail(ErrorCode::invalid_input, "an address of no kind");
 }
 
 Result<Descriptor> connect_tcp(const std::string& host, std::uint16_t port, TimePoint deadline,
@@ -158,7 +123,7 @@ Result<Descriptor> connect_tcp(const std::string& host, std::uint16_t port, Time
   if (const int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found); error != 0)
     return fail(ErrorCode::not_found, ::gai_strerror(error));
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> addresses(found, &::freeaddrinfo);
-  Result<Descriptor> socket = fail(ErrorCode::not_found, "no address");
+  Result<Descriptor> socket = fail(ErrorCode::not_found, "the name has no address");
   for (const addrinfo* address = addresses.get(); address != nullptr && !socket; address = address->ai_next) {
     socket = connect_one(*address, deadline, stop);
     if (!socket && socket.error().code == ErrorCode::interrupted) break;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/instrument_table.h"
 
 #include <charconv>
@@ -14,7 +15,7 @@ std::string_view after_blanks(std::string_view text) {
   return text;
 }
 
-/// Takes the text of `words` from the front of `text`, blanks apart.
+/// Removes the text of `words` from the front of `text`, ignoring blanks.
 bool take_words(std::string_view& text, std::string_view words) {
   for (words = after_blanks(words); !words.empty(); words = after_blanks(words)) {
     text = after_blanks(text);

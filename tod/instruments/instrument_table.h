@@ -1,5 +1,6 @@
-// The words of an instrument as data: what is sent to it, what it answers and when it has settled. A black body or a
-// plate stage that nobody here has is one such value, read from a file (docs/instruments.md).
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command table of an instrument as data: commands, answers and settling. Any black body or plate stage is
+// described by one of these values, read from a file (docs/reference/instruments.md).
 #pragma once
 
 #include <array>
@@ -10,12 +11,12 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/plate/target_plate.h"
 
 namespace todbench {
 
-/// RS-232 or what a USB adapter makes of it.
+/// Settings of an RS-232 port or USB serial adapter.
 struct SerialSettings {
   enum class Parity { none, even, odd };
   enum class Flow { none, hardware, software };
@@ -28,59 +29,59 @@ struct SerialSettings {
 };
 inline constexpr std::array serial_bauds{1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400};
 
-/// How an instrument is talked to, whatever it is. The defaults are those of IEEE 488.2 and SCPI.
+/// Protocol of an instrument of any kind. The defaults are those of IEEE 488.2 and SCPI.
 struct InstrumentSpeech {
   /// When the error query is sent.
   enum class ErrorsAsked {
-    with_command,   ///< in one go with each command and query: the answer comes before its report
-    after_command,  ///< once a query was answered
+    with_command,   ///< together with each command and query: the answer precedes the error report
+    after_command,  ///< after a query was answered
   };
   std::string ending = "\n";               ///< after each command
-  char answer_ending = '\n';               ///< a carriage return before it is taken off
-  std::uint16_t port = 5025;               ///< of an address without one
-  std::optional<double> answer_timeout_s;  ///< in place of that of the caller
+  char answer_ending = '\n';               ///< a carriage return before it is removed
+  std::uint16_t port = 5025;               ///< default port of an address
+  std::optional<double> answer_timeout_s;  ///< replaces that of the caller
   double pause_s = 0;                      ///< least time from the end of one exchange to the next
   SerialSettings serial{};
 
-  std::string clear = "*CLS";           ///< sent before the first question; empty: nothing
-  std::string identity_query = "*IDN?"; /**< empty: it cannot say who it is */
-  bool identity_of_four = true;         ///< vendor,model,serial,firmware (IEEE 488.2, 10.14); false: any line, a model
-  std::string identity_contains;        ///< part of the identity by which the instrument is known
+  std::string clear = "*CLS";            ///< sent before the first query; empty: none
+  std::string identity_query = "*IDN?";  ///< empty: the instrument has none
+  bool identity_of_four = true;   ///< vendor,model,serial,firmware (IEEE 488.2, 10.14); false: any line is a model
+  std::string identity_contains;  ///< text that the identity must contain
 
-  std::string error_query = "SYST:ERR?";  ///< empty: it does not say what it refuses
+  std::string error_query = "SYST:ERR?";  ///< empty: refusals are not reported
   ErrorsAsked errors_asked = ErrorsAsked::with_command;
   /// Answers that mean no error; empty: 0,"..." does (SCPI-99 volume 1, 21.8).
   std::vector<std::string> no_error;
-  std::string acknowledgement;        ///< what a command without a question is answered with; empty: nothing
-  std::vector<std::string> refusals;  ///< how an answer begins that refuses
+  std::string acknowledgement;        ///< answer to a command that is not a query; empty: none
+  std::vector<std::string> refusals;  ///< beginnings of answers that refuse
 };
 
-/// A unit of the file: in the units of this program a value is value * scale + offset.
+/// A unit of the file: value in this program's units = value * scale + offset.
 struct InstrumentUnit {
   std::string name;
   double scale = 1, offset = 0;
 };
-/// Of temperature differences, in K: "K", "mK", "degC", "degF".
+/// Units of temperature differences, in K: "K", "mK", "degC", "degF".
 [[nodiscard]] std::vector<InstrumentUnit> difference_units();
-/// Of temperatures, in K: "K", "mK", "degC", "degF".
+/// Units of temperatures, in K: "K", "mK", "degC", "degF".
 [[nodiscard]] std::vector<InstrumentUnit> temperature_units();
-/// Of positions, in mm: "mm", "um", "m", "in".
+/// Units of positions, in mm: "mm", "um", "m", "in".
 [[nodiscard]] std::vector<InstrumentUnit> length_units();
 
-/// What is asked for numbers: one query, or one for each number.
+/// Queries for numbers: one for all, or one for each number.
 struct NumberQuestion {
   std::vector<std::string> queries;
-  std::string answer;  ///< of each, "{}" for a number: "{} K"; empty: numbers with commas, as many as are due
+  std::string answer;  ///< form of each, "{}" for a number: "{} K"; empty: the expected numbers, separated by commas
   [[nodiscard]] bool asks() const { return !queries.empty(); }
 };
 
-/// What the instrument says of having settled. Several of them have to agree.
+/// Conditions for a settled instrument. All stated conditions must hold.
 struct SettledRule {
-  std::string query;                 ///< empty: not asked
-  std::optional<int> bit;            ///< of a register of 16 bits ...
-  bool bit_means_settling = true;    ///< ... that is set while it settles, or once it has
+  std::string query;                 ///< empty: not queried
+  std::optional<int> bit;            ///< of a 16-bit register ...
+  bool bit_means_settling = true;    ///< ... that is set while settling (true) or once settled (false)
   std::vector<std::string> answers;  ///< without a bit: answers that mean settled
-  double dwell_s = 0;                ///< as long it has to stay within the tolerance
+  double dwell_s = 0;                ///< time that it has to stay within the tolerance
 };
 
 /// A differential black body.
@@ -88,52 +89,52 @@ struct BlackBodyWords {
   InstrumentUnit unit{"K"};
   int decimals = 4;          ///< of a number that is sent
   std::string set;           ///< "SOUR:TEMP:DIFF {}"
-  NumberQuestion set_point;  ///< none: commanded each time
-  NumberQuestion limits;     ///< lowest and highest; none: limits_k
+  NumberQuestion set_point;  ///< empty: commanded each time
+  NumberQuestion limits;     ///< lowest and highest; empty: limits_k
   std::array<double, 2> limits_k{0, 0};
   NumberQuestion measured;
-  double tolerance_k = 0.002;  ///< measured minus asked that still counts as reached
-  NumberQuestion plate;        ///< temperature of the surround; none: it does not say
-  NumberQuestion radiator;     ///< of the black body behind the plate; the same
+  double tolerance_k = 0.002;  ///< largest difference of measured and requested that counts as reached
+  NumberQuestion plate;        ///< temperature of the surround; empty: not reported
+  NumberQuestion radiator;     ///< of the black body behind the plate; empty: not reported
   InstrumentUnit absolute_unit{"K"};
 };
 
-/// Places of a plate in its own plane. A stage without it has a plate that hands shift.
+/// Positions of a plate in its own plane. Without it, the plate is shifted by hand.
 struct StagePosition {
   InstrumentUnit unit{"mm"};
   int decimals = 4;
-  std::vector<std::string> set;  ///< one command of x and y, or one for each
+  std::vector<std::string> set;  ///< one command for x and y, or one for each
   NumberQuestion set_point;
-  NumberQuestion limits;  ///< x0, x1, y0, y1; none: limits_mm
+  NumberQuestion limits;  ///< x0, x1, y0, y1; empty: limits_mm
   std::array<double, 4> limits_mm{};
   NumberQuestion measured;
   double tolerance_mm = 0.005;
 };
 
-/// Runs along x at constant speed, in the unit of the position and that per second. A stage without it cannot run.
+/// Runs along x at constant speed, in the unit of the position and that per second. Without it the stage cannot run.
 struct StageRun {
-  std::string set;        ///< "SOUR:SCAN {},{}": to where, how fast
-  NumberQuestion limits;  ///< lowest and highest speed; none: limits_mm_s
+  std::string set;        ///< "SOUR:SCAN {},{}": destination, speed
+  NumberQuestion limits;  ///< lowest and highest speed; empty: limits_mm_s
   std::array<double, 2> limits_mm_s{};
-  NumberQuestion
-      measured;  ///< from, to, speed, and when it began in seconds of the camera's clock; above 9e37: unknown
+  /// From, to, speed, and start in seconds of the camera's clock; above 9e37: unknown.
+  NumberQuestion measured;
 };
 
-/// Something that is chosen by a word: a plate, a mounting.
+/// A selection by a word: a plate, a mounting.
 struct StageChoice {
-  std::string set;        ///< "ROUT:PLAT {}"; empty: there is but one
-  std::string set_point;  ///< the word that was asked for; empty: commanded each time
-  std::string measured;   ///< the word that is in place; empty: the one asked for, once settled
+  std::string set;        ///< "ROUT:PLAT {}"; empty: only one exists
+  std::string set_point;  ///< query of the requested word; empty: commanded each time
+  std::string measured;   ///< query of the word in place; empty: the requested one, once settled
 };
 
-/// A stage that brings plates before the camera.
+/// A stage that moves plates in front of the camera.
 struct StageWords {
   StageChoice plate;
-  bool quoted = false;                           ///< the word of a plate as SCPI string data, quotes doubled
-  std::string catalogue;                         ///< answers the names of all plates; empty: `plates`
-  std::vector<std::string> plates, plate_words;  ///< names of plates and the words of the stage for them
+  bool quoted = false;                           ///< plates are SCPI string data, quotes doubled
+  std::string catalogue;                         ///< query of the names of all plates; empty: `plates`
+  std::vector<std::string> plates, plate_words;  ///< names of plates and the stage's words for them
   StageChoice mounting;
-  std::array<std::string, all_mountings.size()> mounting_words;  ///< empty: not in this mounting
+  std::array<std::string, all_mountings.size()> mounting_words;  ///< empty: mounting not available
   std::optional<StagePosition> position;
   std::optional<StageRun> run;  ///< only with a position
 };
@@ -148,18 +149,18 @@ struct InstrumentTable {
   InstrumentKind kind = InstrumentKind::black_body;
   InstrumentSpeech speech;
   SettledRule settled;
-  BlackBodyWords black_body;  ///< of that kind
+  BlackBodyWords black_body;  ///< if kind is black_body
   StageWords stage;
 };
 
-/// The numbers of an answer that looks like `form`: "{}" stands for a number, blanks may differ, nothing else may.
-/// Nothing when it does not fit or a number is not finite.
+/// Numbers in an answer of the form `form`: "{}" stands for a number, blanks may differ, all other characters must
+/// agree. Empty if the answer does not fit or a number is not finite.
 [[nodiscard]] std::optional<std::vector<double>> numbers_in(std::string_view answer, std::string_view form);
-/// How often "{}" stands in a text.
+/// Number of "{}" in a text.
 [[nodiscard]] std::size_t places_in(std::string_view form);
 /// A command with words in the places of "{}", in their order. Precondition: as many places as words.
 [[nodiscard]] std::string command_of(std::string_view form, const std::vector<std::string>& words);
-/// "{}" with commas between, `count` times.
+/// "{}" separated by commas, `count` times.
 [[nodiscard]] std::string comma_form(std::size_t count);
 
 }  // namespace todbench

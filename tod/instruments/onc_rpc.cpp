@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/onc_rpc.h"
 
 #include <utility>
@@ -19,21 +20,21 @@ std::size_t padded(std::size_t size) {
   return (size + xdr_unit - 1) / xdr_unit * xdr_unit;
 }
 
-/// The results in an answer to call `id`; RFC 5531, section 9.
+/// The results in a reply to call `id`; RFC 5531, section 9.
 Result<std::string> results_of(std::string_view record, std::uint32_t id) {
-  const auto nonsense = fail(ErrorCode::disconnected, "an answer that is none of ONC RPC");
+  const auto nonsense = fail(ErrorCode::disconnected, "the answer is not a reply of ONC RPC");
   XdrReader reader(record);
   if (reader.number() != id || reader.number() != 1U) return nonsense;
   const auto accepted = reader.number();
   if (!accepted || *accepted > 1) return nonsense;
-  if (*accepted == 1) return fail(ErrorCode::not_found, "the server denies the call");
+  if (*accepted == 1) return fail(ErrorCode::not_found, "the server denied the call");
   const auto flavour = reader.number();
   const auto verifier = reader.bytes();
   const auto status = reader.number();
   if (!flavour || !verifier || !status) return nonsense;
   if (*status == 1 || *status == 2 || *status == 3)
     return fail(ErrorCode::not_found, "the server has no such program, version or procedure");
-  if (*status != 0) return fail(ErrorCode::disconnected, "the server could not carry out the call");
+  if (*status != 0) return fail(ErrorCode::disconnected, "the server could not execute the call");
   const std::size_t head = 5 * xdr_unit + padded(verifier->size()) + xdr_unit;
   return std::string(record.substr(head));
 }
@@ -85,7 +86,7 @@ Result<std::optional<std::string>> take_rpc_record(std::string& received) {
     const std::uint32_t mark = big_endian(std::string_view(received).substr(place));
     const std::size_t size = mark & ~last_fragment;
     if (record.size() + size > longest_record || (size == 0 && (mark & last_fragment) == 0))
-      return fail(ErrorCode::disconnected, "a record that is none of ONC RPC");
+      return fail(ErrorCode::disconnected, "the record does not conform to ONC RPC");
     if (received.size() < place + xdr_unit + size) return std::nullopt;
     record += received.substr(place + xdr_unit, size);
     place += xdr_unit + size;

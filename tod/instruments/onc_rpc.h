@@ -1,4 +1,5 @@
-// Remote procedure calls as VXI-11 wants them: ONC RPC version 2 over TCP (RFC 5531) with XDR data (RFC 4506).
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Remote procedure calls for VXI-11: ONC RPC version 2 over TCP (RFC 5531) with XDR data (RFC 4506).
 #pragma once
 
 #include <cstddef>
@@ -8,12 +9,12 @@
 #include <string>
 #include <string_view>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/instruments/instrument_line.h"
 
 namespace todbench {
 
-/// XDR data being written: big endian, in units of four bytes.
+/// Writes XDR data: big endian, in units of four bytes.
 class XdrWriter {
  public:
   void number(std::uint32_t value);
@@ -25,7 +26,7 @@ class XdrWriter {
   std::string data_;
 };
 
-/// XDR data being read. Nothing once it has ended too early.
+/// Reads XDR data. Results are empty after the data has ended too early.
 class XdrReader {
  public:
   explicit XdrReader(std::string_view data) : data_(data) {}
@@ -36,18 +37,18 @@ class XdrReader {
   std::string_view data_;
 };
 
-/// A record with its mark in front, as one fragment (RFC 5531, section 11).
+/// A message as one fragment with its record mark (RFC 5531, section 11).
 [[nodiscard]] std::string rpc_record(std::string_view message);
-/// Takes the first whole record off `received`; nothing while it is not whole. `disconnected` for one of more than
-/// 1 MiB.
+/// Removes and returns the first whole record of `received`; empty while it is incomplete. Errors: `disconnected` (more
+/// than 1 MiB).
 [[nodiscard]] Result<std::optional<std::string>> take_rpc_record(std::string& received);
 
 /// A connection to the programs of one server. One thread at a time.
 class RpcClient {
  public:
   explicit RpcClient(Descriptor socket) : socket_(std::move(socket)) {}
-  /// Calls a procedure and returns its results. `disconnected` for what is no answer to it, `not_found` where the
-  /// server has no such program or procedure; `timeout`, `interrupted`.
+  /// Calls a procedure and returns its results. Errors: `disconnected` (the reply does not match the call), `not_found`
+  /// (the server has no such program or procedure), `timeout`, `interrupted`.
   [[nodiscard]] Result<std::string> call(std::uint32_t program, std::uint32_t version, std::uint32_t procedure,
                                          std::string_view arguments, InstrumentLine::TimePoint deadline,
                                          const std::stop_token& stop);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/operator_terminal.h"
 
 #include <unistd.h>
@@ -10,8 +11,8 @@
 #include <system_error>
 #include <utility>
 
-#include "acquisition/core/safe_text.h"
-#include "tod/instruments/descriptor.h"
+#include "acquisition/base/descriptor.h"
+#include "acquisition/base/safe_text.h"
 
 namespace todbench {
 namespace {
@@ -34,10 +35,10 @@ class DescriptorLines final : public LineSource {
         return fail(ErrorCode::interrupted, "stopped while waiting for the operator");
       std::array<char, 512> chunk{};
       const ssize_t count = ::read(fd_, chunk.data(), chunk.size());
-      if (count == 0) return fail(ErrorCode::disconnected, "end of the operator's input");
+      if (count == 0) return fail(ErrorCode::disconnected, "the operator's input has ended");
       if (count < 0) {
         if (errno == EINTR || errno == EAGAIN) continue;
-        return fail(ErrorCode::disconnected, "the operator's input: " + std::generic_category().message(errno));
+        return fail(ErrorCode::disconnected, "reading the operator's input: " + std::generic_category().message(errno));
       }
       received_.append(chunk.data(), static_cast<std::size_t>(count));
       // Without a line end this long, only its head is kept; a later line end still ends it.
@@ -50,7 +51,7 @@ class DescriptorLines final : public LineSource {
   std::string received_;
 };
 
-/// What a line means; nothing: it means nothing, the operator is asked again.
+/// Meaning of a line; empty if it is not understood and the operator is asked again.
 std::optional<OperatorAnswer> answer_of(std::string_view line) {
   const auto first = line.find_first_not_of(" \t");
   if (first == std::string_view::npos) return OperatorAnswer::done;
@@ -71,7 +72,7 @@ AskOperator operator_at_terminal(std::ostream& out, std::shared_ptr<LineSource> 
     out << "Please:\n";
     for (const auto& step : request.steps) out << "  - " << one_line(sentence(step)) << "\n";
     for (;;) {
-      out << "Enter when done, q to stop: " << std::flush;
+      out << "Press Enter when done, or type q to stop: " << std::flush;
       const auto line = answers->next_line(stop);
       if (!line) {
         out << "\n" << std::flush;

@@ -1,4 +1,5 @@
-// An operator at a terminal: requests are written as lines, answers are read as lines.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An operator at a terminal: requests and answers are lines of text.
 #pragma once
 
 #include <iosfwd>
@@ -6,25 +7,25 @@
 #include <stop_token>
 #include <string>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/presentation/operator_request.h"
 
 namespace todbench {
 
-/// Where the operator's answers come from. One thread at a time.
+/// Source of the operator's answers. One thread at a time.
 class LineSource {
  public:
   virtual ~LineSource() = default;
-  /// The next line without its end. Errors: `interrupted` (at once when stop is requested), `disconnected` (end of
-  /// input).
+  /// Returns the next line without its end. Errors: `interrupted` (at once when stop is requested), `disconnected` (end
+  /// of input).
   [[nodiscard]] virtual Result<std::string> next_line(const std::stop_token& stop) = 0;
 };
 
-/// Lines from a descriptor that stays the caller's, e.g. 0 for standard input; it is waited on with poll(), so nothing
-/// else may read or buffer it. A line longer than 4096 characters is cut.
+/// Lines from a descriptor that the caller owns, e.g. 0 for standard input. It is waited on with poll(): no other code
+/// may read or buffer it. Lines are truncated to 4096 characters.
 [[nodiscard]] std::unique_ptr<LineSource> descriptor_lines(int fd);
 
-/// Writes the steps and reads until there is an answer: an empty line is `done`, "q" is `stop`. `out` outlives it.
+/// Writes the steps and reads until an answer arrives: an empty line is `done`, "q" is `stop`. `out` must outlive it.
 [[nodiscard]] AskOperator operator_at_terminal(std::ostream& out, std::shared_ptr<LineSource> answers);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/prompt_target.h"
 
 #include <cmath>
@@ -40,7 +41,7 @@ class PromptTarget final : public Target {
   AskOperator ask_;
   std::function<std::chrono::steady_clock::time_point()> now_;
   TargetCapabilities capabilities_;
-  std::optional<TargetState> last_;  // none: unknown, say everything
+  std::optional<TargetState> last_;  // empty: unknown, request everything
 };
 
 }  // namespace

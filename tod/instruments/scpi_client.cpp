@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/scpi_client.h"
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 #include <optional>
 #include <system_error>
 #include <utility>
+
+#include "tod/instruments/open_line.h"
 
 namespace todbench {
 namespace {
@@ -19,7 +22,7 @@ std::string in_seconds(std::chrono::milliseconds time) {
   return std::string(text.data(), end.ptr) + " s";
 }
 
-// Text of a peer in our messages: short, and nothing that moves the cursor of a terminal.
+// Text of a peer for messages: short, without characters that move the cursor of a terminal.
 std::string printable(std::string_view text) {
   std::string shown(text.substr(0, 80));
   std::replace_if(
@@ -27,7 +30,7 @@ std::string printable(std::string_view text) {
   return "'" + shown + "'";
 }
 
-// The error code of a SYST:ERR? answer such as -222,"Data out of range"; none when the line is something else.
+// The error code of a SYST:ERR? answer such as -222,"Data out of range"; empty if the line is not one.
 std::optional<int> error_report(std::string_view line) {
   if (!line.empty() && line.front() == '+') line.remove_prefix(1);
   int code = 0;
@@ -43,7 +46,7 @@ bool any_begins(std::string_view answer, const std::vector<std::string>& beginni
 }
 
 std::string refusal(std::string_view text, std::string_view answer) {
-  return std::string(text) + ": the instrument refuses: " + printable(answer);
+  return std::string(text) + ": rejected by the instrument: " + printable(answer);
 }
 
 }  // namespace
@@ -111,7 +114,7 @@ Result<ScpiClient> ScpiClient::connect(const std::string& endpoint, const ScpiCl
 Result<ScpiClient::TimePoint> ScpiClient::begin(const std::stop_token& stop) {
   if (!line_) return fail(ErrorCode::disconnected, "the connection is closed");
   const auto until = last_exchange_ + std::chrono::milliseconds(std::llround(speech_.pause_s * 1000));
-  // No descriptor: nothing but a stop request ends the wait early.
+  // No descriptor: only a stop request ends the wait early.
   if (Clock::now() < until && wait_on(-1, WaitFor::reading, until, stop) == Waited::stopped)
     return give_up({ErrorCode::interrupted, "stopped on request"});
   return Clock::now() + options_.answer_timeout;
@@ -125,7 +128,7 @@ bool ScpiClient::reports_with_command() const {
 Result<void> ScpiClient::identify(const std::stop_token& stop) {
   const auto deadline = begin(stop);
   if (!deadline) return tl::unexpected(deadline.error());
-  // Errors that others left in the queue are not ours.
+  // Removes errors that earlier connections left in the queue.
   const std::string clear = speech_.clear.empty() ? "" : speech_.clear + speech_.ending;
   const std::string ask = speech_.identity_query.empty() ? "" : speech_.identity_query + speech_.ending;
   if (clear.empty() && ask.empty()) return {};
@@ -144,13 +147,14 @@ Result<void> ScpiClient::identify(const std::stop_token& stop) {
     return give_up({ErrorCode::not_found, speech_.identity_query + " answered " + printable(*line) + ", " + expected});
   };
   if (line->find(speech_.identity_contains) == std::string::npos)
-    return wrong("expected an answer with '" + speech_.identity_contains + "'");
+    return wrong("expected an answer that contains '" + speech_.identity_contains + "'");
   if (!speech_.identity_of_four) {
     identity_.model = printable(*line);
     return {};
   }
   auto fields = scpi_fields(*line);
-  if (fields.size() != 4 || fields[1].empty() || fields[2].empty()) return wrong("not vendor,model,serial,firmware");
+  if (fields.size() != 4 || fields[1].empty() || fields[2].empty())
+    return wrong("expected vendor,model,serial,firmware");
   identity_ = {fields[0], fields[1], fields[2], fields[3]};
   return {};
 }
@@ -158,7 +162,7 @@ Result<void> ScpiClient::identify(const std::stop_token& stop) {
 Result<void> ScpiClient::command(std::string_view text, const std::stop_token& stop) {
   const auto deadline = begin(stop);
   if (!deadline) return tl::unexpected(deadline.error());
-  // Two lines in one packet: after a syntax error the rest of the same line would be thrown away with it (IEEE 488.2).
+  // Two lines in one packet: after a syntax error the rest of the same line would be discarded (IEEE 488.2).
   const bool together = reports_with_command();
   const std::string report_ask = together ? speech_.error_query + speech_.ending : "";
   if (auto sent = send(std::string(text) + speech_.ending + report_ask, *deadline, stop); !sent) return sent;
@@ -187,7 +191,7 @@ Result<std::string> ScpiClient::query_with_report(std::string_view text, const s
   if (auto sent = send(both, *deadline, stop); !sent) return tl::unexpected(sent.error());
   auto answer = receive_line(*deadline, stop);
   if (!answer) return give_up(with_context(text, answer.error()));
-  // A refused query has no answer of its own: the first line is the error report already.
+  // A refused query has no answer of its own: the first line already is the error report.
   if (error_report(*answer)) return fail(ErrorCode::invalid_input, refusal(text, *answer));
   auto report = receive_line(*deadline, stop);
   if (!report) return give_up(with_context(text, report.error()));
@@ -202,7 +206,7 @@ Result<std::string> ScpiClient::query_before_report(std::string_view text, const
   auto answer = receive_line(*deadline, stop);
   last_exchange_ = Clock::now();
   if (!answer) {
-    // One that refuses a query does not answer it; it may say so when it is asked.
+    // An instrument that refuses a query does not answer it, but may report the error when queried.
     if (answer.error().code == ErrorCode::timeout && line_) {
       const auto report = ask_for_errors(text, stop);
       if (!report && report.error().code == ErrorCode::invalid_input) return tl::unexpected(report.error());
@@ -249,17 +253,18 @@ Result<std::vector<double>> ScpiClient::query_form(std::string_view text, std::s
   if (!answer) return tl::unexpected(answer.error());
   auto numbers = numbers_in(*answer, form);
   if (!numbers)
-    return give_up({ErrorCode::disconnected, std::string(text) + ": answered " + printable(*answer) + ", expected '" +
-                                                 std::string(form) + "' with a number for each {}"});
+    return give_up({ErrorCode::disconnected, std::string(text) + ": the instrument answered " + printable(*answer) +
+                                                 ", expected '" + std::string(form) + "' with a number for each {}"});
   return *numbers;
 }
 
 Result<void> ScpiClient::send(std::string_view text, TimePoint deadline, const std::stop_token& stop) {
-  received_.clear();  // whatever came unasked belongs to nothing we will send
+  received_.clear();  // late bytes belong to no future command
   auto sent = line_->send(text, deadline, stop);
   if (sent) return sent;
   if (sent.error().code == ErrorCode::timeout)
-    return give_up({ErrorCode::timeout, "takes no command within " + in_seconds(options_.answer_timeout)});
+    return give_up(
+        {ErrorCode::timeout, "the instrument accepted no command within " + in_seconds(options_.answer_timeout)});
   return give_up(sent.error());
 }
 
@@ -273,8 +278,9 @@ Result<std::string> ScpiClient::receive_line(TimePoint deadline, const std::stop
       return line;
     }
     if (received_.size() > options_.longest_answer)
-      return give_up({ErrorCode::disconnected, "dropped: more than " + std::to_string(options_.longest_answer) +
-                                                   " characters without a line end"});
+      return give_up({ErrorCode::disconnected, "connection closed: the instrument sent more than " +
+                                                   std::to_string(options_.longest_answer) +
+                                                   " characters without an end of line"});
     auto some = line_->receive(deadline, stop);
     if (!some && some.error().code == ErrorCode::timeout)
       return fail(ErrorCode::timeout, "no answer within " + in_seconds(options_.answer_timeout));

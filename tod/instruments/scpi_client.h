@@ -1,5 +1,6 @@
-// One instrument that speaks in lines: SCPI over a raw TCP socket (the "SCPI-RAW" of LXI instruments, port 5025 by
-// custom) unless its table says otherwise.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One instrument with a line-based protocol: SCPI over a raw TCP socket ("SCPI-RAW" of LXI instruments, usually port
+// 5025) unless its table states another.
 #pragma once
 
 #include <chrono>
@@ -10,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/instruments/instrument_line.h"
 #include "tod/instruments/instrument_table.h"
 
@@ -19,10 +20,10 @@ namespace todbench {
 struct ScpiClientOptions {
   std::chrono::milliseconds connect_timeout{3000};
   std::chrono::milliseconds answer_timeout{1000};  ///< from sending a command to the last character of its answer
-  std::size_t longest_answer = 8192;               ///< characters; a peer that sends more without a line end is dropped
+  std::size_t longest_answer = 8192;  ///< characters; a peer that sends more without a line end is disconnected
 };
 
-/// The four fields of *IDN? (IEEE 488.2, 10.14). An instrument that has no such answer has a model only.
+/// The four fields of *IDN? (IEEE 488.2, 10.14). Only `model` is set for an instrument without this answer.
 struct ScpiIdentity {
   std::string vendor, model, serial, firmware;
   bool operator==(const ScpiIdentity&) const = default;
@@ -31,29 +32,28 @@ struct ScpiIdentity {
 [[nodiscard]] std::string to_text(const ScpiIdentity& identity);
 
 /// A connection. One thread at a time. Each exchange is followed by SYST:ERR? (or the error query of the table), so
-/// that a refused command is an error here and not a surprise later. After `disconnected`, `timeout` or `interrupted`
-/// the connection is closed, because an answer may still be on its way and would be taken for the next one: connect
-/// anew.
+/// that a refused command is reported at once as an error. After `disconnected`, `timeout` or `interrupted` the
+/// connection is closed, because a late answer would be taken for the next one: connect again.
 class ScpiClient {
  public:
-  /// `endpoint` is an instrument_address(). Clears the instrument's error queue and asks for *IDN?, or what `speech`
-  /// has in their place. Errors: `invalid_input` (endpoint), `not_found` (no connection, or no such instrument behind
-  /// it), `interrupted`.
+  /// `endpoint`: as for instrument_address(). Clears the instrument's error queue and sends *IDN?, or the replacements
+  /// stated by `speech`. Errors: `invalid_input` (endpoint), `not_found` (no connection, or another instrument),
+  /// `interrupted`.
   [[nodiscard]] static Result<ScpiClient> connect(const std::string& endpoint, const ScpiClientOptions& options,
                                                   const std::stop_token& stop, const InstrumentSpeech& speech = {});
 
   [[nodiscard]] const ScpiIdentity& identity() const { return identity_; }
   [[nodiscard]] bool is_open() const { return line_ != nullptr; }
 
-  /// Sends a command that has no answer. `invalid_input` with the instrument's own words when it refuses.
+  /// Sends a command that has no answer. Errors: `invalid_input` with the instrument's message if it refuses.
   [[nodiscard]] Result<void> command(std::string_view text, const std::stop_token& stop);
-  /// Sends a query and returns its answer without the line end. `invalid_input` when the instrument refuses.
+  /// Sends a query and returns its answer without the line end. Errors: `invalid_input` if the instrument refuses.
   [[nodiscard]] Result<std::string> query(std::string_view text, const std::stop_token& stop);
-  /// A query whose answer is `count` finite numbers separated by commas. Anything else is `disconnected`: what follows
-  /// cannot be trusted.
+  /// Returns the answer of a query: `count` finite numbers separated by commas. Any other answer is `disconnected`,
+  /// because later answers cannot be trusted.
   [[nodiscard]] Result<std::vector<double>> query_numbers(std::string_view text, std::size_t count,
                                                           const std::stop_token& stop);
-  /// A query whose answer looks like `form` (numbers_in()). The same.
+  /// Same for an answer of the form `form` (numbers_in()).
   [[nodiscard]] Result<std::vector<double>> query_form(std::string_view text, std::string_view form,
                                                        const std::stop_token& stop);
 
@@ -71,7 +71,7 @@ class ScpiClient {
   [[nodiscard]] Result<void> ask_for_errors(std::string_view text, const std::stop_token& stop);
   [[nodiscard]] tl::unexpected<Error> give_up(Error error);
 
-  std::unique_ptr<InstrumentLine> line_;  ///< none once it was closed
+  std::unique_ptr<InstrumentLine> line_;  ///< null after it was closed
   ScpiClientOptions options_;
   InstrumentSpeech speech_;
   ScpiIdentity identity_;
@@ -79,9 +79,9 @@ class ScpiClient {
   TimePoint last_exchange_{};
 };
 
-/// Splits an answer at commas outside quotes; quotes are removed and doubled quotes inside them become one.
+/// Splits an answer at commas outside quotes, removes quotes, and replaces doubled quotes inside them by one.
 [[nodiscard]] std::vector<std::string> scpi_fields(std::string_view answer);
-/// A text as SCPI string data: "in quotes", quotes inside doubled.
+/// A text as SCPI string data: in quotes, with inner quotes doubled.
 [[nodiscard]] std::string scpi_quoted(std::string_view text);
 
 }  // namespace todbench

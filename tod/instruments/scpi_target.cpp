@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/scpi_target.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ std::string position_text(cv::Point2d position) {
   return decimal(position.x, 3) + "," + decimal(position.y, 3);
 }
 
-/// Whether something has been so for as long as it has to be; `since` remembers from when.
+/// Whether a condition has held for the required time; `since` stores its start.
 bool has_stayed(bool so, double dwell_s, const std::function<std::chrono::steady_clock::time_point()>& now,
                 std::optional<std::chrono::steady_clock::time_point>& since) {
   if (!so) since.reset();
@@ -71,7 +72,7 @@ class ScpiTarget final : public Target, private MovingTarget {
   std::array<double, 2> limits_k_{};
   StageLimits travel_;
   TargetCapabilities capabilities_;
-  std::optional<TimePoint> black_body_there_, stage_there_;  ///< since when within the tolerance
+  std::optional<TimePoint> black_body_there_, stage_there_;  ///< start of the time within the tolerance
   bool wait_reported_ = false;
 };
 
@@ -80,7 +81,7 @@ Result<void> ScpiTarget::open(const std::stop_token& stop) {
   if (auto done = stage_.ensure_connected(stop); !done) return done;
   const auto failed = [](Error error) {
     if (error.code != ErrorCode::interrupted) error.code = ErrorCode::not_found;
-    return fail("reading what the instruments can do", error);
+    return fail("reading the limits of the instruments", error);
   };
   const auto limits = black_body_.limits(stop);
   if (!limits) return failed(limits.error());
@@ -94,7 +95,7 @@ Result<void> ScpiTarget::open(const std::stop_token& stop) {
 }
 
 Result<void> ScpiTarget::check_within_limits(const TargetState& state) const {
-  // Written so that NaN fails.
+  // This form also rejects NaN.
   if (!(state.delta_t_k >= limits_k_[0] && state.delta_t_k <= limits_k_[1]))
     return fail(ErrorCode::invalid_input, black_body_.name() + ": " + decimal(state.delta_t_k, 3) + " K is outside " +
                                               decimal(limits_k_[0], 3) + " to " + decimal(limits_k_[1], 3) + " K");
@@ -108,17 +109,17 @@ Result<void> ScpiTarget::check_within_limits(const TargetState& state) const {
   if (std::find(travel_.plates.begin(), travel_.plates.end(), state.plate) == travel_.plates.end()) {
     std::string known;
     for (const auto& plate : travel_.plates) known += (known.empty() ? "" : ", ") + plate;
-    return fail(ErrorCode::invalid_input, stage_.name() + ": has no plate '" + state.plate + "', only: " + known);
+    return fail(ErrorCode::invalid_input, stage_.name() + ": has no plate '" + state.plate + "'; available: " + known);
   }
   if (!stage_.holds(state.mounting))
     return fail(ErrorCode::invalid_input,
-                stage_.name() + ": holds no plate " + std::string(mounting_in_words(state.mounting)));
+                stage_.name() + ": cannot hold a plate " + std::string(mounting_in_words(state.mounting)));
   return {};
 }
 
 Result<ScpiTarget::Reading> ScpiTarget::read(const TargetState& asked, const std::stop_token& stop) {
   Reading reading;
-  // Settled first, values after it: a value read before the flag could be older than the flag says.
+  // Settled first, values after it: a value read before the flag could be older than the flag.
   auto stage_settled = stage_.is_settled(stop);
   if (!stage_settled) return tl::unexpected(stage_settled.error());
   auto black_body_settled = black_body_.is_settled(stop);
@@ -202,7 +203,7 @@ Result<PresentedTarget> ScpiTarget::poll_until_reached(const TargetState& asked,
     }
     std::unique_lock lock(mutex);
     wake.wait_for(lock, stop, options_.poll_interval, [] { return false; });
-    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped while the target settles");
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped while the target was settling");
   }
 }
 
@@ -218,7 +219,7 @@ Result<PresentedTarget> ScpiTarget::present(const TargetState& state, std::stop_
 }
 
 Result<PlateRun> ScpiTarget::run_along_x(double to_mm, double speed_mm_s, std::stop_token stop) {
-  // Written so that NaN fails.
+  // This form also rejects NaN.
   if (!(to_mm >= travel_.min_mm.x && to_mm <= travel_.max_mm.x))
     return fail(ErrorCode::invalid_input, stage_.name() + ": a run to " + decimal(to_mm, 3) + " mm is outside " +
                                               decimal(travel_.min_mm.x, 3) + " to " + decimal(travel_.max_mm.x, 3) +

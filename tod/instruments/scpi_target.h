@@ -1,5 +1,6 @@
-// A bench with a differential black body and a plate stage, each with the words of its table. The shipped tables
-// scpi-black-body.toml and scpi-stage.toml are what the emulated instruments understand.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A bench with a differential black body and a plate stage, controlled by their tables. The emulated instruments
+// understand the shipped tables scpi-black-body.toml and scpi-stage.toml.
 #pragma once
 
 #include <chrono>
@@ -16,28 +17,30 @@
 namespace todbench {
 
 struct ScpiTargetOptions {
-  std::string black_body;  ///< instrument_address()
-  std::string stage;       ///< the same
+  std::string black_body;  ///< as for instrument_address()
+  std::string stage;       ///< as for instrument_address()
   InstrumentTable black_body_table;
   InstrumentTable stage_table;
   std::chrono::milliseconds settle_timeout{600'000};  ///< for one present(), by `now`
   std::chrono::milliseconds poll_interval{100};
-  std::chrono::milliseconds report_interval{500};  ///< of on_wait, by `now`; the first after as long
+  std::chrono::milliseconds report_interval{500};  ///< interval of on_wait, by `now`, also before the first call
   OnTargetWait on_wait{};
   ScpiClientOptions connection;
   /// Time base of settle_timeout and settling_s.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
-/// Connects to both instruments, identifies them and reads their limits. Errors: as ScpiClient::connect.
+/// Connects to both instruments, identifies them and reads their limits. Errors: those of ScpiClient::connect().
 ///
-/// present() asks each instrument for its set-points and commands only those that differ, so a knob turned by hand is
-/// put right; one without set-points is commanded each time. It returns when both instruments say they are settled
-/// *and* what they measure agrees with what was asked, for as long as their tables want.
-/// PresentedTarget::state is what was measured. A state beyond the instruments' limits is `invalid_input` before
-/// anything moves. `timeout` names the instrument, what was asked and what was reached. When an instrument goes away,
-/// refuses a command or states a temperature that nothing can have (below 0 K, above 5000 K): `disconnected`; the next
-/// present() connects anew and insists on the same *IDN?.
+/// present() reads the set-points of each instrument and commands only those that differ, so that manual changes are
+/// corrected; an instrument without set-points is commanded each time. It returns when both instruments report that
+/// they are settled *and* the measured values agree with the requested ones for the time that the tables require.
+/// PresentedTarget::state is the measured state.
+///
+/// Errors of present(): `invalid_input` (state beyond the instruments' limits, reported before anything moves),
+/// `timeout` (names the instrument, the requested and the reached value), `disconnected` (an instrument disconnects,
+/// refuses a command or reports an impossible temperature: below 0 K or above 5000 K). After `disconnected` the next
+/// present() reconnects and requires the same *IDN?.
 [[nodiscard]] Result<std::unique_ptr<Target>> open_scpi_target(ScpiTargetOptions options, const std::stop_token& stop);
 
 }  // namespace todbench

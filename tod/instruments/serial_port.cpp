@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/serial_port.h"
 
 #include <fcntl.h>
@@ -19,9 +20,9 @@ constexpr std::array<speed_t, serial_bauds.size()> serial_speeds{B1200,  B2400, 
 
 tl::unexpected<Error> port_error(const std::string& path, int error) {
   std::string why = std::generic_category().message(error);
-  if (error == EACCES) why += " (members of the group dialout may open it: sudo adduser $USER dialout)";
-  if (error == ENOTTY) why = "is no serial port";
-  if (error == EBUSY) why = "is in use by another program";
+  if (error == EACCES) why += " (join the group dialout to open it: sudo adduser $USER dialout)";
+  if (error == ENOTTY) why = "not a serial port";
+  if (error == EBUSY) why = "in use by another program";
   return fail(ErrorCode::not_found, path + ": " + why);
 }
 
@@ -38,7 +39,7 @@ tcflag_t control_flags(const SerialSettings& settings) {
 }  // namespace
 
 Result<Descriptor> open_serial_port(const std::string& path, const SerialSettings& settings) {
-  // Not waiting for a carrier, and never this program's controlling terminal.
+  // Does not wait for a carrier, and never becomes this program's controlling terminal.
   Descriptor port(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!port.is_open()) return port_error(path, errno);
   termios asked{};
@@ -52,15 +53,15 @@ Result<Descriptor> open_serial_port(const std::string& path, const SerialSetting
   asked.c_cc[VTIME] = 0;
   const auto* found = std::find(serial_bauds.begin(), serial_bauds.end(), settings.baud);
   if (found == serial_bauds.end())
-    return fail(ErrorCode::not_found, path + ": has no " + std::to_string(settings.baud) + " baud");
+    return fail(ErrorCode::not_found, path + ": " + std::to_string(settings.baud) + " baud is not a supported rate");
   const speed_t speed = serial_speeds[static_cast<std::size_t>(std::distance(serial_bauds.begin(), found))];
   ::cfsetispeed(&asked, speed);
   ::cfsetospeed(&asked, speed);
   if (::tcsetattr(port.get(), TCSANOW, &asked) != 0) return port_error(path, errno);
-  // The system takes what it can and calls it success: what it took is what counts.
+  // The system reports success even if it applied only some settings: read them back.
   termios taken{};
   if (::tcgetattr(port.get(), &taken) != 0 || ::cfgetospeed(&taken) != speed)
-    return fail(ErrorCode::not_found, path + ": does not take " + std::to_string(settings.baud) + " baud");
+    return fail(ErrorCode::not_found, path + ": the port did not accept " + std::to_string(settings.baud) + " baud");
   ::tcflush(port.get(), TCIOFLUSH);
   return port;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/vxi11_line.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ using std::chrono::milliseconds;
 using TimePoint = InstrumentLine::TimePoint;
 
 constexpr std::uint32_t most_read = 4096;
-/// What an instrument gets to say that it had nothing to say, after the time in which it should have.
+/// Time for an instrument to report its own timeout, after the time in which it should have answered.
 constexpr milliseconds grace{500};
 
 std::uint32_t milliseconds_until(TimePoint deadline) {
@@ -25,18 +26,18 @@ std::uint32_t milliseconds_until(TimePoint deadline) {
 
 /// Device_ErrorCode (VXI-11, table B.2).
 tl::unexpected<Error> device_error(std::optional<std::uint32_t> error) {
-  if (!error) return fail(ErrorCode::disconnected, "an answer that is none of VXI-11");
+  if (!error) return fail(ErrorCode::disconnected, "the answer is not a reply of VXI-11");
   switch (*error) {
     case 3:
       return fail(ErrorCode::not_found, "the device is not accessible");
     case 9:
-      return fail(ErrorCode::not_found, "the instrument has no resources left");
+      return fail(ErrorCode::not_found, "the instrument has no free resources");
     case 11:
       return fail(ErrorCode::not_found, "the device is locked by another program");
     case vxi11::error_timeout:
-      return fail(ErrorCode::timeout, "not in time");
+      return fail(ErrorCode::timeout, "no answer within the time limit");
     default:
-      return fail(ErrorCode::disconnected, "error " + std::to_string(*error) + " of VXI-11");
+      return fail(ErrorCode::disconnected, "VXI-11 error " + std::to_string(*error));
   }
 }
 
@@ -47,7 +48,7 @@ class Vxi11Line final : public InstrumentLine {
     if (!linked_) return;
     XdrWriter arguments;
     arguments.number(link_);
-    // An instrument has few links; one that does not answer keeps this one until it notices.
+    // An instrument has few links; one that does not answer keeps this one until it notices the loss.
     [[maybe_unused]] const auto closed =
         call(vxi11::destroy_link, arguments, std::chrono::steady_clock::now() + milliseconds(200), {});
   }
@@ -133,7 +134,8 @@ Result<std::uint16_t> port_of_core(const std::string& host, std::uint16_t port_m
           .call(vxi11::port_mapper, vxi11::port_mapper_version, vxi11::get_port, arguments.data(), deadline, stop);
   if (!results) return fail("asking the port mapper", results.error());
   const auto port = XdrReader(*results).number();
-  if (!port || *port == 0 || *port > 65535) return fail(ErrorCode::not_found, "the port mapper knows no VXI-11");
+  if (!port || *port == 0 || *port > 65535)
+    return fail(ErrorCode::not_found, "the port mapper has no entry for VXI-11");
   return static_cast<std::uint16_t>(*port);
 }
 
@@ -151,7 +153,7 @@ Result<std::unique_ptr<InstrumentLine>> open_vxi11_line(const InstrumentAddress&
   if (!socket) return tl::unexpected(socket.error());
   auto line = std::make_unique<Vxi11Line>(RpcClient(std::move(*socket)));
   if (auto linked = line->link(address.device, deadline, stop); !linked)
-    return fail("making a link to " + address.device, linked.error());
+    return fail("opening a VXI-11 link to " + address.device, linked.error());
   return line;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/contrast_error.h"
 
 #include <algorithm>
@@ -7,13 +8,13 @@
 namespace todbench {
 namespace {
 
-/// What a triangle adds to the error of the mean.
+/// Contribution of a triangle to the error of the mean.
 struct Share {
   std::size_t set_up = 0, place = 0;
   double value = 0;
 };
 
-/// The place of a triangle among those that are known, a new one where it is at none.
+/// Index of the triangle's place among the known ones; adds a place if it is at none.
 std::size_t place_of(const ReferenceTriangle& triangle, std::vector<ReferenceTriangle>& known) {
   const auto near = std::ranges::find_if(known, [&](const ReferenceTriangle& other) {
     return cv::norm(triangle.place_px - other.place_px) < 0.5 * std::min(triangle.size_px, other.size_px);
@@ -58,7 +59,7 @@ std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement>
   const auto error = [&](double variance, double clusters) {
     return ContrastError{std::sqrt(variance), std::sqrt(std::max(0.0, variance - seen)), clusters - 1};
   };
-  // One set-up has no deviation from its own mean, one place none of its own.
+  // With one set-up or one place, no deviation from the overall mean can be estimated.
   if (set_ups.clusters < 2) return error(at_places.variance, at_places.clusters);
   if (at_places.clusters < 2) return error(set_ups.variance, set_ups.clusters);
   const auto n = static_cast<double>(shares.size());

@@ -1,4 +1,5 @@
-// How well a contrast is known that was measured in several set-ups by several triangles.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Standard error of a contrast that was measured in several set-ups by several triangles.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,7 @@
 
 namespace todbench {
 
-/// A contrast as the camera saw it in one set-up.
+/// Effective contrast of one set-up.
 struct ContrastMeasurement {
   double set_delta_t_k = 0;
   double delta_t_k = 0;                       ///< mean over the triangles
@@ -19,19 +20,18 @@ struct ContrastMeasurement {
 
 struct ContrastError {
   double standard_error_k = 0;
-  double shared_k = 0;  ///< the part of it that no scatter over set-ups shows: what their places have in common
+  double shared_k = 0;  ///< part of it that the scatter over set-ups does not contain: common to their places
   double degrees_of_freedom = 1;
 };
 
-/// Standard error of the mean over measurements of one contrast. What the triangles of a set-up have in common and what
-/// the detectors of a place in the picture do (fixed pattern) both stay in that mean: set-ups and places are clusters
-/// both ways, V_set_up + V_place - V_triangle (Cameron, Gelbach and Miller 2011), not below that of either alone. Two
-/// triangles are at one place where their centroids are nearer than half their size: mountings and plates that put
-/// triangles before the same detectors have one error of them, not several. Nothing with fewer than two set-ups and
-/// fewer than two places.
+/// Standard error of the mean over measurements of one contrast. Errors common to the triangles of a set-up and errors
+/// of the detectors at a place (fixed pattern) both remain in that mean. Set-ups and places are therefore two-way
+/// clusters, V_set_up + V_place - V_triangle (Cameron, Gelbach and Miller 2011), at least the variance of either alone.
+/// Triangles whose centroids are nearer than half their size count as one place, because mountings and plates may put
+/// them before the same detectors. Empty with fewer than two set-ups and fewer than two places.
 [[nodiscard]] std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement> measurements);
 
-/// Gives the points of a curve the errors of their contrasts, where `measurements` say them.
+/// Adds the errors of their contrasts to the points of a curve, if `measurements` contain them.
 void add_contrast_errors(TodCurve& curve, std::span<const ContrastMeasurement> measurements);
 
 }  // namespace todbench

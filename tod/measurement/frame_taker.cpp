@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/frame_taker.h"
 
 #include <algorithm>
@@ -11,8 +12,18 @@
 namespace todbench {
 namespace {
 
-/// The share of rejected frames means nothing before this many.
+/// The share of rejected frames is not checked before this many.
 constexpr std::uint64_t frames_before_share_counts = 100;
+
+/// Variance of the means of rows (`dimension` 1) or columns (0) of a difference of two frames, per frame.
+double variance_of_means(const cv::Mat1d& difference, int dimension) {
+  cv::Mat1d means;
+  cv::reduce(difference, means, dimension, cv::REDUCE_AVG);
+  const auto n = static_cast<double>(means.total());
+  cv::Scalar mean, sd;
+  cv::meanStdDev(means, mean, sd);
+  return n > 1 ? sd[0] * sd[0] * n / (n - 1) / 2 : 0;
+}
 
 double mean_square(const cv::Mat1d& difference) {
   cv::Scalar mean, sd;
@@ -20,7 +31,7 @@ double mean_square(const cv::Mat1d& difference) {
   return sd[0] * sd[0] / 2;
 }
 
-/// Differences between frames of one scene, as they come.
+/// Differences between successive frames of one scene.
 class FrameDifferences {
  public:
   explicit FrameDifferences(int frames) : lag_(static_cast<std::uint64_t>(std::min(8, frames / 4))) {}
@@ -34,13 +45,17 @@ class FrameDifferences {
       ++at.pairs;
     }
     if (!old_.empty()) {
-      // Where frames are missing between all of them, the next one has to do.
-      neighbours_.squares += mean_square(kelvin - old_.back().kelvin);
+      // If frames are missing between all of them, the next one is used.
+      const cv::Mat1d difference = kelvin - old_.back().kelvin;
+      neighbours_.squares += mean_square(difference);
       ++neighbours_.pairs;
+      row_means_ += variance_of_means(difference, 1);
+      column_means_ += variance_of_means(difference, 0);
+      size_ = difference.size();
       learn_step(frame.counts);
     }
     old_.push_back({frame.sequence, kelvin});
-    // A copy: a frame may lend one of the few buffers that its camera has.
+    // A copy, because a frame may hold one of the few buffers of its camera.
     frame.counts.copyTo(last_counts_);
     if (old_.size() > std::max<std::size_t>(1, lag_)) old_.pop_front();
   }
@@ -53,6 +68,15 @@ class FrameDifferences {
   }
 
   [[nodiscard]] int step() const { return step_; }
+
+  /// The mean over a row contains its share of the noise of single pixels, and so does that over a column.
+  [[nodiscard]] std::optional<cv::Vec2d> row_and_column_variances() const {
+    if (neighbours_.pairs == 0 || size_.width < 2 || size_.height < 2) return std::nullopt;
+    const double rows = row_means_ / neighbours_.pairs, columns = column_means_ / neighbours_.pairs;
+    const double of_row = 1.0 / size_.width, of_column = 1.0 / size_.height;
+    const double pixel = (neighbours_.mean() - rows - columns) / (1 - of_row - of_column);
+    return cv::Vec2d(rows - pixel * of_row, columns - pixel * of_column);
+  }
 
  private:
   struct Old {
@@ -76,6 +100,8 @@ class FrameDifferences {
   std::deque<Old> old_;
   cv::Mat1w last_counts_;
   AtLag successive_, later_, neighbours_;
+  double row_means_ = 0, column_means_ = 0;  ///< sums of variances
+  cv::Size size_;
   int step_ = 0;
 };
 
@@ -106,8 +132,8 @@ double FrameTaker::since_nuc_s(const Frame& frame) const {
 }
 
 Result<void> FrameTaker::check_share() const {
-  // Frames kept out because of a correction are nobody's fault; exposures that never came are. A frame behind a gap is
-  // kept out once for all that are missing before it.
+  // Frames rejected because of a correction do not count; exposures that never arrived do. A frame after a gap counts
+  // once for all that are missing before it.
   std::uint64_t bad = gate_.lost();
   std::string reasons = gate_.lost() > 0 ? std::to_string(gate_.lost()) + " lost" : "";
   for (const auto& [reason, count] : gate_.rejected_by_reason()) {
@@ -115,7 +141,7 @@ Result<void> FrameTaker::check_share() const {
     bad += count;
     reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(to_string(reason));
   }
-  bad -= excused_;
+  bad -= std::min(bad, excused_ + cadence_.repeats());
   const std::uint64_t all = seen_ + gate_.lost();
   if (all < frames_before_share_counts ||
       static_cast<double>(bad) <= options_.max_rejected_share * static_cast<double>(all))
@@ -135,8 +161,9 @@ void FrameTaker::note_told_correction(const Frame& frame) {
 
 std::optional<CorrectionSign> FrameTaker::see_correction(const Frame& frame, std::optional<Rejection> rejection,
                                                          Scene scene) {
-  // A camera that says when it corrects is believed; frames without noise tell nothing.
+  // A camera that reports its corrections is trusted; frames without noise are no evidence.
   if (!options_.integrity.reject_frozen || frame.correction != CorrectionState::unknown) return std::nullopt;
+  if (rejection == Rejection::frozen && cadence_.in_rhythm()) return std::nullopt;
   if (rejection == Rejection::frozen) return watch_.see_frozen();
   if (rejection && rejection != Rejection::gapped) return std::nullopt;
   if (scene == Scene::moving || frame.host_time_ns < valid_from_ns_ || to_discard_ > 0) return std::nullopt;
@@ -145,12 +172,14 @@ std::optional<CorrectionSign> FrameTaker::see_correction(const Frame& frame, std
 
 std::optional<RejectedFrame> FrameTaker::judge(const Frame& frame, Scene scene) {
   const auto rejection = gate_.judge(frame);
+  if (!rejection || rejection == Rejection::frozen) cadence_.see(rejection == Rejection::frozen);
   note_told_correction(frame);
   const auto seen = see_correction(frame, rejection, scene);
   if (seen) nuc_ns_ = frame.host_time_ns;
   if (rejection == Rejection::frozen && known_nuc_ns_ &&
       static_cast<double>(frame.host_time_ns - *known_nuc_ns_) * 1e-9 < options_.nuc_wait_s) {
-    // Cameras repeat their last picture while the shutter is closed: half a second after a command is no fault.
+    // Cameras repeat their last picture while the shutter is closed: for half a second after a command this is not a
+    // fault.
     gate_.recount(Rejection::frozen, Rejection::nonuniformity_correction);
     return RejectedFrame{.sequence = frame.sequence, .reason = Rejection::nonuniformity_correction, .seen = seen};
   }
@@ -165,10 +194,11 @@ Result<bool> FrameTaker::accept(const Frame& frame, Scene scene) {
   ++seen_;
   const auto rejected = judge(frame, scene);
   if (rejected && options_.on_rejected) options_.on_rejected(*rejected);
-  // A black body on its way may fill the picture; what the transport does wrong is wrong at any time.
+  // A black body on its way may fill the picture; transport faults count at any time.
   const auto of_the_picture = {Rejection::saturated, Rejection::byte_swapped, Rejection::frozen};
+  const bool repeated = rejected && rejected->reason == Rejection::frozen;
   const bool excused =
-      scene == Scene::moving && rejected &&
+      scene == Scene::moving && rejected && !(repeated && cadence_.in_rhythm()) &&
       std::find(of_the_picture.begin(), of_the_picture.end(), rejected->reason) != of_the_picture.end();
   excused_ += excused ? 1 : 0;
   if (auto healthy = check_share(); !healthy) return tl::unexpected(healthy.error());
@@ -176,7 +206,7 @@ Result<bool> FrameTaker::accept(const Frame& frame, Scene scene) {
 }
 
 Result<void> FrameTaker::take_while_presenting(const std::function<bool(std::int64_t calls)>& enough) {
-  // How long the end of a change may be noticed too late when no frame comes.
+  // Longest delay in noticing the end of a change if no frame arrives.
   constexpr std::chrono::milliseconds look_every{100};
   for (std::int64_t calls = 0; !enough(calls); ++calls) {
     const auto frame = source_.next(std::min(look_every, options_.frame_timeout));
@@ -235,7 +265,7 @@ Result<void> FrameTaker::discard(std::stop_token stop) {
   return {};
 }
 
-Result<AveragedPicture> FrameTaker::average(int count, std::stop_token stop) {
+Result<AveragedPicture> FrameTaker::average(int count, std::stop_token stop, const EachFrame& each) {
   AveragedPicture out;
   FrameDifferences differences(count);
   for (int i = 0; i < count; ++i) {
@@ -253,10 +283,15 @@ Result<AveragedPicture> FrameTaker::average(int count, std::stop_token stop) {
     out.lowest = cv::min(out.lowest, frame->counts);
     out.highest = cv::max(out.highest, frame->counts);
     differences.add(*frame, *kelvin);
+    if (each) each(*frame, *kelvin);
   }
   out.kelvin /= count;
   if (count > 1) out.temporal_noise_k = differences.noise();
   out.lag1_correlation = differences.lag1_correlation();
+  if (const auto lines = differences.row_and_column_variances()) {
+    out.row_variance_k2 = (*lines)[0];
+    out.column_variance_k2 = (*lines)[1];
+  }
   out.count_step = differences.step();
   return out;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/geometry.h"
 
 #include <fmt/format.h>
@@ -10,9 +11,10 @@ namespace todbench {
 namespace {
 
 std::string words(const PlateBeyondPicture& misfit) {
-  return fmt::format("plate {}: its {:.0f} x {:.0f} mm are {:.0f} x {:.0f} pixels at {:.2f} m, the picture has {} x {}",
-                     misfit.plate, misfit.size_mm.width, misfit.size_mm.height, misfit.size_px.width,
-                     misfit.size_px.height, misfit.distance_m, misfit.picture.width, misfit.picture.height);
+  return fmt::format(
+      "plate {}: its {:.0f} x {:.0f} mm cover {:.0f} x {:.0f} pixels at {:.2f} m, but the picture has {} x {} pixels",
+      misfit.plate, misfit.size_mm.width, misfit.size_mm.height, misfit.size_px.width, misfit.size_px.height,
+      misfit.distance_m, misfit.picture.width, misfit.picture.height);
 }
 
 std::string words(const TrianglesTooNear& misfit) {

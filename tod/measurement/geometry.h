@@ -1,4 +1,5 @@
-// What of a plate can be measured at a distance: the windows that observers need, and what does not fit.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Check whether a plate can be measured at a distance: size of the picture and windows of the observer.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "hvs/observer/observer.h"
 #include "tod/measurement/measurement.h"
 #include "tod/plate/target_plate.h"
@@ -16,7 +17,7 @@
 
 namespace todbench {
 
-/// The picture does not hold the plate.
+/// The plate is larger than the picture.
 struct PlateBeyondPicture {
   std::string plate;
   cv::Size2d size_mm;
@@ -25,7 +26,7 @@ struct PlateBeyondPicture {
   cv::Size picture;
 };
 
-/// The observer's window round one triangle would see another.
+/// The observer's window round one triangle contains a part of another.
 struct TrianglesTooNear {
   std::string plate;
   TouchingWindow window;
@@ -33,15 +34,15 @@ struct TrianglesTooNear {
 
 using Misfit = std::variant<PlateBeyondPicture, TrianglesTooNear>;
 
-/// What cannot be measured with this geometry; empty: all fits. Plates that are too large come first, because they
-/// explain the rest. Errors: `invalid_input` (no distance, no IFOV), those of the observer.
+/// Everything that cannot be measured with this geometry; empty if all fits. Plates that are too large come first,
+/// because they explain the rest. Errors: `invalid_input` (no distance, no IFOV), those of the observer.
 [[nodiscard]] Result<std::vector<Misfit>> find_misfits(const MeasurementOptions& options, Observer& observer,
                                                        cv::Size picture);
 
-/// "plate tcat-a: its 400 x 300 mm are 800 x 600 pixels at 2.00 m, the picture has 640 x 480"
+/// "plate tcat-a: its 400 x 300 mm cover 800 x 600 pixels at 2.00 m, but the picture has 640 x 480 pixels"
 [[nodiscard]] std::string sentence(const Misfit& misfit);
 
-/// The first `most` in words, and how many more there are.
+/// Sentences for the first `most` misfits, and the number of the others.
 [[nodiscard]] std::string sentences(const std::vector<Misfit>& misfits, std::size_t most);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/grey_levels.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 
@@ -18,6 +19,9 @@ double GreySteps::rounding_variance_steps() const {
   constexpr double tells_nothing = 0.52;
   return rounding_variance(noise_levels <= tells_nothing * step_levels ? 0 : noise_steps());
 }
+
+/// With less noise a flat picture shows a single level for any step.
+constexpr double least_noise_of_a_level = 0.5;
 
 GreySteps grey_steps(const cv::Mat1w& lowest, const cv::Mat1w& highest, double noise_levels) {
   std::vector<std::int64_t> occurrences(65536);
@@ -39,11 +43,20 @@ GreySteps grey_steps(const cv::Mat1w& lowest, const cv::Mat1w& highest, double n
   }
   GreySteps steps{.noise_levels = noise_levels};
   if (different > 1) steps.step_levels = static_cast<double>(last - first) / (different - 1);
+  if (different == 1 && noise_levels >= least_noise_of_a_level) {
+    // Noise would reach another level if there were one nearer: the next one is a step away.
+    const auto occurs = [&](int level) {
+      return level >= 0 && level < 65536 && occurrences[static_cast<std::size_t>(level)] > 0;
+    };
+    int distance = reach;
+    while (distance < 65536 && !occurs(middle - distance) && !occurs(middle + distance)) ++distance;
+    steps.step_levels = distance;
+  }
   return steps;
 }
 
 double rounding_variance(double noise_steps) {
-  if (noise_steps < 0.02) return 1.0 / 12;  // the sum converges as that of 1 / k^2: 0.083 within 1 %
+  if (noise_steps < 0.02) return 1.0 / 12;  // the sum converges like that of 1 / k^2: 0.083 within 1 %
   constexpr double pi = std::numbers::pi;
   double sum = 0;
   for (int k = 1; k <= 60; ++k) {
@@ -63,11 +76,12 @@ Result<GreyContrast> grey_contrast(const cv::Mat1d& levels, const TargetPlate& m
   const auto seen = effective_contrast(levels, mounted_plate, registration, min_size_px, LevelEstimate::mean);
   if (!seen) return tl::unexpected(seen.error());
   if (seen->triangles < 2)
-    return fail(ErrorCode::calibration, "plate \"" + mounted_plate.name +
-                                            "\" has a single triangle that is large enough: how well its grey levels "
-                                            "are known cannot be told");
+    return fail(
+        ErrorCode::calibration,
+        "plate \"" + mounted_plate.name +
+            "\" has only one triangle that is large enough: the uncertainty of its grey levels needs at least two");
   const double scatter = seen->standard_error * seen->standard_error;
-  // Inside and surround are rounded each on its own.
+  // Inside and surround are rounded independently.
   const double rounding = 2 * steps.step_levels * steps.step_levels * steps.rounding_variance_steps();
   const double variance = scatter + rounding;
   GreyContrast out{.levels = seen->value,

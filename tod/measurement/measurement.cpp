@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/measurement.h"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include "acquisition/core/judged_picture.h"
 #include "tod/measurement/frame_taker.h"
+#include "tod/measurement/place_watch.h"
 #include "tod/measurement/prepared_plate.h"
 #include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
@@ -20,8 +22,7 @@ namespace {
 class Run {
  public:
   Run(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
-      const MeasurementOptions& options, MeasurementHost& host, const MeasurementListener& listener,
-      std::stop_token stop)
+      const MeasurementOptions& options, RunController& host, const MeasurementListener& listener, std::stop_token stop)
       : source_(source),
         target_(target),
         observer_(observer),
@@ -34,6 +35,8 @@ class Run {
         step_(options_, source, taker_, [this](const std::string& sentence) { note(sentence); }),
         answers_(options.seed, "observer") {
     options_.registration.expected_scale_px_per_mm = 1 / (options.distance_m * options.ifov_mrad);
+    places_ = PlaceWatch({.max_shift_error_px = target.capabilities().sets_shift ? options.max_shift_error_px : 0,
+                          .registration = options_.registration});
     for (const auto& plate : options.plates) plates_.push_back({plate, {}, {}});
   }
 
@@ -53,7 +56,7 @@ class Run {
         shown = resume(*state, why, *lost_ns);
       }
       if (!shown) {
-        // Whoever noticed the request first: it is the reason.
+        // The stop request is the reason, whichever component noticed it first.
         const bool asked_to = shown.error().code == ErrorCode::interrupted && stop_.stop_requested();
         ended_by = asked_to ? Error{ErrorCode::interrupted, "stopped on request"} : shown.error();
         break;
@@ -62,15 +65,19 @@ class Run {
       if (listener_.on_progress) listener_.on_progress(static_cast<std::size_t>(presentation_), schedule_.planned());
     }
     source_.stop();
+    if (const auto in_place = places_.finish(); !in_place && !ended_by) ended_by = in_place.error();
+    for (const std::string& sentence : places_.notes()) note(sentence);
     if (ended_by && result_.trials.empty()) return tl::unexpected(*ended_by);
     result_.ended_by = ended_by;
     result_.temporal_noise_k = step_.temporal_noise_k();
     result_.temporal_noise_counts = step_.noise_counts();
     result_.lag1_correlation = step_.lag1_correlation();
+    result_.constancy = step_.constancy();
     result_.frames_used = taker_.used();
     result_.frames_rejected = taker_.rejected();
     result_.frames_lost = taker_.lost();
     if (const std::string faults = describe(taker_.numbering()); !faults.empty()) note(faults);
+    if (const std::string repeats = taker_.cadence(); !repeats.empty()) note(repeats);
     return std::move(result_);
   }
 
@@ -98,16 +105,17 @@ class Run {
     return {};
   }
 
-  /// A camera that takes no command is still measured when its frames say that they are corrections.
+  /// A camera that takes no command is still measured if its frames report corrections.
   Result<void> rely_on_what_the_camera_tells(const Error& refused) {
     if (auto looked = taker_.discard(stop_); !looked) return looked;
     if (!taker_.camera_tells_of_corrections()) return tl::unexpected(refused);
     options_.nuc_interval_s = 0;
-    note("corrections are left to the camera, which tells of them: " + refused.message);
+    note("the camera rejects correction commands (" + refused.message +
+         "); the run relies on the corrections that it reports");
     return {};
   }
 
-  /// Instruments that are lost say so with the same code; they come back by themselves or end the run.
+  /// Lost instruments report the same code; they reconnect by themselves or end the run.
   [[nodiscard]] bool camera_lost(const Error& error) const {
     return error.code == ErrorCode::disconnected && !target_failed_;
   }
@@ -118,12 +126,12 @@ class Run {
     return host_.recover(stop_);
   }
 
-  /// The camera that was lost in this presentation is back: it is made again.
+  /// Repeats the presentation in which the camera was lost, after its recovery.
   Result<void> resume(const TargetState& state, const Error& why, std::int64_t lost_ns) {
     const std::optional<cv::Point2d> before =
         current_set_up_ ? std::optional(base_.pixel({0, 0})) : std::optional<cv::Point2d>();
-    // Everything that was measured with the old connection is measured again; what is registered is looked for where it
-    // was.
+    // Everything that was measured with the old connection is measured again; a registered plate is located near its
+    // earlier place.
     current_set_up_.reset();
     current_contrast_.reset();
     last_nuc_ns_.reset();
@@ -135,14 +143,14 @@ class Run {
                               .away_s = static_cast<double>(*back_ns - lost_ns) * 1e-9,
                               .moved_px = before ? cv::norm(base_.pixel({0, 0}) - *before) : 0,
                               .reason = why.message};
-    note(fmt::format("the camera is back after {:.1f} s; the plate is {:.2f} pixels from where it was",
+    note(fmt::format("the camera is back after {:.1f} s; the plate is {:.2f} pixels from its earlier place",
                      interruption.away_s, interruption.moved_px));
     result_.interruptions.push_back(std::move(interruption));
     host_.resumed();
     return {};
   }
 
-  /// A free-running camera whose frames nobody takes would lose them.
+  /// Waits during a pause and keeps taking frames, because a free-running camera would lose them.
   Result<void> wait_while_paused() {
     while (!stop_.stop_requested()) {
       const auto rests = host_.rests(stop_);
@@ -154,7 +162,7 @@ class Run {
     return {};
   }
 
-  /// Changes the target; what it says is in `presented_`.
+  /// Changes the target; its report is in `presented_`.
   Result<void> present(const TargetState& state) {
     auto change = change_target(target_, taker_, host_, state, stop_);
     if (!change) return tl::unexpected(change.error());
@@ -173,32 +181,64 @@ class Run {
                                     [&](const PreparedPlate& p) { return p.plate.name == state.plate; });
     if (plate == plates_.end())
       return fail(ErrorCode::invalid_input,
-                  "the schedule names a plate '" + state.plate + "' that the plan does not have");
+                  "the schedule names the plate '" + state.plate + "', which the plan does not list");
     if (auto corrected = correct_when_due(); !corrected) return corrected;
     if (auto presented = present(state); !presented) return presented;
     const auto there_ns = host_.now_ns(Moment::scene_changed);
     if (!there_ns) return tl::unexpected(there_ns.error());
     taker_.scene_changed(*there_ns);
     const TargetPlate mounted_plate = mounted(plate->plate, state.mounting);
-    const auto registration = look_at(*plate, mounted_plate, state);
-    // What the instrument said is kept also when the camera could not make anything of it.
-    keep_presentation(state, *there_ns, registration.has_value());
-    if (!registration) return tl::unexpected(registration.error());
-    std::vector<int> sides = plate->sides();
-    for (int& side : sides) side = in_pixels(side);
-    const auto problems =
-        windows_out_of_picture(mounted_plate, *registration, sides, {source_.info().width, source_.info().height});
-    if (!problems.empty()) {
-      std::string text;
-      for (const auto& problem : problems) text += (text.empty() ? "" : "; ") + sentence(problem);
-      return fail(ErrorCode::calibration, "the plate is too near the edge of the picture: " + text);
-    }
-    if (auto answered = answer(*plate, mounted_plate, *registration, state); !answered) return answered;
+    plate_seen_ = {};
+    const auto asked = look_at(*plate, mounted_plate, state);
+    const auto exposed = asked ? expose(*plate, mounted_plate, *asked, state) : tl::unexpected(asked.error());
+    // The instrument's report is recorded even if the camera's frames could not be used.
+    keep_presentation(state, *there_ns, asked.has_value());
+    if (!exposed) return tl::unexpected(exposed.error());
+    if (auto answered = answer(*plate, mounted_plate, *exposed, state); !answered) return answered;
     ++presentation_;
     return {};
   }
 
-  /// Where the plate is, and, where plate, mounting or contrast are new, which contrast the camera sees.
+  /// The first frames of a presentation, and the place of the plate in them.
+  struct Exposed {
+    Registration registration;
+    std::vector<Frame> frames;  ///< empty if the place is not checked
+  };
+
+  [[nodiscard]] int frames_at(double set_delta_t_k) const {
+    const auto own = options_.frames_at_contrast.find(set_delta_t_k);
+    return own == options_.frames_at_contrast.end() ? options_.frames_per_presentation : own->second;
+  }
+
+  Result<Exposed> expose(const PreparedPlate& plate, const TargetPlate& mounted_plate, const Registration& asked,
+                         const TargetState& state) {
+    Exposed exposed{.registration = asked.moved(places_.off_px()), .frames = {}};
+    std::vector<int> sides = plate.sides();
+    for (int& side : sides) side = in_pixels(side);
+    const auto problems = windows_out_of_picture(mounted_plate, exposed.registration, sides,
+                                                 {source_.info().width, source_.info().height});
+    if (!problems.empty()) {
+      std::string text;
+      for (const auto& problem : problems) text += (text.empty() ? "" : "; ") + sentence(problem);
+      return fail(ErrorCode::calibration, "the plate is too close to the edge of the picture: " + text);
+    }
+    if (!places_.looks()) return exposed;
+    for (int k = 0; k < std::min(frames_at(state.delta_t_k), most_frames_looked_at); ++k) {
+      auto frame = taker_.next(stop_);
+      if (!frame) return tl::unexpected(frame.error());
+      exposed.frames.push_back(*std::move(frame));
+    }
+    const double unit_per_k = options_.contrast_unit == ContrastUnit::kelvin ? 1 : seen_.levels_per_k;
+    const auto seen = places_.look(
+        exposed.frames, mounted_plate, base_, asked,
+        {.contrast = seen_.contrast_k * unit_per_k, .noise = seen_.noise_k * std::abs(unit_per_k)}, presentation_);
+    if (!seen) return tl::unexpected(seen.error());
+    plate_seen_ = *seen;
+    exposed.registration = asked.moved(seen->used_off_px);
+    return exposed;
+  }
+
+  /// Expected place of the plate; after a change of plate, mounting or contrast also the effective contrast.
   Result<Registration> look_at(PreparedPlate& plate, const TargetPlate& mounted_plate, const TargetState& state) {
     const SetUp set_up{state.plate, state.mounting};
     const bool new_set_up = !current_set_up_ || *current_set_up_ != set_up;
@@ -216,9 +256,17 @@ class Run {
     }
     const Registration registration = target_.capabilities().sets_shift ? base_.shifted(state.shift_mm) : base_;
     if (new_contrast) {
-      auto measured = step_.contrast(mounted_plate, registration, state, presented_, stop_);
+      auto measured = step_.contrast(mounted_plate, registration.moved(places_.off_px()), state, presented_, stop_);
       if (!measured) return tl::unexpected(measured.error());
       seen_ = *std::move(measured);
+      if (seen_.judged)
+        result_.judged_contrasts.push_back({.plate = state.plate,
+                                            .mounting = state.mounting,
+                                            .set_delta_t_k = state.delta_t_k,
+                                            .delta_t_k = seen_.contrast_k,
+                                            .judged_delta_t_k = seen_.contrast_k * seen_.judged->gain,
+                                            .noise_k = seen_.noise_k,
+                                            .scale = *seen_.judged});
       if (!seen_.references.empty()) result_.contrasts.push_back({state.delta_t_k, seen_.contrast_k, seen_.references});
     }
     current_set_up_ = set_up;
@@ -234,12 +282,22 @@ class Run {
                                      .delta_t_se_k = seen ? seen_.standard_error_k : std::nullopt,
                                      .reference_triangles = seen ? static_cast<int>(seen_.references.size()) : 0,
                                      .air_transmittance = options_.air_transmittance,
+                                     .asked_px = plate_seen_ ? std::optional(plate_seen_->asked_px) : std::nullopt,
+                                     .seen_px = plate_seen_ ? plate_seen_->seen_px : std::nullopt,
+                                     .seen_error_px = seen_error_px(),
                                      .host_time_ns = there_ns});
     if (listener_.on_presentation) listener_.on_presentation(result_.presentations.back());
   }
 
-  /// Finds the plate of a set-up: by registration the first time, by its shift when it comes back.
+  [[nodiscard]] std::optional<double> seen_error_px() const {
+    if (!plate_seen_ || !plate_seen_->seen_px) return std::nullopt;
+    return std::max(plate_seen_->standard_error_px.x, plate_seen_->standard_error_px.y);
+  }
+
+  /// Locates the plate of a set-up: by registration the first time, by its shift when it returns.
   Result<void> locate(PreparedPlate& plate, const TargetPlate& mounted_plate, const TargetState& state) {
+    if (auto in_place = places_.finish(); !in_place) return in_place;
+    places_.set_up_located();
     const auto picture = step_.look(stop_);
     if (!picture) return tl::unexpected(picture.error());
     const cv::Point2d shift_mm = target_.capabilities().sets_shift ? state.shift_mm : cv::Point2d(0, 0);
@@ -269,7 +327,7 @@ class Run {
     return {};
   }
 
-  /// A hand moved the plate: where is it now?
+  /// Locates a plate that was moved by hand.
   Result<void> follow(const TargetPlate& mounted_plate) {
     auto picture = taker_.average(options_.contrast_frames, stop_);
     if (!picture) return tl::unexpected(picture.error());
@@ -279,23 +337,25 @@ class Run {
     return {};
   }
 
-  /// Every triangle is a trial. Nothing of a presentation is said before its last frame is there.
-  Result<void> answer(const PreparedPlate& plate, const TargetPlate& mounted_plate, const Registration& registration,
+  /// Every triangle is a trial. No trial of a presentation is reported before its last frame has arrived.
+  Result<void> answer(const PreparedPlate& plate, const TargetPlate& mounted_plate, const Exposed& exposed,
                       const TargetState& state) {
+    const Registration& registration = exposed.registration;
     const std::size_t count = mounted_plate.triangles.size();
     std::vector<Trial> trials;
     std::vector<Patch> patches;
     std::vector<double> probabilities(count);
-    const auto own = options_.frames_at_contrast.find(state.delta_t_k);
-    const int frames = own == options_.frames_at_contrast.end() ? options_.frames_per_presentation : own->second;
+    const int frames = frames_at(state.delta_t_k);
     for (int k = 0; k < frames; ++k) {
-      auto taken = taker_.next(stop_);
+      const auto at = static_cast<std::size_t>(k);
+      auto taken = at < exposed.frames.size() ? exposed.frames[at] : taker_.next(stop_);
       if (!taken) return tl::unexpected(taken.error());
       if (taken->judged != nullptr && taken->judged->none) return tl::unexpected(*taken->judged->none);
       if (judged_samples_per_pixel(*taken) != options_.judged_samples_per_pixel)
-        return fail(ErrorCode::internal, "frames are judged at another number of samples a pixel than was said");
+        return fail(ErrorCode::internal,
+                    "the frames have another number of samples per pixel than the options of the run state");
       const Frame frame = as_judged(*taken);
-      const auto unit_per_k = of_a_kelvin(frame, mounted_plate, registration, state);
+      const auto unit_per_k = of_a_kelvin(*taken, mounted_plate, registration, state);
       if (!unit_per_k) return tl::unexpected(unit_per_k.error());
       for (std::size_t i = 0; i < count; ++i) {
         const PlateTriangle& t = mounted_plate.triangles[i];
@@ -303,15 +363,14 @@ class Run {
         const int side = plate.observers[i]->window_samples();
         const auto window = patch_window(judged_place(*taken, place), side);
         if ((window.pixels & cv::Rect({0, 0}, frame.counts.size())) != window.pixels)
-          return fail(ErrorCode::calibration, "the plate is too near the edge of the picture: " + t.name);
+          return fail(ErrorCode::calibration, "the plate is too close to the edge of the picture: " + t.name);
         auto kelvin = window_kelvin(frame, window.pixels);
         if (!kelvin) return tl::unexpected(kelvin.error());
         if (*unit_per_k != 1) *kelvin /= *unit_per_k;
         Patch patch{.kelvin = *std::move(kelvin), .phase = window.phase, .noise_k = seen_.noise_k};
         const GradedChoice judged = judge(*plate.observers[i], patch, i, k);
-        const int saturated = options_.judged_samples_per_pixel == 1
-                                  ? step_.saturated_pixels(frame, window.pixels)
-                                  : step_.saturated_pixels(*taken, patch_window(place, in_pixels(side)).pixels);
+        const int saturated = std::max(step_.saturated_samples(*taken, window.pixels),
+                                       step_.saturated_pixels(*taken, patch_window(place, in_pixels(side)).pixels));
         probabilities[i] += judged.answers.probability[static_cast<std::size_t>(t.apex)];
         if (k == 0) {
           Trial trial = first_answer(t, state, frame, judged.choice, window.phase);
@@ -336,25 +395,25 @@ class Run {
     return {};
   }
 
-  /// The side of a window of what is judged, in whole pixels, even as patch_window() wants it.
+  /// Side of a window of the judged picture, in whole pixels, even as patch_window() requires.
   [[nodiscard]] int in_pixels(int side) const {
     const int finer = options_.judged_samples_per_pixel;
     return finer == 1 ? side : 2 * ((side + 2 * finer - 1) / (2 * finer) + 1);
   }
 
-  /// What a kelvin is in this frame: 1, or its grey levels, which are kept.
+  /// Judged units per kelvin in this frame: 1, the gain of stages, or grey levels, which are recorded.
   Result<double> of_a_kelvin(const Frame& frame, const TargetPlate& mounted_plate, const Registration& registration,
                              const TargetState& state) {
-    if (options_.contrast_unit == ContrastUnit::kelvin) return 1;
-    auto grey = step_.grey_frame(frame, mounted_plate, registration, state, seen_);
+    if (options_.contrast_unit == ContrastUnit::kelvin) return step_.gain_of(frame, mounted_plate, registration, seen_);
+    auto grey = step_.grey_frame(as_judged(frame), mounted_plate, registration, state, seen_);
     if (!grey) return tl::unexpected(grey.error());
     grey->presentation = presentation_;
     result_.grey_frames.push_back(*std::move(grey));
     return result_.grey_frames.back().levels_per_k;
   }
 
-  /// The answer is that to the first frame, drawn as it is where nobody asks for probabilities; every further frame has
-  /// a stream of its own below that of the trial.
+  /// The answer is that to the first frame, with the same draw as without probabilities; every further frame has its
+  /// own stream below that of the trial.
   [[nodiscard]] GradedChoice judge(const PreparedObserver& observer, const Patch& patch, std::size_t triangle,
                                    int frame) const {
     RandomStream noise = answers_.sub(static_cast<std::uint64_t>(presentation_)).sub(triangle);
@@ -387,17 +446,19 @@ class Run {
   }
 
   static constexpr std::uint64_t further_frames_stream = 1'000'000;
-  static constexpr double search_px = 6;  ///< how far a hand may move the plate between two presentations
+  static constexpr int most_frames_looked_at = 16;  ///< for the place of the plate: they are kept until judged
+  static constexpr double search_px = 6;  ///< furthest movement of the plate by hand between two presentations
 
   FrameSource& source_;
   Target& target_;
   Observer& observer_;
   TrialSchedule& schedule_;
   MeasurementOptions options_;
-  MeasurementHost& host_;
+  RunController& host_;
   const MeasurementListener& listener_;
   std::stop_token stop_;
   FrameTaker taker_;
+  PlaceWatch places_{{}};
   SetUpStep step_;
   RandomStream answers_;
   std::vector<PreparedPlate> plates_;
@@ -407,9 +468,10 @@ class Run {
   Registration base_;                        ///< of the current set-up, at shift 0
   SeenContrast seen_;                        ///< of the current set-up and set-point
   double scale_px_per_mm_ = 0;               ///< of the first registration: one scale for the whole run
-  std::optional<std::int64_t> last_nuc_ns_;  ///< when the last one was commanded
+  std::optional<std::int64_t> last_nuc_ns_;  ///< time of the last command
   std::int64_t presentation_ = 0;
-  PresentedTarget presented_;   ///< what the target said last
+  std::optional<PlateSeen> plate_seen_;
+  PresentedTarget presented_;   ///< last report of the target
   bool target_failed_ = false;  ///< the error of this presentation is the target's
   bool read_back_noted_ = false;
   MeasurementResult result_;
@@ -418,7 +480,7 @@ class Run {
 }  // namespace
 
 Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
-                                  const MeasurementOptions& options, MeasurementHost& host,
+                                  const MeasurementOptions& options, RunController& host,
                                   const MeasurementListener& listener, std::stop_token stop) {
   if (auto checked = check_before_measuring(options, observer, source.info()); !checked)
     return tl::unexpected(checked.error());

@@ -1,5 +1,6 @@
-// The measurement: frame source, target and observer in, trials out. The laboratory and the simulator differ only in
-// these objects.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The measurement: turns frame source, target and observer into trials. Laboratory and simulator differ only in these
+// objects.
 #pragma once
 
 #include <chrono>
@@ -17,7 +18,9 @@
 #include "tod/measurement/contrast_error.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/grey_levels.h"
-#include "tod/measurement/measurement_host.h"
+#include "tod/measurement/judged_contrast.h"
+#include "tod/measurement/run_constancy.h"
+#include "tod/measurement/run_controller.h"
 #include "tod/presentation/presentation.h"
 #include "tod/presentation/target.h"
 #include "tod/presentation/trial.h"
@@ -26,67 +29,86 @@
 
 namespace todbench {
 
+/// Picture from which the contrast of a set-up is about to be measured. Valid during the call only.
+struct SetUpPicture {
+  const AveragedPicture& picture;
+  int frames = 1;  ///< averaged in it
+  const TargetPlate& mounted_plate;
+  const Registration& registration;  ///< in this picture
+  const TargetState& state;
+};
+
 struct MeasurementOptions {
   double ifov_mrad = 0;             ///< of one pixel, from the plan
   double distance_m = 0;            ///< entrance pupil to plate
   std::vector<TargetPlate> plates;  ///< in identity mounting
   int registration_frames = 32;     ///< averaged at the highest contrast
   int contrast_frames = 16;         ///< averaged for the effective contrast, once per plate, mounting and contrast
-  double min_reference_px = 4;      ///< triangles from this size measure the effective contrast
-  ContrastUnit contrast_unit = ContrastUnit::kelvin;  ///< grey levels: the temperature scale of the camera is not used
+  double min_reference_px = 4;      ///< smallest triangles that measure the effective contrast
+  ContrastUnit contrast_unit = ContrastUnit::kelvin;  ///< grey_levels: the camera's temperature scale is not used
   int samples_per_pitch = 1;  ///< displayed samples per detector pitch (2: 2x2 microscan); the IFOV is that of a sample
   int judged_samples_per_pixel = 1;  ///< of JudgedPicture, in every frame; the IFOV stays that of a pixel
-  /// By plate name: what effective_contrast() reads of a contrast of 1 K, blur included, from a simulated picture; 1
-  /// where it is not known. Measured contrasts are divided by it.
+  /// By plate name: response of effective_contrast() to a contrast of 1 K, blur included, from a simulated picture; 1
+  /// if unknown. Measured contrasts are divided by it.
   std::map<std::string, double> contrast_response;
-  /// What the air between target and camera leaves of a contrast, kept with every presentation; nothing: not stated.
+  /// Called for every SetUpPicture if contrasts are in kelvin; the returned values replace those of contrast_response
+  /// from this picture on. May be empty. Called from the measuring thread.
+  std::function<std::map<std::string, double>(const SetUpPicture&)> learn_response{};
+  /// Transmittance of the air between target and camera for a contrast, recorded with every presentation; empty: not
+  /// stated.
   std::optional<double> air_transmittance{};
   static constexpr int graded_draws = 32;   ///< of the observer's own noise, for the probabilities of one frame
-  AnswerKind answers = AnswerKind::binary;  ///< graded: Trial::probability_correct too
-  int frames_per_presentation = 1;          ///< successive good ones, over which graded answers are averaged; 1 or more
-  std::map<double, int> frames_at_contrast;  ///< by set contrast, where there is another number of them
+  AnswerKind answers = AnswerKind::binary;  ///< graded: also Trial::probability_correct
+  int frames_per_presentation = 1;  ///< successive good frames over which graded answers are averaged; at least 1
+  std::map<double, int> frames_at_contrast;  ///< by set contrast; replaces frames_per_presentation
   int frames_after_change = 2;               ///< exposures discarded after the target moved (frames in flight)
-  double nuc_interval_s = 0;                 ///< correct the camera's non-uniformity this often; 0: never commanded
+  double nuc_interval_s = 0;                 ///< interval of commanded non-uniformity corrections; 0: none
   double nuc_wait_s = 1;                     ///< frames within this time after a correction are not measured
-  /// Beyond it, what the target says it shows is a note beside what it was told; 0: what it says is not looked at.
+  /// Larger deviations of the target's reported contrast from the set-point give a note; 0: not checked.
   double max_readback_deviation_k = 0;
-  double max_rejected_share = 0.05;  ///< beyond it, after 100 frames, the run ends with `integrity`
+  /// By set contrast: largest relative deviation of the observed contrast. A larger one, by four standard errors, ends
+  /// the run with `calibration`. Other contrasts, and grey levels, are not checked.
+  std::map<double, double> max_contrast_error{};
+  /// Largest distance of the plate from the requested place, if the target sets places. A larger one ends the run with
+  /// `calibration`. 0: not checked.
+  double max_shift_error_px = 0;
+  double max_rejected_share = 0.05;  ///< a larger share, after 100 frames, ends the run with `integrity`
   std::chrono::milliseconds frame_timeout{2000};
   IntegrityOptions integrity;
   RegistrationOptions registration;  ///< expected scale is filled in from distance and IFOV
   std::uint64_t seed = 1;
-  bool free_running = true;  ///< the camera exposes whether its frames are taken or not: they are taken in a pause too
+  bool free_running = true;  ///< the camera exposes without requests: its frames are taken in pauses too
 };
 
 /// A loss of the camera that the run survived. Begins a new segment.
 struct Interruption {
-  std::int64_t presentation = 0;  ///< the first one of the new segment
+  std::int64_t presentation = 0;  ///< first one of the new segment
   double away_s = 0;              ///< from the error to the answers of that presentation
-  double moved_px = 0;            ///< where the plate was found again, from where it had been
+  double moved_px = 0;            ///< distance of the plate, when located again, from its earlier place
   std::string reason;
   bool operator==(const Interruption&) const = default;
 };
 
 struct SetUpRecord;
 
-/// What the run says while it goes on. Called from the measuring thread, but on_rejected also from the one that takes
-/// frames while the measuring thread waits for the target: never two at once. Every function may be empty; none decides
-/// anything. A slow listener slows the measurement, it never loses trials.
+/// Events of a run. Called from the measuring thread; on_rejected also from the thread that takes frames while the
+/// measuring thread waits for the target, never from both at once. Every function may be empty, and none affects
+/// decisions. A slow listener slows the measurement but loses no trials.
 struct MeasurementListener {
   std::function<void(const Trial&)> on_trial{};
-  /// After on_trial: what the observer saw in the first frame; lent for the call.
+  /// After on_trial: the observer's patch of the first frame; valid during the call only.
   std::function<void(const Trial&, const Patch&)> on_patch{};
-  /// The target was there; before the trials of the presentation, and also when none could be made.
+  /// The target was in place; before the trials of the presentation, and also if none could be made.
   std::function<void(const Presentation&)> on_presentation{};
   std::function<void(const SetUpRecord&)> on_set_up{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
   std::function<void(const std::string& sentence)> on_note{};
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< every frame that was not used, with the reason
-  /// The camera was lost, and the host is about to bring it back.
+  /// The camera was lost; called before the host tries to recover it.
   std::function<void(const Error& why)> on_lost{};
 };
 
-/// Registration and contrast of one set-up (plate and mounting), for the report.
+/// Registration of one set-up (plate and mounting), for the report.
 struct SetUpRecord {
   std::string plate;
   Mounting mounting = Mounting::identity;
@@ -97,25 +119,28 @@ struct MeasurementResult {
   std::vector<Trial> trials;
   std::vector<Presentation> presentations;
   std::vector<SetUpRecord> set_ups;
-  std::vector<ContrastMeasurement> contrasts;  ///< in kelvin, one for each set-up and contrast
+  std::vector<ContrastMeasurement> contrasts;    ///< in kelvin, one for each set-up and contrast
+  std::vector<JudgedContrast> judged_contrasts;  ///< if there are stages after the camera
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
   std::uint64_t frames_lost = 0;                         ///< gaps in the sequence
-  double temporal_noise_k =
-      0;  ///< per pixel, from differences of successive frames of the same presentation; 0: not measured
+  /// Per pixel, from differences of successive frames of the same presentation; 0: not measured.
+  double temporal_noise_k = 0;
   std::optional<double> temporal_noise_counts;  ///< the same in steps of the counts, near the surround
   std::optional<double> lag1_correlation;       ///< of a pixel's noise in the same frames
   std::vector<std::string> notes;
   std::vector<Interruption> interruptions;
-  std::vector<GreyFrame> grey_frames;  ///< those that were judged, where contrasts are in grey levels
-  std::optional<Error> ended_by;       ///< why it stopped early; the trials so far are valid
+  std::vector<GreyFrame> grey_frames;  ///< judged frames, if contrasts are in grey levels
+  std::optional<Error> ended_by;       ///< reason of an early end; the trials so far are valid
+  RunConstancy constancy{};            ///< of the averages; empty for contrasts in grey levels
 };
 
-/// Runs a schedule. Fails only when nothing could be measured (plate not found, uncalibrated camera, sizes that do not
-/// fit); a run that ended early returns its trials with `ended_by`. `host` and `listener` are lent for the call.
+/// Runs a schedule. Fails only if nothing could be measured (plate not found, uncalibrated camera, sizes that do not
+/// fit). A run that ended early returns its trials with `ended_by`. `host` and `listener` are used during the call
+/// only.
 [[nodiscard]] Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer,
                                                 TrialSchedule& schedule, const MeasurementOptions& options,
-                                                MeasurementHost& host, const MeasurementListener& listener,
+                                                RunController& host, const MeasurementListener& listener,
                                                 std::stop_token stop);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/moving_measurement.h"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <utility>
 
 #include "tod/measurement/frame_taker.h"
+#include "tod/measurement/place_watch.h"
 #include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
 #include "tod/registration/patch_windows.h"
@@ -15,10 +17,10 @@ namespace todbench {
 namespace {
 
 constexpr double fastest_px = 5;    ///< a frame
-constexpr int spare_frames = 10;    ///< of a run, for frames that were on their way when it began
-constexpr double found_within = 2;  ///< pixels round the place where the plate is expected
+constexpr int spare_frames = 10;    ///< of a run, for frames in flight when it began
+constexpr double found_within = 2;  ///< pixels round the expected place of the plate
 
-/// A frame of a pass, and where the large triangles are in it, from where they were at rest.
+/// A frame of a pass, and the displacement of the large triangles from their places at rest.
 struct LocatedFrame {
   std::uint64_t sequence = 0;
   double time_s = 0;  ///< of the camera's clock
@@ -34,8 +36,8 @@ struct MovingSetUp {
   Registration base;  ///< of the plate at shift 0
 };
 
-/// How far the centre of mass of the large triangles is from where registration has them: a picture with a tail has its
-/// mean behind its edges, and the mean is what a lag moves. Windows are those of the observer, a pixel wider.
+/// Distance of the centre of mass of the large triangles from their registered places: in a picture with a tail the
+/// mean lags the edges, and a lag moves the mean. Windows are those of the observer, a pixel wider.
 cv::Point2d mass_from_place(const cv::Mat1d& kelvin, const TargetPlate& plate, const Registration& registration,
                             double smallest_px) {
   double mass = 0;
@@ -69,7 +71,7 @@ cv::Point2d mass_from_place(const cv::Mat1d& kelvin, const TargetPlate& plate, c
 class MovingRun {
  public:
   MovingRun(FrameSource& source, Target& target, TemplateObserver& observer, const MovingMeasurementOptions& options,
-            MeasurementHost& host, const MovingListener& listener, std::stop_token stop)
+            RunController& host, const MovingListener& listener, std::stop_token stop)
       : source_(source),
         target_(target),
         observer_(observer),
@@ -83,6 +85,8 @@ class MovingRun {
         answers_(options.measurement.seed, "moving.answers") {
     options_.measurement.registration.expected_scale_px_per_mm =
         1 / (options.measurement.distance_m * options.measurement.ifov_mrad);
+    places_ = PlaceWatch({.max_shift_error_px = options.measurement.max_shift_error_px,
+                          .registration = options_.measurement.registration});
     result_.frame_rate_hz = source.info().frame_rate_hz;
   }
 
@@ -93,6 +97,8 @@ class MovingRun {
     if (auto started = source_.start(); !started) return tl::unexpected(started.error());
     auto done = all_set_ups();
     source_.stop();
+    if (done) done = places_.finish();
+    for (const std::string& sentence : places_.notes()) note(sentence);
     if (!done) {
       result_.ended_by = stop_.stop_requested() ? Error{ErrorCode::interrupted, "stopped on request"} : done.error();
       if (result_.answers.empty()) return tl::unexpected(*result_.ended_by);
@@ -101,7 +107,9 @@ class MovingRun {
     result_.frames_lost = taker_.lost();
     result_.frames_used = taker_.used();
     result_.temporal_noise_k = step_.temporal_noise_k();
+    result_.constancy = step_.constancy();
     if (const std::string faults = describe(taker_.numbering()); !faults.empty()) note(faults);
+    if (const std::string repeats = taker_.cadence(); !repeats.empty()) note(repeats);
     return std::move(result_);
   }
 
@@ -150,6 +158,8 @@ class MovingRun {
   }
 
   Result<void> locate(MovingSetUp& set_up, double delta_t_k) {
+    if (auto in_place = places_.finish(); !in_place) return in_place;
+    places_.set_up_located();
     if (auto shown = present(set_up, delta_t_k, {0, 0}); !shown) return shown;
     const auto picture = step_.look(stop_);
     if (!picture) return tl::unexpected(picture.error());
@@ -211,10 +221,11 @@ class MovingRun {
         dropped_ += pass.dropped.empty() ? 0 : 1;
         if (listener_.on_pass) listener_.on_pass(pass);
         result_.passes.push_back(std::move(pass));
-        // A handful may have bad luck; a third of a dozen and more is the bench.
+        // A few may fail by chance; at least a third of a dozen or more is a fault of the bench.
         if (dropped_ >= 4 && 3 * dropped_ >= result_.passes.size())
-          return fail(ErrorCode::integrity, fmt::format("{} of {} passes could not be measured; the last: {}", dropped_,
-                                                        result_.passes.size(), result_.passes.back().dropped));
+          return fail(ErrorCode::integrity,
+                      fmt::format("{} of {} passes could not be measured; reason of the last: {}", dropped_,
+                                  result_.passes.size(), result_.passes.back().dropped));
       }
     }
     return {};
@@ -229,32 +240,44 @@ class MovingRun {
     const cv::Point2d from_mm = phase_mm - cv::Point2d(half_mm, 0);
     if (auto shown = present(set_up, pass.set_delta_t_k, from_mm); !shown) return shown;
     const Registration begin = set_up.base.shifted(from_mm);
-    Result<std::vector<LocatedFrame>> frames =
-        pass.speed_mrad_s == 0 ? frames_at_rest() : frames_of_run(set_up, begin, phase_mm.x + half_mm, pass);
+    Result<std::vector<LocatedFrame>> frames = pass.speed_mrad_s == 0
+                                                   ? frames_at_rest(set_up, begin, pass.pair)
+                                                   : frames_of_run(set_up, begin, phase_mm.x + half_mm, pass);
     if (!frames) return tl::unexpected(frames.error());
     if (!pass.dropped.empty()) return {};
     return answer(set_up, begin, *frames, pass);
   }
 
-  Result<std::vector<LocatedFrame>> frames_at_rest() {
-    std::vector<LocatedFrame> frames;
+  Result<std::vector<LocatedFrame>> frames_at_rest(const MovingSetUp& set_up, const Registration& begin, int pair) {
+    std::vector<Frame> taken;
     for (int k = 0; k < options_.frames; ++k) {
-      const auto frame = taker_.next(stop_);
+      auto frame = taker_.next(stop_);
       if (!frame) return tl::unexpected(frame.error());
-      auto kelvin = to_kelvin(*frame);
+      taken.push_back(*std::move(frame));
+    }
+    cv::Point2d off_px(0, 0);
+    if (places_.looks()) {
+      const auto seen = places_.look(taken, set_up.plate, set_up.base, begin,
+                                     {.contrast = seen_.contrast_k, .noise = seen_.noise_k}, pair);
+      if (!seen) return tl::unexpected(seen.error());
+      off_px = seen->used_off_px;
+    }
+    std::vector<LocatedFrame> frames;
+    for (const Frame& frame : taken) {
+      auto kelvin = to_kelvin(frame);
       if (!kelvin) return tl::unexpected(kelvin.error());
-      frames.push_back({frame->sequence, 0, *std::move(kelvin), {0, 0}});
+      frames.push_back({frame.sequence, 0, *std::move(kelvin), off_px});
     }
     return frames;
   }
 
-  /// Frames in which the plate runs, with their places; those of the pass are the first after the lead.
+  /// Frames of the running plate, with their places; those of the pass are the first after the lead.
   Result<std::vector<LocatedFrame>> frames_of_run(const MovingSetUp& set_up, const Registration& begin, double to_mm,
                                                   MovingPassRecord& pass) {
     const double speed_mm_s = pass.speed_mrad_s * at_rest().distance_m;
     const auto run = target_.moving()->run_along_x(to_mm, speed_mm_s, stop_);
     if (!run) return fail("moving the target", run.error());
-    // All frames are taken before any is looked at: the camera does not wait.
+    // All frames are taken before any is examined, because the camera does not wait.
     auto taken = taken_of_run(*run);
     if (!taken) return tl::unexpected(taken.error());
     const cv::Point2d px_s =
@@ -282,7 +305,8 @@ class MovingRun {
       chosen.push_back(std::move(frame));
     }
     if (std::ssize(chosen) < options_.frames) {
-      pass.dropped = fmt::format("{} successive frames of the run, {} wanted", chosen.size(), options_.frames);
+      pass.dropped =
+          fmt::format("the run gave {} of the {} successive frames that a pass needs", chosen.size(), options_.frames);
       return std::vector<LocatedFrame>{};
     }
     if (run->start_s && pass.set_delta_t_k == largest_k_) {
@@ -299,7 +323,7 @@ class MovingRun {
     return chosen;
   }
 
-  /// Until the run is over by the camera's clock or, where nobody knows when it began, by the number of frames.
+  /// Takes frames until the run is over by the camera's clock or, if its start is not known, by the number of frames.
   Result<std::vector<LocatedFrame>> taken_of_run(const PlateRun& run) {
     std::vector<LocatedFrame> taken;
     const int enough = options_.lead_frames + options_.frames + spare_frames;
@@ -316,7 +340,7 @@ class MovingRun {
     return taken;
   }
 
-  /// The line at the stage's speed through the middle of the places, and how far they are from it.
+  /// Fits the line at the stage's speed through the middle of the places, and the distances from it.
   void follow_line(std::vector<LocatedFrame>& frames, cv::Point2d px_s, MovingPassRecord& pass) {
     const auto n = static_cast<double>(frames.size());
     cv::Point2d offset(0, 0);
@@ -345,7 +369,7 @@ class MovingRun {
     std::vector<cv::Mat1f> pictures;
     for (const LocatedFrame& frame : frames) pictures.emplace_back(frame.kelvin);
     const cv::Rect whole({0, 0}, pictures.front().size());
-    // The same numbers at every speed: ratios between speeds are paired.
+    // The same numbers at every speed, because ratios between speeds are paired.
     const RandomStream noise = answers_.sub(static_cast<std::uint64_t>(pass.pair));
     for (std::size_t t = 0; t < set_up.plate.triangles.size(); ++t) {
       const PlateTriangle& triangle = set_up.plate.triangles[t];
@@ -399,14 +423,15 @@ class MovingRun {
   Target& target_;
   TemplateObserver& observer_;
   MovingMeasurementOptions options_;
-  MeasurementHost& host_;
+  RunController& host_;
   const MovingListener& listener_;
   std::stop_token stop_;
   FrameTaker taker_;
+  PlaceWatch places_{{}};  ///< of the plate at rest; in a run every frame is located
   SetUpStep step_;
   SeenContrast seen_;          ///< of the current set-up and contrast
-  PresentedTarget presented_;  ///< what the target said last
-  std::int64_t there_ns_ = 0;  ///< and when, on the clock of the host
+  PresentedTarget presented_;  ///< last report of the target
+  std::int64_t there_ns_ = 0;  ///< its time, on the host's clock
   RandomStream phases_, answers_;
   MovingMeasurement result_;
   std::map<std::string, PreparedJudge> judges_;  ///< by plate
@@ -422,21 +447,21 @@ Result<void> check_moving(const SourceInfo& camera, Target& target, TemplateObse
   const auto refuse = [](const std::string& why) { return fail(ErrorCode::invalid_input, why); };
   const MeasurementOptions& at_rest = options.measurement;
   if (at_rest.samples_per_pitch != 1)
-    return refuse("a target that moves is measured with a camera without microscan and super-resolution");
+    return refuse("a moving target can only be measured without microscan and super-resolution");
   if (at_rest.contrast_unit != ContrastUnit::kelvin)
-    return refuse("a target that moves is measured in kelvin, not in grey levels");
-  if (!(camera.frame_rate_hz > 0)) return refuse("camera " + camera.id + " does not say its frame rate");
+    return refuse("a moving target can only be measured in kelvin, not in grey levels");
+  if (!(camera.frame_rate_hz > 0)) return refuse("camera " + camera.id + " does not report its frame rate");
   if (!target.capabilities().sets_shift || target.moving() == nullptr)
-    return refuse("the target cannot run at constant speed: its stage needs a [position] and a [run]");
+    return refuse("the target cannot run at constant speed: the table of its stage needs [position] and [run]");
   for (const double speed : options.speeds_mrad_s) {
     if (!(speed >= 0 && speed / at_rest.ifov_mrad / camera.frame_rate_hz <= fastest_px))
-      return refuse(fmt::format("{:g} mrad/s is more than {:g} pixels a frame", speed, fastest_px));
+      return refuse(fmt::format("{:g} mrad/s is more than {:g} pixels per frame", speed, fastest_px));
   }
   return check_before_measuring(at_rest, observer, camera);
 }
 
 Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
-                                         const MovingMeasurementOptions& options, MeasurementHost& host,
+                                         const MovingMeasurementOptions& options, RunController& host,
                                          const MovingListener& listener, std::stop_token stop) {
   return MovingRun(source, target, observer, options, host, listener, std::move(stop))();
 }

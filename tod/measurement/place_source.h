@@ -1,4 +1,5 @@
-// How the place of a moving plate in a frame is known.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source of the place of a moving plate in a frame.
 #pragma once
 
 #include <array>
@@ -6,9 +7,9 @@
 
 namespace todbench {
 
-/// Where the plate is said to be in a frame of a pass.
+/// Place of the plate in a frame of a pass.
 enum class PlaceSource {
-  triangles,  ///< where the large triangles of that frame are
+  triangles,  ///< place of the large triangles of that frame
   stage,      ///< on the straight line at the stage's speed over device time, through the middle of those places
 };
 inline constexpr std::array all_place_sources{PlaceSource::triangles, PlaceSource::stage};

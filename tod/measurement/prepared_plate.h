@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A plate of the plan with the observer prepared for each of its triangles.
 #pragma once
 
@@ -13,7 +14,7 @@ struct PreparedPlate {
   TargetPlate plate;                                               ///< identity mounting
   std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known
   std::vector<double> size_px;                                     ///< per triangle
-  /// Of the windows of its triangles, in samples.
+  /// Sides of the windows of its triangles, in samples.
   [[nodiscard]] std::vector<int> sides() const;
 };
 

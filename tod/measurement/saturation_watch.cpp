@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/saturation_watch.h"
 
 #include <algorithm>
@@ -10,12 +11,12 @@
 namespace todbench {
 namespace {
 
-constexpr int pixels_of_an_end = 3;       ///< fewer may be stuck where no other pixel goes
-constexpr double noise_range_counts = 3;  ///< a pixel with less noise may stay where it is by chance
-constexpr double blur_px = 3;             ///< beyond a triangle the camera's blur shows nothing of it
-constexpr double most_defective = 0.01;   ///< of the pixels: what is more is the scene
+constexpr int pixels_of_an_end = 3;       ///< fewer may be stuck at a count that other pixels do not reach
+constexpr double noise_range_counts = 3;  ///< a pixel with less noise may stay unchanged by chance
+constexpr double blur_px = 3;             ///< beyond this distance a triangle has no effect
+constexpr double most_defective = 0.01;   ///< of the pixels: a larger share belongs to the scene
 
-/// Median range of the pixels that moved at all.
+/// Median range of the pixels that changed.
 double range_of_moving(const AveragedPicture& picture) {
   std::vector<int> ranges;
   for (int row = 0; row < picture.lowest.rows; ++row) {
@@ -30,7 +31,7 @@ double range_of_moving(const AveragedPicture& picture) {
   return *middle;
 }
 
-/// 1 where a triangle may be seen.
+/// 1 where a triangle may be visible.
 cv::Mat1b seen_triangles(cv::Size size, const TargetPlate& plate, const Registration& registration) {
   cv::Mat1b seen(size, std::uint8_t{0});
   for (const PlateTriangle& triangle : plate.triangles) {
@@ -50,7 +51,7 @@ cv::Mat1b seen_triangles(cv::Size size, const TargetPlate& plate, const Registra
   return seen;
 }
 
-/// Counts of surround and triangles; nothing where the scale cannot say.
+/// Counts of surround and triangles; empty if the scale cannot give them.
 struct Levels {
   double surround = 0, target = 0, noise = 0;
   [[nodiscard]] bool far_from(double end) const {
@@ -76,7 +77,7 @@ void SaturationWatch::learn_ends(const AveragedPicture& picture) {
   cv::minMaxIdx(picture.lowest, &lowest, nullptr);
   cv::minMaxIdx(picture.highest, nullptr, &highest);
   const int full_scale = (1 << picture.significant_bits) - 1;
-  // What goes beyond an end shows that it is none.
+  // A count beyond an end proves that it is none.
   if (defective_.empty() || highest > high_end_) high_end_ = full_scale;
   if (defective_.empty() || lowest < low_end_) low_end_ = 0;
   if (range_of_moving(picture) < noise_range_counts) return;

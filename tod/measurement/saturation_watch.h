@@ -1,4 +1,5 @@
-// Pixels at an end of the counts: what is left of a target that is too hot or too cold for the camera.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Detection of clipped pixels: a target that is too hot or too cold for the camera.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -9,19 +10,19 @@
 
 namespace todbench {
 
-/// Knows where the counts of a camera end, and which pixels are there whatever they see. One thread at a time.
+/// Learns the ends of a camera's counts and the pixels that are always there. One thread at a time.
 class SaturationWatch {
  public:
-  /// Learns from the average of a set-up at a contrast of `contrast_k` as the camera sees it. Returns how many pixels
-  /// of the triangles were at an end in some of its frames, those that always are left out.
+  /// Learns from the average of a set-up with the observed contrast `contrast_k`. Returns the number of pixels of the
+  /// triangles that were at an end in some of its frames, without the defective ones.
   ///
   /// The ends are 0 and full scale of the significant bits, or a count at which several pixels stayed in every frame
   /// while noise moved the others and none went beyond: the end of a temperature range, or of fewer bits than the
-  /// format has. A pixel that was there in every frame is defective where it sees no triangle, or where the triangles
-  /// are far from that end; it does not count until it moves.
+  /// format has. A pixel that was there in every frame is defective if it is outside the triangles, or if the triangles
+  /// are far from that end; it is ignored until it changes.
   [[nodiscard]] int learn(const AveragedPicture& picture, const RadiometricScale& scale,
                           const TargetPlate& mounted_plate, const Registration& registration, double contrast_k);
-  /// Pixels of the window at an end of the counts that do not always read so.
+  /// Number of pixels of the window at an end of the counts, without those that always are.
   [[nodiscard]] int saturated_pixels(const Frame& frame, const cv::Rect& window) const;
 
  private:
@@ -29,7 +30,7 @@ class SaturationWatch {
   [[nodiscard]] bool at_end(std::uint16_t count) const { return count <= low_end_ || count >= high_end_; }
 
   int low_end_ = 0, high_end_ = 65535;
-  cv::Mat1b defective_;  ///< empty: nothing learnt
+  cv::Mat1b defective_;  ///< empty: not yet learnt
 };
 
 }  // namespace todbench

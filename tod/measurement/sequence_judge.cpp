@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/sequence_judge.h"
 
 #include <algorithm>
@@ -66,8 +67,8 @@ int SequenceJudge::averaged(const PreparedSize& size, const SeenSequence& seen, 
   return size.observer->choose(patch, seen.contrast_k, noise).alternative;
 }
 
-/// Mean of the scores over the frames, each at the template that stands where the target is, and the observer's own
-/// noise once.
+/// Mean of the scores over the frames, each with the template at the target's place, plus the observer's own noise
+/// once.
 int SequenceJudge::tracked(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const {
   const TemplateBank& bank = *size.bank;
   const auto samples = static_cast<std::size_t>(bank.window_samples() * bank.window_samples());

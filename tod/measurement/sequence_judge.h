@@ -1,4 +1,5 @@
-// Observers of a target that moves: what is made of several frames of one pass.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Observers of a moving target: decisions from several frames of one pass.
 #pragma once
 
 #include <array>
@@ -8,16 +9,16 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "hvs/observer/template_observer.h"
 
 namespace todbench {
 
-/// What an observer does with the frames of a pass.
+/// Use of the frames of a pass by an observer.
 enum class SequenceObserver {
-  single_frame,  ///< judges the first frame, and no other
+  single_frame,  ///< judges the first frame only
   tracking_sum,  ///< adds the scores of all frames, each at the true place of the target: pursuit, an upper bound
-  static_sum,    ///< averages all frames where the target is in the middle of the pass: persistence without pursuit
+  static_sum,    ///< averages all frames at the target's place in the middle of the pass: persistence without pursuit
 };
 inline constexpr std::array all_sequence_observers{SequenceObserver::single_frame, SequenceObserver::tracking_sum,
                                                    SequenceObserver::static_sum};
@@ -31,23 +32,23 @@ struct SeenSequence {
   double noise_k = 0;  ///< of the sensor in one frame
 };
 
-/// Judges at several sizes. Internal noise is drawn once for each decision, whatever the number of frames. One thread
-/// at a time.
+/// Judges triangles of several sizes. Internal noise is drawn once for each decision, whatever the number of frames.
+/// One thread at a time.
 class SequenceJudge {
  public:
   /// `sizes` in samples. Errors: those of the observer.
   [[nodiscard]] static Result<SequenceJudge> prepare(TemplateObserver& observer, std::span<const double> sizes);
 
   [[nodiscard]] std::size_t sizes() const { return sizes_.size(); }
-  /// Side of the window that size `size` is judged in, search of the sum included, in samples.
+  /// Side of the window for size `size`, including the search of the sum, in samples.
   [[nodiscard]] int window_samples(std::size_t size) const;
-  /// The alternative. Precondition: the windows round all places are in the frames.
+  /// Returns the chosen alternative. Precondition: the windows round all places are in the frames.
   [[nodiscard]] int choose(SequenceObserver kind, std::size_t size, const SeenSequence& seen,
                            const RandomStream& noise) const;
 
  private:
   /// Observer and bank of one size. The bank reaches half a sample further than the observer searches, so that the
-  /// whole search is round the true place wherever that is between two samples.
+  /// search can be centred on any true place between two samples.
   struct PreparedSize {
     std::shared_ptr<const PreparedObserver> observer;
     std::shared_ptr<const TemplateBank> bank;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/set_up_step.h"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "acquisition/core/judged_picture.h"
 #include "tod/measurement/geometry.h"
 
 namespace todbench {
@@ -16,13 +18,13 @@ namespace {
 constexpr double noticeable_correlation = 0.05;
 /// Least contrast of the large triangles of a frame, in its standard uncertainty.
 constexpr double least_certainty = 3;
-/// Noise below this part of a step leaves differences of up to half a step that no averaging shows.
+/// With noise below this part of a step, errors of up to half a step remain that no averaging reveals.
 constexpr double dithering_noise_steps = 0.5;
 
-/// Noise of a pixel in one frame. Noise that remembers shows only sqrt(1 - rho) of itself in successive frames.
+/// Noise of a pixel in one frame. Successive frames show only sqrt(1 - rho) of noise with memory.
 double noise_of_one_frame(const AveragedPicture& picture) {
   const double rho = picture.lag1_correlation.value_or(0);
-  // Beyond 0.99 it changes so slowly that so few frames do not tell it from drift.
+  // Above 0.99 it changes so slowly that this few frames do not distinguish it from drift.
   if (rho < noticeable_correlation) return picture.temporal_noise_k;
   return picture.temporal_noise_k / std::sqrt(1 - std::min(rho, 0.99));
 }
@@ -66,11 +68,10 @@ Result<void> check_grey_references(const MeasurementOptions& options) {
       enough += size_px >= options.min_reference_px ? 1 : 0;
     }
     if (enough >= 2) continue;
-    return fail(
-        ErrorCode::invalid_input,
-        fmt::format("plate {} has {} of at least {:.1f} pixels (the largest is {:.1f}): a contrast in grey "
-                    "levels needs two and more in every frame",
-                    plate.name, enough == 0 ? "no triangle" : "one triangle", options.min_reference_px, largest));
+    return fail(ErrorCode::invalid_input, fmt::format("plate {} has {} of at least {:.1f} pixels (the largest is "
+                                                      "{:.1f}): a contrast in grey levels needs at least two",
+                                                      plate.name, enough == 0 ? "no triangle" : "one triangle",
+                                                      options.min_reference_px, largest));
   }
   return {};
 }
@@ -88,9 +89,30 @@ Result<void> check_before_measuring(const MeasurementOptions& options, Observer&
   return {};
 }
 
+Result<AveragedPicture> SetUpStep::average(int count, std::stop_token stop, const FrameTaker::EachFrame& each) {
+  cv::Mat1d first, last;
+  auto picture = taker_.average(count, std::move(stop), [&](const Frame& frame, const cv::Mat1d& kelvin) {
+    if (each) each(frame, kelvin);
+    if (first.empty()) first = kelvin;
+    last = kelvin;
+  });
+  if (!picture) return picture;
+  // Grey levels may have another gain in every frame.
+  if (!grey() && !before_.empty()) {
+    const auto residue = picture_residue(before_, first, last, picture->kelvin, noise_of_one_frame(*picture));
+    auto& worst = constancy_.residue;
+    if (residue && (!worst || residue->share * worst->limit > worst->share * residue->limit)) worst = residue;
+  }
+  before_ = picture->kelvin;
+  return picture;
+}
+
 Result<AveragedPicture> SetUpStep::look(std::stop_token stop) {
-  auto picture = taker_.average(options_.registration_frames, std::move(stop));
-  // Grey levels are no kelvin before their contrast is known.
+  JudgedMemory memory(options_.registration_frames);
+  auto picture = average(options_.registration_frames, std::move(stop),
+                         [&memory](const Frame& frame, const cv::Mat1d& /*kelvin*/) { memory.add(frame); });
+  memory_ratio_ = memory.ratio();
+  // Grey levels are not kelvin before their contrast is known.
   if (picture && !grey() && temporal_noise_k_ == 0) keep_noise(*picture);
   return picture;
 }
@@ -112,7 +134,7 @@ Result<Registration> SetUpStep::find(const AveragedPicture& picture, const Targe
   if (!registration) return fail("registering " + where, registration.error());
   if ((registration->contrast_sign > 0) != (state.delta_t_k > 0)) {
     return fail(ErrorCode::calibration,
-                "the triangles of " + where + " have the opposite polarity of the contrast asked for");
+                "the triangles of " + where + " have the polarity opposite to the set contrast");
   }
   return registration;
 }
@@ -121,12 +143,13 @@ std::optional<std::string> SetUpStep::read_back_deviation(const TargetState& set
   const double deviation_k = said.state.delta_t_k - set.delta_t_k;
   if (options_.max_readback_deviation_k <= 0 || std::abs(deviation_k) <= options_.max_readback_deviation_k)
     return std::nullopt;
-  return fmt::format("{}: the target says it shows {:.4f} K where {:.4f} K were set ({:+.4f} K, tolerance {:.4f} K)",
+  return fmt::format("{}: the target reports {:.4f} K, but {:.4f} K were set (deviation {:+.4f} K, tolerance {:.4f} K)",
                      plate_and_mounting(set), said.state.delta_t_k, set.delta_t_k, deviation_k,
                      options_.max_readback_deviation_k);
 }
 
 double SetUpStep::response(const std::string& plate) const {
+  if (const auto learnt = learnt_response_.find(plate); learnt != learnt_response_.end()) return learnt->second;
   const auto known = options_.contrast_response.find(plate);
   return known == options_.contrast_response.end() ? 1.0 : known->second;
 }
@@ -136,33 +159,110 @@ void SetUpStep::note_saturation(const AveragedPicture& picture, const TargetPlat
   const RadiometricScale& scale = grey() ? scale_of_counts() : camera_.info().scale;
   const int cut_off = saturation_.learn(picture, scale, mounted_plate, registration, contrast);
   if (cut_off == 0) return;
+  note_(fmt::format(
+      "{}: {} pixels of the triangles are at an end of the camera's counts: they clip the set contrast of {:+.3f} K",
+      plate_and_mounting(set), cut_off, set.delta_t_k));
+}
+
+void SetUpStep::note_saturation_behind(const JudgedFrames& frames, const TargetPlate& mounted_plate,
+                                       const TargetState& set, double contrast) {
+  const auto average = frames.average();
+  if (!average) return;
+  const RadiometricScale& scale = grey() ? scale_of_counts() : camera_.info().scale;
+  const int cut_off = saturation_behind_.learn(average->picture, scale, mounted_plate, average->registration, contrast);
+  if (cut_off == 0) return;
   note_(
-      fmt::format("{}: {} pixels of the triangles are at an end of the camera's counts: the contrast of {:+.3f} K "
-                  "that was set is cut off there",
+      fmt::format("{}: behind the stages {} pixels of the triangles are at the lowest or highest level of the picture: "
+                  "they clip the set contrast of {:+.3f} K",
                   plate_and_mounting(set), cut_off, set.delta_t_k));
+}
+
+int SetUpStep::saturated_samples(const Frame& frame, const cv::Rect& window) const {
+  const int beyond = cut_off_samples(frame, window);
+  if (!behind_stages(frame) || judged_samples_per_pixel(frame) > 1) return beyond;
+  return std::max(beyond, saturation_behind_.saturated_pixels(as_judged(frame), window));
 }
 
 Result<SeenContrast> SetUpStep::contrast(const TargetPlate& mounted_plate, const Registration& registration,
                                          const TargetState& set, const PresentedTarget& said, std::stop_token stop) {
-  const auto picture = taker_.average(options_.contrast_frames, std::move(stop));
+  JudgedFrames behind(mounted_plate, registration, options_.min_reference_px, options_.contrast_frames);
+  ScanFrames scanned;
+  const auto picture =
+      average(options_.contrast_frames, std::move(stop), [&](const Frame& frame, const cv::Mat1d& kelvin) {
+        behind.add(frame);
+        scanned.add(frame, kelvin);
+      });
   if (!picture) return tl::unexpected(picture.error());
+  if (auto moves = scan_.look(scanned, mounted_plate, registration, options_.registration); !moves)
+    return tl::unexpected(moves.error());
+  // With noise below half a count, the result depends on rounding.
+  if (!grey() && noise_counts_.value_or(0) >= dithering_noise_steps && picture->temporal_noise_k > 0)
+    constancy_.noise.push_back({set.delta_t_k, picture->temporal_noise_k, picture->lag1_correlation});
+  if (options_.learn_response && !grey()) {
+    const SetUpPicture seen{*picture, options_.contrast_frames, mounted_plate, registration, set};
+    for (const auto& [name, learnt] : options_.learn_response(seen)) learnt_response_[name] = learnt;
+  }
   const auto measured = effective_contrast(picture->kelvin, mounted_plate, registration, options_.min_reference_px,
                                            level_estimate(options_.contrast_unit));
   if (!measured) return fail("measuring the effective contrast", measured.error());
   note_saturation(*picture, mounted_plate, registration, set, measured->value);
   if (!(measured->value * set.delta_t_k > 0)) {
     return fail(ErrorCode::calibration,
-                fmt::format("the target was set to {:+.3f} K but the camera sees {:+.3f} {} +- {:.3f}", set.delta_t_k,
-                            measured->value, grey() ? "grey levels" : "K", measured->standard_error));
+                fmt::format("the target was set to {:+.3f} K, but the camera observes {:+.3f} {} +- {:.3f}: one of "
+                            "them has the wrong sign",
+                            set.delta_t_k, measured->value, grey() ? "grey levels" : "K", measured->standard_error));
   }
-  return grey() ? in_grey_levels(*picture, *measured, set, said) : in_kelvin(*measured, set);
+  const auto judged = behind.scale(memory_ratio_);
+  if (!judged) return fail(plate_and_mounting(set), judged.error());
+  if (*judged) note_saturation_behind(behind, mounted_plate, set, measured->value * (*judged)->gain);
+  Result<SeenContrast> seen = grey() ? in_grey_levels(*picture, *measured, set, said) : in_kelvin(*measured, set);
+  if (seen) judge_by(*judged, set, *seen);
+  return seen;
 }
 
-SeenContrast SetUpStep::in_kelvin(const EffectiveContrast& measured, const TargetState& set) const {
+void SetUpStep::judge_by(const std::optional<JudgedScale>& judged, const TargetState& set, SeenContrast& seen) {
+  seen.judged = judged;
+  if (!judged) return;
+  seen.noise_k *= judged->noise_ratio / std::abs(judged->gain);
+  if (grey()) seen.steps = judged->steps;
+  const bool noted = std::any_of(noted_contrasts_.begin(), noted_contrasts_.end(),
+                                 [&](double contrast) { return contrast == set.delta_t_k; });
+  if (noted) return;
+  noted_contrasts_.push_back(set.delta_t_k);
+  note_(fmt::format(
+      "{}, {:+.3f} K: behind the stages the contrast is {:.4g} +- {:.2g} times that of the camera{}; the observer "
+      "judges in units of this contrast, with a noise equivalent to {:.4f} K in front of the stages",
+      plate_and_mounting(set), set.delta_t_k, judged->gain, judged->gain_error,
+      judged->changes ? " and changes from frame to frame" : "", seen.noise_k));
+}
+
+Result<double> SetUpStep::gain_of(const Frame& frame, const TargetPlate& mounted_plate,
+                                  const Registration& registration, const SeenContrast& seen) const {
+  if (!seen.judged || !behind_stages(frame)) return 1;
+  if (!seen.judged->changes) return seen.judged->gain;
+  return judged_gain(frame, mounted_plate, registration, options_.min_reference_px, *seen.judged);
+}
+
+Result<void> SetUpStep::check_contrast(double seen_k, double error_k, const TargetState& set) const {
+  const auto allowed = options_.max_contrast_error.find(set.delta_t_k);
+  if (allowed == options_.max_contrast_error.end()) return {};
+  const double expected_k = options_.air_transmittance.value_or(1) * set.delta_t_k;
+  constexpr double certain = 4;  // standard errors
+  if (!(std::abs(seen_k - expected_k) - certain * error_k > allowed->second * std::abs(expected_k))) return {};
+  return fail(ErrorCode::calibration,
+              fmt::format("{}: the camera observes {:.3f} +- {:.3f} K, but {:.3f} K were set ({:+.0f} %, at most "
+                          "{:.0f} % are allowed): the target or the temperature scale of the camera is wrong",
+                          plate_and_mounting(set), seen_k, error_k, expected_k, 100 * (seen_k / expected_k - 1),
+                          100 * allowed->second));
+}
+
+Result<SeenContrast> SetUpStep::in_kelvin(const EffectiveContrast& measured, const TargetState& set) const {
   const double seen_k = measured.value / response(set.plate);
+  if (auto right = check_contrast(seen_k, measured.standard_error / response(set.plate), set); !right)
+    return tl::unexpected(right.error());
   const double deviation = seen_k / set.delta_t_k - 1;
   if (std::abs(deviation) > 0.2 && std::abs(seen_k - set.delta_t_k) > 3 * measured.standard_error) {
-    note_(fmt::format("{}: the camera sees {:.3f} K where {:.3f} K were set ({:+.0f} %)", plate_and_mounting(set),
+    note_(fmt::format("{}: the camera observes {:.3f} K, but {:.3f} K were set ({:+.0f} %)", plate_and_mounting(set),
                       seen_k, set.delta_t_k, 100 * deviation));
   }
   SeenContrast seen{.contrast_k = seen_k, .noise_k = noise_of_frame_k_};
@@ -185,12 +285,12 @@ SeenContrast SetUpStep::in_grey_levels(const AveragedPicture& picture, const Eff
     lag1_correlation_ = picture.lag1_correlation;
   }
   const double noise_steps = seen.steps.noise_levels / seen.steps.step_levels;
-  // The coarsest of all contrasts speaks for the run.
+  // The coarsest of all contrasts represents the run.
   noise_counts_ = std::min(noise_counts_.value_or(noise_steps), noise_steps);
   if (seen.steps.noise_steps() < dithering_noise_steps) {
     note_(
-        fmt::format("{}, {:+.3f} K: the noise of a pixel is {:.2f} steps of {:.2g} grey levels: what differs by less "
-                    "than a step may look alike",
+        fmt::format("{}, {:+.3f} K: the noise of a pixel is {:.2f} steps of {:.2g} grey levels: levels that differ by "
+                    "less than a step may look the same",
                     plate_and_mounting(set), set.delta_t_k, seen.steps.noise_steps(), seen.steps.step_levels));
   }
   return seen;
@@ -203,12 +303,12 @@ Result<GreyFrame> SetUpStep::grey_frame(const Frame& frame, const TargetPlate& m
   frame.counts.convertTo(levels, CV_64F);
   const auto contrast = grey_contrast(levels, mounted_plate, registration, options_.min_reference_px, seen.steps);
   if (!contrast) return fail("measuring the contrast in grey levels", contrast.error());
-  // Of the sign of the contrast, too: a gain does not turn round.
+  // The sign must agree too, because a gain does not change its sign.
   if (!(contrast->levels * seen.contrast_k > 0 &&
         std::abs(contrast->levels) >= least_certainty * contrast->standard_uncertainty)) {
     return fail(ErrorCode::calibration,
-                fmt::format("{}: the large triangles of frame {} differ by {:+.2f} +- {:.2f} grey levels at {:+.3f} K: "
-                            "too little to measure by",
+                fmt::format("{}: the large triangles of frame {} differ from their surround by {:+.2f} +- {:.2f} grey "
+                            "levels at {:+.3f} K: their contrast is too small to measure",
                             plate_and_mounting(set), frame.sequence, contrast->levels, contrast->standard_uncertainty,
                             set.delta_t_k));
   }

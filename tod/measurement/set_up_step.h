@@ -1,6 +1,6 @@
-// What has to be known of a set-up before anything in it is judged, whether its plate rests or runs: where the plate
-// is, which way its triangles differ, which contrast the camera sees. One room for both, with the same checks and
-// sentences.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Preparation of a set-up, for a plate at rest or in motion: location of the plate, polarity of its triangles,
+// effective contrast. Both kinds of measurement share its checks and messages.
 #pragma once
 
 #include <functional>
@@ -11,89 +11,119 @@
 
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/grey_levels.h"
+#include "tod/measurement/judged_contrast.h"
 #include "tod/measurement/measurement.h"
+#include "tod/measurement/run_constancy.h"
 #include "tod/measurement/saturation_watch.h"
+#include "tod/measurement/scan_watch.h"
 #include "tod/presentation/target.h"
 #include "tod/registration/registration.h"
 
 namespace todbench {
 
-/// What frames are taken by. With contrasts in grey levels a frame has its counts in place of kelvin.
+/// Options of the frame taker. With contrasts in grey levels, frames carry counts instead of kelvin.
 [[nodiscard]] FrameTakerOptions taker_options(const MeasurementOptions& options, const SourceInfo& camera,
                                               std::function<void(const RejectedFrame&)> on_rejected = {});
 
-/// Before the camera is started. Errors: `calibration` (counts without temperature, where the contrast is in kelvin),
-/// `invalid_input` (sizes and windows that do not fit; contrasts in grey levels where a plate has no two triangles that
-/// are large enough), those of the observer.
+/// Call before the camera is started. Errors: `calibration` (counts without temperature for contrasts in kelvin),
+/// `invalid_input` (sizes or windows that do not fit; contrasts in grey levels with a plate that has fewer than two
+/// large enough triangles), those of the observer.
 [[nodiscard]] Result<void> check_before_measuring(const MeasurementOptions& options, Observer& observer,
                                                   const SourceInfo& camera);
-/// The part of it that needs the plates alone.
+/// The part of it that needs the plates only.
 [[nodiscard]] Result<void> check_grey_references(const MeasurementOptions& options);
 
-/// A contrast as it is judged by.
+/// A contrast as used for judging.
 struct SeenContrast {
   double contrast_k = 0;                        ///< effective
-  double noise_k = 0;                           ///< of a pixel in one frame, as an observer suffers it; 0: not measured
+  double noise_k = 0;                           ///< of a pixel in one frame, as it affects an observer; 0: not measured
   double levels_per_k = 0;                      ///< signal transfer; 0: the contrast is in kelvin
-  GreySteps steps{};                            ///< where it is in grey levels
+  GreySteps steps{};                            ///< if the contrast is in grey levels
   std::optional<double> standard_error_k{};     ///< as in Presentation
-  std::vector<ReferenceTriangle> references{};  ///< in kelvin; none where the contrast is in grey levels
+  std::vector<ReferenceTriangle> references{};  ///< in kelvin; empty if the contrast is in grey levels
+  std::optional<JudgedScale> judged{};          ///< empty: no stage after the camera
 };
 
-/// One thread at a time. What it is given outlives it.
+/// One thread at a time. The arguments must outlive it.
 class SetUpStep {
  public:
   SetUpStep(const MeasurementOptions& options, const FrameSource& camera, FrameTaker& taker,
             std::function<void(const std::string&)> note)
       : options_(options), camera_(camera), taker_(taker), note_(std::move(note)) {}
 
-  /// Takes the frames in which a plate is looked for, and learns the noise from the first that show any.
+  /// Takes the frames in which a plate is located, and learns the noise from the first that show any.
   [[nodiscard]] Result<AveragedPicture> look(std::stop_token stop);
-  /// The plate in the average; `mounted_plate` as `state` says. Errors: those of register_plate(), the opposite
-  /// polarity.
+  /// Locates the plate in the average; `mounted_plate` as stated by `state`. Errors: those of register_plate(),
+  /// opposite polarity.
   [[nodiscard]] Result<Registration> find(const AveragedPicture& picture, const TargetPlate& mounted_plate,
                                           const TargetState& state) const;
-  /// What to note where the target says that it shows another contrast than it was told.
+  /// Note for a target that reports another contrast than its set-point.
   [[nodiscard]] std::optional<std::string> read_back_deviation(const TargetState& set,
                                                                const PresentedTarget& said) const;
-  /// Takes the frames of the effective contrast. Errors: those of effective_contrast(), a contrast of the wrong sign.
+  /// Takes the frames of the effective contrast. Errors: those of effective_contrast(); `calibration` (wrong sign,
+  /// beyond MeasurementOptions::max_contrast_error, or frames that contradict the scan, see ScanWatch).
   [[nodiscard]] Result<SeenContrast> contrast(const TargetPlate& mounted_plate, const Registration& registration,
                                               const TargetState& set, const PresentedTarget& said,
                                               std::stop_token stop);
-  /// Of a frame of the set-up whose contrast was measured last: its own grey levels. Errors: those of grey_contrast();
-  /// `calibration` where the contrast is less than three of its standard uncertainties.
+  /// Grey levels of one frame of the set-up whose contrast was measured last. Errors: those of grey_contrast();
+  /// `calibration` if the contrast is less than three of its standard uncertainties.
   [[nodiscard]] Result<GreyFrame> grey_frame(const Frame& frame, const TargetPlate& mounted_plate,
                                              const Registration& registration, const TargetState& set,
                                              const SeenContrast& seen) const;
-  /// Pixels of the window at an end of the counts that do not always read so.
+  /// Kelvin of the judged frame per kelvin of the set-up whose contrast was measured last. Errors: those of
+  /// judged_gain().
+  [[nodiscard]] Result<double> gain_of(const Frame& frame, const TargetPlate& mounted_plate,
+                                       const Registration& registration, const SeenContrast& seen) const;
+  /// Number of pixels of the window at an end of the counts, without those that always are.
   [[nodiscard]] int saturated_pixels(const Frame& frame, const cv::Rect& window) const {
     return saturation_.saturated_pixels(frame, window);
   }
+  /// Same for the judged samples; the ends of stages may differ from those of the counts.
+  [[nodiscard]] int saturated_samples(const Frame& frame, const cv::Rect& window) const;
 
   /// Per pixel and frame, from differences of successive frames; 0: not measured.
   [[nodiscard]] double temporal_noise_k() const { return temporal_noise_k_; }
-  /// As an observer suffers it: noise that remembers shows only a part of itself in successive frames.
+  /// As it affects an observer: successive frames show only a part of noise with memory.
   [[nodiscard]] double noise_of_frame_k() const { return noise_of_frame_k_; }
   [[nodiscard]] std::optional<double> noise_counts() const { return noise_counts_; }
   [[nodiscard]] std::optional<double> lag1_correlation() const { return lag1_correlation_; }
 
+  /// Constancy of the camera by the averages so far.
+  [[nodiscard]] const RunConstancy& constancy() const { return constancy_; }
+
  private:
+  /// Takes an average and compares it with the previous one.
+  [[nodiscard]] Result<AveragedPicture> average(int count, std::stop_token stop,
+                                                const FrameTaker::EachFrame& each = {});
   [[nodiscard]] bool grey() const { return options_.contrast_unit == ContrastUnit::grey_levels; }
   void keep_noise(const AveragedPicture& picture);
   [[nodiscard]] double response(const std::string& plate) const;
   void note_saturation(const AveragedPicture& picture, const TargetPlate& mounted_plate,
                        const Registration& registration, const TargetState& set, double contrast);
-  [[nodiscard]] SeenContrast in_kelvin(const EffectiveContrast& measured, const TargetState& set) const;
+  /// Learns the ends of the counts of the stages' pictures; `contrast` is that after the stages.
+  void note_saturation_behind(const JudgedFrames& frames, const TargetPlate& mounted_plate, const TargetState& set,
+                              double contrast);
+  [[nodiscard]] Result<SeenContrast> in_kelvin(const EffectiveContrast& measured, const TargetState& set) const;
+  [[nodiscard]] Result<void> check_contrast(double seen_k, double error_k, const TargetState& set) const;
   [[nodiscard]] SeenContrast in_grey_levels(const AveragedPicture& picture, const EffectiveContrast& measured,
                                             const TargetState& set, const PresentedTarget& said);
+
+  /// Adjusts `seen` for the stages after the camera.
+  void judge_by(const std::optional<JudgedScale>& judged, const TargetState& set, SeenContrast& seen);
 
   const MeasurementOptions& options_;
   const FrameSource& camera_;
   FrameTaker& taker_;
   std::function<void(const std::string&)> note_;
-  SaturationWatch saturation_;
+  SaturationWatch saturation_, saturation_behind_;
+  std::map<std::string, double> learnt_response_;  ///< by plate; replaces that of the options
   double temporal_noise_k_ = 0, noise_of_frame_k_ = 0;
+  double memory_ratio_ = 1;              ///< of JudgedMemory
+  std::vector<double> noted_contrasts_;  ///< after the stages
   std::optional<double> noise_counts_, lag1_correlation_;
+  cv::Mat1d before_;  ///< mean of the last average; empty: none yet
+  RunConstancy constancy_;
+  ScanWatch scan_;
 };
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/target_change.h"
 
 #include <atomic>
@@ -9,7 +10,7 @@ namespace {
 
 struct TakenChange {
   TargetChange change;
-  std::int64_t calls = 0;  ///< how often a frame was asked for
+  std::int64_t calls = 0;  ///< number of frame requests
 };
 
 TakenChange present_and_take(Target& target, FrameTaker& taker, const TargetState& state, const std::stop_token& stop) {
@@ -36,20 +37,20 @@ TakenChange present_and_take(Target& target, FrameTaker& taker, const TargetStat
 
 }  // namespace
 
-Result<TargetChange> change_target(Target& target, FrameTaker& taker, MeasurementHost& host, const TargetState& state,
+Result<TargetChange> change_target(Target& target, FrameTaker& taker, RunController& host, const TargetState& state,
                                    std::stop_token stop) {
   TargetChange change;
   switch (host.frames_while_presenting()) {
-    case FramesMeanwhile::leave:
+    case FramesWhilePresenting::leave:
       change.presented = target.present(state, stop);
       break;
-    case FramesMeanwhile::take: {
+    case FramesWhilePresenting::take: {
       TakenChange taken = present_and_take(target, taker, state, stop);
       if (const auto told = host.asked_while_presenting(taken.calls); !told) return tl::unexpected(told.error());
       change = std::move(taken.change);
       break;
     }
-    case FramesMeanwhile::repeat: {
+    case FramesWhilePresenting::repeat: {
       change.presented = target.present(state, stop);
       const auto calls = host.asked_while_presenting(0);
       if (!calls) return tl::unexpected(calls.error());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/bad_pixels.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace todbench {
 namespace {
 
-/// Number of pixels that are connected with `seed`, diagonally too; they are taken out of `left`.
+/// Number of pixels connected with `seed`, also diagonally; they are removed from `left`.
 int take_cluster(cv::Mat1b& left, cv::Point seed) {
   std::vector<cv::Point> open{seed};
   left(seed) = 0;
@@ -49,11 +50,11 @@ Result<BadPixels> bad_pixels(const PixelProperties& pixels, const BadPixelRules&
   for (const cv::Mat1d* picture : {&pixels.responsivity, &pixels.offset, &pixels.noise_sd}) {
     if (picture->empty()) continue;
     if (!size.empty() && picture->size() != size)
-      return fail(ErrorCode::invalid_input, "properties of pixels of different sizes");
-    if (!cv::checkRange(*picture)) return fail(ErrorCode::invalid_input, "a pixel has a value that is no number");
+      return fail(ErrorCode::invalid_input, "the pictures of the properties of the pixels have different sizes");
+    if (!cv::checkRange(*picture)) return fail(ErrorCode::invalid_input, "a pixel has a value that is not finite");
     size = picture->size();
   }
-  if (size.empty()) return fail(ErrorCode::invalid_input, "nothing is known of the pixels");
+  if (size.empty()) return fail(ErrorCode::invalid_input, "no property of the pixels is given");
   BadPixels found;
   found.dead = cv::Mat1b::zeros(size), found.noisy = cv::Mat1b::zeros(size), found.offset = cv::Mat1b::zeros(size);
   if (!pixels.responsivity.empty()) {

@@ -1,11 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/drift_law.h"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <functional>
 #include <optional>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/measures/shading.h"
 
 namespace todbench {
@@ -14,7 +16,7 @@ namespace {
 constexpr double drift_test_level = 0.01;
 constexpr double surface_parameters = 6;  // level and shading of second order
 constexpr int time_constants = 60;        // of the grid
-constexpr double longest_over_span = 10;  // a time constant beyond looks like a straight line
+constexpr double longest_over_span = 10;  // a longer time constant is like a straight line
 
 using Column = cv::Mat1d;
 
@@ -27,13 +29,13 @@ Column growth(const std::vector<double>& time_s, std::optional<double> time_cons
   return f;
 }
 
-/// Times of groups, and the roots of their weights: frames over the mean number of frames, for the mean of few is less
-/// certain.
+/// Times of groups, and the roots of their weights: frames over the mean number of frames, because the mean of few
+/// frames is less certain.
 struct GroupTimes {
   std::vector<double> time_s;
   Column root_weight;
 
-  /// Rows without their weighted mean, times the roots of the weights: white noise is as large in every row.
+  /// Rows without their weighted mean, times the roots of the weights, so that white noise is equal in all rows.
   [[nodiscard]] cv::Mat1d whitened(const cv::Mat1d& rows) const {
     cv::Mat1d out = rows.clone(), mean = cv::Mat1d::zeros(1, rows.cols);
     for (int k = 0; k < rows.rows; ++k) mean += rows.row(k) * (root_weight(k, 0) * root_weight(k, 0) / rows.rows);
@@ -42,7 +44,7 @@ struct GroupTimes {
   }
 };
 
-/// Without its mean, of length 1; and how long it was.
+/// A vector without its mean, normalised to length 1, and its original length.
 struct Direction {
   Column unit;
   double length = 0;
@@ -55,8 +57,8 @@ Direction direction_of(const GroupTimes& groups, std::optional<double> time_cons
   return out;
 }
 
-/// Sums of squares of one or many series of the same times. `products`: sum over the series of their products between
-/// groups, of series without their means over the groups.
+/// Sums of squares of one or many series with common times. `products`: sum over the series of their products between
+/// groups, for series without their means over the groups.
 struct Regression {
   const GroupTimes& groups;
   cv::Mat1d products;
@@ -71,18 +73,18 @@ struct Regression {
   [[nodiscard]] double left(std::optional<double> time_constant_s) const {
     return std::max(0.0, total() - explained(time_constant_s));
   }
-  /// Degrees of freedom behind a straight line.
+  /// Degrees of freedom of the residuals of a straight line.
   [[nodiscard]] double freedom() const { return series * (static_cast<double>(groups.time_s.size()) - 2); }
 };
 
 struct TimeConstant {
   double best_s = 0;
   DriftInterval ci95{};
-  double left = 0;  ///< sum of squares
+  double left = 0;  ///< residual sum of squares
 };
 
-/// Of the smallest sum of squares, by the grid and a golden section; its interval is where the sum of squares is not
-/// above that by more than chance.
+/// Time constant of the least sum of squares, by the grid and Brent's method (1973); its interval is the range in which
+/// the sum of squares exceeds the minimum by chance only.
 TimeConstant best_time_constant(const Regression& data) {
   const std::vector<double>& time_s = data.groups.time_s;
   const double span = time_s.back() - time_s.front();
@@ -92,13 +94,11 @@ TimeConstant best_time_constant(const Regression& data) {
   double best = low;
   for (int i = 1; i <= time_constants; ++i)
     if (left(low + i * step) < left(best)) best = low + i * step;
-  double a = std::max(low, best - step), b = std::min(high, best + step);
-  constexpr double golden = 0.6180339887498949, enough = 1e-6;
-  while (b - a > enough) {
-    const double x = b - golden * (b - a), y = a + golden * (b - a);
-    (left(x) < left(y) ? b : a) = left(x) < left(y) ? y : x;
-  }
-  best = 0.5 * (a + b);
+  constexpr double enough = 1e-6;
+  constexpr int minimum_bits = 26;
+  best =
+      boost::math::tools::brent_find_minima(left, std::max(low, best - step), std::min(high, best + step), minimum_bits)
+          .first;
   TimeConstant out{std::exp(best), {}, left(best)};
   const double freedom = data.freedom() - 1;
   const double f95 = quantile(distribution::FisherF(1, freedom), 0.95);
@@ -114,15 +114,15 @@ TimeConstant best_time_constant(const Regression& data) {
   return out;
 }
 
-/// The shape that the data demand; the best time constant, taken or not.
+/// The shape that the data require; returns the best time constant, used or not.
 TimeConstant choose_shape(DriftFit& fit, const Regression& data, std::optional<TimeConstant>& constant) {
   const TimeConstant best = best_time_constant(data);
   const double straight = data.left(std::nullopt), freedom = data.freedom() - 1;
-  // Squares of a millionth of a kelvin are arithmetic.
+  // Squares below a millionth of a kelvin are rounding errors.
   constexpr double exact_k2 = 1e-18;
   const double variance = std::max(best.left, exact_k2 * data.freedom()) / freedom;
-  // Among the noise of many pixels a search always finds a shape that explains more: the sums of squares along two
-  // directions differ by chance by 2 variance sqrt(pixels) sine of the angle between them (standard deviation).
+  // In the noise of many pixels a search always finds a better shape: the sums of squares along two directions differ
+  // by chance by 2 variance sqrt(pixels) sine of the angle between them (standard deviation).
   constexpr double far = 2.5;
   const double along = direction_of(data.groups, std::nullopt).unit.dot(direction_of(data.groups, best.best_s).unit);
   const double by_search = data.series > 1 ? 2 * std::sqrt(data.series * std::max(0.0, 1 - along * along)) : 0;
@@ -145,7 +145,7 @@ Regression regression_of(const GroupTimes& groups, const cv::Mat1d& series, doub
   return {groups, white * white.t(), freedom};
 }
 
-/// `pattern_u_k`: standard deviation of the mean of what the pixels change each for itself.
+/// `pattern_u_k`: standard deviation of the mean of the independent changes of the pixels.
 DriftFit level_fit(const GroupTimes& groups, const cv::Mat1d& levels, double pattern_u_k) {
   DriftFit fit;
   const std::vector<double>& time_s = groups.time_s;
@@ -154,7 +154,7 @@ DriftFit level_fit(const GroupTimes& groups, const cv::Mat1d& levels, double pat
   static_cast<void>(choose_shape(fit, data, constant));
   const Column f = growth(time_s, constant_of(constant));
   const int last = f.rows - 1;
-  // Level, size and, of an approach, the time constant around its best value.
+  // Level, change and, for an approach, the time constant around its best value.
   cv::Mat1d design(f.rows, constant ? 3 : 2);
   design.col(0).setTo(1);
   f.copyTo(design.col(1));
@@ -195,7 +195,7 @@ struct SignedVariance {
   double value = 0, low = 0, high = 0;
 };
 
-/// Of (first - second) / divisor, both mean squares (Graybill and Wang 1980, without the cross term).
+/// Variance of (first - second) / divisor, both mean squares (Graybill and Wang 1980, without the cross term).
 SignedVariance difference_of(double first, double first_freedom, double second, double second_freedom, double divisor) {
   const distribution::ChiSquared one(first_freedom), two(second_freedom);
   constexpr double each_side = 0.025;
@@ -231,7 +231,7 @@ DriftFit pattern_fit(const GroupTimes& groups, const cv::Mat1d& patterns) {
   SignedVariance found = change(constant_of(constant));
   fit.change_k = found.value;
   double below = found.value - found.low, above = found.high - found.value;
-  // An uncertain time constant moves the change, too; so does an approach that is too weak to be told from a line.
+  // The change also depends on an uncertain time constant, and on an approach too weak to be distinguished from a line.
   const auto join = [&](std::optional<double> time_constant_s) {
     const double moved = time_constant_s ? change(time_constant_s).value - found.value : 0;
     below = std::hypot(below, std::min(0.0, moved)), above = std::hypot(above, std::max(0.0, moved));
@@ -254,16 +254,18 @@ DriftFit pattern_fit(const GroupTimes& groups, const cv::Mat1d& patterns) {
 
 Result<void> check_groups(std::span<const DriftGroup> groups) {
   const auto wrong = [](const char* what) { return fail(ErrorCode::invalid_input, what); };
-  if (groups.size() < least_drift_groups) return wrong("eight groups of frames are needed for a law of drift");
+  if (groups.size() < least_drift_groups) return wrong("the fit of the drift needs at least eight groups of frames");
   constexpr int least_side = 4;
   const cv::Size size = groups.front().mean_k.size();
-  if (size.width < least_side || size.height < least_side) return wrong("4 x 4 pixels are needed for a law of drift");
+  if (size.width < least_side || size.height < least_side)
+    return wrong("the fit of the drift needs at least 4 x 4 pixels");
   for (std::size_t k = 0; k < groups.size(); ++k) {
-    if (groups[k].mean_k.size() != size) return wrong("groups of frames of different sizes");
+    if (groups[k].mean_k.size() != size) return wrong("the groups of frames have different sizes");
     if (!std::isfinite(groups[k].time_s) || !cv::checkRange(groups[k].mean_k))
-      return wrong("a group of frames holds a value that is no number");
-    if (groups[k].frames < 1) return wrong("a group without frames");
-    if (k > 0 && !(groups[k].time_s > groups[k - 1].time_s)) return wrong("times of groups of frames that do not rise");
+      return wrong("a group of frames contains a value that is not finite");
+    if (groups[k].frames < 1) return wrong("a group has no frames");
+    if (k > 0 && !(groups[k].time_s > groups[k - 1].time_s))
+      return wrong("the times of the groups of frames do not increase");
   }
   return {};
 }

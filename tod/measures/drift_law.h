@@ -1,4 +1,5 @@
-// How a camera drifts after a correction of its non-uniformity: growth of the mean and of the spatial noise.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Drift of a camera after a non-uniformity correction: growth of the mean and of the spatial noise.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -7,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
@@ -18,7 +19,7 @@ struct DriftGroup {
   cv::Mat1d mean_k;
 };
 
-/// How something grows with time.
+/// Growth with time.
 enum class DriftShape {
   linear,    ///< t
   approach,  ///< 1 - exp(-t / T)
@@ -36,32 +37,32 @@ struct DriftFit {
   double change_k = 0;                    ///< from the first group to the last, by the fit
   DriftInterval change_ci95{};            ///< in kelvin
   std::optional<double> time_constant_s;  ///< of an approach
-  DriftInterval time_constant_ci95{};     ///< open where the data leave it open
-  double p_linear = 1;                    ///< of a straight line, against an approach (F test)
+  DriftInterval time_constant_ci95{};     ///< a side that the data do not determine is open
+  double p_linear = 1;                    ///< p value of a straight line against an approach (F test)
   std::vector<double> seen_k, fitted_k;   ///< by group
 };
 
 /// Growth after a correction.
 struct DriftLaw {
   std::vector<double> time_s;  ///< of the groups
-  /// Mean of the picture. These pixels stand for those of the camera: what the mean of so many draws of the pattern is
-  /// beside 0 is in the interval.
+  /// Mean of the picture. The pixels are a sample of those of the camera: the interval contains the deviation from 0 of
+  /// the mean of that many draws of the pattern.
   DriftFit level;
   /// Standard deviation over the pixels of their change since the first group, without white noise, mean and shading of
-  /// second order. Its change is never below 0; an interval that begins at 0 leaves open whether there is any.
+  /// second order. Its change is never negative; an interval that begins at 0 does not prove a change.
   DriftFit pattern;
 
-  /// Of a change, in kelvin per minute: over the time from the first group to the last.
+  /// A change in kelvin per minute, over the time from the first group to the last.
   [[nodiscard]] double per_minute(double change_k) const;
 };
 
 inline constexpr std::size_t least_drift_groups = 8;
 
-/// Groups count by their frames. Least squares for the level; for the pattern analysis of variance of the pixels'
-/// regressions on time, with modified large sample intervals (Graybill and Wang 1980). An approach is taken where a
-/// straight line leaves more than chance explains (F test at 1 %; of the pattern beyond what a search among the noise
-/// of its pixels finds), with the time constant of least squares. Errors: `invalid_input` for fewer than eight groups,
-/// groups without frames, times that do not rise, or pictures below 4 x 4 pixels or of other sizes.
+/// Groups are weighted by their frames. The level is fitted by least squares, the pattern by analysis of variance of
+/// the pixels' regressions on time, with modified large-sample intervals (Graybill and Wang 1980). An approach replaces
+/// a straight line whose residuals exceed chance (F test at 1 %; for the pattern, beyond the result of a search in the
+/// noise of its pixels); its time constant is that of least squares. Errors: `invalid_input` (fewer than eight groups,
+/// groups without frames, times that do not rise, pictures below 4 x 4 pixels or of different sizes).
 [[nodiscard]] Result<DriftLaw> drift_law(std::span<const DriftGroup> groups);
 
 }  // namespace todbench

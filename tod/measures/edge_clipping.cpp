@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/edge_clipping.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ Side side_of(const std::vector<EdgeSample>& samples, double sign) {
   return side;
 }
 
-/// The plateau beyond the profile: how it scatters, and how much of it sits on the highest value.
+/// The plateau outside the profile: its scatter, and the share of it on the highest value.
 struct Plateau {
   double sd = 0, share_at_highest = 0;
   int count = 0;
@@ -60,7 +61,7 @@ double corner_slope(const Side& side, double stretch_pitch) {
   return way > 0 ? rise / way : 0;
 }
 
-/// The place where a falling function passes a value.
+/// Argument at which a falling function passes a value.
 template <typename Function>
 double falling_through(Function function, double value, double low, double high) {
   for (int i = 0; i < 60; ++i) {
@@ -70,7 +71,8 @@ double falling_through(Function function, double value, double low, double high)
   return 0.5 * (low + high);
 }
 
-/// What an edge lacks of its bright level at t, of the step: a detector of full fill behind a normal blur.
+/// Difference of an edge from its bright level at t, as a share of the step: a detector of full fill after a normal
+/// blur.
 double lacking(double t, double blur) {
   const auto integral = [&](double z) {
     const double density = std::exp(-0.5 * z * z / (blur * blur)) / std::sqrt(2 * std::numbers::pi);
@@ -79,8 +81,8 @@ double lacking(double t, double blur) {
   return 1 - (integral(t + 0.5) - integral(t - 0.5));
 }
 
-/// corner_slope() over the steepest slope of such an edge that is not clipped but rounded: the last count of the step
-/// is cut off. A detector makes more of a corner than any blur of the same width.
+/// corner_slope() over the steepest slope of an edge that is rounded and not clipped: the last count of the step is cut
+/// off. A detector gives a sharper corner than any blur of the same width.
 double rounded_corner(double width_pitch, double count_over_step, double stretch_pitch) {
   const double blur = falling_through([&](double s) { return -lacking(width_pitch / 2, s); }, -0.1, 0.05, width_pitch);
   const double first =
@@ -105,14 +107,14 @@ std::optional<std::string_view> clipped_side(const std::vector<EdgeSample>& samp
       std::max(0.1 + 6 * count, count > 0 ? 1.1 * rounded_corner(levels.width_pitch, count, stretch) : 0);
   const Side bright = side_of(samples, 1), dark = side_of(samples, -1);
   const Plateau of_bright = plateau_of(bright, from), of_dark = plateau_of(dark, from);
-  // A detector of full fill makes a ramp 0.77 to 0.8 pitch wide from 10 to 90 %, whose ends coarse counts turn into
-  // corners. Without blur they are corners, the same at either end.
+  // A detector of full fill gives a ramp 0.77 to 0.8 pitch wide from 10 to 90 %, whose ends coarse counts turn into
+  // corners. Without blur they are corners, equal at both ends.
   const double bright_corner = corner_slope(bright, stretch), dark_corner = corner_slope(dark, stretch);
   const bool alike = std::abs(bright_corner - dark_corner) < 0.1 * std::max(bright_corner, dark_corner);
   const bool detector =
       levels.width_pitch <= 0.88 && (levels.count_step > 1e-3 * step || (alike && levels.width_pitch > 0.76));
   const auto cut = [&](double corner, const Plateau& own, const Plateau& other) {
-    // Values that scatter meet their largest once in a while, not in every tenth pixel.
+    // Values that scatter reach their maximum rarely, not in every tenth pixel.
     const double negligible = 1e-6 * step;
     // A level between two counts is rounded to either, half a count from their middle.
     const double rounding = 0.52 * levels.count_step;

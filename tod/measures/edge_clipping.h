@@ -1,4 +1,5 @@
-// Whether the two levels of an edge were cut off.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Test for clipping of the two levels of an edge.
 #pragma once
 
 #include <optional>
@@ -9,16 +10,16 @@
 
 namespace todbench {
 
-/// What is known of an edge when it is examined.
+/// Properties of an edge before the test.
 struct EdgeLevels {
   double dark = 0, bright = 0;
   double width_pitch = 0;  ///< from 10 to 90 % of the step
   double steepest = 0;     ///< largest slope of the profile per pitch
-  double count_step = 0;   ///< of a picture of whole counts 1, else 0
+  double count_step = 0;   ///< 1 for a picture of whole counts, else 0
 };
 
-/// Which side was cut off ("bright", "dark"), if any: a plateau that sits on one value beside values that scatter, or a
-/// profile that meets its plateau with a corner.
+/// Returns the clipped side ("bright", "dark"), if any: a plateau that stays on one value next to values that scatter,
+/// or a profile that meets its plateau with a corner.
 [[nodiscard]] std::optional<std::string_view> clipped_side(const std::vector<EdgeSample>& samples,
                                                            const EdgeLevels& levels);
 

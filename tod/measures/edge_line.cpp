@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/edge_line.h"
 
 #include <algorithm>
@@ -20,12 +21,12 @@ Result<EdgeLine> first_line(const cv::Mat1d& picture) {
   const int side = std::max(2, picture.cols / 12);
   const double dark = median_of(picture.colRange(0, side));
   const double bright = median_of(picture.colRange(picture.cols - side, picture.cols));
-  if (!(bright > dark)) return fail(ErrorCode::invalid_input, "there is no edge: both sides are the same");
+  if (!(bright > dark)) return fail(ErrorCode::invalid_input, "there is no edge: both sides have the same level");
   EdgeLine line;
   line.middle_row = 0.5 * (picture.rows - 1);
   double first = 0, square = 0;
   for (int row = 0; row < picture.rows; ++row) {
-    // Of a row of pixels, each one pitch wide, so much is bright, whatever the profile between the two sides is.
+    // The bright share of a row of pixels, each one pitch wide, for any profile between the two sides.
     const double lit = (cv::sum(picture.row(row))[0] - picture.cols * dark) / (bright - dark);
     const double x = picture.cols - 0.5 - lit, y = row - line.middle_row;
     line.middle += x / picture.rows;

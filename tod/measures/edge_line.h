@@ -1,10 +1,11 @@
-// The straight line of an edge in a picture, and the picture's pixels by their distance from it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Straight line of an edge in a picture, and the picture's pixels by their distance from it.
 #pragma once
 
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/measures/edge_spline.h"
 
 namespace todbench {
@@ -24,21 +25,22 @@ struct EdgeSample {
   int row = 0;
 };
 
-/// A first line through an edge whose bright side is right: where each row's sum says that it changes sides.
-/// `invalid_input`: no step between the picture's sides.
+/// First estimate of the line of an edge whose bright side is right: the place in each row follows from the row's sum.
+/// Errors: `invalid_input` (no step between the picture's sides).
 [[nodiscard]] Result<EdgeLine> first_line(const cv::Mat1d& picture);
 
 /// Pixels within `reach` pitches of the line.
 [[nodiscard]] std::vector<EdgeSample> samples_near(const cv::Mat1d& picture, const EdgeLine& line, double reach);
 
-/// How far the profile can be followed to both sides in three rows of four, at most 32 pitches; negative where the line
+/// Distance to which the profile extends on both sides in three rows of four, at most 32 pitches; negative if the line
 /// leaves the picture.
 [[nodiscard]] double reach_of(const cv::Size& size, const EdgeLine& line);
 
-/// By how much each row's edge lies behind the line along the normal (in pitches, least squares against the profile).
+/// Displacement of each row's edge from the line along the normal, in pitches, positive towards the bright side (least
+/// squares against the profile).
 [[nodiscard]] std::vector<double> row_offsets(const std::vector<EdgeSample>& samples, const Spline& profile, int rows);
 
-/// What rows say about the line: a parabola's parts, each with its standard uncertainty.
+/// Parabola through the offsets of the rows: its coefficients, each with its standard uncertainty.
 struct RowTrend {
   double mean = 0, slope = 0;  ///< per row
   double sag = 0, sag_u = 0;   ///< middle against ends, positive towards positive offsets at the ends

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/edge_spline.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 namespace todbench {
 namespace {
 
-/// Where a value lies between two knots.
+/// Cell of a value between two knots, and its place in it.
 struct Place {
   std::size_t cell = 0;
   double u = 0;  ///< 0 ... 1

@@ -1,4 +1,5 @@
-// A smooth curve through very many samples of an edge: least squares with cubic B-splines.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Smooth curve through very many samples of an edge: least squares with cubic B-splines.
 #pragma once
 
 #include <array>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Evenly spaced knots from `start`; the curve lives on [start, start + cells * step].
+/// Evenly spaced knots from `start`; the domain is [start, start + cells * step].
 struct SplineGrid {
   double start = 0, step = 0.25;
   int cells = 0;
@@ -25,23 +26,22 @@ struct Spline {
   [[nodiscard]] double slope(double t) const;
 };
 
-/// The normal equations of a fit. They are sums over samples: those of a part can be taken out again.
+/// Normal equations of a fit. They are sums over samples, so that those of a part can be subtracted again.
 class SplineSums {
  public:
   explicit SplineSums(const SplineGrid& grid);
-  /// Samples off the grid are left out.
+  /// Ignores samples outside the grid.
   void add(double t, double value);
   SplineSums& operator+=(const SplineSums& other);
   SplineSums& operator-=(const SplineSums& other);
   [[nodiscard]] double samples() const { return samples_; }
-  /// The curve of least squares. Third differences cost a little, so that stretches without samples are bridged; at
-  /// half a cycle for each four knots this changes an amplitude by less than 1e-5. Nothing where there are fewer
-  /// samples than coefficients.
+  /// The least-squares curve. A small cost on third differences bridges stretches without samples; at half a cycle per
+  /// four knots it changes an amplitude by less than 1e-5. Empty if there are fewer samples than coefficients.
   [[nodiscard]] std::optional<Spline> solve() const;
 
  private:
   SplineGrid grid_;
-  std::vector<std::array<double, 4>> band_;  ///< the diagonal and what stands right of it
+  std::vector<std::array<double, 4>> band_;  ///< the diagonal and the elements right of it
   std::vector<double> right_;
   double samples_ = 0;
 };

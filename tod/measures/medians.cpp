@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/medians.h"
 
-#include "acquisition/core/median.h"
+#include "acquisition/base/median.h"
 
 namespace todbench {
 

@@ -1,11 +1,12 @@
-// Robust middles of pictures.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Robust centre and spread of pictures.
 #pragma once
 
 #include <opencv2/core.hpp>
 
 namespace todbench {
 
-/// Median over all pixels; of an even number the mean of the two middle ones. Precondition: not empty, no NaN.
+/// Median over all pixels; for an even number the mean of the two middle ones. Precondition: not empty, no NaN.
 [[nodiscard]] double median_of(const cv::Mat1d& picture);
 /// Median distance from the median.
 [[nodiscard]] double median_deviation_of(const cv::Mat1d& picture);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/pixel_blinking.h"
 
 #include <algorithm>
@@ -11,8 +12,8 @@ namespace {
 
 constexpr int most_stretches = 64, least_class = 3;
 
-/// Largest difference of the mean of stretches in a row from 0, over its standard uncertainty with a noise of 1 per
-/// frame: the scan for one episode on another level, of which a single step is the case that reaches the end.
+/// Largest difference from 0 of the mean of successive stretches, over its standard uncertainty for a noise of 1 per
+/// frame: the scan for one episode on another level. A single step is an episode that lasts to the end.
 double largest_episode(const float* values, int frames, std::vector<double>& sums) {
   const int per_stretch = (frames + most_stretches - 1) / most_stretches;
   const int stretches = frames / per_stretch;
@@ -48,7 +49,7 @@ struct Levels {
   double apart = 0, within = 0;  ///< difference of the means; pooled standard deviation
 };
 
-/// The parting into two classes that leaves least variance within (Otsu 1979, without bins).
+/// The partition into two classes with the least variance within them (Otsu 1979, without bins).
 Levels two_levels(const float* values, int frames, std::vector<float>& sorted) {
   sorted.assign(values, values + frames);
   std::sort(sorted.begin(), sorted.end());
@@ -79,7 +80,7 @@ cv::Mat1b blinking_pixels(const cv::Mat1f& series, cv::Size size, const Blinking
     const float* values = series[p];
     const cv::Point at(p % size.width, p / size.width);
     const double noise = noise_of_successive(values, frames);
-    // Rounding may leave a pixel alone for a while: it has no less noise than half of the median pixel's.
+    // Rounding may keep a pixel constant for a while: its noise counts as at least half of the median pixel's.
     episode(at) = largest_episode(values, frames, sums) / std::max(noise, 0.5 * rules.noise_sd);
     const Levels levels = two_levels(values, frames, sorted);
     if (levels.apart > rules.levels * std::max(levels.within, rules.noise_sd)) blinking(at) = 255;

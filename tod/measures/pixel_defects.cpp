@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/pixel_defects.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "acquisition/core/median.h"
+#include "acquisition/base/median.h"
 #include "tod/measures/medians.h"
 #include "tod/measures/pixel_blinking.h"
 #include "tod/measures/pixel_noise.h"
@@ -19,12 +20,15 @@ namespace {
 constexpr int least_frames = 16, least_frames_blinking = 48, least_side = 8;
 
 Result<void> check_cube(std::span<const cv::Mat1f> frames) {
-  if (frames.size() < least_frames) return fail(ErrorCode::invalid_input, "too few frames to tell pixels apart");
+  if (frames.size() < least_frames)
+    return fail(ErrorCode::invalid_input,
+                fmt::format("the test for defective pixels needs at least {} frames", least_frames));
   for (const cv::Mat1f& frame : frames) {
-    if (frame.size() != frames[0].size()) return fail(ErrorCode::invalid_input, "frames of different sizes");
+    if (frame.size() != frames[0].size()) return fail(ErrorCode::invalid_input, "the frames have different sizes");
     if (frame.rows < least_side || frame.cols < least_side)
-      return fail(ErrorCode::invalid_input, "too few rows or columns to tell pixels apart");
-    if (!cv::checkRange(frame)) return fail(ErrorCode::invalid_input, "a frame holds a value that is no number");
+      return fail(ErrorCode::invalid_input,
+                  fmt::format("the test for defective pixels needs at least {0} x {0} pixels", least_side));
+    if (!cv::checkRange(frame)) return fail(ErrorCode::invalid_input, "a frame contains a value that is not finite");
   }
   return {};
 }
@@ -35,7 +39,7 @@ cv::Mat1d mean_of(std::span<const cv::Mat1f> frames) {
   return sum / static_cast<double>(frames.size());
 }
 
-/// Medians, so that a pixel that jumps takes no neighbours with it.
+/// Medians, so that a pixel that jumps does not affect its neighbours.
 void remove_row_medians(cv::Mat1f& picture) {
   std::vector<double> values(static_cast<std::size_t>(picture.cols));
   for (int y = 0; y < picture.rows; ++y) {
@@ -46,7 +50,7 @@ void remove_row_medians(cv::Mat1f& picture) {
   }
 }
 
-/// What each pixel does in time by itself, pixels in rows, frames in columns.
+/// Independent part of each pixel in time: pixels in rows, frames in columns.
 cv::Mat1f series_of(std::span<const cv::Mat1f> frames, const cv::Mat1d& mean) {
   const auto pixels = static_cast<int>(mean.total());
   cv::Mat1f series(pixels, static_cast<int>(frames.size()));
@@ -82,7 +86,7 @@ cv::Mat1b constant_pixels(std::span<const cv::Mat1f> frames) {
   return constant;
 }
 
-/// How many live pixels of so many would show one count only, of noise in counts whose mean is where that is likeliest.
+/// Expected number of live pixels that show one count only, for noise in counts with the most favourable mean.
 double expected_constant(double noise_counts, int frames, double pixels) {
   return pixels * std::pow(std::erf(0.5 / (noise_counts * std::numbers::sqrt2)), frames);
 }
@@ -98,7 +102,7 @@ cv::Mat1b unresponsive_pixels(const cv::Mat1d& responsivity, double limit, int& 
   if (middle == 0) return out;
   for (int y = 0; y < out.rows; ++y) {
     for (int x = 0; x < out.cols; ++x)
-      out(y, x) = std::abs(responsivity(y, x) / middle - 1) > limit ? 255 : 0;  // false for what is no number
+      out(y, x) = std::abs(responsivity(y, x) / middle - 1) > limit ? 255 : 0;  // false for NaN
   }
   return out;
 }
@@ -148,7 +152,7 @@ Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const Pixe
   const double noise = median_of(out.noise_sd);
   const double noise_counts = scene.unit_per_count ? noise / *scene.unit_per_count : 0;
   if (scene.unit_per_count && noise_counts < least_measurable_noise_counts)
-    return fail(ErrorCode::invalid_input, "the scale is too coarse for the noise of a pixel to be seen");
+    return fail(ErrorCode::invalid_input, "the scale is too coarse to show the noise of a pixel");
   const auto common = bad_pixels({.offset = out.mean_frame, .noise_sd = out.noise_sd}, rules.bad);
   if (!common) return tl::unexpected(common.error());
   for (cv::Mat1b& map : out.found) map = cv::Mat1b::zeros(size);
@@ -159,7 +163,7 @@ Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const Pixe
   if (!scene.unit_per_count || expected_constant(noise_counts, out.frames, static_cast<double>(size.area())) < 0.01)
     map(PixelDefect::stuck) = constant;
   else
-    out.not_tested.emplace_back("stuck pixels: too few frames for so coarse a scale");
+    out.not_tested.emplace_back("stuck pixels: too few frames for the coarse scale");
   if (!scene.responsivity.empty())
     map(PixelDefect::unresponsive) =
         unresponsive_pixels(scene.responsivity, rules.bad.dead_responsivity, out.response_tested);
@@ -171,7 +175,7 @@ Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const Pixe
   const auto replaced = substituted_pixels(
       frames, constant, {.chance = rules.chance, .unit_per_count = scene.unit_per_count.value_or(0)});
   map(PixelDefect::substituted) = replaced.found;
-  if (!replaced.tested) out.not_tested.emplace_back("substituted pixels: too few frames, or too coarse a scale");
+  if (!replaced.tested) out.not_tested.emplace_back("substituted pixels: too few frames or a scale that is too coarse");
   out.bad = cv::Mat1b::zeros(size);
   for (const PixelDefect kind : pixel_defect_kinds)
     if (kind != PixelDefect::substituted) out.bad |= out.of(kind);
@@ -187,7 +191,7 @@ ZoneCount count_zone(const PixelDefects& defects, const cv::Rect& field, const c
   const cv::Rect inside = seen - field.tl();
   count.bad = cv::countNonZero(defects.bad(inside));
   count.substituted = cv::countNonZero(defects.of(PixelDefect::substituted)(inside));
-  // A cluster is counted at its first pixel in the zone, and crossed out.
+  // A cluster is counted at its first pixel in the zone, and then erased.
   cv::Mat1i left = defects.cluster.clone();
   for (int y = inside.y; y < inside.y + inside.height; ++y) {
     for (int x = inside.x; x < inside.x + inside.width; ++x) {

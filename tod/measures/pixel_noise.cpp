@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/pixel_noise.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/measures/medians.h"
 
 namespace todbench {
@@ -39,10 +40,10 @@ double c4_of(double count) {
 
 Result<void> check(std::span<const cv::Mat1d> frames) {
   if (frames.size() < 3 || frames[0].total() < 2)
-    return fail(ErrorCode::invalid_input, "temporal noise of pixels needs at least three frames of two pixels");
+    return fail(ErrorCode::invalid_input, "the temporal noise of pixels needs at least three frames of two pixels");
   for (const cv::Mat1d& frame : frames) {
-    if (frame.size() != frames[0].size()) return fail(ErrorCode::invalid_input, "frames of different sizes");
-    if (!cv::checkRange(frame)) return fail(ErrorCode::invalid_input, "a frame holds a value that is no number");
+    if (frame.size() != frames[0].size()) return fail(ErrorCode::invalid_input, "the frames have different sizes");
+    if (!cv::checkRange(frame)) return fail(ErrorCode::invalid_input, "a frame contains a value that is not finite");
   }
   return {};
 }
@@ -55,7 +56,7 @@ Result<PixelNoise> pixel_noise(std::span<const cv::Mat1d> frames) {
   const TimeSums sums = sums_of(frames);
   cv::Mat1d about_mean = sums.squares - sums.change.mul(sums.change) / n;
   about_mean = cv::max(about_mean, 0.0);
-  // Squares that a straight line in time takes: (sum (k - middle) x)^2 / sum (k - middle)^2.
+  // Squares explained by a straight line in time: (sum (k - middle) x)^2 / sum (k - middle)^2.
   const cv::Mat1d of_line = sums.ramp.mul(sums.ramp) / (n * (n * n - 1) / 12);
   PixelNoise noise;
   noise.frames = static_cast<int>(frames.size());
@@ -82,7 +83,7 @@ double variance_of_rounded(double sd_counts, double phase_counts) {
   const auto above = [&](double edge) {
     return 0.5 * std::erfc((edge - phase_counts) / (sd_counts * std::numbers::sqrt2));
   };
-  // A normal value in single steps of one count; 40 standard deviations hold all of it.
+  // A normal value in single steps of one count, within 40 standard deviations.
   const int reach = static_cast<int>(std::ceil(40 * sd_counts)) + 2;
   const int middle = static_cast<int>(std::lround(phase_counts));
   double mean = 0, square = 0;

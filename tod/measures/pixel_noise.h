@@ -1,4 +1,5 @@
-// Temporal noise of pixels from one cube of frames, by the definitions that data sheets use, side by side.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Temporal noise of pixels from one cube of frames, by the definitions used in data sheets.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -6,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
@@ -15,28 +16,28 @@ struct PixelNoise {
   int frames = 0;
   double sd_rms = 0;                      ///< root of the mean variance of the pixels: the temporal noise
   std::pair<double, double> sd_rms_ci95;  ///< chi-squared with pixels x (T - 1): for independent pixels and frames
-  double sd_rms_detrended = 0;            ///< the same without each pixel's straight line in time (divides by T - 2)
+  double sd_rms_detrended = 0;            ///< without each pixel's straight line in time (divides by T - 2)
   double sd_frame_differences = 0;        ///< sqrt(mean d^2 / 2) of successive frames: low by sqrt(1 - rho)
-  double mean_of_pixel_sd = 0;            ///< low by c4 and by the spread of the pixels: what some data sheets state
+  double mean_of_pixel_sd = 0;            ///< low by c4 and by the spread of the pixels; stated in some data sheets
   double c4 = 1;                          ///< mean of the standard deviation of T normal values over their true one
   double mean_of_pixel_sd_corrected = 0;  ///< mean_of_pixel_sd / c4
   double median_pixel_sd = 0;             ///< hides noisy pixels
-  /// Variance over pixels of the mean frame without sd_rms^2 / T, which the temporal noise leaves in it; signed.
+  /// Variance over pixels of the mean frame minus sd_rms^2 / T, the contribution of the temporal noise; signed.
   double fixed_pattern_variance = 0;
   cv::Mat1d pixel_sd;    ///< of each pixel
   cv::Mat1d mean_frame;  ///< over time
 };
 
-/// Frames of one cube, in order, with no correction between them. `invalid_input`: fewer than three frames or two
-/// pixels, frames of different sizes, a value that is not finite.
+/// Frames of one cube, in order, with no correction between them. Errors: `invalid_input` (fewer than three frames or
+/// two pixels, frames of different sizes, a value that is not finite).
 [[nodiscard]] Result<PixelNoise> pixel_noise(std::span<const cv::Mat1d> frames);
 
-/// Where a scale is too coarse for its noise to be measured: below half a count rounding eats it, and what is left
-/// depends on where between two counts the mean lies (at 0.3 counts from 0.10 to 0.17 counts^2).
+/// Smallest noise that can be measured. Below half a count rounding removes it, and the rest depends on the place of
+/// the mean between two counts (at 0.3 counts from 0.10 to 0.17 counts^2).
 inline constexpr double least_measurable_noise_counts = 0.5;
 
 /// Variance of a normal value with this standard deviation after rounding to whole counts; `phase_counts` is the mean's
-/// distance from a whole count. sd^2 + 1/12 where the noise is above a count.
+/// distance from a whole count. sd^2 + 1/12 if the noise is above a count.
 [[nodiscard]] double variance_of_rounded(double sd_counts, double phase_counts);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/pixel_substitution.h"
 
 #include <algorithm>
@@ -5,18 +6,18 @@
 #include <cmath>
 #include <vector>
 
-#include "acquisition/core/distributions.h"
-#include "acquisition/core/median.h"
+#include "acquisition/base/distributions.h"
+#include "acquisition/base/median.h"
 
 namespace todbench {
 namespace {
 
-/// Of the median pixel's variance: live pixels differ in their noise.
+/// Relative to the median pixel's variance: live pixels differ in their noise.
 constexpr double quietest_live = 0.3;
 
 using Sources = std::vector<cv::Point>;
 
-/// What a camera may put in place of a pixel: the mean of some of the four nearest, a diagonal one, the mean of eight.
+/// Possible substitutes of a pixel: the mean of some of the four nearest, a diagonal one, the mean of eight.
 std::vector<Sources> candidates() {
   const std::array<cv::Point, 4> nearest{cv::Point(-1, 0), cv::Point(0, -1), cv::Point(1, 0), cv::Point(0, 1)};
   const std::array<cv::Point, 4> diagonal{cv::Point(-1, -1), cv::Point(1, -1), cv::Point(-1, 1), cv::Point(1, 1)};
@@ -110,7 +111,7 @@ SubstitutedPixels substituted_pixels(std::span<const cv::Mat1f> frames, const cv
     if (freedom < 2) continue;
     const double p = rules.chance / (static_cast<double>(constant.total()) * static_cast<double>(all.size()));
     const double limit = std::min(quantile(distribution::ChiSquared(freedom), p) / freedom, quietest_live);
-    // Rounding of the pixel and of the sources is left of a copy; half again for its scatter.
+    // A copy differs by the rounding of pixel and sources only; half of that is added for its scatter.
     const double rounding =
         rules.unit_per_count * rules.unit_per_count / 12 * (1 + 1.0 / static_cast<double>(sources.size()));
     if (!(1.5 * rounding < limit * live) || !(limit > 1e-3)) continue;
@@ -118,7 +119,7 @@ SubstitutedPixels substituted_pixels(std::span<const cv::Mat1f> frames, const cv
     for (int y = 0; y < constant.rows; ++y) {
       for (int x = 0; x < constant.cols; ++x) {
         if (constant(y, x) != 0 || found.variance(y, x) < 0 || found.variance(y, x) >= limit * live) continue;
-        // Against pixels that never change only its own noise is left, half of what is expected of two.
+        // Relative to pixels that never change only its own noise remains, half of the expected noise of two.
         const bool dead_sources = std::all_of(
             sources.begin(), sources.end(), [&](cv::Point source) { return constant(cv::Point(x, y) + source) != 0; });
         if (dead_sources) continue;
@@ -126,8 +127,8 @@ SubstitutedPixels substituted_pixels(std::span<const cv::Mat1f> frames, const cv
       }
     }
   }
-  // The surest first: a live neighbour of a substituted pixel resembles it, but less than that resembles its sources.
-  // Of two that are equal the later one in reading order is the copy.
+  // The surest first: a live neighbour of a substituted pixel resembles it, but less than the pixel resembles its
+  // sources. Of two equal ones the later one in reading order is the copy.
   std::stable_sort(equal.begin(), equal.end(), [](const Equal& a, const Equal& b) {
     if (a.ratio != b.ratio) return a.ratio < b.ratio;
     return a.pixel.y != b.pixel.y ? a.pixel.y > b.pixel.y : a.pixel.x > b.pixel.x;

@@ -1,4 +1,5 @@
-// Pixels that a camera has replaced by their neighbours: nothing of their own is in any frame.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pixels that a camera has replaced by their neighbours, so that frames contain none of their own signal.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -7,17 +8,17 @@
 namespace todbench {
 
 struct SubstitutionRules {
-  double chance = 1e-3;       ///< of taking a live pixel for one, over all pixels together
-  double unit_per_count = 0;  ///< rounding of the frames; 0: none is known
+  double chance = 1e-3;       ///< probability, over all pixels, of taking a live pixel for substituted
+  double unit_per_count = 0;  ///< rounding of the frames; 0: not known
 };
 
 struct SubstitutedPixels {
-  cv::Mat1b found;      ///< 255 where a pixel is one
-  bool tested = false;  ///< enough frames and a scale fine enough to tell
+  cv::Mat1b found;      ///< 255 for a substituted pixel
+  bool tested = false;  ///< enough frames and a fine enough scale
 };
 
-/// `constant`: pixels that never change, which equal each other without being copies. Precondition: two frames or more
-/// of one size.
+/// `constant`: pixels that never change, and equal each other without being copies. Precondition: at least two frames,
+/// all of one size.
 [[nodiscard]] SubstitutedPixels substituted_pixels(std::span<const cv::Mat1f> frames, const cv::Mat1b& constant,
                                                    const SubstitutionRules& rules);
 

@@ -1,4 +1,5 @@
-// What changes slowly over a flat field: optics, shutter and housing, not the pixels.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Slow variation over a flat field: optics, shutter and housing, not the pixels.
 #pragma once
 
 #include <opencv2/core.hpp>

@@ -1,19 +1,20 @@
-// Signal transfer (SiTF): the straight line through the camera's answer to steps of temperature.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Signal transfer (SiTF): straight line through the camera's response to temperature steps.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// One step: what was set and what the camera answered.
+/// One step: the set temperature and the camera's response.
 struct TemperatureStep {
   double delta_t_k = 0;              ///< effective contrast, or a black body's temperature
-  double signal = 0;                 ///< mean answer, in counts or in the camera's own unit
-  std::optional<double> signal_u{};  ///< standard uncertainty of it; all steps have one or none has
+  double signal = 0;                 ///< mean response, in counts or in the camera's own unit
+  std::optional<double> signal_u{};  ///< standard uncertainty of the signal; stated for all steps or for none
 };
 
 /// signal = offset + slope delta_t_k, by least squares with the weights 1 / signal_u^2 (equal weights without).
@@ -25,15 +26,15 @@ struct SignalTransfer {
   double slope_u_scatter = 0;              ///< from the residuals
   std::optional<double> chi2{};            ///< of the residuals under the stated uncertainties
   int degrees_of_freedom = 0;
-  std::optional<double> p{};        ///< how often a straight line leaves a larger chi2
+  std::optional<double> p{};        ///< probability of a larger chi2 for a straight line
   double largest_residual = 0;      ///< in the unit of the signal
   double nonlinearity_percent = 0;  ///< largest residual over the span of the line between the outermost steps
   double r_squared = 0;             ///< hides a nonlinearity of 1 % behind 0.9999
   std::vector<double> residuals{};  ///< of each step
 };
 
-/// `invalid_input`: fewer than three steps, steps without spread, a value that is not finite, an uncertainty that is
-/// not positive or stands for some steps only, or a signal that does not change at all.
+/// Errors: `invalid_input` (fewer than three steps, steps without spread, a value that is not finite, an uncertainty
+/// that is not positive or is stated for some steps only, or a constant signal).
 [[nodiscard]] Result<SignalTransfer> signal_transfer(std::span<const TemperatureStep> steps);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/slanted_edge.h"
 
 #include <fmt/format.h>
@@ -18,24 +19,28 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double steepest_slant_deg = 25;
 constexpr double least_reach_pitch = 5;
-constexpr double largest_gap_pitch = 0.3;  // between samples where the profile changes: three phases a pitch and more
+constexpr double largest_gap_pitch = 0.3;  // between samples on the slope of the profile: at least three phases a pitch
 constexpr double knots_pitch = 0.25;
-constexpr double bent_pitch = 0.25;  // beyond it the profile is that of a curve
+constexpr double bent_pitch = 0.25;  // with more curvature the profile is that of a curve
 constexpr double noted_bend_pitch = 0.05;
-constexpr double sure = 4;  // standard uncertainties
+constexpr double least_displacement = 0.003;  // pitches: knots and rounding
+constexpr double most_displacement = 0.3;
+constexpr double noted_displacement = 0.02;
+constexpr double sure = 4;             // standard uncertainties
+constexpr double widest_share = 0.25;  // of the picture: wider halos are a loss of contrast of the whole picture
 
 double mean_of(const cv::Mat1d& picture) {
   return cv::mean(picture)[0];
 }
 
-/// The axis along which neighbours differ more: an edge across it does so in every line, and noise alike along both.
+/// The axis along which neighbours differ more: an edge across it contributes in every line, noise equally along both.
 EdgeAxis axis_across(const cv::Mat1d& p) {
   const cv::Mat1d x = p.colRange(2, p.cols) - p.colRange(0, p.cols - 2);
   const cv::Mat1d y = p.rowRange(2, p.rows) - p.rowRange(0, p.rows - 2);
   return mean_of(x.mul(x)) >= mean_of(y.mul(y)) ? EdgeAxis::x : EdgeAxis::y;
 }
 
-/// A picture whose edge is nearly vertical with the bright side right, in units of which nothing is kept.
+/// A picture whose edge is nearly vertical with the bright side right; its unit is arbitrary.
 struct Upright {
   cv::Mat1d picture;
   EdgeAxis axis = EdgeAxis::x;
@@ -45,13 +50,14 @@ struct Upright {
 Result<Upright> upright(const cv::Mat1d& picture, const SlantedEdgeOptions& options) {
   if (picture.rows < 10 || picture.cols < 10)
     return fail(ErrorCode::invalid_input, "the picture is smaller than 10 x 10 pixels");
-  if (!cv::checkRange(picture)) return fail(ErrorCode::invalid_input, "the picture holds a value that is no number");
+  if (!cv::checkRange(picture))
+    return fail(ErrorCode::invalid_input, "the picture contains a value that is not finite");
   Upright out;
   double low = 0, high = 0;
   cv::minMaxLoc(picture, &low, &high);
-  if (!(high > low)) return fail(ErrorCode::invalid_input, "there is no edge: every pixel is the same");
+  if (!(high > low)) return fail(ErrorCode::invalid_input, "there is no edge: all pixels have the same value");
   if (!std::isfinite(high - low))
-    return fail(ErrorCode::invalid_input, "the pixels reach over more than a number holds");
+    return fail(ErrorCode::invalid_input, "the values of the pixels exceed the range of numbers");
   out.axis = options.axis.value_or(axis_across(picture));
   cv::Mat1d p = picture - low;
   if (out.axis == EdgeAxis::y) p = p.t();
@@ -63,7 +69,7 @@ Result<Upright> upright(const cv::Mat1d& picture, const SlantedEdgeOptions& opti
   return out;
 }
 
-/// The straight line, the profile along it and what is known of both.
+/// The straight line, the profile along it and their properties.
 struct Found {
   EdgeLine line;
   std::vector<EdgeSample> samples;
@@ -86,8 +92,8 @@ std::optional<Spline> profile_of(const std::vector<EdgeSample>& samples, double 
   return sums.solve();
 }
 
-/// Where the profile first passes a level on its way from the edge to one side. On a noisy profile that is too near
-/// rather than far too far.
+/// First place at which the profile passes a level on the way from the edge to one side; on a noisy profile rather too
+/// near than far too far.
 double crossing(const Spline& profile, double level, double direction) {
   constexpr double fine = 0.02;
   double t = 0;
@@ -120,22 +126,20 @@ Result<void> check_line(const Upright& in, const EdgeLine& line) {
   }
   const double left = std::min(line.at(0), line.at(rows - 1)), right = std::max(line.at(0), line.at(rows - 1));
   if (left < -0.5 || right > in.picture.cols - 0.5)
-    return fail(ErrorCode::invalid_input, "the edge leaves the picture, a region may be given that holds it whole");
+    return fail(ErrorCode::invalid_input, "the edge leaves the picture: choose a region that contains all of it");
   if (std::min(left + 0.5, in.picture.cols - 0.5 - right) < least_reach_pitch) {
     return fail(ErrorCode::invalid_input,
                 fmt::format("the edge comes closer than {} pixels to the border of the picture", least_reach_pitch));
   }
   if (std::abs(line.slope) * rows < 1) {
-    return fail(
-        ErrorCode::invalid_input,
-        fmt::format("the edge is slanted by {:.2f} degrees only: over the {} lines of the picture it crosses less "
-                    "than one pixel",
-                    std::abs(slant), rows));
+    return fail(ErrorCode::invalid_input, fmt::format("the edge is slanted by only {:.2f} degrees: over the {} lines "
+                                                      "of the picture it crosses less than one pixel",
+                                                      std::abs(slant), rows));
   }
   return {};
 }
 
-/// The samples where the profile changes lie close enough together.
+/// Checks that samples on the slope of the profile are close enough together.
 Result<void> check_gaps(const std::vector<EdgeSample>& samples) {
   std::vector<double> places;
   for (const EdgeSample& sample : samples) {
@@ -145,7 +149,7 @@ Result<void> check_gaps(const std::vector<EdgeSample>& samples) {
   for (std::size_t i = 1; i < places.size(); ++i) {
     if (places[i] - places[i - 1] > largest_gap_pitch)
       return fail(ErrorCode::invalid_input,
-                  "the slant leaves gaps between the samples of the edge: it repeats after too few lines");
+                  "the samples across the edge have gaps, because its slant repeats after too few lines");
   }
   return {};
 }
@@ -159,7 +163,7 @@ double residual_sd(const std::vector<EdgeSample>& samples, const Spline& profile
   return std::sqrt(sum / std::max(1.0, count - static_cast<double>(profile.coefficients.size())));
 }
 
-/// Lets line and profile settle on each other.
+/// Iterates line and profile until they agree.
 Result<Found> settled(const Upright& in) {
   auto line = first_line(in.picture);
   if (!line) return tl::unexpected(line.error());
@@ -172,8 +176,7 @@ Result<Found> settled(const Upright& in) {
     const auto profile = profile_of(found.samples, found.reach);
     if (!profile) return fail(ErrorCode::invalid_input, "the picture has too few lines for its edge");
     found.trend = trend_of(row_offsets(found.samples, *profile, in.picture.rows));
-    // A wrong line makes the profile wide and its first correction too small or too large, never one in the wrong
-    // direction.
+    // A wrong line makes the profile wide and its first correction too small or too large, never of the wrong sign.
     found.line.middle += std::clamp(found.trend.mean, -1.0, 1.0) / found.line.cosine();
     found.line.slope += found.trend.slope / found.line.cosine();
     if (std::abs(found.trend.mean) + std::abs(found.trend.slope) * in.picture.rows < 1e-7) break;
@@ -190,7 +193,7 @@ Result<Found> settled(const Upright& in) {
   return found;
 }
 
-/// A plane through the samples of one side beyond the profile: its slopes along the normal and along the lines.
+/// A plane through the samples of one side outside the profile: its slopes along the normal and along the lines.
 struct SidePlane {
   double along = 0, across = 0;
 };
@@ -223,12 +226,12 @@ SidePlane side_plane(const std::vector<EdgeSample>& samples, double from, double
   return {there(plane.along, rr, t_range) ? plane.along : 0, there(plane.across, tt, row_range) ? plane.across : 0};
 }
 
-/// Takes out of the picture what slopes on the two sides of the edge, each as far as the side goes; by how much of the
-/// step they changed over the profile's reach.
+/// Removes the slope of each side of the edge from the picture; returns their change over the profile's reach relative
+/// to the step.
 double remove_shading(cv::Mat1d& picture, const Found& found, const Spline& profile) {
   const double step = found.levels.bright - found.levels.dark;
   const double from = 2 * found.levels.width_pitch + 2;
-  // Less than a count is what rounding makes of a field that is flat.
+  // A slope of less than a count may be rounding of a flat field.
   const double least = std::max(1e-4 * step, found.levels.count_step);
   const SidePlane dark = side_plane(found.samples, from, -1, least);
   const SidePlane bright = side_plane(found.samples, from, 1, least);
@@ -247,7 +250,8 @@ double remove_shading(cv::Mat1d& picture, const Found& found, const Spline& prof
   return std::max(change(dark), change(bright)) / step;
 }
 
-/// As much of the profile as noise allows, and never less than the edge needs: faint far tails of the optics count too.
+/// Largest part of the profile that noise permits, at least the part that the edge needs: faint far tails of the optics
+/// count too.
 EdgeWindow window_for(const Found& found, int rows) {
   constexpr double allowed = 0.003;  // of the MTF at half a cycle per pitch, by noise
   const double step = found.levels.bright - found.levels.dark;
@@ -258,8 +262,8 @@ EdgeWindow window_for(const Found& found, int rows) {
   return {flat, std::min(1.5 * flat, found.reach)};
 }
 
-/// A flat field beyond the profile that is not one count alone: its level lies between two, and where it changes from
-/// one to the other is chance.
+/// Whether a flat field outside the profile has more than one count: its level lies between two, and the place of the
+/// change is random.
 bool between_counts(const Found& found) {
   const double from = 2 * found.levels.width_pitch + 1;
   std::array<std::pair<double, double>, 2> ends{std::pair(HUGE_VAL, -HUGE_VAL), std::pair(HUGE_VAL, -HUGE_VAL)};
@@ -271,9 +275,9 @@ bool between_counts(const Found& found) {
   return std::any_of(ends.begin(), ends.end(), [](const auto& end) { return end.second > end.first; });
 }
 
-/// What rounding may do to the profile, as a share of the step, where nothing spreads it: half a count of each tail is
-/// cut off; a flat field that changes by a count adds that to the edge, and as much to the step. Noise takes the
-/// systematic part out, as exp(-2 pi^2 sd^2) of it with the standard deviation in counts.
+/// Effect of rounding on the profile, as a share of the step, without spreading noise: half a count of each tail is cut
+/// off; a flat field that changes by a count adds that to the edge, and the same to the step. Noise removes the
+/// systematic part, by exp(-2 pi^2 sd^2) with the standard deviation in counts.
 double rounding_of(const Found& found) {
   if (!(found.levels.count_step > 0)) return 0;
   const double sd = found.residual_sd / found.levels.count_step;
@@ -286,7 +290,7 @@ double rounding_of(const Found& found) {
 Result<void> check_profile(const Found& found) {
   const double step = found.levels.bright - found.levels.dark;
   if (!(step > 3 * found.residual_sd) || !(found.levels.width_pitch > 0) || !(found.levels.steepest > 0))
-    return fail(ErrorCode::invalid_input, "no straight edge stands out of the noise and the rest of the picture");
+    return fail(ErrorCode::invalid_input, "no straight edge stands out from the noise and the rest of the picture");
   if (std::abs(found.trend.sag) > bent_pitch && std::abs(found.trend.sag) > sure * found.trend.sag_u) {
     return fail(ErrorCode::invalid_input,
                 fmt::format("the edge is bent by {:.2f} pixels, expected a straight one", std::abs(found.trend.sag)));
@@ -295,10 +299,126 @@ Result<void> check_profile(const Found& found) {
   if (1.6 * found.levels.width_pitch + 2 > found.reach) {
     return fail(
         ErrorCode::invalid_input,
-        fmt::format("the edge is {:.1f} pixels wide and has {:.1f} on each side, which is too narrow a surrounding",
-                    found.levels.width_pitch, found.reach));
+        fmt::format(
+            "the surround of the edge is too narrow: the edge is {:.1f} pixels wide and has {:.1f} pixels on each side",
+            found.levels.width_pitch, found.reach));
   }
   return {};
+}
+
+/// Profiles of the model's columns at the samples of the edge.
+template <typename Columns>
+std::optional<std::vector<Spline>> column_profiles(const Found& found, std::size_t count, const Columns& columns_at) {
+  std::vector<SplineSums> sums(count, SplineSums(found.profile.grid));
+  std::vector<double> columns(count);
+  for (const EdgeSample& sample : found.samples) {
+    columns_at(sample, columns);
+    for (std::size_t i = 0; i < count; ++i) sums[i].add(sample.t, columns[i]);
+  }
+  std::vector<Spline> profiles;
+  for (const SplineSums& sum : sums) {
+    auto profile = sum.solve();
+    if (!profile) return std::nullopt;
+    profiles.push_back(*std::move(profile));
+  }
+  return profiles;
+}
+
+std::optional<EdgeTails> plate_tails(const Upright& in, const Found& found, const PlateTails& plate) {
+  const double cosine = found.line.cosine();
+  auto profiles = column_profiles(found, plate.fit.unknowns(), [&](const EdgeSample& sample, auto& columns) {
+    const double x = sample.t / cosine + found.line.at(sample.row);
+    plate.columns(in.axis == EdgeAxis::x ? cv::Point2d(x, sample.row) : cv::Point2d(sample.row, x), columns);
+  });
+  if (!profiles) return std::nullopt;
+  const Spline& narrow = (*profiles)[edge_tails::step];
+  const double orientation = narrow.value(narrow.grid.end()) < narrow.value(narrow.grid.start) ? -1 : 1;
+  return EdgeTails{plate.fit, *std::move(profiles), std::abs(plate.step), orientation};
+}
+
+/// Tails, level, step and a slope of each side along the normal and along the lines, from the picture itself.
+std::optional<EdgeTails> own_tails(const Upright& in, const Found& found, const cv::Mat1d& seen,
+                                   const SlantedEdgeOptions& options) {
+  constexpr std::size_t slopes = 4, unknowns = edge_tails::first_shading + slopes;
+  constexpr double unit = 10;  // pitches
+  const double sigma = std::max(found.levels.width_pitch / 2.563, 0.1);
+  double middle = 0;  // of the step along the normal
+  {
+    const double half = 0.5 * (found.levels.dark + found.levels.bright);
+    middle = crossing(found.profile, half, 1);
+    if (middle == 0) middle = crossing(found.profile, half, -1);
+  }
+  const auto columns_at = [&](const EdgeSample& sample, std::vector<double>& columns) {
+    const double t = sample.t - middle, row = (sample.row - found.line.middle_row) / unit;
+    set_tail_columns(t, columns);
+    const double lit = 0.5 * std::erfc(-t / sigma / std::numbers::sqrt2);
+    const std::size_t at = edge_tails::first_shading;
+    columns[at] = lit * t / unit, columns[at + 1] = (1 - lit) * t / unit;
+    columns[at + 2] = lit * row, columns[at + 3] = (1 - lit) * row;
+  };
+  const double core = std::max(1.2 * found.levels.width_pitch + 1.2, 3.0);
+  const double step = found.levels.bright - found.levels.dark;
+  TailSamples tails(slopes);
+  std::vector<double> columns(unknowns);
+  constexpr int block = 8;
+  const int across = in.picture.cols / block + 1;
+  for (const EdgeSample& sample : samples_near(seen, found.line, in.picture.cols)) {
+    if (std::abs(sample.t - middle) < core) continue;
+    columns_at(sample, columns);
+    const int x = static_cast<int>(std::lround(sample.t / found.line.cosine() + found.line.at(sample.row)));
+    tails.add(columns, (sample.value - found.levels.dark) / step, 1,
+              static_cast<std::size_t>(sample.row / block * across + x / block));
+  }
+  TailBounds bounds = options.tails;
+  bounds.widest_pitch = std::min(bounds.widest_pitch, widest_share * in.picture.cols * found.line.cosine());
+  auto fit = tails.fit(bounds);
+  if (!fit) return std::nullopt;
+  auto profiles = column_profiles(found, unknowns, columns_at);
+  if (!profiles) return std::nullopt;
+  return EdgeTails{*std::move(fit), *std::move(profiles), step, 1};
+}
+
+/// Variance of the lines' places about the straight edge in excess of noise: interlaced fields, a bend, vibration. 0 if
+/// not significant at 1 %, else its upper 95 % limit.
+Result<double> line_displacement(const Found& found) {
+  const int rows = found.samples.back().row + 1;
+  std::vector<double> squares(static_cast<std::size_t>(rows));
+  for (const EdgeSample& sample : found.samples)
+    if (sample.t >= found.profile.grid.start && sample.t <= found.profile.grid.end())
+      squares[static_cast<std::size_t>(sample.row)] += std::pow(found.profile.slope(sample.t), 2);
+  const std::vector<double> offsets = row_offsets(found.samples, found.profile, rows);
+  // Noise outside the core: that inside contains the displacement.
+  double noise = 0, count = 0;
+  const double from = std::min(1.2 * found.levels.width_pitch + 1.2, 0.6 * found.reach);
+  for (const EdgeSample& sample : found.samples) {
+    if (std::abs(sample.t) < from || std::abs(sample.t) > found.reach - 0.01) continue;
+    noise += std::pow(
+        sample.value - found.profile.value(std::clamp(sample.t, found.profile.grid.start, found.profile.grid.end())),
+        2);
+    count += 1;
+  }
+  // Knots reduce the number of independent samples.
+  const double knots = std::max(0.0, 2 * (found.reach - from) / knots_pitch);
+  noise /= std::max(1.0, count - knots);
+  const double freedom = rows - 2.0;
+  double sum = 0, expected = 0;
+  for (std::size_t row = 0; row < offsets.size(); ++row) {
+    if (!(squares[row] > 0)) continue;
+    sum += offsets[row] * offsets[row];
+    expected += noise / squares[row] + least_displacement * least_displacement;
+  }
+  const double ratio = expected > 0 ? sum / expected : 0;
+  // The square of a normal sum by Wilson and Hilferty (1931).
+  const double limit = std::pow(1 - 2 / (9 * freedom) + 2.326 * std::sqrt(2 / (9 * freedom)), 3);
+  if (!(ratio > limit)) return 0.0;
+  const double variance = (sum * (1 + 1.645 * std::sqrt(2 / freedom)) - expected) / freedom;
+  if (std::sqrt(variance) > most_displacement) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("the lines of the picture are displaced by {:.2f} pixels (standard deviation), expected "
+                            "one straight edge: if the picture is interlaced, use one field",
+                            std::sqrt(variance)));
+  }
+  return std::max(0.0, variance);
 }
 
 std::optional<double> mtf50_of(const SlantedEdge& edge) {
@@ -313,8 +433,14 @@ std::optional<double> mtf50_of(const SlantedEdge& edge) {
 void add_notes(SlantedEdge& edge, const Found& found) {
   if (std::abs(found.trend.sag) > noted_bend_pitch && std::abs(found.trend.sag) > sure * found.trend.sag_u)
     edge.notes.push_back(fmt::format("the edge is bent by {:.2f} pixels", std::abs(found.trend.sag)));
+  if (edge.displacement_pitch > noted_displacement) {
+    edge.notes.push_back(
+        fmt::format("lines are displaced by up to {:.2f} pixels (standard deviation): the true MTF may be higher; the "
+                    "interval allows for it",
+                    edge.displacement_pitch));
+  }
   if (found.shading > 0.01)
-    edge.notes.push_back(fmt::format("shading of {:.1f} % of the step was taken out", 100 * found.shading));
+    edge.notes.push_back(fmt::format("shading of {:.1f} % of the step was removed", 100 * found.shading));
   if (std::any_of(edge.mtf.begin() + 1, edge.mtf.end(), [](double value) { return value > 1.02; }))
     edge.notes.emplace_back("the MTF exceeds 1: the camera sharpens its picture");
 }
@@ -332,6 +458,7 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   if (!found) return tl::unexpected(found.error());
   if (const auto side = clipped_side(found->samples, found->levels))
     return fail(ErrorCode::invalid_input, fmt::format("the {} side of the edge is clipped", *side));
+  const cv::Mat1d seen = in->picture.clone();
   double shading = 0;
   constexpr int rounds = 3;  // the line moves a little when its surroundings become flat
   for (int round = 0; round < rounds; ++round) {
@@ -356,9 +483,19 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   edge.window_pitch = 2 * window.flat;
   constexpr int frequencies = 100;
   for (int k = 0; k <= frequencies; ++k) edge.frequency_per_pitch.push_back(k / static_cast<double>(frequencies));
-  EdgeTransfer transfer = edge_transfer(grouped(found->samples, found->profile.grid, edge.rows), window,
-                                        edge.frequency_per_pitch, rounding_of(*found));
+  const auto tails = options.plate ? plate_tails(*in, *found, *options.plate) : own_tails(*in, *found, seen, options);
+  if (!tails) return fail(ErrorCode::invalid_input, "the edge has too few pixels beyond its profile");
+  // Shading is an unknown of the tails: use the original picture.
+  const std::vector<EdgeSample> samples = samples_near(seen, found->line, found->reach);
+  const auto displacement = line_displacement(*found);
+  if (!displacement) return tl::unexpected(displacement.error());
+  edge.displacement_pitch = std::sqrt(*displacement);
+  EdgeTransfer transfer = edge_transfer(grouped(samples, found->profile.grid, edge.rows), window,
+                                        edge.frequency_per_pitch, *tails, rounding_of(*found), *displacement);
   if (transfer.mtf.empty()) return fail(ErrorCode::invalid_input, "the picture has too few lines for its edge");
+  edge.low_known = std::move(transfer.low_known);
+  edge.widest_halo_pitch = tails->fit.bounds().widest_pitch;
+  edge.halo_allowance = tails->fit.halo_allowance();
   edge.mtf = std::move(transfer.mtf), edge.mtf_low = std::move(transfer.low), edge.mtf_high = std::move(transfer.high);
   edge.mtf50_per_pitch = mtf50_of(edge);
   add_notes(edge, *found);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // MTF from the picture of a slanted edge (e-SFR, in the spirit of ISO 12233).
 #pragma once
 
@@ -7,50 +8,65 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
+#include "tod/measures/edge_tails.h"
 
 namespace todbench {
 
-/// Along which axis the frequency runs.
+/// Axis of the frequency.
 enum class EdgeAxis {
   x,  ///< along rows, from a nearly vertical edge: the horizontal MTF
   y,  ///< along columns, from a nearly horizontal edge
 };
 [[nodiscard]] std::string_view to_string(EdgeAxis axis);
 
+/// Tails fitted to the picture of a whole plate.
+struct PlateTails {
+  TailFit fit;
+  TailColumns columns;  ///< at places of the part that shows the edge
+  double step = 1;      ///< signed step of the picture for a step of 1 of the model
+};
+
 struct SlantedEdgeOptions {
-  std::optional<EdgeAxis> axis{};  ///< nothing: across the edge that is there
+  std::optional<EdgeAxis> axis{};  ///< empty: across the edge in the picture
+  TailBounds tails{};              ///< for tails fitted to the picture itself
+  /// Tails from a larger picture that contains this one; null: fitted to this picture, outside the core.
+  const PlateTails* plate = nullptr;
 };
 
 /// The MTF along the normal of an edge.
 struct SlantedEdge {
   EdgeAxis axis = EdgeAxis::x;
-  /// Of the edge's normal to the axis: the edge stands at x0 - (row - middle) tan(angle), and alike along y.
+  /// From the axis to the edge's normal: the edge stands at x0 - (row - middle) tan(angle), and alike along y.
   double angle_deg = 0;
-  double edge_at_pitch = 0;    ///< where it crosses the middle row (column), in pixels from the first pixel's centre
-  double curvature_pitch = 0;  ///< by how much its middle lies off the straight line through its ends
-  double step = 0;             ///< signal of the bright side over the dark one
+  double edge_at_pitch = 0;    ///< place on the middle row (column), in pixels from the first pixel's centre
+  double curvature_pitch = 0;  ///< distance of its middle from the straight line through its ends
+  double step = 0;             ///< signal of the bright side minus that of the dark one
   double noise_over_step = 0;  ///< standard deviation of a pixel about the edge profile
-  double shading_percent = 0;  ///< change of the two sides over the window in % of the step; taken out where it is sure
-  double window_pitch = 0;     ///< how much of the profile counts fully
+  double shading_percent = 0;  ///< change of the two sides over the window in % of the step; removed if significant
+  double window_pitch = 0;     ///< range of the profile with full weight
   int rows = 0;                ///< lines across the edge that were used
   std::vector<double> frequency_per_pitch;  ///< 0 ... 1 cycle per pitch, along the normal
   std::vector<double> mtf;                  ///< 1 at frequency 0
-  std::vector<double> mtf_low, mtf_high;    ///< 95 %
-  std::optional<double> mtf50_per_pitch;    ///< first frequency at which the MTF is 0.5
+  std::vector<double> mtf_low, mtf_high;    ///< 95 %, not symmetric: use both ends
+  std::vector<bool> low_known;              ///< false: only TailBounds::most_halo limits `mtf_low`
+  double widest_halo_pitch = 0;             ///< largest sigma of a halo that belongs to the MTF
+  double halo_allowance = 0;                ///< largest share of the step in halos that the interval allows for
+  double displacement_pitch = 0;            ///< standard deviation of the lines about the edge if significant
+  std::optional<double> mtf50_per_pitch;    ///< lowest frequency at which the MTF is 0.5
   std::vector<std::string> notes;           ///< sentences
 };
 
 /// Projects every pixel along the edge, fits the profile by a cubic spline with four knots a pitch and transforms its
-/// derivative, which is known in closed form: neither bins nor differences, hence no correction of either. The
-/// frequency axis is that along the normal (the cosine of the angle is in it). Intervals are a jackknife over groups of
-/// neighbouring lines with Student's t, and the method's own error (0.0003 up to half a cycle per pitch, see
-/// docs/physical-measures.md).
+/// derivative in closed form: there are no bins or differences, and no corrections for them. The frequency axis is
+/// along the normal (the cosine of the angle is included). Intervals combine a jackknife over groups of neighbouring
+/// lines with Student's t, the extremes of the tails, and the method's own error (0.0005 up to half a cycle per pitch,
+/// see docs/method/physical-measures.md). The MTF is relative to a source of the size of the picture (edge_tails.h).
 ///
-/// The picture shows one straight edge with a flat field on both sides, in any linear unit. `invalid_input` in one
-/// sentence where it does not: no edge that stands out of the noise, a slant of less than a pitch over the picture or
-/// beyond 25 degrees or one that leaves gaps between the samples, an edge that leaves the picture or comes closer than
-/// 5 pitches to its border, is bent, or was clipped.
+/// Precondition: one straight edge with a flat field on both sides, in any linear unit. Errors: `invalid_input` in one
+/// sentence (no edge above the noise; a slant of less than a pitch over the picture, beyond 25 degrees, or one that
+/// leaves gaps between the samples; an edge that leaves the picture, comes closer than 5 pitches to its border, is
+/// bent, or was clipped).
 [[nodiscard]] Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOptions& options);
 
 }  // namespace todbench

@@ -1,33 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/step_response.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <numeric>
 #include <string>
 
-#include "acquisition/core/distributions.h"
-#include "acquisition/core/median.h"
+#include "acquisition/base/distributions.h"
+#include "acquisition/base/mean.h"
+#include "acquisition/base/median.h"
 
 namespace todbench {
 namespace {
 
-constexpr double seen_sigmas = 6, seen_part = 0.002;  // of noise and of the step: a sample that shows the step
+constexpr double seen_sigmas = 6, seen_part = 0.002;  // a sample shows the step: times the noise, part of the step
 constexpr std::size_t least_fitted = 6;               // samples of a step
-constexpr double shortest_over_frame = 0.12;          // in frames: exp(-8) is left after one
-constexpr double longest_over_watch = 0.4;            // in what was watched after a step
+constexpr double shortest_over_frame = 0.12;          // in frames: exp(-8) remains after one
+constexpr double longest_over_watch = 0.4;            // of the recorded time after a step
 constexpr double first_order_level = 1e-4, detected_level = 1e-6;
-constexpr double least_left = 2 * settling_left;  // of the step, behind the settling time of a target
+constexpr double least_left = 2 * settling_left;  // of the step, after the settling time of a target
 
-/// The samples of one step that are fitted; times from the first of them on.
+/// The fitted samples of one step; times from the first of them on.
 struct FittedStep {
   bool rising = true;
   double size = 0;  ///< from the level before to that after
   std::vector<double> time_s, signal;
 };
 
-/// Least squares of a + g exp(-t / T), and what it leaves.
+/// Least squares of a + g exp(-t / T), and its residuals.
 struct StepLine {
   double level = 0, gap = 0, left = 0;
 };
@@ -58,7 +61,7 @@ double freedom_of(std::span<const FittedStep> steps) {
   return freedom;
 }
 
-/// In which logarithms of time constants are looked for.
+/// Search range of the logarithms of time constants.
 struct LogRange {
   double low = 0, high = 0;
 };
@@ -69,14 +72,11 @@ LogRange range_of(std::span<const FittedStep> steps, double frame_s) {
   return {std::log(shortest_over_frame * frame_s), std::log(longest_over_watch * span_s)};
 }
 
-double golden_minimum(std::span<const FittedStep> steps, double a, double b) {
-  constexpr double golden = 0.6180339887498949, enough = 1e-7;
-  while (b - a > enough) {
-    const double x = b - golden * (b - a), y = a + golden * (b - a);
-    const bool lower = left_by(steps, std::exp(x)) < left_by(steps, std::exp(y));
-    (lower ? b : a) = lower ? y : x;
-  }
-  return 0.5 * (a + b);
+/// Logarithm of the time constant of the smallest sum of squares between two logarithms, by Brent's method (1973).
+double least_between(std::span<const FittedStep> steps, double low, double high) {
+  constexpr int minimum_bits = 26;
+  const auto left = [&](double log_s) { return left_by(steps, std::exp(log_s)); };
+  return boost::math::tools::brent_find_minima(left, low, high, minimum_bits).first;
 }
 
 constexpr int grid = 60;
@@ -89,10 +89,10 @@ double best_log(std::span<const FittedStep> steps, LogRange range) {
     const double left = left_by(steps, std::exp(range.low + i * step));
     if (left < least) best = range.low + i * step, least = left;
   }
-  return golden_minimum(steps, std::max(range.low, best - step), std::min(range.high, best + step));
+  return least_between(steps, std::max(range.low, best - step), std::min(range.high, best + step));
 }
 
-/// Where the sum of squares is not above the least by more than chance (F); nothing: not within the range.
+/// Limit of the range in which the sum of squares exceeds the least by chance only (F); empty: outside the range.
 std::optional<double> profile_side(std::span<const FittedStep> steps, double best, double end) {
   const double freedom = freedom_of(steps), least = left_by(steps, std::exp(best));
   const double bound = least * (1 + quantile(distribution::FisherF(1, freedom), 0.95) / freedom);
@@ -111,7 +111,7 @@ double jackknife_half(std::span<const FittedStep> steps, double best, LogRange r
     std::vector<FittedStep> others;
     for (std::size_t i = 0; i < steps.size(); ++i)
       if (i != out) others.push_back(steps[i]);
-    logs.push_back(golden_minimum(others, std::max(range.low, best - near), std::min(range.high, best + near)));
+    logs.push_back(least_between(others, std::max(range.low, best - near), std::min(range.high, best + near)));
   }
   const auto n = static_cast<double>(logs.size());
   const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / n;
@@ -124,7 +124,7 @@ Error not_told(std::string sentence) {
   return {ErrorCode::calibration, std::move(sentence)};
 }
 
-/// How much the time constant changes where the first samples have `settling_left` of the step less.
+/// Change of the time constant if the first samples have `settling_left` of the step less.
 double moved_by_settling(std::span<const FittedStep> steps, double best, LogRange range) {
   std::vector<FittedStep> without(steps.begin(), steps.end());
   for (FittedStep& step : without) step.signal.front() += settling_left * step.size;
@@ -135,7 +135,7 @@ Result<StepTimeConstant> time_constant_of(std::span<const FittedStep> steps, con
   const LogRange range = range_of(steps, options.frame_s);
   const double freedom = freedom_of(steps);
   if (!(range.high > range.low) || freedom < 2)
-    return tl::unexpected(Error{ErrorCode::invalid_input, "too few frames after a step"});
+    return tl::unexpected(Error{ErrorCode::invalid_input, "too few frames were recorded after a step"});
   const double best = best_log(steps, range);
   const double left = left_by(steps, std::exp(best));
   double still = 0;
@@ -144,15 +144,18 @@ Result<StepTimeConstant> time_constant_of(std::span<const FittedStep> steps, con
   const double f = (still - left) / more / (left / freedom);
   if (!(f > 0) || cdf(complement(distribution::FisherF(more, freedom), f)) > detected_level)
     return tl::unexpected(not_told(
-        fmt::format("nothing of a step is left {}: the camera's time constant is too short for frames of {:.3g} ms",
-                    options.settling_s > 0 ? "after the settling time of the target" : "after its first frame",
+        fmt::format("the response to a step has ended {}: the camera's time constant is too short to measure with "
+                    "frames of {:.3g} ms",
+                    options.settling_s > 0 ? "within the settling time of the target" : "within its first frame",
                     1e3 * options.frame_s)));
   const double cell = (range.high - range.low) / grid;
   if (best > range.high - cell)
-    return tl::unexpected(not_told("a step goes on for longer than was watched: more frames after each are needed"));
+    return tl::unexpected(
+        not_told("the response to a step lasts longer than the recording: record more frames after each step"));
   const auto low = profile_side(steps, best, range.low), high = profile_side(steps, best, range.high);
   if (!low || !high) {
-    return tl::unexpected(not_told(fmt::format("the steps leave the time constant open {}", low ? "above" : "below")));
+    return tl::unexpected(
+        not_told(fmt::format("the steps give no {} limit of the time constant", low ? "upper" : "lower")));
   }
   const double half = jackknife_half(steps, best, range);
   const double settling = options.settling_s > 0 ? moved_by_settling(steps, best, range) : 0;
@@ -162,7 +165,7 @@ Result<StepTimeConstant> time_constant_of(std::span<const FittedStep> steps, con
                           .steps = static_cast<int>(steps.size())};
 }
 
-/// F test of one more term, (t / T)^2 exp(-t / T) in proportion to each amplitude, beside levels, amplitudes and T.
+/// F test of an additional term, (t / T)^2 exp(-t / T) in proportion to each amplitude, with levels, amplitudes and T.
 double p_of_first_order(std::span<const FittedStep> steps, double time_constant_s) {
   // Residuals and the terms of T and of the second order, each without its projection on level and amplitude.
   double tt = 0, ts = 0, ss = 0, rt = 0, rs = 0, rr = 0;
@@ -190,15 +193,11 @@ double p_of_first_order(std::span<const FittedStep> steps, double time_constant_
   return cdf(complement(distribution::FisherF(1, freedom), explained / (left / freedom)));
 }
 
-double mean_of(std::span<const double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 double noise_before(std::span<const StepSeries> steps) {
   double squares = 0, freedom = 0;
   for (const StepSeries& step : steps) {
     const std::span<const double> before(step.signal.data(), step.before);
-    const double mean = mean_of(before);
+    const double mean = arithmetic_mean(before);
     for (const double value : before) squares += (value - mean) * (value - mean);
     freedom += static_cast<double>(step.before) - 1;
   }
@@ -215,18 +214,18 @@ bool usable(const StepSeries& step) {
   return true;
 }
 
-/// From the first frame on whose exposure began when the step was over.
+/// The part from the first frame on whose exposure began after the end of the step.
 Result<FittedStep> fitted_part(const StepSeries& step, double noise, const StepResponseOptions& options) {
   const std::span<const double> all(step.signal);
-  const double before = mean_of(all.first(step.before));
-  const double after = mean_of(all.last(std::max<std::size_t>(2, (all.size() - step.before) / 4)));
+  const double before = arithmetic_mean(all.first(step.before));
+  const double after = arithmetic_mean(all.last(std::max<std::size_t>(2, (all.size() - step.before) / 4)));
   const double size = after - before, least = std::max(seen_sigmas * noise, seen_part * std::abs(size));
   if (!(std::abs(size) > 2 * least) || (size > 0) != step.rising)
-    return tl::unexpected(not_told("a step of the target does not stand out of the noise of the picture"));
+    return tl::unexpected(not_told("a step of the target does not stand out from the noise of the picture"));
   const auto shows = [&](std::size_t k) { return std::abs(step.signal[k] - before) > least; };
   std::size_t first = 0;
   while (first < all.size() && !(shows(first) && (first + 1 == all.size() || shows(first + 1)))) ++first;
-  if (first < step.before) return tl::unexpected(not_told("the target moved before it was told to"));
+  if (first < step.before) return tl::unexpected(not_told("the target changed before its command"));
   constexpr double clock_jitter = 0.02;  // of a frame
   const double from_s = step.time_s[first] + options.settling_s + (1 - clock_jitter) * options.frame_s;
   FittedStep fitted{.rising = step.rising, .size = size, .time_s = {}, .signal = {}};
@@ -236,7 +235,7 @@ Result<FittedStep> fitted_part(const StepSeries& step, double noise, const StepR
   }
   if (fitted.time_s.size() < least_fitted)
     return tl::unexpected(not_told(
-        fmt::format("{} frames after a step and the settling of the target are too few", fitted.time_s.size())));
+        fmt::format("too few frames remain after a step and the settling of the target ({})", fitted.time_s.size())));
   const double zero_s = fitted.time_s.front();
   for (double& time : fitted.time_s) time -= zero_s;
   return fitted;
@@ -266,7 +265,7 @@ Result<StepResponse> step_response(std::span<const StepSeries> steps, const Step
   if (steps.size() < least_steps)
     return fail(ErrorCode::invalid_input, fmt::format("{} steps are too few for a time constant", steps.size()));
   if (!(options.frame_s > 0) || !(options.settling_s >= 0) || !std::all_of(steps.begin(), steps.end(), usable))
-    return fail(ErrorCode::invalid_input, "the frames round a step are too few or not in order");
+    return fail(ErrorCode::invalid_input, "the frames around a step are too few or not in order");
   const double noise = noise_before(steps);
   std::vector<FittedStep> fitted;
   for (const StepSeries& step : steps) {
@@ -279,13 +278,14 @@ Result<StepResponse> step_response(std::span<const StepSeries> steps, const Step
   StepResponse response{.both = *both, .points = {}};
   tell_points(response, fitted);
   if (options.settling_s > 0 && !(response.largest_left > least_left))
-    return tl::unexpected(not_told(
-        fmt::format("the target's own settling of {:.3g} ms covers the response: {:.2g} of a step is left behind it",
-                    1e3 * options.settling_s, std::max(0.0, response.largest_left))));
+    return tl::unexpected(not_told(fmt::format(
+        "the settling time of the target, {:.3g} ms, hides the response: only {:.2g} of a step remains after it",
+        1e3 * options.settling_s, std::max(0.0, response.largest_left))));
   response.p_first_order = p_of_first_order(fitted, both->value_s);
   if (response.p_first_order < first_order_level)
-    return tl::unexpected(not_told(
-        "the response is not of first order: the camera filters its frames, or the target takes longer than is said"));
+    return tl::unexpected(
+        not_told("the response is not of first order: the camera filters its frames, or the target settles more slowly "
+                 "than stated"));
   for (const bool rising : {true, false}) {
     std::vector<FittedStep> some;
     for (const FittedStep& step : fitted)

@@ -1,4 +1,5 @@
-// Time constant of a camera from steps of what it looks at.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Time constant of a camera from steps of the observed scene.
 #pragma once
 
 #include <cstddef>
@@ -6,23 +7,23 @@
 #include <span>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
 /// Frames before, during and after one step of the target.
 struct StepSeries {
   bool rising = true;
-  std::size_t before = 0;      ///< so many of the first samples were taken before the step was asked for, two or more
+  std::size_t before = 0;      ///< number of first samples taken before the step was requested, at least two
   std::vector<double> time_s;  ///< of each frame by the camera's clock, rising
   std::vector<double> signal;  ///< in any linear unit
 };
 
 struct StepResponseOptions {
-  double frame_s = 0;     ///< from frame to frame, > 0; exposure and readout of a frame are over within it
-  double settling_s = 0;  ///< within which the target does its step but for `settling_left` of it
+  double frame_s = 0;     ///< frame interval, > 0; exposure and readout of a frame end within it
+  double settling_s = 0;  ///< time in which the target completes its step up to `settling_left`
 };
-/// Part of a step that a target may have left after its settling time.
+/// Part of a step that may remain after the target's settling time.
 inline constexpr double settling_left = 0.001;
 
 /// With its 95 % interval.
@@ -31,7 +32,7 @@ struct StepTimeConstant {
   int steps = 0;
 };
 
-/// A sample that was fitted, as the part of the step that is left `time_s` after the step, by the fit.
+/// A fitted sample, as the remaining part of the step at `time_s` after the step, by the fit.
 struct StepPoint {
   double time_s = 0, left = 0;
   bool rising = true;
@@ -40,24 +41,26 @@ struct StepPoint {
 
 struct StepResponse {
   StepTimeConstant both;
-  std::optional<StepTimeConstant> rise{}, fall{};  ///< nothing: cannot be told by themselves
-  double p_first_order = 1;                        ///< of what the fit leaves, against a second-order term (F test)
-  double largest_left = 0;                         ///< of the step, in the first fitted sample of a step: median
-  int samples = 0;                                 ///< that were fitted
+  std::optional<StepTimeConstant> rise{}, fall{};  ///< empty: cannot be determined separately
+  double p_first_order = 1;                        ///< of the fit's residuals, against a second-order term (F test)
+  double largest_left = 0;                         ///< remaining part of the step in its first fitted sample: median
+  int samples = 0;                                 ///< fitted samples
   std::vector<StepPoint> points;
 };
 
 inline constexpr std::size_t least_steps = 4;
 
-/// y = a + g exp(-t / T) with one T for all steps, by least squares. The frame clock does not know when the step
-/// comes, so amplitudes are free, and a step is fitted from the first frame on whose exposure began when it was over: a
+/// Fits y = a + g exp(-t / T) with one T for all steps, by least squares. The time of the step is not known on the
+/// frame clock, so amplitudes are free. A step is fitted from the first frame on whose exposure began after the step: a
 /// frame and the settling time after the first that shows it. From there on successive differences fall by exp(-frame /
-/// T) whatever the exposure is. The interval is the wider one of where the sum of squares stays below what chance
-/// explains (F, 95 %) and of a jackknife over the steps (Student's t); with a settling time it is joined with what is
-/// left of the target's own step. Errors: `invalid_input` (fewer than four steps, or samples that cannot be
-/// fitted), `calibration` where there is no time constant to be told: no step stands out of the noise; nothing is left
-/// of it after the first frames (the camera is faster than its frames show, or the target's own settling covers it); it
-/// goes on for longer than was watched; it is not of first order.
+/// T) for any exposure. The interval is the wider one of the range in which the sum of squares is compatible with
+/// chance (F, 95 %) and of a jackknife over the steps (Student's t); with a settling time it includes the rest of the
+/// target's own step.
+///
+/// Errors: `invalid_input` (fewer than four steps, or samples that cannot be fitted), `calibration` if no time constant
+/// can be determined: no step above the noise; no signal left after the first frames (the camera is faster than its
+/// frames show, or the target's settling covers it); a response longer than the recording; a response that is not of
+/// first order.
 [[nodiscard]] Result<StepResponse> step_response(std::span<const StepSeries> steps, const StepResponseOptions& options);
 
 }  // namespace todbench

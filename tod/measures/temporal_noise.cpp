@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/temporal_noise.h"
 
 #include <algorithm>
@@ -13,11 +14,11 @@ namespace {
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
-constexpr std::size_t most_pairs = 128;    // of a lag: 76800 pixels know their variance to 0.05 % with a few already
-constexpr std::size_t pairs_of_mask = 10;  // a pixel's own variance, for a limit that white noise exceeds in 5 of 10^5
+constexpr std::size_t most_pairs = 128;    // of a lag: with a few pairs 76800 pixels give the variance to 0.05 %
+constexpr std::size_t pairs_of_mask = 10;  // for a pixel's own variance: white noise exceeds the limit in 5 of 10^5
 constexpr int correlation_lag = 8;
 
-/// Pictures so many exposures apart, evenly thinned.
+/// Pairs of pictures at this lag, evenly thinned.
 std::vector<Pair> pairs_at(std::span<const TimedPicture> pictures, int lag) {
   std::vector<Pair> all;
   std::size_t later = 0;
@@ -47,7 +48,7 @@ cv::Mat1d half_squares(std::span<const TimedPicture> pictures, const std::vector
 
 /// Half mean squares at one lag, over usable pixels.
 struct AtLag {
-  double all = 0;     ///< as they are
+  double all = 0;     ///< with all changes
   double pixels = 0;  ///< without the change of the whole frame
 };
 
@@ -64,14 +65,14 @@ AtLag at_lag(std::span<const TimedPicture> pictures, const std::vector<Pair>& pa
   return {out.all / count, out.pixels / count};
 }
 
-/// Pixels whose noise is above twice the median pixel's at a short or at a longer lag see moving scene; one that never
-/// changes is dead.
+/// Pixels whose noise is above twice the median pixel's at a short or at a longer lag show a moving scene; one that
+/// never changes is dead.
 cv::Mat1b usable_pixels(std::span<const TimedPicture> pictures, const std::map<int, std::vector<Pair>>& pairs) {
   const int base = pairs.begin()->first;
   cv::Mat1b usable(pictures[0].picture.size(), 255);
   for (const auto& [lag, of_lag] : pairs) {
     const bool longer = lag == correlation_lag * base;
-    // Pairs that overlap are not independent.
+    // Overlapping pairs are not independent.
     if (lag != base && !longer) continue;
     if (of_lag.size() < pairs_of_mask * (longer ? 4 : 1)) continue;
     const cv::Mat1d own = half_squares(pictures, of_lag);
@@ -106,10 +107,10 @@ double first_order_correlation(double ratio, int lag) {
     for (int j = 0; j < lag; ++j, power *= rho) total += power;
     return total;
   };
-  double low = -1, high = 1;  // of an even lag the sum rises from 0, of an odd one from 1
+  double low = -1, high = 1;  // for an even lag the sum rises from 0, for an odd one from 1
   if (ratio >= sum(high)) return high;
   if (lag % 2 == 1) {
-    // It falls below 1 between -1 and 0, and rises from its lowest on.
+    // It falls below 1 between -1 and 0, and rises after its minimum.
     for (double rho = -1; rho < 0; rho += 1e-3) {
       if (sum(rho) < sum(low)) low = rho;
     }
@@ -125,14 +126,14 @@ double first_order_correlation(double ratio, int lag) {
 Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures) {
   for (const TimedPicture& picture : pictures) {
     if (picture.picture.size() != pictures[0].picture.size())
-      return fail(ErrorCode::invalid_input, "frames of different sizes");
+      return fail(ErrorCode::invalid_input, "the frames have different sizes");
   }
   std::map<int, std::vector<Pair>> pairs;
   for (int lag = 1; lag <= longest_lag; ++lag) {
     if (auto found = pairs_at(pictures, lag); !found.empty()) pairs[lag] = std::move(found);
   }
   if (pairs.empty())
-    return fail(ErrorCode::invalid_input, "temporal noise needs two frames with no correction between them");
+    return fail(ErrorCode::invalid_input, "temporal noise needs two frames without a correction between them");
   TemporalNoise noise;
   noise.usable = usable_pixels(pictures, pairs);
   noise.usable_share = cv::countNonZero(noise.usable) / static_cast<double>(noise.usable.total());
@@ -145,9 +146,9 @@ Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures) {
   }
   noise.successive = noise.structure.front();
   if (!(noise.successive > 0))
-    return fail(ErrorCode::invalid_input, "there is no noise: successive frames are the same");
+    return fail(ErrorCode::invalid_input, "there is no noise: successive frames are identical");
   if (at[base].pixels > 0) {
-    // The longest lag that a third of the frames have still in common.
+    // The longest lag with at least a third of the pairs of the shortest one.
     int longest = base;
     for (const auto& [lag, of_lag] : pairs) {
       if (3 * of_lag.size() >= std::min(pairs.at(base).size(), most_pairs)) longest = lag;
@@ -157,8 +158,8 @@ Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures) {
       const auto found = pairs.find(steps * base);
       if (found == pairs.end() || 3 * found->second.size() < 2 * pairs.at(base).size()) continue;
       const double of_base = first_order_correlation(at[steps * base].pixels / at[base].pixels, steps);
-      // Of pixels: a drift of whole frames would be taken for memory, a bounce for the contrary.
-      // Where only every so many exposures are there, theirs is the power of that.
+      // Of pixels: a drift of whole frames would look like memory, a bounce like the opposite. If only every n-th
+      // exposure is present, theirs is the n-th power.
       noise.lag1_correlation = base == 1 || of_base < 0 ? of_base : std::pow(of_base, 1.0 / base);
     }
   }

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/three_d_noise.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 namespace {
@@ -15,7 +16,7 @@ double sum_of_squares(const std::vector<double>& values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
-/// Sum of squares about the means over frames: `values` holds `width` numbers of each frame.
+/// Sum of squares about the means over frames: `values` contains `width` numbers of each frame.
 double squares_in_time(const std::vector<double>& values, std::size_t width) {
   const std::size_t frames = values.size() / width;
   double sum = 0;
@@ -28,14 +29,14 @@ double squares_in_time(const std::vector<double>& values, std::size_t width) {
   return sum;
 }
 
-/// Sum of squares of the difference of the last two frames, of which `values` holds `width` numbers each.
+/// Sum of squares of the difference of the last two frames; `values` contains `width` numbers of each.
 double step_squares(const std::vector<double>& values, std::size_t width) {
   double sum = 0;
   for (std::size_t i = values.size() - width; i < values.size(); ++i) sum += std::pow(values[i] - values[i - width], 2);
   return sum;
 }
 
-/// Sums of squares of the fixed components: of the picture that is the mean of all frames.
+/// Sums of squares of the fixed components, in the mean of all frames.
 struct FixedSquares {
   double v = 0, h = 0, vh = 0;
 };
@@ -69,8 +70,8 @@ Reach reach_of(double degrees_of_freedom) {
           degrees_of_freedom / distribution::quantile(squares, each_side) - 1};
 }
 
-/// The additional term of a difference of two mean squares that makes the limit exact where one of them vanishes (Ting
-/// et al. 1990). `ratio` is the quantile of F on the side in question.
+/// Additional term of a difference of two mean squares that makes the limit exact if one of them vanishes (Ting et al.
+/// 1990). `ratio`: quantile of F on this side.
 double cross_term(double ratio, double of_plus, double of_minus) {
   return (std::pow(ratio - 1, 2) - std::pow(of_plus * ratio, 2) - of_minus * of_minus) / ratio;
 }
@@ -101,7 +102,7 @@ namespace {
 
 /// Expected mean squares of noise of first order over its variance.
 struct Memory {
-  double in_time = 1;  ///< about the mean of so many frames
+  double in_time = 1;  ///< about the mean of this many frames
   double in_mean = 1;  ///< of that mean, times the frames
 };
 
@@ -115,8 +116,8 @@ Memory memory_of(double rho, int frames) {
   return memory;
 }
 
-/// Degrees of freedom of a mean square. A variance of noise of first order is known as by (1 - rho^2) / (1 + rho^2) of
-/// its values (Bartlett 1946).
+/// Degrees of freedom of a mean square. The variance of noise of first order is as certain as from (1 - rho^2) / (1 +
+/// rho^2) of its values (Bartlett 1946).
 double freedom_of(const NoiseTable& table, NoiseComponent component) {
   const double rho = table.pixel_memory, freedom = table.degrees_of_freedom[component];
   return component == tvh && rho != 0 ? std::max(1.0, freedom * (1 - rho * rho) / (1 + rho * rho)) : freedom;
@@ -171,7 +172,7 @@ ComponentEstimate estimate_of(const NoiseTable& table, NoiseComponent component)
         -terms[0].factor * terms[1].factor * table.mean_squares[terms[0].of] * table.mean_squares[terms[1].of];
     below += cross_term(distribution::quantile(complement(ratio, each_side)), of_plus.down, of_minus.up) * product;
     above += cross_term(distribution::quantile(ratio, each_side), of_plus.up, of_minus.down) * product;
-    const double absent = -terms[1].factor * table.mean_squares[terms[1].of];  // all that there is without it
+    const double absent = -terms[1].factor * table.mean_squares[terms[1].of];  // expected without the component
     if (absent > 0)
       estimate.p_absent = cdf(complement(ratio, terms[0].factor * table.mean_squares[terms[0].of] / absent));
   }
@@ -194,7 +195,7 @@ ComponentEstimate temporal_variance(const NoiseTable& table) {
   const double in_time = memory_of(table.pixel_memory, table.frames).in_time;
   for (const NoiseComponent of : {t, tv, th, tvh}) {
     const double squares = table.mean_squares[of] * table.degrees_of_freedom[of];
-    // What memory keeps from the variance in time is missing in the means of rows, columns and frames, too.
+    // The part of the variance in time that memory removes is also missing in the means of rows, columns and frames.
     const double kept = of == tvh ? table.mean_squares[tvh] * (1 / in_time - 1) : 0;
     const double part = squares / (table.rows * table.columns * (table.frames - 1.0)) + kept;
     const Reach reach = reach_of(freedom_of(table, of));
@@ -209,13 +210,13 @@ ComponentEstimate temporal_variance(const NoiseTable& table) {
 
 template <typename Pixel>
 Result<void> NoiseCube::add_frame(const cv::Mat_<Pixel>& frame) {
-  if (frame.empty()) return fail(ErrorCode::invalid_input, "an empty frame");
+  if (frame.empty()) return fail(ErrorCode::invalid_input, "a frame is empty");
   if (frames_ == 0) {
     frame.convertTo(first_, CV_64F);
     change_ = cv::Mat1d::zeros(frame.size());
     last_ = cv::Mat1d::zeros(frame.size());
   }
-  if (frame.size() != first_.size()) return fail(ErrorCode::invalid_input, "frames of different sizes");
+  if (frame.size() != first_.size()) return fail(ErrorCode::invalid_input, "the frames have different sizes");
   const int rows = frame.rows, columns = frame.cols;
   std::vector<double> row_sums(static_cast<std::size_t>(rows)), column_sums(static_cast<std::size_t>(columns));
   double sum = 0;
@@ -231,7 +232,7 @@ Result<void> NoiseCube::add_frame(const cv::Mat_<Pixel>& frame) {
     row_sums[static_cast<std::size_t>(y)] = of_row;
     sum += of_row;
   }
-  if (!std::isfinite(sum)) return fail(ErrorCode::invalid_input, "a frame holds a value that is no number");
+  if (!std::isfinite(sum)) return fail(ErrorCode::invalid_input, "a frame contains a value that is not finite");
   const double mean = sum / (static_cast<double>(rows) * columns);
   double steps = 0;
   for (int y = 0; y < rows; ++y) {
@@ -279,9 +280,9 @@ Result<NoiseTable> NoiseCube::table() const {
 
 Result<NoiseTable> NoiseCube::table_without(const cv::Mat1d& fixed_picture) const {
   if (frames_ < 2 || first_.rows < 2 || first_.cols < 2)
-    return fail(ErrorCode::invalid_input, "3D noise needs at least two frames of two rows and two columns");
+    return fail(ErrorCode::invalid_input, "3-D noise needs at least two frames of two rows and two columns");
   const double n = frames_, m = first_.rows, l = first_.cols;
-  // Squares about each pixel's mean over time are those of tv, th and tvh; the frames' own means are taken out already.
+  // Squares about each pixel's mean over time are those of tv, th and tvh; the frames' own means are already removed.
   const double in_time = squares_ - change_.dot(change_) / n;
   const double s_tv = l * squares_in_time(row_means_, static_cast<std::size_t>(first_.rows));
   const double s_th = m * squares_in_time(column_means_, static_cast<std::size_t>(first_.cols));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/observer_fit/goodness.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tod/observer_fit/person_likelihood.h"
 
 namespace todbench {
@@ -16,11 +17,11 @@ constexpr std::size_t kinds = all_misfit_kinds.size();
 using Shares = std::array<double, alternatives>;
 using Statistics = std::array<double, kinds>;
 
-/// Least variance of a count: one answer that the model all but excludes counts 20, not thousands, so that it does not
+/// Least variance of a count: an answer that the model almost excludes counts 20, not thousands, so that it does not
 /// hide the rest.
 constexpr double least_variance = 0.05;
 
-/// Classes of like predicted probability of the right answer end here.
+/// Upper ends of the classes of predicted probability of the right answer.
 constexpr std::array class_ends{0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.97, 1.01};
 
 struct Count {
@@ -52,7 +53,7 @@ struct Sum {
 };
 
 double surprise_of(double p) {
-  // An answer that cannot be: as rare as one in 10^12.
+  // An impossible answer counts as one in 10^12.
   return -std::log(std::max(p, 1e-12));
 }
 
@@ -122,7 +123,7 @@ std::vector<PersonAnswer> answers_of_model(std::span<const PersonAnswer> asked, 
   return out;
 }
 
-/// Mean and variance of a statistic over replicates, and what they make of a value.
+/// Mean and variance of a statistic over replicates, and the test of a value.
 struct Spread {
   double mean = 0, variance = 0;
   [[nodiscard]] double p(double value) const {

@@ -1,4 +1,5 @@
-// Whether a fitted observer can have given a person's answers.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Test whether a fitted observer can have given a person's answers.
 #pragma once
 
 #include <array>
@@ -8,18 +9,18 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/observer_fit/person_fit.h"
 
 namespace todbench {
 
-/// What the answers are held against, each a statistic that is large where the model is wrong.
+/// Test statistics; each is large if the model is wrong.
 enum class MisfitKind {
   contrast_and_size,  ///< number correct of each contrast and size: sum of (observed - expected)^2 / variance
-  confusion,          ///< answers by the direction of the triangle and the direction named, likewise
-  calibration,        ///< number correct of patches of like predicted probability, likewise
+  confusion,          ///< likewise for answers by the direction of the triangle and the answered direction
+  calibration,        ///< likewise for the number correct of patches of similar predicted probability
   surprise,           ///< sum of -ln p of the answers against its expectation, squared, over its variance
-  wrong_answers,      ///< which wrong answer was given, of those that were wrong: its ln p, likewise
+  wrong_answers,      ///< likewise for ln p of the chosen wrong alternative, over the wrong answers
 };
 inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, MisfitKind::confusion,
                                              MisfitKind::calibration, MisfitKind::surprise, MisfitKind::wrong_answers};
@@ -27,7 +28,7 @@ inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, Misf
 
 struct MisfitTest {
   double statistic = 0;
-  double expected = 0;  ///< mean of it over the replicates
+  double expected = 0;  ///< mean over the replicates
   double p = 1;         ///< chi-squared with the mean and variance of the replicates (Satterthwaite 1946)
 };
 
@@ -40,7 +41,7 @@ struct AnswerCell {
 
 struct Goodness {
   std::array<MisfitTest, all_misfit_kinds.size()> tests{};  ///< by MisfitKind
-  /// How often answers of the fitted model itself have a smallest p as small: the test of them all.
+  /// Share of replicates of the fitted model whose smallest p is at most the observed one: the joint test.
   double p = 1;
   int replicates = 0;
   std::vector<AnswerCell> cells;
@@ -48,12 +49,12 @@ struct Goodness {
 };
 
 struct GoodnessOptions {
-  int replicates = 299;
+  int replicates = 299;  ///< of the bootstrap, at least 19
   std::uint64_t seed = 1;
 };
 
-/// A parametric bootstrap: the fitted model answers the same patches, is fitted to its own answers, and gives the
-/// distribution of every statistic. `interrupted`.
+/// Parametric bootstrap: the fitted model answers the same patches and is fitted to its own answers, which gives the
+/// distribution of every statistic. Errors: `interrupted`.
 [[nodiscard]] Result<Goodness> goodness_of(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
                                            const PersonFit& fit, const GoodnessOptions& options, std::stop_token stop);
 

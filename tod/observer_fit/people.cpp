@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/observer_fit/people.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 namespace {
@@ -12,7 +13,7 @@ struct Weighted {
   double weight = 0, weight2 = 0, mean = 0, q = 0;
 };
 
-/// Of the estimates with weights 1 / (se^2 + between).
+/// Weighted mean of the estimates with weights 1 / (se^2 + between).
 Weighted weighted(std::span<const PersonEstimate> estimates, double between) {
   Weighted out;
   for (const auto& e : estimates) {
@@ -26,14 +27,14 @@ Weighted weighted(std::span<const PersonEstimate> estimates, double between) {
   return out;
 }
 
-/// Largest variance between people that is looked for: far beyond the spread of the estimates.
+/// Upper end of the search for the variance between people: far above the spread of the estimates.
 double most_between(std::span<const PersonEstimate> estimates) {
   const auto [low, high] = std::minmax_element(estimates.begin(), estimates.end(),
                                                [](const auto& a, const auto& b) { return a.value < b.value; });
   return 400 * std::pow(high->value - low->value, 2) + 1e-12;
 }
 
-/// The variance at which a falling function of it is 0; 0 where it begins below, nothing where it does not end.
+/// The variance at which a falling function is 0; 0 if it begins below, empty if it does not reach 0.
 template <typename Function>
 std::optional<double> falls_to_zero(const Function& f, double most) {
   if (f(0) <= 0) return 0.0;
@@ -88,7 +89,7 @@ PeopleSpread spread_over(std::span<const PersonEstimate> estimates) {
   const Weighted at = weighted(estimates, between);
   out.mean = at.mean;
   out.between_sd = std::sqrt(between);
-  // Not below the interval of a known variance: people who agree by chance do not make a mean exact.
+  // At least the interval of a known variance: agreement by chance does not make a mean exact.
   const double se = std::sqrt(std::max(1.0, at.q / degrees) / at.weight);
   const double half = distribution::quantile(distribution::StudentsT(degrees), 0.975) * se;
   out.mean_ci95 = {at.mean - half, at.mean + half};

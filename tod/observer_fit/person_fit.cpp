@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/observer_fit/person_fit.h"
 
 #include <algorithm>
@@ -17,9 +18,9 @@ using Matrix = std::array<std::array<double, observer_key_count>, observer_key_c
 /// sqrt of the 95 % quantile of chi-squared with one degree of freedom.
 constexpr double root_95 = 1.959964;
 
-Box<observer_key_count> domain(const PersonFitOptions& options) {
+ParameterBox<observer_key_count> domain(const PersonFitOptions& options) {
   const ObserverPlace start = place_of(options.start);
-  Box<observer_key_count> box{start, start};
+  ParameterBox<observer_key_count> box{start, start};
   const ObserverPlace least = place_of(least_values), most = place_of(most_values);
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     if (!options.free[k]) continue;
@@ -29,16 +30,16 @@ Box<observer_key_count> domain(const PersonFitOptions& options) {
   return box;
 }
 
-/// Along the likelihood where one parameter is held and the others follow.
+/// Profile of the likelihood: one parameter is held, the others are fitted.
 class Profile {
  public:
-  Profile(AnswerLattice& lattice, std::span<const PersonAnswer> answers, const Box<observer_key_count>& box,
+  Profile(AnswerLattice& lattice, std::span<const PersonAnswer> answers, const ParameterBox<observer_key_count>& box,
           const Top& top, std::size_t key)
       : lattice_(lattice), answers_(answers), box_(box), top_(top), key_(key) {}
 
-  /// The signed root of twice the drop of ln likelihood, less what bounds 95 %: below 0 inside the interval.
+  /// The signed root of twice the drop of ln likelihood minus the 95 % limit: below 0 inside the interval.
   double operator()(double value) {
-    Box<observer_key_count> held = box_;
+    ParameterBox<observer_key_count> held = box_;
     held.lower[key_] = held.upper[key_] = value;
     ObserverPlace start = last_;
     start[key_] = value;
@@ -48,7 +49,7 @@ class Profile {
     return std::sqrt(2 * std::max(0.0, top_.expansion.value - found.expansion.value)) - root_95;
   }
 
-  /// The bound in a direction (-1, 1); nothing where the domain ends before. `step`: how far it may be.
+  /// The bound in a direction (-1, 1); empty if the domain ends before. `step`: step of the search.
   std::optional<double> bound(double direction, double step) {
     last_ = top_.place;
     const double end = direction < 0 ? box_.lower[key_] : box_.upper[key_];
@@ -80,16 +81,16 @@ class Profile {
 
   AnswerLattice& lattice_;
   std::span<const PersonAnswer> answers_;
-  const Box<observer_key_count>& box_;
+  const ParameterBox<observer_key_count>& box_;
   const Top& top_;
   std::size_t key_;
   ObserverPlace last_{};
 };
 
 /// At most four steps of Fisher's scoring, each halved until it climbs. One step from a point within the scatter of the
-/// estimate is as good as the maximum (Le Cam 1956); the further ones mend that the scatter is not small.
+/// estimate is as good as the maximum (Le Cam 1956); the further ones correct for a start further away.
 Top few_steps(AnswerLattice& lattice, std::span<const PersonAnswer> answers, const ObserverPlace& start,
-              const Box<observer_key_count>& box) {
+              const ParameterBox<observer_key_count>& box) {
   Top at{start, person_likelihood(lattice, answers, start), {}};
   for (int step_count = 0; step_count < 4; ++step_count) {
     at.free = free_variables(at.place, at.expansion.gradient, box);
@@ -129,7 +130,7 @@ std::optional<Matrix> inverse(const Top& top, const std::array<bool, observer_ke
   return out;
 }
 
-/// A side of a 95 % interval: open, unless what cannot be exceeded is reached.
+/// A side of a 95 % interval: open, or a natural limit that is reached.
 std::optional<double> side(const std::optional<double>& bound, std::size_t key, double direction) {
   const bool logarithmic = key != static_cast<std::size_t>(ObserverKey::lapse);
   if (bound) return logarithmic ? std::exp(*bound) : *bound;
@@ -138,7 +139,7 @@ std::optional<double> side(const std::optional<double>& bound, std::size_t key, 
   return hard && direction < 0 ? std::optional(least_values[key]) : std::nullopt;
 }
 
-/// Starts beside the given one: more blur and less noise, and the other way round.
+/// Starts around the given one: more blur and less noise, and the opposite.
 std::vector<ObserverPlace> starts_round(const ObserverPlace& start, const std::array<bool, observer_key_count>& free) {
   std::vector<ObserverPlace> out{start};
   for (const double sign : {-1.0, 1.0}) {
@@ -171,15 +172,15 @@ Result<PersonFit> fit_person(AnswerLattice& lattice, std::span<const PersonAnswe
   if (std::none_of(options.free.begin(), options.free.end(), [](bool free) { return free; }))
     return fail(ErrorCode::invalid_input, "no parameter is free");
   for (std::size_t k = 0; k < observer_key_count; ++k) {
-    // Without any noise of its own an observer answers as with the least that can be told.
+    // An observer without noise answers as with the least noise of the lattice.
     const bool least = k == static_cast<std::size_t>(ObserverKey::internal_noise);
     if (options.start[k] <= most_values[k] && (least ? options.start[k] >= 0 : options.start[k] >= least_values[k]))
       continue;
     return fail(ErrorCode::invalid_input, std::string(to_string(all_observer_keys[k])) +
-                                              " of the observer to begin with is out of what can be fitted");
+                                              " of the starting observer is outside the range of the fit");
   }
   const auto likelihood = [&](const ObserverPlace& place) { return person_likelihood(lattice, answers, place); };
-  const Box<observer_key_count> box = domain(options);
+  const ParameterBox<observer_key_count> box = domain(options);
   std::optional<Top> top;
   const bool only_here = options.intervals == PersonFitOptions::Intervals::none;
   const auto starts =

@@ -1,4 +1,5 @@
-// The parameters of the template observer that fit one person's answers best.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fit of the template observer's parameters to one person's answers.
 #pragma once
 
 #include <array>
@@ -6,17 +7,17 @@
 #include <span>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/observer_fit/observer_values.h"
 #include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
 
 struct PersonFitOptions {
-  ObserverValues start{0.6, 0.07, 1, 0};  ///< where the search begins, and what is not free stays
+  ObserverValues start{0.6, 0.07, 1, 0};  ///< start of the search, and values of the parameters that are not free
   std::array<bool, observer_key_count> free{};
   enum class Intervals {
-    none,  ///< and a few steps from the start instead of several climbs: for answers whose maximum is near it
+    none,  ///< no intervals, and a few steps from the start instead of several climbs: for answers with a near maximum
     profile,
   } intervals = Intervals::profile;
 };
@@ -24,11 +25,11 @@ struct PersonFitOptions {
 struct PersonFit {
   ObserverValues values{};  ///< by ObserverKey
   std::array<bool, observer_key_count> free{};
-  /// 95 %, profile likelihood (drop of 3.84 in twice ln likelihood). An open side: the likelihood does not fall so far
-  /// before the end of the domain. At a limit that nothing can be beyond (factor 1, lapse 0) the side is that limit.
+  /// 95 %, profile likelihood (drop of 3.84 in twice ln likelihood). A side is open if the likelihood does not fall
+  /// that far within the domain. At a natural limit (factor 1, lapse 0) the side is that limit.
   std::array<Interval, observer_key_count> ci95{};
-  /// Inverse of the expected information for ln sigma, ln n, ln f and the lapse; 0 where not free. Nothing where it is
-  /// singular: the answers do not tell the parameters apart.
+  /// Inverse of the expected information for ln sigma, ln n, ln f and the lapse; 0 for parameters that are not free.
+  /// Empty if it is singular: the answers do not separate the parameters.
   std::optional<std::array<std::array<double, observer_key_count>, observer_key_count>> covariance;
   /// At an end of the domain.
   std::array<bool, observer_key_count> at_limit{};
@@ -36,12 +37,13 @@ struct PersonFit {
   std::size_t answers = 0;
 };
 
-/// Correlation of two estimates; nothing where there is no covariance or one is not free.
+/// Correlation of two estimates; empty without a covariance, or if one is not free.
 [[nodiscard]] std::optional<double> correlation(const PersonFit& fit, std::size_t a, std::size_t b);
-/// Standard error of ln of the value (of the lapse itself); nothing where there is none.
+/// Standard error of ln of the value (of the lapse itself); empty if there is none.
 [[nodiscard]] std::optional<double> standard_error(const PersonFit& fit, std::size_t key);
 
-/// Maximum likelihood from several starts. `invalid_input`: no answers, nothing free, a start out of the domain.
+/// Maximum likelihood from several starts. Errors: `invalid_input` (no answers, no free parameter, a start outside the
+/// domain).
 [[nodiscard]] Result<PersonFit> fit_person(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
                                            const PersonFitOptions& options);
 

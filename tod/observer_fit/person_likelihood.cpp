@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/observer_fit/person_likelihood.h"
 
 #include <algorithm>
@@ -9,12 +10,12 @@ namespace {
 constexpr std::size_t blur = 0, internal = 1, factor = 2, lapse = 3;
 constexpr std::size_t alternatives = 4;
 
-/// Half a step of the central differences in ln sigma and ln s: half the distance of the lattice's nodes in ln sigma. A
-/// shorter one would take the scatter of the draws from node to node for information.
+/// Half a step of the central differences in ln sigma and ln s: half the distance of the lattice's nodes in ln sigma.
+/// With a shorter one the scatter of the draws from node to node would look like information.
 constexpr double half_step = 0.1;
 
 std::array<double, alternatives> observer_shares(AnswerLattice& lattice, std::size_t patch, double sigma, double sd) {
-  const LogProbabilities logs = lattice.log_probabilities(patch, sigma, sd);
+  const AnswerLogProbabilities logs = lattice.log_probabilities(patch, sigma, sd);
   std::array<double, alternatives> out{};
   for (std::size_t o = 0; o < alternatives; ++o) out[o] = std::exp(logs.value[o]);
   return out;
@@ -24,14 +25,15 @@ double inside(double value, double low, double high) {
   return std::clamp(value, low, high);
 }
 
-/// d p_o / d ln x = p_o d ln p_o / d ln x, by a difference of ln p_o that stays inside the domain of the lattice: that
-/// of p_o would take an answer that is all but excluded here and possible half a step further for information.
+/// d p_o / d ln x = p_o d ln p_o / d ln x, by a difference of ln p_o inside the domain of the lattice. With a
+/// difference of p_o, an answer that is almost excluded here and possible half a step further would look like
+/// information.
 template <typename Logs>
 std::array<double, alternatives> difference(const Logs& logs, double x, double low, double high) {
   const double less = inside(x * std::exp(-half_step), low, high), more = inside(x * std::exp(half_step), low, high);
   std::array<double, alternatives> out{};
   if (!(more > less)) return out;
-  const LogProbabilities here = logs(x), before = logs(less), after = logs(more);
+  const AnswerLogProbabilities here = logs(x), before = logs(less), after = logs(more);
   for (std::size_t o = 0; o < alternatives; ++o)
     out[o] = std::exp(here.value[o]) * (after.value[o] - before.value[o]) / std::log(more / less);
   return out;
@@ -78,7 +80,7 @@ AnswerExpansion answer_expansion(AnswerLattice& lattice, std::size_t patch, cons
 
 Expansion<observer_key_count> person_likelihood(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
                                                 const ObserverPlace& place) {
-  // An alternative rarer than this teaches nothing about the slopes: its share of the information is below rounding.
+  // A rarer alternative does not affect the slopes: its share of the information is below rounding.
   constexpr double negligible = 1e-12;
   Expansion<observer_key_count> out;
   out.value = 0;

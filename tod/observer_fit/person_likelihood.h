@@ -1,4 +1,5 @@
-// How probable a person's answers are under the template observer, given the very patches that were answered.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Likelihood of a person's answers under the template observer, given the patches that were answered.
 #pragma once
 
 #include <array>
@@ -10,22 +11,22 @@
 
 namespace todbench {
 
-/// Of one patch at one place: each alternative's probability and its derivatives.
+/// Probability of each alternative and its derivatives, for one patch at one place.
 struct AnswerExpansion {
   std::array<double, 4> probability{};
   std::array<std::array<double, 4>, observer_key_count> slope{};
 };
 
-/// Standard deviation of the observer's own noise for a patch, relative to the contrast: sqrt(n^2 + (f^2 - 1) (q /
-/// dT)^2).
+/// Standard deviation of the observer's own noise for a patch, relative to the contrast:
+/// sqrt(n^2 + (f^2 - 1) (q / dT)^2).
 [[nodiscard]] double own_noise(const AnsweredPatch& patch, const ObserverValues& values);
 /// Probabilities of the four answers of one patch: p = lapse / 4 + (1 - lapse) p_observer. Sums to 1.
 [[nodiscard]] std::array<double, 4> answer_shares(AnswerLattice& lattice, std::size_t patch,
                                                   const ObserverValues& values);
 [[nodiscard]] AnswerExpansion answer_expansion(AnswerLattice& lattice, std::size_t patch, const ObserverPlace& place);
 
-/// ln likelihood of the answers, its gradient, and minus the expected information as second derivatives (the climb is
-/// Fisher's scoring). Precondition: a lattice of four alternatives.
+/// ln likelihood of the answers, its gradient, and minus the expected information as second derivatives (for Fisher's
+/// scoring). Precondition: a lattice of four alternatives.
 [[nodiscard]] Expansion<observer_key_count> person_likelihood(AnswerLattice& lattice,
                                                               std::span<const PersonAnswer> answers,
                                                               const ObserverPlace& place);

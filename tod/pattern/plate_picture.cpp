@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/pattern/plate_picture.h"
 
 #include <fmt/format.h>
@@ -41,9 +42,11 @@ Result<cv::Mat1d> plate_picture(const TargetPlate& mounted_plate, cv::Point2d sh
   const cv::Size size = display.size_px;
   if (size.width < 1 || size.height < 1 || size.width > most || size.height > most ||
       !(std::isfinite(display.pixel_mm) && display.pixel_mm > 0))
-    return fail(ErrorCode::invalid_input, fmt::format("a display has from 1 to {} pixels on a side", most));
+    return fail(ErrorCode::invalid_input,
+                fmt::format("the display must have from 1 to {} pixels on each side and a positive pixel size", most));
   for (const double level : {ground, pattern}) {
-    if (!(level >= 0 && level <= 1)) return fail(ErrorCode::invalid_input, "a display shows levels from 0 to 1");
+    if (!(level >= 0 && level <= 1))
+      return fail(ErrorCode::invalid_input, "the levels of a display must be from 0 to 1");
   }
   cv::Mat1d cover(size, 0.0);
   for (const CutOut& one : cut_outs(mounted_plate, shift_mm, display)) {

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A plate as a picture for a display, drawn by exact area.
 #pragma once
 
 #include <opencv2/core.hpp>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/plate/target_plate.h"
 
 namespace todbench {
@@ -13,9 +14,9 @@ struct DisplayGeometry {
   double pixel_mm = 1;  ///< centre to centre, square
 };
 
-/// A pixel has the mean over its area: `ground`, and `pattern` within triangles and rectangles. The plate's origin is
-/// the middle of the display, moved by `shift_mm` (x right, y down). `invalid_input`: a cut-out that leaves the
-/// display, a level outside 0 to 1, a display without pixels.
+/// A pixel has the mean over its area of `ground`, and of `pattern` within triangles and rectangles. The plate's origin
+/// is the middle of the display, moved by `shift_mm` (x right, y down). Errors: `invalid_input` (a cut-out outside the
+/// display, a level outside 0 to 1, a display without pixels).
 [[nodiscard]] Result<cv::Mat1d> plate_picture(const TargetPlate& mounted_plate, cv::Point2d shift_mm,
                                               const DisplayGeometry& display, double ground, double pattern);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/pattern/test_picture.h"
 
 #include <fmt/format.h>
@@ -7,13 +8,13 @@
 #include <numbers>
 #include <utility>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "hvs/shape/polygon_coverage.h"
 
 namespace todbench {
 namespace {
 
-/// What a triangle of size 1 needs round its centroid, in every orientation, with a gap to its neighbours.
+/// Space for a triangle of size 1 round its centroid, in every orientation, with a gap to its neighbours.
 constexpr double cell_per_size = 2.4;
 constexpr double smallest_size_px = 1;
 constexpr double step_of_sizes = 1.205;
@@ -37,7 +38,7 @@ void add_polygon(cv::Mat1d& cover, const Polygon& polygon) {
   part += pixel_coverage(placed(polygon, 1, {-static_cast<double>(x0), -static_cast<double>(y0)}), window.size());
 }
 
-/// Sizes that fall by the step from the largest that leaves room for five rows, as many as fit.
+/// Sizes that decrease by the step from the largest that leaves room for five rows, as many as fit.
 std::vector<double> sizes_that_fit(cv::Size size) {
   std::vector<double> sizes;
   double next = std::min(size.width / 4.0, size.height / 5.0) / cell_per_size;
@@ -50,7 +51,7 @@ std::vector<double> sizes_that_fit(cv::Size size) {
   return sizes;
 }
 
-/// The four orientations in an order of the seed's (Fisher and Yates).
+/// The four orientations in a random order from the seed (Fisher and Yates).
 std::array<Apex, 4> shuffled(std::uint64_t seed, std::size_t row) {
   std::array<Apex, 4> order = all_apexes;
   const RandomStream stream = RandomStream(seed, "pattern.tod").sub(row);
@@ -70,11 +71,10 @@ Result<TargetPlate> plate_of(const TodPicture& kind, cv::Size size) {
   for (const double s : sizes) height += s * cell_per_size;
   if (sizes.empty() || height > size.height) {
     return fail(ErrorCode::invalid_input,
-                fmt::format("{} x {} pixels do not hold the rows of triangles: they need {:.0f} "
-                            "rows of pixels",
+                fmt::format("{} x {} pixels are too few for the rows of triangles, which need {:.0f} rows of pixels",
                             size.width, size.height, std::max(height, 5 * cell_per_size)));
   }
-  // The rows share the height that is left over.
+  // The rows share the remaining height.
   const double gap = (size.height - height) / static_cast<double>(sizes.size());
   double y = -size.height / 2.0;
   for (std::size_t row = 0; row < sizes.size(); ++row) {
@@ -106,12 +106,14 @@ Result<std::vector<BarGroup>> groups_of(const MrtdPicture& kind, cv::Size size) 
   for (const double f : kind.frequencies_per_px) {
     if (!(f > 0 && f <= 1))
       return fail(ErrorCode::invalid_input,
-                  fmt::format("a frequency must be above 0 and at most 1 per pixel, found {:g}", f));
+                  fmt::format("a frequency must be above 0 and at most 1 cycle per pixel, found {:g}", f));
     const double side = 3.5 / f, cell = side + std::max(2.0, 1 / f);
     if (cell > size.width || cell > size.height)
-      return fail(ErrorCode::invalid_input,
-                  fmt::format("{} x {} pixels do not hold bars of {:g} per pixel, {:.0f} pixels wide", size.width,
-                              size.height, f, cell));
+      return fail(
+          ErrorCode::invalid_input,
+          fmt::format(
+              "{} x {} pixels are too few for a group of bars of {:g} cycles per pixel, which is {:.0f} pixels wide",
+              size.width, size.height, f, cell));
     for (const bool upright : {true, false}) {
       if (x + cell > size.width) {
         x = 0;
@@ -120,7 +122,7 @@ Result<std::vector<BarGroup>> groups_of(const MrtdPicture& kind, cv::Size size) 
       }
       if (y + cell > size.height)
         return fail(ErrorCode::invalid_input,
-                    fmt::format("{} x {} pixels do not hold all groups of bars", size.width, size.height));
+                    fmt::format("{} x {} pixels are too few for all groups of bars", size.width, size.height));
       groups.push_back({f, std::floor(x + cell / 2), std::floor(y + cell / 2), upright});
       x += cell;
       row_height = std::max(row_height, cell);
@@ -159,7 +161,8 @@ Result<void> draw(const MrtdPicture& kind, const PictureRequest& request, TestPi
 }
 
 Result<void> draw(const EdgePicture& kind, const PictureRequest& request, TestPicture& picture) {
-  if (!std::isfinite(kind.angle_deg)) return fail(ErrorCode::invalid_input, "the edge's angle must be a number");
+  if (!std::isfinite(kind.angle_deg))
+    return fail(ErrorCode::invalid_input, "the angle of the edge must be a finite number");
   add_polygon(picture.levels, right_of_edge(kind.angle_deg, request.size));
   return {};
 }
@@ -172,7 +175,7 @@ Result<void> draw(const RampPicture&, const PictureRequest& request, TestPicture
 }
 
 Result<void> draw(const SiemensPicture& kind, const PictureRequest& request, TestPicture& picture) {
-  if (kind.spokes < 2) return fail(ErrorCode::invalid_input, "a star needs two spokes");
+  if (kind.spokes < 2) return fail(ErrorCode::invalid_input, "a star needs at least two spokes");
   const cv::Point2d middle(request.size.width / 2.0, request.size.height / 2.0);
   const double radius = std::min(middle.x, middle.y);
   for (int i = 0; i < kind.spokes; ++i) {
@@ -218,7 +221,8 @@ Result<TestPicture> drawn_picture(const PictureRequest& request) {
   if (request.size.width < 1 || request.size.height < 1 || request.size.width > most || request.size.height > most ||
       request.size.width > most_pixels / request.size.height) {
     return fail(ErrorCode::invalid_input,
-                fmt::format("a picture has from 1 to {} pixels on a side and at most {} in all", most, most_pixels));
+                fmt::format("a picture must have from 1 to {} pixels on each side and at most {} pixels in total", most,
+                            most_pixels));
   }
   const auto level = [](double value) { return value >= 0 && value <= 1; };
   if (!level(request.low) || !level(request.high))

@@ -1,4 +1,5 @@
-// Test pictures for projectors, monitors and visible cameras: polygons whose truth is known, drawn by exact area.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Test pictures for projectors, monitors and visible cameras: known polygons, drawn by exact area.
 #pragma once
 
 #include <cstdint>
@@ -6,23 +7,23 @@
 #include <variant>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "hvs/shape/polygon.h"
 #include "tod/plate/target_plate.h"
 
 namespace todbench {
 
-/// Rows of four triangles, each orientation once a row, in an order that the seed draws; places differ in sub-pixel
+/// Rows of four triangles, each orientation once a row, in an order drawn from the seed; places differ in sub-pixel
 /// phase.
 struct TodPicture {
-  std::vector<double> sizes_px;  ///< square roots of area, one row each; empty: as many as fit, falling by 1.205
+  std::vector<double> sizes_px;  ///< square roots of area, one row each; empty: as many as fit, in steps of 1.205
   std::uint64_t seed = 1;
 };
 /// Groups of four bars, 7 : 1, upright and lying, one pair for each frequency.
 struct MrtdPicture {
   std::vector<double> frequencies_per_px{0.05, 0.1, 0.2, 0.3, 0.4, 0.5};
 };
-/// A straight edge through the middle, turned from the vertical; dark to the left.
+/// A straight edge through the middle, rotated from the vertical; dark to the left.
 struct EdgePicture {
   double angle_deg = 5;
 };
@@ -43,25 +44,26 @@ struct PictureRequest {
   PictureKind kind;
 };
 
-/// One group of bars, as a truth: `x_px`, `y_px` its middle from the picture's upper left corner.
+/// Truth of one group of bars: `x_px`, `y_px` its middle from the picture's upper left corner.
 struct BarGroup {
   double frequency_per_px = 0, x_px = 0, y_px = 0;
   bool upright = true;  ///< the bars are parallel to y
 };
 
-/// A picture with what is in it.
+/// A picture with its contents.
 struct TestPicture {
   cv::Mat1d levels;   ///< 0 to 1
   TargetPlate plate;  ///< of a TOD picture: one pixel is 1 mm, the origin is the middle
   std::vector<BarGroup> bars;
 };
 
-/// `invalid_input` in one sentence: a size that holds no pattern, levels that are none, a triangle that does not fit.
+/// Errors: `invalid_input` in one sentence (a size without room for a pattern, invalid levels, a triangle that does not
+/// fit).
 [[nodiscard]] Result<TestPicture> drawn_picture(const PictureRequest& request);
 
-/// The polygon of a triangle of the plate in pixels from the upper left corner.
+/// Outline of a triangle of the plate in pixels from the upper left corner.
 [[nodiscard]] Polygon outline_px(const PlateTriangle& triangle, cv::Size size);
-/// The four bars of a group.
+/// Outlines of the four bars of a group.
 [[nodiscard]] std::vector<Polygon> outlines_px(const BarGroup& group);
 
 }  // namespace todbench

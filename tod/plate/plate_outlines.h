@@ -1,4 +1,5 @@
-// Outlines of a plate's triangles in the picture, and numbers in sentences: shared by registration, shift and contrast.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Outlines of a plate's triangles in the picture, and number formatting, for registration, shift and contrast.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@
 
 namespace todbench {
 
-/// A place on the plate (mm) in the picture (px).
+/// Maps a place on the plate (mm) to the picture (px).
 [[nodiscard]] inline cv::Point2d to_pixel(const cv::Matx33d& plate_to_pixel, cv::Point2d plate_mm) {
   const cv::Vec3d p = plate_to_pixel * cv::Vec3d(plate_mm.x, plate_mm.y, 1);
   return {p[0] / p[2], p[1] / p[2]};
@@ -26,7 +27,7 @@ namespace todbench {
          (1 / p[2]);
 }
 
-/// Outline of a triangle as the mapping shows it, its apex as given.
+/// Outline of a triangle in the picture by the mapping, with the given apex.
 [[nodiscard]] inline Polygon outline_in_picture(const cv::Matx33d& plate_to_pixel, const PlateTriangle& t, Apex apex) {
   Polygon outline = triangle(t.size_mm, apex, t.position_mm);
   for (cv::Point2d& p : outline) p = to_pixel(plate_to_pixel, p);
@@ -42,7 +43,7 @@ namespace todbench {
   return large;
 }
 
-/// `value` with `digits` after the point.
+/// `value` with `digits` decimals.
 [[nodiscard]] inline std::string fixed(double value, int digits) {
   return fmt::format("{:.{}f}", value, digits);
 }

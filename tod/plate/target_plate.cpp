@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/plate/target_plate.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace todbench {
 namespace {
 
 /// Largest gap between two convex polygons over the directions perpendicular to their edges (separating axis theorem):
-/// > 0 exactly when they are apart.
+/// > 0 exactly if they are apart.
 double separation(const Polygon& a, const Polygon& b) {
   double best = -std::numeric_limits<double>::infinity();
   for (const Polygon* owner : {&a, &b}) {
@@ -47,13 +48,14 @@ std::string number(double value) {
   return out.str();
 }
 
-/// What is asked of every cut-out, one after the other.
+/// Checks of the cut-outs, one after the other.
 class CutOuts {
  public:
   explicit CutOuts(const TargetPlate& plate) : plate_(plate) {}
 
   Result<void> add(const std::string& name, cv::Point2d position_mm, const Polygon& outline) {
-    if (!names_.insert(name).second) return tl::unexpected(refusal(plate_, "two cut-outs are named \"" + name + "\""));
+    if (!names_.insert(name).second)
+      return tl::unexpected(refusal(plate_, "two cut-outs have the name \"" + name + "\""));
     if (!inside(outline, plate_.width_mm / 2, plate_.height_mm / 2)) {
       return tl::unexpected(refusal(plate_, name + " at (" + number(position_mm.x) + ", " + number(position_mm.y) +
                                                 ") mm leaves the plate of " + number(plate_.width_mm) + " x " +
@@ -72,8 +74,8 @@ class CutOuts {
   std::vector<std::pair<std::string, Polygon>> outlines_;
 };
 
-/// Whether a mounting turns x and y over: {x, y}. Every mounting is its own inverse, and two of them make the mounting
-/// that turns over what exactly one of them does (the Klein four-group).
+/// Whether a mounting flips x and y: {x, y}. Every mounting is its own inverse, and two of them combine to the mounting
+/// that flips an axis if exactly one of them does (the Klein four-group).
 struct Flips {
   bool x, y;
 };
@@ -117,7 +119,7 @@ std::optional<Mounting> mounting_from(std::string_view name) {
 
 Result<void> validate(const TargetPlate& plate) {
   if (!positive(plate.width_mm) || !positive(plate.height_mm)) {
-    return tl::unexpected(refusal(plate, "width_mm and height_mm must be positive, they are " + number(plate.width_mm) +
+    return tl::unexpected(refusal(plate, "width_mm and height_mm must be positive, found " + number(plate.width_mm) +
                                              " and " + number(plate.height_mm)));
   }
   if (plate.triangles.empty() && plate.rectangles.empty() && plate.bars.empty())
@@ -129,7 +131,7 @@ Result<void> validate(const TargetPlate& plate) {
   CutOuts cut_outs(plate);
   for (const PlateTriangle& t : plate.triangles) {
     if (!positive(t.size_mm)) {
-      return tl::unexpected(refusal(plate, t.name + ": size_mm must be positive, it is " + number(t.size_mm)));
+      return tl::unexpected(refusal(plate, t.name + ": size_mm must be positive, found " + number(t.size_mm)));
     }
     auto added = cut_outs.add(t.name, t.position_mm, triangle(t.size_mm, t.apex, t.position_mm));
     if (!added) return added;
@@ -194,7 +196,7 @@ TargetPlate mounted(const TargetPlate& plate, Mounting mounting) {
   const Flips f = flips(mounting);
   TargetPlate result = plate;
   for (PlateTriangle& t : result.triangles) {
-    // 0 - x instead of -x: a triangle in the middle stays at +0 and compares and prints like before.
+    // 0 - x instead of -x: a triangle in the middle stays at +0 and compares and prints as before.
     if (f.x) t.position_mm.x = 0 - t.position_mm.x;
     if (f.y) t.position_mm.y = 0 - t.position_mm.y;
     t.apex = mounted(t.apex, mounting);

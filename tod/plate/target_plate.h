@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The plate of triangles in front of the camera (T-CAT: Valeton, Bijl, Agterhuis and Kriekaard 2000).
 #pragma once
 
@@ -6,62 +7,62 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
 
 /// One cut-out.
 struct PlateTriangle {
-  std::string name;         ///< unique on the plate, e.g. "row 2, triangle 3"
-  cv::Point2d position_mm;  ///< centroid, from the middle of the plate, x right, y down, as seen by the camera in
-                            ///< identity mounting
-  double size_mm = 0;       ///< square root of area
+  std::string name;  ///< unique on the plate, e.g. "row 2, triangle 3"
+  /// Centroid, from the middle of the plate, x right, y down, as seen by the camera in identity mounting.
+  cv::Point2d position_mm;
+  double size_mm = 0;  ///< square root of area
   Apex apex = Apex::up;
 };
 
-/// A cut-out for measures beside TOD: an edge or a bar.
+/// A cut-out for measures other than TOD: an edge or a bar.
 struct PlateRectangle {
   std::string name;         ///< unique on the plate
-  cv::Point2d position_mm;  ///< of its middle, as of a triangle
-  cv::Size2d size_mm;       ///< before it is turned
-  double angle_deg = 0;     ///< by which it is turned clockwise
+  cv::Point2d position_mm;  ///< of its middle, as for a triangle
+  cv::Size2d size_mm;       ///< before rotation
+  double angle_deg = 0;     ///< rotation, clockwise
 };
-/// Its corners, clockwise from the one that is top left before it is turned.
+/// Its corners, clockwise from the one that is top left before rotation.
 [[nodiscard]] Polygon outline_mm(const PlateRectangle& rectangle);
 
-/// Four cut-outs with spaces as wide between them: a square wave of 1 / (2 bar_mm) cycles per millimetre.
+/// Four cut-outs with spaces of the same width: a square wave of 1 / (2 bar_mm) cycles per millimetre.
 struct PlateBars {
   std::string name;         ///< unique on the plate
-  cv::Point2d position_mm;  ///< of the middle of the group, as of a triangle
+  cv::Point2d position_mm;  ///< of the middle of the group, as for a triangle
   double bar_mm = 0;        ///< width of a bar and of a space
   double length_mm = 0;     ///< of a bar
   double angle_deg = 0;     ///< from x to the direction across the bars, clockwise
 };
 
-/// How the plate is held. A mounting permutes places *and* apex labels; it is how a bench defeats memory and asymmetry.
+/// How the plate is held. A mounting permutes places *and* apex labels, which cancels effects of memory and asymmetry.
 enum class Mounting { identity, rotated_180, mirrored_horizontally, mirrored_vertically };
 inline constexpr std::array all_mountings{Mounting::identity, Mounting::rotated_180, Mounting::mirrored_horizontally,
                                           Mounting::mirrored_vertically};
 [[nodiscard]] std::string_view to_string(Mounting mounting);
 [[nodiscard]] std::optional<Mounting> mounting_from(std::string_view name);
 
-/// A plate as its drawing states it. The truth about every triangle comes from here, never from the image.
+/// A plate as stated by its drawing. The truth about every triangle comes from here, never from the image.
 struct TargetPlate {
   std::string name;
   std::string description;
   double width_mm = 0, height_mm = 0;
   std::vector<PlateTriangle> triangles;
-  Mounting mounting = Mounting::identity;  ///< in which places and apexes are stated; set by mounted(), never by a file
-  std::vector<PlateRectangle> rectangles{};  ///< no trials are made with them
-  std::vector<PlateBars> bars{};             ///< nor with these
+  Mounting mounting = Mounting::identity;    ///< of the stated places and apexes; set by mounted(), never by a file
+  std::vector<PlateRectangle> rectangles{};  ///< without trials
+  std::vector<PlateBars> bars{};             ///< without trials
 };
 
 /// Its rectangles, then the bars of its groups one by one ("NAME, bar 1").
 [[nodiscard]] std::vector<PlateRectangle> straight_cut_outs(const TargetPlate& plate);
 
-/// `invalid_input` for an empty plate, a size that is not positive, a repeated name, or a cut-out that leaves the plate
-/// or touches another.
+/// Errors: `invalid_input` (an empty plate, a size that is not positive, a repeated name, or a cut-out that leaves the
+/// plate or touches another).
 [[nodiscard]] Result<void> validate(const TargetPlate& plate);
 
 /// The mounting that results from both, in either order (the Klein four-group: each is its own inverse).

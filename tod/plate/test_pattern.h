@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The TOD test pattern: an equilateral triangle in four orientations (Bijl and Valeton 1998).
 #pragma once
 
@@ -10,14 +11,14 @@
 
 namespace todbench {
 
-/// Where the apex points. x right, y down; the order is clockwise and is that of every list of alternatives.
+/// Direction of the apex. x right, y down; the clockwise order is that of every list of alternatives.
 enum class Apex { up, right, down, left };
 inline constexpr std::array all_apexes{Apex::up, Apex::right, Apex::down, Apex::left};
 
 [[nodiscard]] std::string_view to_string(Apex apex);
 [[nodiscard]] std::optional<Apex> apex_from(std::string_view name);
 
-/// Size is the square root of the area. Everything below is for size 1:
+/// Size is the square root of the area. The constants below are for size 1:
 inline constexpr double triangle_side = 1.5196713713031853;              ///< 2 / 3^(1/4)
 inline constexpr double triangle_height = 1.3160740129524924;            ///< 3^(1/4)
 inline constexpr double triangle_centroid_to_apex = 0.8773826753016616;  ///< 2/3 of the height

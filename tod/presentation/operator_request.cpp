@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/presentation/operator_request.h"
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ const char* words(Mounting mounting) {
 }
 
 std::string words(const PutInPlate& step) {
-  return "put in plate '" + step.plate + "', " + words(step.mounting);
+  return "insert plate '" + step.plate + "', " + words(step.mounting);
 }
 
 std::string words(const Remount& step) {
@@ -30,19 +31,20 @@ std::string words(const Remount& step) {
 }
 
 std::string words(const SetContrast& step) {
-  return fmt::format("set the black body to {:+.3f} K against the plate and wait until it is stable", step.delta_t_k);
+  return fmt::format("set the black body to {:+.3f} K relative to the plate and wait until it is stable",
+                     step.delta_t_k);
 }
 
 std::string words(const MoveSlightly& step) {
   return fmt::format(
-      "move the plate or the camera slightly, about {:.1f} mm {} and {:.1f} mm {} as the camera sees the plate; the "
-      "amount is measured, it need not be exact",
+      "move the plate or the camera slightly, by about {:.1f} mm {} and {:.1f} mm {} as seen by the camera; the "
+      "movement is measured and need not be exact",
       std::abs(step.by_mm.x), step.by_mm.x < 0 ? "left" : "right", std::abs(step.by_mm.y),
       step.by_mm.y < 0 ? "up" : "down");
 }
 
 std::string words(const MoveHotBar& step) {
-  return step.in ? "bring the hot bar into the picture, beside the plate and not before it"
+  return step.in ? "bring the hot bar into the picture, beside the plate and not in front of it"
                  : "take the hot bar out of the picture";
 }
 

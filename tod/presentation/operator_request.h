@@ -1,5 +1,5 @@
-// What a hand has to do to bring a state in front of the camera: steps with their values. Words are made of them where
-// they are shown.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Steps, with values, by which an operator brings a state in front of the camera. The user interface words them.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/presentation/target.h"
 
 namespace todbench {
@@ -21,24 +21,24 @@ struct PutInPlate {
   bool operator==(const PutInPlate&) const = default;
 };
 
-/// The plate that is in stays.
+/// The plate stays in place.
 struct Remount {
   Mounting mounting = Mounting::identity;
   bool operator==(const Remount&) const = default;
 };
 
 struct SetContrast {
-  double delta_t_k = 0;  ///< black body against plate
+  double delta_t_k = 0;  ///< black body minus plate
   bool operator==(const SetContrast&) const = default;
 };
 
-/// How far it really went is measured.
+/// The actual distance is measured.
 struct MoveSlightly {
   cv::Point2d by_mm;  ///< as the camera sees the plate, x right, y down
   bool operator==(const MoveSlightly&) const = default;
 };
 
-/// Something much warmer than the plate, beside it in the picture.
+/// An object much warmer than the plate, next to it in the picture.
 struct MoveHotBar {
   bool in = true;
   bool operator==(const MoveHotBar&) const = default;
@@ -48,18 +48,18 @@ using OperatorStep = std::variant<PutInPlate, Remount, SetContrast, MoveSlightly
 
 /// One request to the operator, to be done in the order of its steps.
 struct OperatorRequest {
-  std::vector<OperatorStep> steps;  ///< none: nothing is to be done
+  std::vector<OperatorStep> steps;  ///< empty: no action needed
   bool operator==(const OperatorRequest&) const = default;
 };
 
 enum class OperatorAnswer { done, stop };
 
-/// Puts a request before the operator and waits for the answer. Called from the thread of the run. Errors:
-/// `interrupted` (at once when stop is requested), `disconnected` (nobody answers any more).
+/// Shows a request to the operator and waits for the answer. Called from the thread of the run. Errors: `interrupted`
+/// (at once when stop is requested), `disconnected` (the operator can no longer answer).
 using AskOperator = std::function<Result<OperatorAnswer>(const OperatorRequest& request, const std::stop_token& stop)>;
 
-/// What differs between two states; everything where the last one is not known. A move is asked for only where nothing
-/// else changes: a plate that is touched has moved.
+/// Differences between two states; all steps if the last state is not known. A move is requested only if nothing else
+/// changes, because touching the plate moves it.
 [[nodiscard]] OperatorRequest request_between(const std::optional<TargetState>& last, const TargetState& next);
 
 /// The step as a request, without a capital and a full stop: "set the black body to +2.000 K against the plate ...".

@@ -1,4 +1,5 @@
-// One presentation: what the target was told, what it said, what the camera saw.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One presentation: requested, reported and observed state of the target.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +10,23 @@
 namespace todbench {
 
 struct Presentation {
-  std::int64_t presentation = 0;  ///< as in Trial; one that had to be made again has the same number
-  TargetState set;                ///< what the target was told
-  PresentedTarget said;           ///< what it answered
-  /// Effective contrast of the set-up at this set-point, as the camera saw it; nothing: it could not be measured.
+  std::int64_t presentation = 0;  ///< as in Trial; a repeated presentation has the same number
+  TargetState set;                ///< requested state
+  PresentedTarget said;           ///< reported state
+  /// Effective contrast of the set-up at this set-point, as the camera observed it; empty: it could not be measured.
   std::optional<double> delta_t_k;
-  /// Standard error of that contrast, from the scatter over the triangles it was measured by; nothing: fewer than two
-  /// of them, or a contrast in grey levels, where every frame has its own.
+  /// Standard error of that contrast, from the scatter over its triangles; empty: fewer than two triangles, or a
+  /// contrast in grey levels, which every frame measures separately.
   std::optional<double> delta_t_se_k{};
-  int reference_triangles = 0;  ///< how many those are; 0: not said
-  /// What the air between target and camera leaves of a contrast; nothing: it was not stated.
+  int reference_triangles = 0;  ///< number of these triangles; 0: not stated
+  /// Transmittance of the air between target and camera for a contrast; empty: not stated.
   std::optional<double> air_transmittance{};
-  /// When the target was there, on the clock of Trial::host_time_ns; nothing: a simulated scene, which takes no time.
+  /// Requested place of the plate's middle in the picture, and its place in the frames of this presentation with the
+  /// larger standard error of x and y, in pixels; empty: not checked, or too little contrast.
+  std::optional<cv::Point2d> asked_px{}, seen_px{};
+  std::optional<double> seen_error_px{};
+  /// Time at which the target was in place, on the clock of Trial::host_time_ns; empty: a simulated scene, which takes
+  /// no time.
   std::optional<std::int64_t> host_time_ns;
   bool operator==(const Presentation&) const = default;
 };

@@ -1,4 +1,5 @@
-// What is brought in front of the camera, and by whom: instruments, a simulated scene, or a hand.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The target in front of the camera: instruments, a simulated scene, or an operator's hand.
 #pragma once
 
 #include <opencv2/core/types.hpp>
@@ -7,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/plate/target_plate.h"
 #include "tod/presentation/moving_target.h"
 #include "tod/presentation/stepping_target.h"
 
 namespace todbench {
 
-/// One thing to show.
+/// State to be shown.
 struct TargetState {
   std::string plate;  ///< name of the TargetPlate
   Mounting mounting = Mounting::identity;
@@ -23,10 +24,10 @@ struct TargetState {
   bool operator==(const TargetState&) const = default;
 };
 
-/// What an instrument says it shows, once it is stable.
+/// State that an instrument reports once it is stable.
 struct PresentedTarget {
   TargetState state;                               ///< as reached
-  std::optional<double> plate_temperature_k;       ///< of the surround, where a sensor says so
+  std::optional<double> plate_temperature_k;       ///< of the surround, if a sensor reports it
   std::optional<double> black_body_temperature_k;  ///< behind the cut-outs
   double settling_s = 0;                           ///< time spent waiting
   bool operator==(const PresentedTarget&) const = default;
@@ -35,8 +36,8 @@ struct PresentedTarget {
 /// What a target can do by itself.
 struct TargetCapabilities {
   std::string description;  ///< instruments with their serial numbers, for the report
-  bool sets_shift =
-      false;  ///< false: sub-pixel phases come from small movements of the hand and are measured by registration
+  /// False: the hand moves the plate slightly, and registration measures the sub-pixel phases.
+  bool sets_shift = false;
 };
 
 /// Brings a state in front of the camera. One thread at a time.
@@ -47,9 +48,9 @@ class Target {
   /// Returns when the state is reached and stable, or when `stop` is requested (`interrupted`, within a second).
   /// Errors: `timeout` (does not settle), `disconnected`, `not_found`, `invalid_input` (a state it cannot show).
   [[nodiscard]] virtual Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) = 0;
-  /// The same target where it can run; null: it cannot. Lives as long as the target.
+  /// The same target if it can run, else null. Lives as long as the target.
   [[nodiscard]] virtual MovingTarget* moving() { return nullptr; }
-  /// The same target where it steps at once; null: it does not. Lives as long as the target.
+  /// The same target if it can step at once, else null. Lives as long as the target.
   [[nodiscard]] virtual SteppingTarget* stepping() { return nullptr; }
 };
 

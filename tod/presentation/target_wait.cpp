@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/presentation/target_wait.h"
 
 #include <fmt/format.h>

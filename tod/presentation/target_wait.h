@@ -1,4 +1,5 @@
-// A target on its way: what was asked of it and how far it has come.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Progress of a target on its way to a requested state.
 #pragma once
 
 #include <functional>
@@ -13,14 +14,14 @@ namespace todbench {
 struct TargetWait {
   TargetState asked;
   TargetState reached;          ///< as measured last
-  bool contrast_there = false;  ///< the contrast is the one asked for and settled
-  bool plate_there = false;     ///< plate, mounting and place are those asked for and at rest
+  bool contrast_there = false;  ///< the requested contrast is reached and settled
+  bool plate_there = false;     ///< plate, mounting and place are the requested ones and at rest
   double waited_s = 0;
-  double timeout_s = 0;  ///< then the target gives up
+  double timeout_s = 0;  ///< the target then reports an error
 };
 
-/// Told about twice a second while a target takes its time, and with nothing when the wait is over. Called from the
-/// thread that presents.
+/// Called about twice a second while a target is on its way, and with an empty value when the wait is over. Called from
+/// the thread that presents.
 using OnTargetWait = std::function<void(const std::optional<TargetWait>&)>;
 
 /// "rotated by 180 degrees", for people.

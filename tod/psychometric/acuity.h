@@ -1,4 +1,5 @@
-// Acuity from size: the reciprocal, with the bounds exchanged.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Acuity from size: the reciprocal, with exchanged bounds.
 #pragma once
 
 #include <optional>
@@ -7,9 +8,9 @@
 
 namespace todbench {
 
-/// Acuity in 1/mrad: 1 / threshold in mrad; nothing where there is no positive threshold.
+/// Acuity in 1/mrad: 1 / threshold in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> acuity_per_mrad(const PsychometricFit& fit);
-/// The interval of 1 / S75: the sides change places. A lower limit of 0 is none.
+/// The interval of 1 / S75 with exchanged sides. A lower limit of 0 gives an open side.
 [[nodiscard]] Interval acuity_interval(const Interval& s75_mrad);
 
 }  // namespace todbench

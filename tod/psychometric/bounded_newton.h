@@ -1,4 +1,5 @@
-// A maximum of a smooth function of a few variables inside a box: damped Newton steps with analytic derivatives.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Maximum of a smooth function of a few variables inside a box: damped Newton steps with analytic derivatives.
 #pragma once
 
 #include <algorithm>
@@ -18,9 +19,9 @@ struct Expansion {
   std::array<std::array<double, N>, N> hessian{};
 };
 
-/// A box. A variable with equal limits is held.
+/// A box. A variable with equal limits is fixed.
 template <std::size_t N>
-struct Box {
+struct ParameterBox {
   std::array<double, N> lower{}, upper{};
 };
 
@@ -28,10 +29,10 @@ template <std::size_t N>
 struct Maximum {
   std::array<double, N> place{};
   Expansion<N> expansion;
-  std::array<bool, N> free{};  ///< false: held, or at a limit with the gradient pointing outwards
+  std::array<bool, N> free{};  ///< false: fixed, or at a limit with the gradient pointing outwards
 };
 
-/// Solves M y = r for the free variables by Cholesky, M = -hessian + damping |diagonal|; nothing if M is not positive
+/// Solves M y = r for the free variables by Cholesky, M = -hessian + damping |diagonal|; empty if M is not positive
 /// definite.
 template <std::size_t N>
 [[nodiscard]] std::optional<std::array<double, N>> solve_information(
@@ -72,10 +73,10 @@ template <std::size_t N>
   return y;
 }
 
-/// Which variables may move from `place`.
+/// Variables that may move from `place`.
 template <std::size_t N>
 [[nodiscard]] std::array<bool, N> free_variables(const std::array<double, N>& place,
-                                                 const std::array<double, N>& gradient, const Box<N>& box) {
+                                                 const std::array<double, N>& gradient, const ParameterBox<N>& box) {
   std::array<bool, N> free{};
   for (std::size_t i = 0; i < N; ++i) {
     const bool held = !(box.lower[i] < box.upper[i]);
@@ -97,12 +98,12 @@ template <std::size_t N>
   return true;
 }
 
-/// Climbs from `start` (Levenberg-Marquardt damping, active limits released when the gradient points inwards). Once the
-/// gain of a step is below the rounding of the value, steps are accepted as long as they shrink the gradient, so that
-/// the place is exact to the rounding of the gradient, not of the value. Ends where no step helps; a start without
-/// finite derivatives is returned as it is.
+/// Climbs from `start` (Levenberg-Marquardt damping; an active limit is released when the gradient points inwards).
+/// Once the gain of a step is below the rounding of the value, steps are accepted as long as they reduce the gradient,
+/// so that the place is exact to the rounding of the gradient, not of the value. Ends if no step helps; a start without
+/// finite derivatives is returned unchanged.
 template <std::size_t N, typename Function>
-[[nodiscard]] Maximum<N> climb(const Function& function, std::array<double, N> start, const Box<N>& box) {
+[[nodiscard]] Maximum<N> climb(const Function& function, std::array<double, N> start, const ParameterBox<N>& box) {
   for (std::size_t i = 0; i < N; ++i) start[i] = std::clamp(start[i], box.lower[i], box.upper[i]);
   Maximum<N> at{start, function(start), {}};
   double damping = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/clustered_variance.h"
 
 #include <Eigen/Dense>
@@ -14,10 +15,11 @@ namespace {
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_parameters, most_parameters>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_parameters, 1>;
 
-/// Leverage beyond which a cluster is the only one that knows a direction: its correction ends there.
+/// Largest leverage for the correction: above it a cluster alone determines a direction.
 constexpr double most_leverage = 0.9;
 
-/// Of the variance of single answers: evenly spread phases leave a tenth of it, less is luck.
+/// Least variance over set-ups, relative to that of single answers: evenly spread phases leave a tenth; much less is
+/// chance.
 constexpr double least_share = 0.01;
 
 struct Cluster {

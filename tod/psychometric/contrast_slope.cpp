@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/contrast_slope.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 namespace todbench {
 namespace {
 
-/// A point of a curve as its form has it: the square of the size over the inverse contrast.
+/// A point of a curve in the variables of its form: the square of the size over the inverse contrast.
 struct SlopePoint {
   std::size_t index;
   double z;       ///< 1 / contrast
@@ -29,7 +30,7 @@ double slope_at(const std::vector<SlopePoint>& points, std::size_t i) {
   if (last == 0) return 1;
   const SlopePoint& p = points[i];
   if (last == 1) {
-    // Two points have one term: that which says more, 1 / C or 1 / C^2.
+    // Two points allow one term: the one with the larger slope, 1 / C or 1 / C^2.
     const SlopePoint& other = points[1 - i];
     const double rise = p.square - other.square;
     return std::max(in_logarithms(p, rise / (p.z - other.z)),
@@ -72,7 +73,7 @@ std::vector<double> contrast_slopes(const TodCurve& curve) {
       points.push_back({i, 1 / contrast_seen_k(point), *point.fit.threshold * *point.fit.threshold});
     }
     std::sort(points.begin(), points.end(), [](const SlopePoint& a, const SlopePoint& b) { return a.z < b.z; });
-    // Contrasts that the camera saw as the same one have no slope between them.
+    // Points with equal effective contrasts have no slope between them.
     points.erase(std::unique(points.begin(), points.end(),
                              [](const SlopePoint& a, const SlopePoint& b) { return std::log(b.z / a.z) < 0.005; }),
                  points.end());

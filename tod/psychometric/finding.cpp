@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/finding.h"
 
 namespace todbench {
@@ -24,8 +25,22 @@ std::string_view to_string(FindingKind kind) {
       return "rounding";
     case FindingKind::temporal_correlation:
       return "temporal_correlation";
+    case FindingKind::surrogate:
+      return "surrogate";
     case FindingKind::identity:
       return "identity";
+    case FindingKind::contrast_deviation:
+      return "contrast_deviation";
+    case FindingKind::transfer_change:
+      return "transfer_change";
+    case FindingKind::noise_change:
+      return "noise_change";
+    case FindingKind::correlation_change:
+      return "correlation_change";
+    case FindingKind::picture_residue:
+      return "picture_residue";
+    case FindingKind::setting_change:
+      return "setting_change";
   }
   return "unknown";
 }

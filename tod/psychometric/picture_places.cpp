@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/picture_places.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ using Shown = std::tuple<std::string, Mounting, std::string>;
 struct SeenTriangle {
   double x_px = 0, y_px = 0;  ///< sums over the trials
   double size_px = 0, count = 0;
-  std::size_t index = 0;  ///< in the order in which they came
+  std::size_t index = 0;  ///< in order of appearance
 };
 
 struct Spot {

@@ -1,4 +1,5 @@
-// Which triangles of a run were seen by the same detectors.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Assignment of the triangles of a run to the detectors that saw them.
 #pragma once
 
 #include <span>
@@ -8,14 +9,14 @@
 
 namespace todbench {
 
-/// A number from 0 on for each trial, in their order: the same where plates and mountings put triangles before the same
-/// detectors, whose fixed pattern their answers share. A triangle of a set-up lies at the mean of its centroids; it is
-/// at the place of the first one before whose centroid is nearer than half the size of the larger of both and
-/// `reach_px`, so that places do not grow into each other. Where a trial does not say where it was, every triangle of
-/// every set-up has a number of its own.
+/// Returns the number of a place, from 0 on, for each trial in order. Trials share a place if plates and mountings put
+/// their triangles before the same detectors, so that their answers share fixed pattern. A triangle of a set-up lies at
+/// the mean of its centroids; it belongs to the first earlier place whose centroid is nearer than half the size of the
+/// larger triangle and `reach_px`, so that places do not merge. If a trial has no centroid, every triangle of every
+/// set-up has its own number.
 [[nodiscard]] std::vector<int> picture_places(std::span<const Trial> trials);
 
-/// What blur and the search of an observer take in beyond an outline, in pixels.
+/// Reach of blur and observer's search outside an outline, in pixels.
 inline constexpr double reach_px = 1.5;
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/psychometric_clusters.h"
 
 #include <algorithm>
@@ -7,13 +8,14 @@
 #include <set>
 #include <vector>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/psychometric/clustered_variance.h"
 
 namespace todbench {
 namespace {
 
-// Something each trial adds: `right` for a right answer, `wrong` for a wrong one. Its square summed over clusters.
+// Contribution of each trial: `right` for a right answer, `wrong` for a wrong one. Returns the sum over clusters of its
+// square.
 double sum_of_squares(std::span<const Level> levels, const std::map<double, std::array<double, 2>>& per_answer) {
   std::map<int, double> sums;
   double squares = 0;
@@ -31,7 +33,7 @@ double sum_of_squares(std::span<const Level> levels, const std::map<double, std:
   return squares;
 }
 
-// Share of right answers at each size given.
+// Share of right answers at each given size.
 std::map<double, std::array<double, 2>> residuals(std::span<const Level> levels) {
   std::map<double, std::array<double, 2>> counts;
   for (const Level& row : levels) {
@@ -60,7 +62,7 @@ double count_clusters(std::span<const Level> levels) {
   return seen.empty() ? 0 : static_cast<double>(seen.size()) + alone;
 }
 
-// The first row of the inverse information: what one unit of score moves t.
+// The first row of the inverse information: change of t per unit of score.
 std::optional<std::array<double, 3>> influence(const Maximum<3>& maximum) {
   return solve_information(maximum.expansion.hessian, {1, 0, 0}, maximum.free, 0);
 }
@@ -113,7 +115,7 @@ AnswerScore score_of(const GradedAnswer& answer, const PooledCounts& counts, Psy
   const double slope = std::exp(maximum.place[place_q]);
   const LogProbabilities p = log_probabilities(link, link.sign * slope * (ln_size - maximum.place[place_t]));
   const double right = std::exp(p.right), sd = std::sqrt(right * std::exp(p.wrong));
-  // Where the model knows the answer it has no variance to be measured by.
+  // An answer that the model determines has no variance to scale by.
   if (!(sd > 1e-12)) return score;
   score.residual = (answer.probability_correct - right) / sd;
   const Scores at = scores_at(form, maximum.place, ln_size);

@@ -1,4 +1,5 @@
-// How much trials that share a phase, a frame or a fixed pattern inflate the variance of the threshold.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Variance inflation of the threshold by trials that share a phase, a frame or a fixed pattern.
 #pragma once
 
 #include <span>
@@ -7,29 +8,29 @@
 
 namespace todbench {
 
-/// What clustering does to an interval.
+/// Effect of clusters on an interval.
 struct ClusterEffect {
-  double clusters = 0;   ///< G; 0: no row names a cluster, trials are independent
+  double clusters = 0;   ///< G; 0: no row has a cluster, trials are independent
   double inflation = 1;  ///< of the variance of ln threshold, >= 1
 };
 
 /// Cluster-robust variance (Liang and Zeger 1986): inverse information times the sum over clusters of squared scores
-/// times inverse information, times G/(G-1), over the model variance. Rows without a cluster in a set that has clusters
-/// are one cluster per trial. Where the fit has no information (step, one-sided data) the design effect of the counts
-/// about their level means (Rao and Scott 1992) takes its place.
+/// times inverse information, times G/(G-1), over the model variance. In a set with clusters, each trial of a row
+/// without a cluster is a cluster. If the fit has no information (step, one-sided data), the design effect of the
+/// counts about their level means (Rao and Scott 1992) is used.
 [[nodiscard]] ClusterEffect cluster_effect(std::span<const Level> levels, const PooledCounts& counts,
                                            PsychometricForm form, const Maximum<3>& maximum,
                                            std::optional<double> se_t);
 
-/// The same of graded answers, with their dispersion.
+/// Same for graded answers, with their dispersion.
 struct GradedEffect {
   ClusterEffect clusters;  ///< effective number; the inflation may be below 1
   IntervalKind kind = IntervalKind::two_way;
-  std::optional<double> dispersion;  ///< as PsychometricFit::dispersion
+  std::optional<double> dispersion;  ///< as in PsychometricFit::dispersion
 };
 
-/// From the variance over presentations and places (clustered_variance.h). Where the fit has no information, or there
-/// are too few clusters of either kind, their number is the smaller one and the inflation that of single answers.
+/// From the variance over presentations and places (clustered_variance.h). If the fit has no information, or there are
+/// too few clusters of either kind, uses the smaller number of clusters and the inflation of single answers.
 [[nodiscard]] GradedEffect graded_effect(std::span<const GradedAnswer> answers, const PooledCounts& counts,
                                          PsychometricForm form, const Maximum<3>& maximum, std::optional<double> se_t);
 

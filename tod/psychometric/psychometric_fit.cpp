@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/psychometric_fit.h"
 
 #include <cmath>
@@ -12,7 +13,7 @@
 namespace todbench {
 namespace {
 
-// Everything known about the likelihood before a word is said about it.
+// Properties of the likelihood before the verdict.
 struct Surface {
   PooledCounts counts;
   PsychometricForm form = PsychometricForm::size;
@@ -52,8 +53,8 @@ Judgement judge(const Surface& s) {
   if (s.counts.levels.size() == 1) return {FitVerdict::slope_unidentifiable, false};
   const std::size_t parameters = s.lapse ? 2 : 3;
   const bool short_of_levels = parameters > s.counts.levels.size();
-  // With more parameters than levels the flat direction is the ridge, unless even its smallest-lapse member is a step
-  // (see ridge_foot).
+  // With more parameters than levels the flat direction is the ridge, unless even its member with the smallest lapse is
+  // a step (see ridge_foot).
   const bool flat_step = is_flat_step(s.limits, supremum, equal);
   const bool on_foot = short_of_levels && s.maximum.place[place_lapse] == 0 && !at_upper_slope(s.maximum) &&
                        !is_flat_step(likelihood_limits(s.counts, 0.0), supremum, equal);
@@ -66,7 +67,7 @@ Judgement judge(const Surface& s) {
   return {FitVerdict::ok, true};
 }
 
-// Two levels and a free lapse leave a ridge of equal likelihood; its member with the smallest lapse stands for it.
+// Two levels and a free lapse leave a ridge of equal likelihood; its member with the smallest lapse represents it.
 Maximum<3> ridge_foot(const Surface& s) {
   if (s.lapse || s.counts.levels.size() != 2) return s.maximum;
   const Maximum<3> foot = global_maximum(s.counts, s.form, scan_likelihood(s.counts, scan_grid(s.form, 0.0)), 0.0);
@@ -81,8 +82,8 @@ std::optional<double> standard_error(const Maximum<3>& m) {
 }
 
 double start_of_profile(const Surface& s, FitVerdict verdict) {
-  // At slope 50 a distance of 1.5 in ln size puts every level at its asymptote (z < e^-75), so the supremum is reached
-  // there.
+  // At slope 50 a distance of 1.5 in ln size puts every level at its asymptote (z < e^-75), so that the supremum is
+  // reached there.
   constexpr double beyond = 1.5;
   if (verdict == FitVerdict::above_range) return s.counts.last() + beyond;
   if (verdict == FitVerdict::below_range) return s.counts.first() - beyond;
@@ -96,7 +97,7 @@ Interval interval(const PooledCounts& counts, std::optional<double> low, std::op
   return sizes;
 }
 
-// Two-sided 95 % where both sides close; else the closing side's one-sided 95 % limit, which is its 90 % crossing.
+// Two-sided 95 % if both sides close; else the closing side's one-sided 95 % limit, which is its 90 % crossing.
 Interval interval95(const PooledCounts& counts, const ProfileCrossings& c) {
   if (c.below.wide && c.above.wide) return interval(counts, c.below.wide, c.above.wide);
   if (c.above.wide || (!c.below.wide && !c.below.narrow)) return interval(counts, std::nullopt, c.above.narrow);
@@ -104,11 +105,11 @@ Interval interval95(const PooledCounts& counts, const ProfileCrossings& c) {
   return {};
 }
 
-// A step lies anywhere in its gap. Where the gap is so narrow that the steepest function of the domain falls short of
-// an ideal step, the profile over the domain knows nothing of it: the interval is joined with all ideal steps that the
-// data do not rule out. `drop`: of twice the ln likelihood.
+// A step lies anywhere in its gap. If the gap is so narrow that the steepest function of the domain falls short of an
+// ideal step, the profile over the domain does not contain it: the interval is joined with all ideal steps that the
+// data do not exclude. `drop`: of twice the ln likelihood.
 void join_steps(const Surface& s, double drop, Interval& sizes) {
-  constexpr double falls_short = 1;  // of ln likelihood: half of what makes a 95 % interval
+  constexpr double falls_short = 1;  // of ln likelihood: half of the drop of a 95 % interval
   if (s.limits.step - s.supremum() < falls_short) return;
   const double supremum = s.limits.step;
   const StepExtent steps = step_extent(s.counts, s.lapse, supremum - drop / 2 - s.equal_within());
@@ -153,7 +154,7 @@ Surface survey(PooledCounts counts, const FitOptions& options) {
   return s;
 }
 
-// Fills what the maximum says; the intervals come after.
+// Fills in the results of the maximum; the intervals come later.
 PsychometricFit describe(const Surface& s, const Judgement& judgement) {
   PsychometricFit fit;
   fit.verdict = judgement.verdict;
@@ -178,7 +179,7 @@ PsychometricFit describe(const Surface& s, const Judgement& judgement) {
   return fit;
 }
 
-// Profile crossings; should the march meet a higher place than the search found, everything is described anew from
+// Profile crossings. If the profile meets a higher place than the search found, everything is evaluated again from
 // there.
 template <typename EffectOf>
 ProfileCrossings add_intervals(Surface& s, PsychometricFit& fit, const EffectOf& effect_of) {
@@ -264,17 +265,17 @@ std::string_view in_words(EstimatorReason reason) {
     case EstimatorReason::person:
       return "a person answered";
     case EstimatorReason::modules:
-      return "the function of the sensor is not that of the chain with its modules";
+      return "the function of the sensor does not describe the chain with its modules";
     case EstimatorReason::package:
-      return "the function of the sensor is not that behind a package";
+      return "the function of the sensor does not describe the picture behind a package";
     case EstimatorReason::moving_target:
-      return "the function of the twin is that of a target at rest";
+      return "the function of the twin is valid for a target at rest only";
     case EstimatorReason::irregular:
-      return "the answers have no regular fit";
+      return "the fit of the answers has no regular maximum";
     case EstimatorReason::no_function:
-      return "the twin has no function that could be used at this contrast";
+      return "the twin has no usable function at this contrast";
     case EstimatorReason::ended_early:
-      return "the run ended before the functions of the twin were there";
+      return "the run ended before the functions of the twin were computed";
   }
   return "unknown";
 }
@@ -323,7 +324,7 @@ bool PsychometricFit::usable() const {
 
 namespace {
 
-/// Everything but what becomes of clusters: `effect_of(surface, fit)` says it, and may note more in the fit.
+/// Everything except clusters: `effect_of(surface, fit)` returns their effect, and may record more in the fit.
 template <typename EffectOf>
 PsychometricFit fitted(std::span<const Level> levels, const FitOptions& options, const EffectOf& effect_of) {
   PooledCounts counts = pool(levels);
@@ -346,12 +347,14 @@ PsychometricFit fitted(std::span<const Level> levels, const FitOptions& options,
   if (options.with_posterior && !options.graded)
     fit.posterior = grid_posterior(s.counts, s.form, s.scan.nodes, s.lapse);
   if (in_groups) refine(counts, s, fit);
+  // The place of the maximum is arbitrary in this case, tens of decades from the sizes.
+  if (fit.verdict == FitVerdict::flat_or_decreasing) fit.threshold.reset();
   return fit;
 }
 
 Result<void> check_lapse(const FitOptions& options) {
   if (options.fixed_lapse && !(*options.fixed_lapse >= 0 && *options.fixed_lapse <= max_free_lapse))
-    return fail(ErrorCode::invalid_input, "lapse must be from 0 to 0.1");
+    return fail(ErrorCode::invalid_input, "the lapse rate must be from 0 to 0.1");
   return {};
 }
 

@@ -1,4 +1,5 @@
-// One psychometric function from counts of correct answers, with honest intervals and a verdict.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fit of one psychometric function to counts of correct answers, with intervals and a verdict.
 #pragma once
 
 #include <array>
@@ -8,25 +9,25 @@
 #include <string_view>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// Answers at one size (or contrast). Counts are doubles so that 2e9 trials and whole-number checks both work.
+/// Answers at one size (or contrast). Counts are doubles to allow 2e9 trials and checks for whole numbers.
 struct Level {
-  double size = 0;     ///< >= 0; 0 is a catch trial (nothing to see)
-  double correct = 0;  ///< whole number, 0 <= correct <= total; of graded answers the sum of their probabilities
+  double size = 0;     ///< >= 0; 0 is a catch trial (no triangle)
+  double correct = 0;  ///< whole number, 0 <= correct <= total; for graded answers the sum of their probabilities
   double total = 0;    ///< whole number; 0: the row is ignored
   int cluster = -1;    ///< trials that share phase, frame or fixed pattern; < 0: independent
 };
 
-/// One graded answer: how probable the right one was for what was seen.
+/// One graded answer: the probability of the right one for the patch.
 struct GradedAnswer {
   double size = 0;                 ///< > 0
   double probability_correct = 0;  ///< 0 to 1
-  int presentation = 0;            ///< shares frame and phase with the others of this number; 0 or more
-  int place = 0;                   ///< in the picture: shares detectors and their fixed pattern; 0 or more
-  int set_up = 0;                  ///< plate and mounting of the presentation; 0 or more
+  int presentation = 0;            ///< shares frame and phase with the others of this number; at least 0
+  int place = 0;                   ///< in the picture: shares detectors and their fixed pattern; at least 0
+  int set_up = 0;                  ///< plate and mounting of the presentation; at least 0
 };
 
 /// Both forms are Weibull functions with chance level 0.25 that pass through 0.75 at the threshold.
@@ -36,23 +37,24 @@ enum class PsychometricForm {
 };
 [[nodiscard]] std::string_view to_string(PsychometricForm form);
 
-/// See Ceres' termination types: each verdict is defined by a condition on the likelihood, in this order of precedence.
+/// Each verdict is defined by a condition on the likelihood, in this order of precedence (compare Ceres' termination
+/// types).
 enum class FitVerdict {
   no_data,               ///< no trials at a positive size
-  above_range,           ///< the likelihood has its supremum at pure chance: only a lower limit exists
+  above_range,           ///< supremum of the likelihood at pure chance: only a lower limit exists
   below_range,           ///< supremum at threshold -> 0: only an upper limit exists
   slope_unidentifiable,  ///< one positive level
   step,                  ///< no finite slope maximises the likelihood, or only one level is informative
-  flat_or_decreasing,    ///< slope at its lower bound: the threshold number is meaningless
+  flat_or_decreasing,    ///< slope at its lower bound: the threshold is meaningless
   underdetermined,       ///< more parameters than positive levels
-  extrapolated,          ///< threshold outside the sizes tested
+  extrapolated,          ///< threshold outside the tested sizes
   ok,
 };
 [[nodiscard]] std::string_view to_string(FitVerdict verdict);
 
 struct FitOptions {
   PsychometricForm form = PsychometricForm::size;
-  std::optional<double> fixed_lapse = 0.0;  ///< nothing: free in [0, 0.1]
+  std::optional<double> fixed_lapse = 0.0;  ///< empty: free in [0, 0.1]
   bool with_posterior = true;
   bool graded = false;  ///< levels are of graded answers: their counts need not be whole
 };
@@ -65,26 +67,26 @@ struct Interval {
 struct Posterior {
   double median = 0;
   double low = 0, high = 0;  ///< equal-tailed 95 %
-  bool prior_bound =
-      false;  ///< marginal density at a prior edge above 1 % of its maximum: the prior speaks, not the data
+  /// Marginal density at a prior edge above 1 % of its maximum: the prior determines the result, not the data.
+  bool prior_bound = false;
 };
 
-/// What the intervals rest on.
+/// Basis of the intervals.
 enum class IntervalKind {
   independent,  ///< profile likelihood of independent answers
-  clusters,     ///< the same, widened for what the trials of a cluster have in common
+  clusters,     ///< the same, widened for the common variation of the trials of a cluster
   two_way,      ///< quasi-likelihood, with the variance of the answers over presentations and places
   set_ups,      ///< quasi-likelihood, with the variance of the answers over plates and mountings
 };
 inline constexpr std::array all_interval_kinds{IntervalKind::independent, IntervalKind::clusters, IntervalKind::two_way,
                                                IntervalKind::set_ups};
 [[nodiscard]] std::string_view to_string(IntervalKind kind);
-/// Whether the scatter of the answers was estimated and not taken from chance.
+/// Whether the scatter of the answers was estimated instead of binomial.
 [[nodiscard]] constexpr bool is_quasi(IntervalKind kind) {
   return kind == IntervalKind::two_way || kind == IntervalKind::set_ups;
 }
 
-/// With what function answers are fitted.
+/// Function with which answers are fitted.
 enum class FitEstimator {
   weibull,     ///< a Weibull function, in size or in acuity
   twin_shape,  ///< the function of the simulated twin, stretched (twin_shape.h)
@@ -92,18 +94,18 @@ enum class FitEstimator {
 inline constexpr std::array all_fit_estimators{FitEstimator::weibull, FitEstimator::twin_shape};
 [[nodiscard]] std::string_view to_string(FitEstimator estimator);
 
-/// Why with that one.
+/// Reason for the choice of the function.
 enum class EstimatorReason {
-  plan,           ///< the plan names it
+  plan,           ///< the plan states it
   twin,           ///< there is a simulated twin, whose function it is
   no_twin,        ///< counts without a simulated sensor
   person,         ///< a person answered, with a function of their own
-  modules,        ///< the sensor alone does not have the function of the chain behind it
-  package,        ///< likewise behind a package of enhancement
+  modules,        ///< the function of the sensor alone differs from that of the chain after it
+  package,        ///< likewise with an enhancement package
   moving_target,  ///< the twin's function is that of a target at rest
-  irregular,      ///< the Weibull fit is none that a threshold could be read from (verdict)
+  irregular,      ///< the Weibull fit has no usable threshold (verdict)
   no_function,    ///< the twin has no usable function at this contrast
-  ended_early,    ///< the run ended before its functions were there
+  ended_early,    ///< the run ended before its functions were available
 };
 inline constexpr std::array all_estimator_reasons{EstimatorReason::plan,          EstimatorReason::twin,
                                                   EstimatorReason::no_twin,       EstimatorReason::person,
@@ -111,10 +113,10 @@ inline constexpr std::array all_estimator_reasons{EstimatorReason::plan,        
                                                   EstimatorReason::moving_target, EstimatorReason::irregular,
                                                   EstimatorReason::no_function,   EstimatorReason::ended_early};
 [[nodiscard]] std::string_view to_string(EstimatorReason reason);
-/// In a sentence: "there is a simulated twin".
+/// For a sentence: "there is a simulated twin".
 [[nodiscard]] std::string_view in_words(EstimatorReason reason);
 
-/// Proportion correct over size without a form: of a simulated sensor, averaged over phases and noise.
+/// Proportion correct over size of a simulated sensor, without an assumed form, averaged over phases and noise.
 struct ProportionTable {
   std::vector<double> size_mrad;           ///< rising
   std::vector<double> proportion_correct;  ///< at each size
@@ -122,32 +124,31 @@ struct ProportionTable {
   bool operator==(const ProportionTable&) const = default;
 };
 
-/// What a fit with the function of a twin found (twin_shape.h).
+/// Result of a fit with the function of a twin (twin_shape.h).
 struct TwinShapeUse {
   double size_ratio = 1;      ///< size at 75 %, of these answers over that of the twin
   double slope_ratio = 1;     ///< slope at 75 %, likewise
-  bool slope_fitted = false;  ///< the answers asked for a slope of their own
-  /// What the answers leave of the function: t of a further parameter, the slope, or a bend where the slope was fitted.
+  bool slope_fitted = false;  ///< the answers required their own slope
+  /// t of a further parameter: the slope, or a bend if the slope was fitted.
   double departure = 0;
-  double departure_limit = 0;        ///< of its size, 1 % by chance
+  double departure_limit = 0;        ///< of its magnitude, exceeded by chance in 1 %
   double departure_shift = 0;        ///< of ln threshold, with that parameter
-  double shape_se_ln_threshold = 0;  ///< of what the standard errors of the table add
+  double shape_se_ln_threshold = 0;  ///< contribution of the standard errors of the table
   double lapse_inflation = 1;        ///< of a free lapse: its clustered variance over that of independent answers
   ProportionTable table;
   bool operator==(const TwinShapeUse&) const = default;
 };
 
-/// What the data say. A poor fit is a verdict, not an error and not a made-up interval.
+/// Result of a fit. A poor fit has a verdict; it is not an error and has no invented interval.
 struct PsychometricFit {
   FitVerdict verdict = FitVerdict::no_data;
   std::optional<double> threshold;  ///< size at which psi = 0.75 exactly
-  Interval
-      ci95;  ///< profile likelihood (drop 3.84); with one side open the other is a one-sided 95 % limit (drop 2.71)
+  /// Profile likelihood (drop 3.84); if one side is open the other is a one-sided 95 % limit (drop 2.71).
+  Interval ci95;
   Interval ci90;                ///< profile likelihood (drop 2.71), for equivalence tests
   std::optional<double> slope;  ///< b
-  /// The slope is at the upper end of its domain, 50: the data ask for a steeper one, and the likelihood ratio that the
-  /// interval rests on is that of the domain. The interval of a step whose gap is too narrow for the domain holds the
-  /// gap.
+  /// The slope is at the upper end of its domain, 50: the data call for a steeper one, and the likelihood ratio of the
+  /// interval is that of the domain. If the gap of a step is too narrow for the domain, the interval contains the gap.
   bool slope_at_cap = false;
   double lapse = 0;
   std::optional<double> log_likelihood;  ///< without binomial coefficients
@@ -157,21 +158,25 @@ struct PsychometricFit {
   std::optional<Posterior> posterior;
   double trials = 0;
   IntervalKind interval = IntervalKind::independent;
-  /// Number of clusters; 0 where trials are independent. Of a quasi-likelihood the effective one: degrees of freedom of
-  /// the variance, and one.
+  /// Number of clusters; 0 if trials are independent. For a quasi-likelihood the effective number: degrees of freedom
+  /// of the variance plus one.
   double clusters = 0;
-  /// By which the clustered variance of ln threshold exceeds the independent one; already in ci95, ci90. Of graded
-  /// answers it is mostly below 1.
+  /// Ratio of the clustered to the independent variance of ln threshold; already in ci95 and ci90. Mostly below 1 for
+  /// graded answers.
   double variance_inflation = 1;
-  /// Mean squared residual of graded answers over that of right and wrong ones; nothing: those are right or wrong.
+  /// Standard uncertainty of ln threshold in ci95 and ci90 in addition to that of the answers: of the effective
+  /// contrast, and of an uncertain function. Not in variance_inflation.
+  double joined_u = 0;
+  double contrast_u = 0;  ///< part of joined_u from the scatter of the effective contrast
+  /// Mean squared residual of graded answers over that of right and wrong ones; empty for right and wrong answers.
   std::optional<double> dispersion;
-  std::optional<TwinShapeUse> twin_shape;  ///< nothing: a Weibull function
+  std::optional<TwinShapeUse> twin_shape;  ///< empty: a Weibull function
 
   /// ok or extrapolated with both sides of ci95.
   [[nodiscard]] bool usable() const;
 };
 
-/// With what function a fit was made.
+/// The function with which a fit was made.
 [[nodiscard]] inline FitEstimator estimator_of(const PsychometricFit& fit) {
   return fit.twin_shape ? FitEstimator::twin_shape : FitEstimator::weibull;
 }
@@ -181,16 +186,16 @@ struct PsychometricFit {
 
 /// Maximum likelihood in (ln threshold, ln slope[, lapse]) by global search and Newton refinement, with
 /// profile-likelihood and posterior intervals. Levels may be unsorted, repeated, single trials. With clusters
-/// (Level::cluster >= 0) the intervals are widened by the sandwich variance over clusters and Student's t.
-/// `invalid_input`: negative, denormal or non-finite size, fractional or negative counts, correct > total, more than
-/// 1e12 trials. Beyond 400 different sizes neighbours are searched together (at 100 000 sizes over a factor of ten
-/// they move by less than 1e-4 of the interval) and the maximum is climbed with each size as it is.
+/// (Level::cluster >= 0) the intervals are widened by the sandwich variance over clusters and Student's t. Above 400
+/// different sizes, neighbours are pooled for the search (100 000 sizes over a factor of ten move by less than 1e-4 of
+/// the interval), and the final climb uses each size. Errors: `invalid_input` (negative, denormal or non-finite size,
+/// fractional or negative counts, correct > total, more than 1e12 trials).
 [[nodiscard]] Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options);
 
-/// The same function through graded answers, by quasi-likelihood: the mean is that of right and wrong answers, the
+/// Fits the same function to graded answers by quasi-likelihood: the mean is that of right and wrong answers, the
 /// variance in proportion to theirs (Wedderburn 1974; McCullagh and Nelder 1989, 9). The profile is scaled by the
 /// variance of ln threshold over set-ups, or over presentations and places (clustered_variance.h), with Student's t;
-/// there is no posterior. `invalid_input`: as fit_psychometric(), and a probability outside 0 to 1.
+/// there is no posterior. Errors: `invalid_input` (as fit_psychometric(), and a probability outside 0 to 1).
 [[nodiscard]] Result<PsychometricFit> fit_graded(std::span<const GradedAnswer> answers, const FitOptions& options);
 
 }  // namespace todbench

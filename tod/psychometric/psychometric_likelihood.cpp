@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/psychometric_likelihood.h"
 
 #include <cmath>
@@ -9,7 +10,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Neumaier's sum: 1e6 and more trials lose no digits.
+// Neumaier's sum: a million or more trials lose no digits.
 class Sum {
  public:
   void add(double x) {
@@ -55,7 +56,7 @@ double PooledCounts::trials() const {
 
 double PooledCounts::relative(double size) const {
   const double ratio = size / reference_size;
-  // The quotient keeps all digits whatever the unit; a difference of logarithms would lose some.
+  // The quotient keeps all digits in any unit; a difference of logarithms would lose some.
   return std::isnormal(ratio) ? std::log(ratio) : std::log(size) - std::log(reference_size);
 }
 
@@ -72,7 +73,7 @@ Result<void> validate(std::span<const Level> levels, Counts counts) {
     if (!std::isfinite(row.size)) return fail(ErrorCode::invalid_input, row_error(i, "size is not finite"));
     if (row.size < 0) return fail(ErrorCode::invalid_input, row_error(i, "size is negative"));
     if (row.size > 0 && !std::isnormal(row.size))
-      return fail(ErrorCode::invalid_input, row_error(i, "size is too small for a number with all its digits"));
+      return fail(ErrorCode::invalid_input, row_error(i, "size is too small to be stored with full precision"));
     if (!std::isfinite(row.correct) || !std::isfinite(row.total))
       return fail(ErrorCode::invalid_input, row_error(i, "count is not finite"));
     if (row.correct < 0 || row.total < 0) return fail(ErrorCode::invalid_input, row_error(i, "count is negative"));
@@ -82,8 +83,10 @@ Result<void> validate(std::span<const Level> levels, Counts counts) {
       return fail(ErrorCode::invalid_input, row_error(i, "more correct answers than trials"));
     trials += row.total;
     if (trials > most_trials)
-      return fail(ErrorCode::invalid_input,
-                  row_error(i, "more than 1e12 trials together: their likelihood has no digits left for an interval"));
+      return fail(
+          ErrorCode::invalid_input,
+          row_error(
+              i, "more than 1e12 trials in total: the precision of the likelihood does not suffice for an interval"));
   }
   return {};
 }
@@ -254,7 +257,8 @@ double deviance(const PooledCounts& counts, PsychometricForm form, const Psychom
 
 namespace {
 
-// Best step at one lapse: levels below the step at chance, above at 1 - lapse, the level at the step anywhere between.
+// Best step at one lapse: levels below the step at chance, above at 1 - lapse, the level at the step at any value
+// between.
 double step_limit(const PooledCounts& counts, double lapse) {
   const std::size_t m = counts.levels.size();
   std::vector<double> above(m + 1, 0.0);  // of levels j..m-1
@@ -272,7 +276,7 @@ double step_limit(const PooledCounts& counts, double lapse) {
 }
 
 // For a free lapse the levels above the step share it: their pooled share of errors, inside [0, 0.1]. A level at the
-// step that would be better off above it is found there at another step position.
+// step that fits better above it is covered by another step position.
 double step_limit_free(const PooledCounts& counts) {
   double best = -infinity, wrong = 0, total = 0;
   const auto try_lapse = [&] {
@@ -287,7 +291,7 @@ double step_limit_free(const PooledCounts& counts) {
   return best;
 }
 
-// ln likelihood of the levels from j on, all above the step, and the lapse that is best for them.
+// ln likelihood of the levels from j on, all above the step, and their best lapse.
 double above_step(const PooledCounts& counts, std::size_t j, std::optional<double> lapse) {
   double right = 0, wrong = 0;
   for (std::size_t i = j; i < counts.levels.size(); ++i) {

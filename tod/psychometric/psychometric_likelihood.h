@@ -1,11 +1,12 @@
-// The likelihood of pooled counts: value, derivatives and its closed-form limits.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Likelihood of pooled counts: value, derivatives and closed-form limits.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "tod/psychometric/bounded_newton.h"
 #include "tod/psychometric/psychometric_model.h"
 
@@ -19,11 +20,10 @@ struct PooledLevel {
   [[nodiscard]] double total() const { return right + wrong; }
 };
 
-/// All that the likelihood needs: equal sizes pooled, sorted, sizes relative to a size in their middle so that units
-/// drop out.
+/// All data of the likelihood: equal sizes pooled, sorted, and relative to a central size so that units drop out.
 struct PooledCounts {
   std::vector<PooledLevel> levels;          ///< positive sizes, increasing, total > 0
-  double blank_right = 0, blank_wrong = 0;  ///< size 0: nothing to see, psi = chance
+  double blank_right = 0, blank_wrong = 0;  ///< size 0 (no triangle): psi = chance
   double reference_size = 1;
 
   [[nodiscard]] double trials() const;
@@ -31,31 +31,31 @@ struct PooledCounts {
   [[nodiscard]] double last() const { return levels.back().ln_size; }
   /// ln(size / reference size).
   [[nodiscard]] double relative(double size) const;
-  /// The size at a relative logarithm; nothing where a double cannot hold it.
+  /// Size at a relative logarithm; empty if a double cannot represent it.
   [[nodiscard]] std::optional<double> size_at(double ln_size) const;
 };
 
-/// Most trials of one fit. The likelihood of n trials is about n, so it is rounded by 2e-16 n; at 1e12 the drop of 3.84
-/// that makes an interval is wrong by less than 2e-4 of itself, at 1e15 by a fifth.
+/// Most trials of one fit. The likelihood of n trials is about n, so it is rounded by 2e-16 n: at 1e12 the relative
+/// error of the drop of 3.84 that makes an interval is below 2e-4, at 1e15 it is a fifth.
 inline constexpr double most_trials = 1e12;
 
-/// Whether counts of right answers are whole, or sums of probabilities.
+/// Whether counts of right answers are whole or sums of probabilities.
 enum class Counts { whole, fractional };
 
-/// Rows of size 0 or above with such counts, correct <= total, at most most_trials together; sizes are 0 or normal
-/// numbers (a denormal one has lost digits). `invalid_input` names the first row that is not.
+/// Checks the rows: sizes are 0 or positive normal numbers (a denormal one has lost digits), counts as stated, correct
+/// <= total, at most most_trials together. Errors: `invalid_input` with the first invalid row.
 [[nodiscard]] Result<void> validate(std::span<const Level> levels, Counts counts = Counts::whole);
 
 /// Pools validated rows. Sizes closer than 1e-12 (relative) are one level.
 [[nodiscard]] PooledCounts pool(std::span<const Level> levels);
-/// The two sets together, sizes relative to the reference of the first.
+/// Pools two sets, with sizes relative to the reference of the first.
 [[nodiscard]] PooledCounts pool(const PooledCounts& a, const PooledCounts& b);
 
-/// Neighbouring levels together so that at most `most_levels` are left, each at the mean of its ln sizes by trials.
-/// Equal spans of ln size: levels further apart than a span stay alone.
+/// Merges neighbouring levels so that at most `most_levels` remain, each at the mean of its ln sizes weighted by
+/// trials. Spans of ln size are equal: levels further apart than a span stay separate.
 [[nodiscard]] PooledCounts grouped(const PooledCounts& counts, std::size_t most_levels);
 
-/// Model parameters as they are searched: t = ln(threshold / reference size), q = ln slope, lapse.
+/// Model parameters of the search: t = ln(threshold / reference size), q = ln slope, lapse.
 using PsychometricPlace = std::array<double, 3>;
 inline constexpr std::size_t place_t = 0, place_q = 1, place_lapse = 2;
 
@@ -77,23 +77,23 @@ struct Scores {
 /// ln likelihood with one free probability per level (the blank level included).
 [[nodiscard]] double saturated(const PooledCounts& counts);
 
-/// Where the likelihood goes at the edges of the model (Prins 2019): the supremum may be one of these and no maximum
+/// Limits of the likelihood at the edges of the model (Prins 2019): the supremum may be one of these, and no maximum
 /// exist.
 struct LikelihoodLimits {
   double chance = 0;   ///< threshold -> infinity: psi = g everywhere
   double ceiling = 0;  ///< threshold -> 0: psi = 1 - lapse at every positive size; -infinity with an error at lapse 0
-  double ceiling_lapse = 0;  ///< the lapse there
-  double step = 0;           ///< slope -> infinity: chance below, 1 - lapse above, anything between at one level
+  double ceiling_lapse = 0;  ///< lapse at that limit
+  double step = 0;           ///< slope -> infinity: chance below, 1 - lapse above, any value between them at one level
 };
 /// Thresholds (relative ln size) of all ideal steps, chance below and 1 - lapse above, whose ln likelihood is at least
-/// `least`: with one that lies between two levels their whole gap. A side without a value has no end.
+/// `least`. A threshold between two levels includes their whole gap. A side without a value is unbounded.
 struct StepExtent {
   bool any = false;
   std::optional<double> low, high;
 };
-/// `lapse` as in likelihood_limits.
+/// `lapse` as in likelihood_limits().
 [[nodiscard]] StepExtent step_extent(const PooledCounts& counts, std::optional<double> lapse, double least);
-/// `lapse` fixed, or free in [0, 0.1] when not given.
+/// `lapse` fixed, or free in [0, 0.1] if not given.
 [[nodiscard]] LikelihoodLimits likelihood_limits(const PooledCounts& counts, std::optional<double> lapse);
 
 }  // namespace todbench

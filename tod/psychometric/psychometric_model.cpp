@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/psychometric_model.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@ namespace {
 
 constexpr double g = chance_level;
 constexpr double largest_exponent = 700;  // exp(700) = 1e304 is finite
-constexpr double branch_z = 0.7;          // below it 1 - exp(-z), above it exp(-z) is the small quantity of the two
+constexpr double branch_z = 0.7;          // below it 1 - exp(-z), above it exp(-z) is the smaller of the two
 
 // exp(-z) and 1 - exp(-z), each without cancellation.
 struct Exponentials {
@@ -51,7 +52,7 @@ double log_wrong(const Link& link, const Exponentials& x, double u) {
     return x.z < branch_z ? std::log1p(-(g + link.amplitude * x.em)) : std::log(link.lapse + link.amplitude * x.e);
   }
   if (x.z >= branch_z) return std::log1p(-(g + link.amplitude * x.e));
-  // 1 - exp(-z) = z to double precision from u = -40 downwards, and z itself underflows far below.
+  // 1 - exp(-z) = z to double precision below u = -40, and z itself underflows far below.
   if (link.lapse == 0) return ln_1mg + (u < -40 ? link.ln_kappa + u : std::log(x.em));
   return std::log(link.lapse + link.amplitude * x.em);
 }
@@ -94,7 +95,7 @@ LogProbabilities log_probabilities(const Link& link, double u) {
 }
 
 AnswerTerms answer_terms(const Link& link, double far_u) {
-  // z = 1e130 is as hopeless as z = 1e304, and its square times any count and slope is a number.
+  // z = 1e130 is equivalent to z = 1e304, and its square times any count and slope is finite.
   const double u = std::min(far_u, 300.0);
   const Exponentials x = exponentials(link, u);
   const Shape s = shape_of(link, x);

@@ -1,4 +1,5 @@
-// The psychometric function itself: stable logarithms of psi and 1 - psi, and their derivatives.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The psychometric function: stable logarithms of psi and 1 - psi, and their derivatives.
 #pragma once
 
 #include "tod/psychometric/psychometric_fit.h"
@@ -23,26 +24,26 @@ struct Link {
   double d2_ln_kappa = 0;  ///< second derivative
   double sign = 1;         ///< of u: +1 size, -1 acuity
 };
-/// `lapse` in [0, 0.1].
+/// Precondition: `lapse` in [0, 0.1].
 [[nodiscard]] Link make_link(PsychometricForm form, double lapse);
 
 /// ln psi and ln(1 - psi).
 struct LogProbabilities {
   double right = 0, wrong = 0;
 };
-/// At u. Never through a psi rounded to 1: ln(1 - psi) is exact down to the largest double. Arguments beyond 700 are
-/// cut to 700.
+/// At u, without the rounding of psi to 1: ln(1 - psi) is exact down to the largest double. Arguments above 700 count
+/// as 700.
 [[nodiscard]] LogProbabilities log_probabilities(const Link& link, double u);
 
 /// Value and partial derivatives of ln psi or ln(1 - psi) in w = ln z and in the lapse at constant w.
 struct LogTerm {
   double value = 0, w = 0, ww = 0, l = 0, ll = 0, wl = 0;
 };
-/// What a right answer (ln psi) and a wrong one (ln(1 - psi)) contribute.
+/// Contributions of a right answer (ln psi) and of a wrong one (ln(1 - psi)).
 struct AnswerTerms {
   LogTerm right, wrong;
 };
-/// At u; beyond 300 as at 300, so that second derivatives times counts never overflow.
+/// At u; above 300 as at 300, so that second derivatives times counts never overflow.
 [[nodiscard]] AnswerTerms answer_terms(const Link& link, double u);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/psychometric_posterior.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ struct GridSize {
   std::size_t t = 0, q = 0;
 };
 
-// Marginal densities, not normalised, and the nodes they belong to.
+// Unnormalised marginal densities and their nodes.
 struct Marginals {
   std::vector<double> t, q, lapse;
   std::vector<double> lapse_nodes;
@@ -80,10 +81,10 @@ struct DensityGrid {
   }
 };
 
-// Every second node of t and q is taken from a `coarser` grid over the same window, when there is one with half the
-// steps: the places are the same to the last bit.
-DensityGrid evaluate(const PooledCounts& counts, const LapseTables& tables, const Box<3>& window, GridSize size,
-                     const DensityGrid& coarser) {
+// Takes every second node of t and q from a `coarser` grid over the same window if there is one with half the steps;
+// the places are identical to the last bit.
+DensityGrid evaluate(const PooledCounts& counts, const LapseTables& tables, const ParameterBox<3>& window,
+                     GridSize size, const DensityGrid& coarser) {
   const std::vector<double> ts = equal_steps(window.lower[place_t], window.upper[place_t], size.t);
   const std::vector<double> qs = equal_steps(window.lower[place_q], window.upper[place_q], size.q);
   const bool halved = size.t == 2 * coarser.size.t - 1 && size.q == 2 * coarser.size.q - 1;
@@ -92,7 +93,7 @@ DensityGrid evaluate(const PooledCounts& counts, const LapseTables& tables, cons
   DensityGrid grid{size, std::vector<double>(tables.rule.size() * size.q * size.t)};
   auto value = grid.ln_density.begin();
   for (std::size_t k = 0; k < tables.rule.size(); ++k) {
-    const CountsTable likelihood(tables.links[k], counts);  // one at a time: together they would leave the cache
+    const CountsTable likelihood(tables.links[k], counts);  // one at a time: together they would not fit into the cache
     for (std::size_t j = 0; j < size.q; ++j, value += static_cast<std::ptrdiff_t>(size.t)) {
       const bool known = halved && j % 2 == 0;
       const double prior = ln_prior(qs[j]);
@@ -127,9 +128,9 @@ Marginals integrate(const DensityGrid& grid, const NodesAndWeights& rule) {
   return m;
 }
 
-// The highest posterior place, climbed from the best node of the scan.
+// The maximum of the posterior, climbed from the best node of the scan.
 Maximum<3> mode(const PooledCounts& counts, PsychometricForm form, const std::vector<ScanNode>& nodes,
-                const Box<3>& prior) {
+                const ParameterBox<3>& prior) {
   const auto density = [&](const PsychometricPlace& place) {
     Expansion<3> e = expand_likelihood(counts, form, place);
     e.value += ln_prior(place[place_q]);
@@ -144,8 +145,9 @@ Maximum<3> mode(const PooledCounts& counts, PsychometricForm form, const std::ve
 }
 
 // Mode +- 8 standard deviations of the normal approximation, and every scanned place within e^-18 of the mode.
-Box<3> first_window(const Maximum<3>& mode, const std::vector<ScanNode>& nodes, const Box<3>& prior, double blank) {
-  Box<3> window{mode.place, mode.place};
+ParameterBox<3> first_window(const Maximum<3>& mode, const std::vector<ScanNode>& nodes, const ParameterBox<3>& prior,
+                             double blank) {
+  ParameterBox<3> window{mode.place, mode.place};
   const auto include = [&](std::size_t i, double low, double high) {
     window.lower[i] = std::clamp(low, prior.lower[i], window.lower[i]);
     window.upper[i] = std::clamp(high, window.upper[i], prior.upper[i]);
@@ -178,7 +180,7 @@ struct Span {
   bool changed;
 };
 
-// Widens a side whose edge still carries mass, narrows one that is empty.
+// Widens a side whose edge still has mass, narrows one that is empty.
 Span adjusted(const std::vector<double>& nodes, const std::vector<double>& density, Span now, double least,
               double most) {
   constexpr double negligible = 1e-7;
@@ -200,7 +202,8 @@ Span adjusted(const std::vector<double>& nodes, const std::vector<double>& densi
   return next;
 }
 
-Box<3> settled_window(const PooledCounts& counts, PsychometricForm form, Box<3> window, const Box<3>& prior) {
+ParameterBox<3> settled_window(const PooledCounts& counts, PsychometricForm form, ParameterBox<3> window,
+                               const ParameterBox<3>& prior) {
   constexpr GridSize coarse{33, 21};
   constexpr int most_rounds = 16;
   std::optional<LapseTables> tables;
@@ -252,7 +255,7 @@ class SmoothDensity {
   }
 
  private:
-  // Over the first `part` of cell i.
+  // Integral over the first `part` of cell i.
   [[nodiscard]] double integral(std::size_t i, double part) const {
     const std::size_t first = std::clamp<std::size_t>(i, 1, ln_density_.size() - 3) - 1;
     const double* f = &ln_density_[first];
@@ -273,7 +276,7 @@ struct Quantiles {
   double lower_edge, upper_edge;  // density at the ends of the window over its maximum
 };
 
-Quantiles quantiles(const DensityGrid& grid, const NodesAndWeights& rule, const Box<3>& window) {
+Quantiles quantiles(const DensityGrid& grid, const NodesAndWeights& rule, const ParameterBox<3>& window) {
   const std::vector<double> density = integrate(grid, rule).t;
   const SmoothDensity smooth(density);
   const double low = window.lower[place_t];
@@ -293,14 +296,14 @@ bool agree(const Quantiles& a, const Quantiles& b) {
 
 Posterior grid_posterior(const PooledCounts& counts, PsychometricForm form, std::vector<ScanNode> nodes,
                          std::optional<double> lapse) {
-  Box<3> prior = search_box(lapse);
+  ParameterBox<3> prior = search_box(lapse);
   prior.lower[place_t] = counts.first() - std::numbers::ln10;
   prior.upper[place_t] = counts.last() + std::numbers::ln10;
   for (ScanNode& node : nodes)
     node.place[place_t] = std::clamp(node.place[place_t], prior.lower[place_t], prior.upper[place_t]);
   const double blank = counts.blank_right * std::log(chance_level) + counts.blank_wrong * std::log1p(-chance_level);
   const Maximum<3> peak = mode(counts, form, nodes, prior);
-  const Box<3> window = settled_window(counts, form, first_window(peak, nodes, prior, blank), prior);
+  const ParameterBox<3> window = settled_window(counts, form, first_window(peak, nodes, prior, blank), prior);
 
   const LapseTables tables = lapse_tables(form, window.lower[place_lapse], window.upper[place_lapse], LapseRule::fine);
   // 15 slopes over a window of about +-6 standard deviations: trapezoidal steps of 0.9 are exact to 1e-9 for a normal

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/psychometric_profile.h"
 
 #include <algorithm>
@@ -43,8 +44,7 @@ struct March {
   }
 };
 
-// Steps resolve the dips that levels make in the profile: a quarter of their mean distance; beyond the levels they
-// grow.
+// Steps resolve the dips of the profile at the levels: a quarter of their mean distance; outside the levels they grow.
 struct Steps {
   double first, largest_inside, lower, upper;
 

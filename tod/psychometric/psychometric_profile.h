@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Profile-likelihood limits of the threshold.
 #pragma once
 
@@ -8,24 +9,24 @@
 
 namespace todbench {
 
-/// Where to start and how far to go.
+/// Start and drops of a profile.
 struct ProfileRequest {
   double start_t = 0;          ///< the maximum, or any place of the supremum region
   double supremum = 0;         ///< of the log-likelihood
   std::optional<double> se_t;  ///< standard error of t, for the first steps
-  LikelihoodLimits limits;     ///< say in advance whether a side closes
+  LikelihoodLimits limits;     ///< state in advance whether a side closes
   double wide_drop = 0;        ///< 2 (supremum - profile) at the outer crossing
-  double narrow_drop = 0;      ///< at the inner one, <= wide_drop
+  double narrow_drop = 0;      ///< at the inner crossing, <= wide_drop
 };
 
-/// Crossings in t, nearest to the start on each side; nothing where the likelihood never falls that far.
+/// Crossings in t, nearest to the start on each side; empty if the likelihood never falls that far.
 struct ProfileCrossings {
   struct Side {
     std::optional<double> wide, narrow;
   };
   Side below, above;
-  std::optional<Maximum<3>>
-      better;  ///< a place above the supremum, should the march meet one: maximise again from there
+  /// A place above the supremum, if the profile meets one: maximise again from there.
+  std::optional<Maximum<3>> better;
 };
 
 [[nodiscard]] ProfileCrossings profile_crossings(const PooledCounts& counts, PsychometricForm form,

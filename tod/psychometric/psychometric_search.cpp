@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/psychometric_search.h"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 
 namespace todbench {
 namespace {
@@ -32,7 +33,7 @@ double quintic(const double* c, double s) {
 
 constexpr std::size_t powers = 6;
 
-// Adds to each sum the quintic of the cell in which factor (ln_size - t) + shift lies.
+// Adds to each sum the quintic of the cell that contains factor (ln_size - t) + shift.
 TODBENCH_MULTIVERSION
 void add_quintics(const double* c, double factor, double ln_size, double shift, const double* ts, std::size_t count,
                   double* __restrict sums) {
@@ -65,7 +66,7 @@ std::vector<double> thresholds(const PooledCounts& counts, double slope) {
   return thinned;
 }
 
-// Beyond the ends nothing but a tail of the function is seen, and a flat ridge may peak anywhere along it.
+// Outside the ends the levels see only a tail of the function, and a flat ridge may peak anywhere along it.
 std::vector<double> outer_thresholds(const PooledCounts& counts, double slope) {
   std::vector<double> t;
   for (const double offset : {1.8, 3.2, 4.0, 5.0, 7.0, 8.0}) {
@@ -75,7 +76,7 @@ std::vector<double> outer_thresholds(const PooledCounts& counts, double slope) {
   return t;
 }
 
-// Indices of local maxima; of a plateau the first.
+// Indices of local maxima; the first one of a plateau.
 std::vector<std::size_t> local_maxima(const std::vector<ScanNode>& nodes) {
   std::vector<std::size_t> peaks;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -151,7 +152,7 @@ std::vector<double> CountsTable::log_likelihoods(std::span<const double> ts, dou
     const auto position = [&](std::size_t i) { return factor * (level.ln_size - ts[i]) + shift; };
     const auto inside = [&](std::size_t i) { return position(i) >= 0 && position(i) < end; };
     const auto outside = [&](std::size_t i) { return table_.outside(level, (position(i) - shift) * step_u); };
-    // Positions are monotonic in t: those inside the table are one run.
+    // Positions are monotonic in t: those inside the table are contiguous.
     std::size_t first = 0, last = ts.size();
     for (; first < last && !inside(first); ++first) sums[first] += outside(first);
     for (; last > first && !inside(last - 1); --last) sums[last - 1] += outside(last - 1);
@@ -161,7 +162,7 @@ std::vector<double> CountsTable::log_likelihoods(std::span<const double> ts, dou
   return sums;
 }
 
-// Constants on both sides, but for errors at lapse 0 near psi = 1, whose logarithm falls without end.
+// Constants on both sides, except for errors at lapse 0 near psi = 1, whose logarithm has no lower limit.
 double LinkTable::outside(const PooledLevel& level, double u) const {
   const LogProbabilities& p = u < 0 ? low_ : high_;
   const bool near_one = (u > 0) == (link_.sign > 0);
@@ -171,8 +172,8 @@ double LinkTable::outside(const PooledLevel& level, double u) const {
   return sum;
 }
 
-Box<3> search_box(std::optional<double> lapse) {
-  constexpr double far = 2000;  // in ln threshold: beyond every number a double can hold
+ParameterBox<3> search_box(std::optional<double> lapse) {
+  constexpr double far = 2000;  // in ln threshold: beyond every number of type double
   return {{-far, std::log(min_slope), lapse.value_or(0.0)}, {far, std::log(max_slope), lapse.value_or(max_free_lapse)}};
 }
 
@@ -212,8 +213,8 @@ LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid)
     scan.nodes.push_back(best);
     rows.push_back(std::move(row));
   }
-  // A maximum along t that neither neighbouring slope betters at its threshold. Rows have thresholds of their own, so a
-  // neighbour is asked at its nearest.
+  // A maximum along t that neither neighbouring slope exceeds at its threshold. Each row has its own thresholds, so the
+  // nearest one of a neighbour is used.
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (const std::size_t k : local_maxima(rows[i])) {
       const ScanNode& node = rows[i][k];
@@ -227,25 +228,25 @@ LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid)
 
 Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, const LikelihoodScan& scan,
                           std::optional<double> lapse) {
-  const Box<3> box = search_box(lapse);
+  const ParameterBox<3> box = search_box(lapse);
   const auto likelihood = [&](const PsychometricPlace& place) { return expand_likelihood(counts, form, place); };
   std::optional<Maximum<3>> best;
   const auto consider = [&best](const Maximum<3>& m) {
     if (!best || m.expansion.value > best->expansion.value) best = m;
   };
   for (const std::size_t i : local_maxima(scan.nodes)) consider(climb<3>(likelihood, scan.nodes[i].place, box));
-  // On a ridge that rises for ever more slowly towards a slope limit Newton steps end before it: the limits are climbed
-  // on their own.
+  // On a ridge that rises ever more slowly towards a slope limit Newton steps end before it: the limits are climbed
+  // separately.
   for (const bool upper : {false, true}) {
-    Box<3> edge = box;
+    ParameterBox<3> edge = box;
     edge.lower[place_q] = edge.upper[place_q] = upper ? box.upper[place_q] : box.lower[place_q];
     const ScanNode& start = upper ? scan.nodes.back() : scan.nodes.front();
     consider(climb<3>(likelihood, climb<3>(likelihood, start.place, edge).place, box));
   }
-  // Other hills, of the same slopes at other thresholds. A scan is coarse: by how much a peak may rise on the way up.
-  // Steps between scanned slopes (a factor of 1.22) and thresholds (a quarter of the width) change the likelihood of
-  // near-chance data by less than 1; in sharp peaks of many trials the highest scanned ones are nearest. What is not
-  // higher than rounding is the same hill.
+  // Other peaks, of the same slopes at other thresholds. `hope`: largest rise of a peak above its scanned value. Steps
+  // between scanned slopes (a factor of 1.22) and thresholds (a quarter of the width) change the likelihood of
+  // near-chance data by less than 1; in sharp peaks of many trials the highest scanned ones are nearest. A difference
+  // below rounding is the same peak.
   constexpr double hope = 3;
   constexpr std::size_t most_climbs = 12;
   const double rounding = 1e-9 + 4e-16 * std::abs(best->expansion.value);
@@ -261,7 +262,7 @@ Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, con
 
 Maximum<3> profile_maximum(const PooledCounts& counts, PsychometricForm form, const ScanGrid& grid,
                            std::optional<double> lapse, double t) {
-  Box<3> box = search_box(lapse);
+  ParameterBox<3> box = search_box(lapse);
   box.lower[place_t] = box.upper[place_t] = t;
   const auto likelihood = [&](const PsychometricPlace& place) { return expand_likelihood(counts, form, place); };
   std::vector<ScanNode> nodes;

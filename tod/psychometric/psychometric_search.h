@@ -1,4 +1,5 @@
-// The global maximum of the likelihood: a scan of the whole domain, then Newton steps from every promising place.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Global maximum of the likelihood: a scan of the whole domain, then Newton steps from every promising place.
 #pragma once
 
 #include <memory>
@@ -10,7 +11,7 @@
 
 namespace todbench {
 
-/// ln psi and ln(1 - psi) of one link as piecewise quintics in u (Hermite, step 1/16): good to 1e-7, several times
+/// ln psi and ln(1 - psi) of one link as piecewise quintics in u (Hermite, step 1/16): accurate to 1e-7, several times
 /// faster than the functions themselves. For scans and integrals, never for a reported likelihood.
 class LinkTable {
  public:
@@ -23,20 +24,20 @@ class LinkTable {
   [[nodiscard]] double outside(const PooledLevel& level, double u) const;
 
   Link link_;
-  LogProbabilities low_, high_;  ///< beyond the table
+  LogProbabilities low_, high_;  ///< outside the table
   std::size_t cells_;
   std::vector<double> right_, wrong_;  ///< six coefficients of (u - left edge) / step for each cell
 
   friend class CountsTable;
 };
 
-/// The ln likelihood of one set of counts under one link, right and wrong answers of a level in one polynomial: a third
-/// of the work of LinkTable for each value, worth its making (1 us for each level) from some hundred values.
-/// Refers to both arguments, which must live longer.
+/// The ln likelihood of one set of counts under one link, with right and wrong answers of a level in one polynomial: a
+/// third of the work of LinkTable for each value. Its construction (1 us per level) pays off from some hundred values.
+/// Refers to both arguments, which must outlive it.
 class CountsTable {
  public:
   CountsTable(const LinkTable& table, const PooledCounts& counts);
-  /// Of the positive levels, as LinkTable::log_likelihood, at increasing thresholds `ts` and one slope.
+  /// ln likelihood of the positive levels, as LinkTable::log_likelihood, at increasing thresholds `ts` and one slope.
   [[nodiscard]] std::vector<double> log_likelihoods(std::span<const double> ts, double slope) const;
 
  private:
@@ -46,9 +47,9 @@ class CountsTable {
 };
 
 /// Search range in (t, q, lapse). A fixed lapse has equal limits.
-[[nodiscard]] Box<3> search_box(std::optional<double> lapse);
+[[nodiscard]] ParameterBox<3> search_box(std::optional<double> lapse);
 
-/// Slopes and lapses at which scans are made.
+/// Slopes and lapses of the scans.
 struct ScanGrid {
   std::vector<double> q;
   std::vector<LinkTable> tables;  ///< one for each lapse
@@ -60,16 +61,16 @@ struct ScanNode {
   PsychometricPlace place{};
   double value = 0;
 };
-/// What a scan of the whole domain finds.
+/// Result of a scan of the whole domain.
 struct LikelihoodScan {
   std::vector<ScanNode> nodes;  ///< for each slope of the grid the best over threshold and lapse
-  std::vector<ScanNode> peaks;  ///< maxima over threshold and slope, where Newton steps may begin too
+  std::vector<ScanNode> peaks;  ///< maxima over threshold and slope: further starts of Newton steps
 };
-/// Thresholds are spaced by the width of the function at that slope and lie around every level, in every gap and beyond
-/// the ends, so that no step between two levels and no ridge outside them is missed.
+/// Thresholds are spaced by the width of the function at that slope. They lie around every level, in every gap and
+/// outside the ends, so that no step between two levels and no ridge outside them is missed.
 [[nodiscard]] LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid);
 
-/// The maximum over the domain, from its scan. Where the likelihood rises towards a slope limit the place is at that
+/// The maximum over the domain, from its scan. If the likelihood rises towards a slope limit, the place is at that
 /// limit.
 [[nodiscard]] Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, const LikelihoodScan& scan,
                                         std::optional<double> lapse);

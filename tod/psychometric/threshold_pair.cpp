@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/threshold_pair.h"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 namespace todbench {
 namespace {
 
-// Five joint parameters; which of them is t, q and lapse of a set. The last two are always the lapses of A and B.
+// Five joint parameters; Ties maps them to t, q and lapse of a set. The last two are always the lapses of A and B.
 using JointPlace = std::array<double, 5>;
 using Roles = std::array<std::size_t, 3>;
 struct Ties {
@@ -29,9 +30,9 @@ void add(Expansion<5>& sum, const Expansion<3>& e, const Roles& roles) {
 }
 
 // The box of single fits, one limit pair for each role; parameters without a role are held at 0.
-Box<5> joint_box(const Ties& ties, std::optional<double> lapse) {
-  const Box<3> single = search_box(lapse);
-  Box<5> box;
+ParameterBox<5> joint_box(const Ties& ties, std::optional<double> lapse) {
+  const ParameterBox<3> single = search_box(lapse);
+  ParameterBox<5> box;
   for (const Roles& roles : {ties.a, ties.b}) {
     for (std::size_t i = 0; i < 3; ++i) {
       box.lower[roles[i]] = single.lower[i];
@@ -56,7 +57,7 @@ struct Joint {
       add(sum, expand_likelihood(b, form, part(place, ties.b)), ties.b);
       return sum;
     };
-    const Box<5> box = joint_box(ties, lapse);
+    const ParameterBox<5> box = joint_box(ties, lapse);
     Maximum<5> best = climb<5>(likelihood, starts.front(), box);
     for (std::size_t i = 1; i < starts.size(); ++i) {
       const Maximum<5> m = climb<5>(likelihood, starts[i], box);
@@ -67,14 +68,13 @@ struct Joint {
 };
 
 std::optional<double> standard_error(const Maximum<5>& m) {
-  if (!m.free[0] || !m.free[1] || !m.free[2])
-    return std::nullopt;  // at a slope limit there is no curvature to speak of
+  if (!m.free[0] || !m.free[1] || !m.free[2]) return std::nullopt;  // at a slope limit there is no usable curvature
   const auto y = solve_information(m.expansion.hessian, {1, -1, 0, 0, 0}, m.free, 0);
   if (!y || !((*y)[0] - (*y)[1] > 0)) return std::nullopt;
   return std::sqrt((*y)[0] - (*y)[1]);
 }
 
-// Whether a list has its neighbours not above it at i; ends count.
+// Whether no neighbour in a list is above the value at i; ends count.
 bool is_peak(const std::vector<double>& values, std::size_t i) {
   return (i == 0 || values[i] >= values[i - 1]) && (i + 1 == values.size() || values[i] >= values[i + 1]);
 }
@@ -106,7 +106,7 @@ PairMaxima ThresholdPair::shared_slope() const {
     if (is_peak(together, i)) common.push_back({both[place_t], 0, both[place_q], both[place_lapse], both[place_lapse]});
   }
   const Maximum<5> h1 = joint.maximum(shared_slope_separate, separate);
-  // The best separate solution with its thresholds drawn together is a start as well.
+  // The best separate solution with a common mean threshold is a start as well.
   common.push_back({(h1.place[0] + h1.place[1]) / 2, 0, h1.place[2], h1.place[3], h1.place[4]});
   const Maximum<5> h0 = joint.maximum(shared_slope_common, common);
   return {h1.expansion.value, h0.expansion.value, h1.place[0] - h1.place[1], standard_error(h1)};
@@ -118,7 +118,7 @@ PairMaxima ThresholdPair::separate_slopes() const {
   const Maximum<3> b = global_maximum(b_, form_, scan_b_, lapse_);
   const double ta = a.place[place_t], tb = b.place[place_t];
 
-  // The common threshold lies between the two or, where the likelihood has several peaks, near them.
+  // The common threshold lies between the two or, if the likelihood has several peaks, near them.
   constexpr int points = 33;
   const double reach = 0.5 * std::abs(ta - tb) + 0.1;
   const double low = std::min(ta, tb) - reach, high = std::max(ta, tb) + reach;

@@ -1,4 +1,5 @@
-// Two data sets fitted together: with a common threshold and with separate ones.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Joint fit of two data sets with a common threshold and with separate ones.
 #pragma once
 
 #include <optional>
@@ -8,21 +9,21 @@
 
 namespace todbench {
 
-/// Maxima of the summed ln likelihood and the difference of thresholds at the separate one.
+/// Maxima of the summed ln likelihood, and the difference of thresholds at the separate maximum.
 struct PairMaxima {
   double ll_separate = 0, ll_common = 0;
   double ln_ratio = 0;                ///< ln(threshold A / threshold B)
-  std::optional<double> se_ln_ratio;  ///< from the observed information; nothing where it is singular
+  std::optional<double> se_ln_ratio;  ///< from the observed information; empty if it is singular
 };
 
-/// A free lapse is free in each set. Levels are valid and each set has a positive size.
+/// A free lapse is free in each set. Precondition: levels are valid and each set has a positive size.
 class ThresholdPair {
  public:
   ThresholdPair(std::span<const Level> a, std::span<const Level> b, const FitOptions& options);
 
-  /// One slope for both sets, with and without one threshold.
+  /// One slope for both sets, with a common threshold and with separate ones.
   [[nodiscard]] PairMaxima shared_slope() const;
-  /// A slope for each set, with and without one threshold.
+  /// A slope for each set, with a common threshold and with separate ones.
   [[nodiscard]] PairMaxima separate_slopes() const;
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/tod_curve.h"
 
 #include <algorithm>
@@ -22,13 +23,13 @@ std::int64_t presentation_of(const Trial& trial) {
   return trial.presentation;
 }
 
-// Trials of one place share the detectors that see it, hence their fixed pattern.
+// Trials of one place share its detectors, hence their fixed pattern.
 using Place = std::tuple<std::string, Mounting, std::string>;
 Place place_of(const Trial& trial) {
   return {trial.plate, trial.mounting, trial.triangle};
 }
 
-// Where an answer of a group is only right or wrong, all of them count as that.
+// Whether a group is graded: all of its answers are.
 bool graded(const TrialGroup& trials) {
   return std::ranges::all_of(trials, [](const Trial* t) { return t->probability_correct.has_value(); });
 }
@@ -56,7 +57,7 @@ struct Candidate {
   std::vector<Level> levels;
   PsychometricFit fit;
 
-  // How far the likelihood must fall for a 95 % limit: inflation times the square of Student's t.
+  // Required drop of the likelihood for a 95 % limit: inflation times the square of Student's t.
   [[nodiscard]] double drop() const { return confidence_drop({fit.clusters, fit.variance_inflation}, 0.95); }
 };
 
@@ -66,8 +67,8 @@ Result<Candidate> candidate(std::vector<Level> levels, const FitOptions& options
   return Candidate{std::move(levels), *fit};
 }
 
-// The clustering that widens the intervals more. One cluster says nothing about its variance, so it is chosen only if
-// both have one.
+// The clustering that widens the intervals more. A single cluster has no variance, so it is chosen only if both have
+// one.
 Result<Candidate> widest(const TrialGroup& trials, FitOptions options) {
   options.with_posterior = false;
   auto by_presentation = candidate(count<std::int64_t>(trials, presentation_of), options);
@@ -79,8 +80,8 @@ Result<Candidate> widest(const TrialGroup& trials, FitOptions options) {
   return by_place->drop() > by_presentation->drop() ? by_place : by_presentation;
 }
 
-// Effective contrast: mean over trials, standard error over the measurements of it. The camera measures a contrast once
-// per set-up and set-point; all presentations until the next change carry the same value.
+// Effective contrast: mean over trials, standard error over its measurements. The camera measures a contrast once per
+// set-up and set-point; all presentations until the next change carry the same value.
 void add_contrast(TodPoint& point, const TrialGroup& trials) {
   std::set<std::tuple<std::string, Mounting, double>> measurements;
   double sum = 0;
@@ -98,7 +99,7 @@ void add_contrast(TodPoint& point, const TrialGroup& trials) {
   point.delta_t_se_k = std::sqrt(square / (n - 1) / n);
 }
 
-// The answers of a group, fitted in one way or the other.
+// Fits the answers of a group as graded or as right and wrong ones.
 class Fitter {
  public:
   explicit Fitter(const TrialGroup& trials) : trials_(trials), graded_(graded(trials)) {
@@ -108,7 +109,7 @@ class Fitter {
     answers_ = graded_answers(copies);
   }
 
-  // Sets the levels that the fits are of.
+  // Sets the levels for the fits.
   Result<void> choose_levels(TodPoint& point, const FitOptions& options) const {
     if (graded_) {
       point.levels = count<std::int64_t>(trials_, presentation_of);
@@ -190,25 +191,25 @@ std::string_view in_words(AnswersReason reason) {
     case AnswersReason::plan:
       return "the plan names them";
     case AnswersReason::twin:
-      return "the model observer judges and the function of the twin is fitted";
+      return "the model observer answers and the function of the twin is fitted";
     case AnswersReason::weibull:
-      return "a Weibull function is off by more than the interval of graded answers";
+      return "the error of a Weibull function exceeds the interval of graded answers";
     case AnswersReason::lapse:
-      return "the plan has a lapse";
+      return "the plan states a lapse rate";
     case AnswersReason::adaptive:
       return "the schedule is adaptive";
     case AnswersReason::grey_levels:
-      return "contrasts are those of grey levels";
+      return "the contrast is measured in grey levels";
     case AnswersReason::few_presentations:
-      return "too few presentations tell how graded answers scatter";
+      return "there are too few presentations to estimate the scatter of graded answers";
     case AnswersReason::no_function:
-      return "there is no function of the twin to fit graded answers with";
+      return "there is no function of the twin for a fit of graded answers";
     case AnswersReason::person:
       return "a person answered";
     case AnswersReason::package:
-      return "behind a package a Weibull function is fitted";
+      return "a Weibull function is fitted behind a package";
     case AnswersReason::moving_target:
-      return "of a moving target a Weibull function is fitted";
+      return "a Weibull function is fitted for a moving target";
   }
   return "unknown";
 }
@@ -245,7 +246,8 @@ Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& opti
   const auto strongest_first = [](double a, double b) { return std::pair(std::abs(a), a) > std::pair(std::abs(b), b); };
   std::map<double, TrialGroup, decltype(strongest_first)> groups(strongest_first);
   for (const Trial& trial : trials) {
-    if (!std::isfinite(trial.set_delta_t_k)) return fail(ErrorCode::invalid_input, "TOD curve: contrast is not finite");
+    if (!std::isfinite(trial.set_delta_t_k))
+      return fail(ErrorCode::invalid_input, "TOD curve: a contrast is not finite");
     groups[trial.set_delta_t_k].push_back(&trial);
   }
   TodCurve curve;

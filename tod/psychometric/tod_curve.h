@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Thresholds over contrast.
 #pragma once
 
@@ -14,29 +15,29 @@
 
 namespace todbench {
 
-/// Why answers were graded, or right and wrong.
+/// Reason for graded answers, or for right and wrong ones.
 enum class AnswersReason {
-  plan,               ///< the plan names them
+  plan,               ///< stated by the plan
   twin,               ///< graded: the model observer judges, and the function of the twin is fitted
-  weibull,            ///< a Weibull function is off by more than the interval of graded answers
+  weibull,            ///< the error of a Weibull function exceeds the interval of graded answers
   lapse,              ///< the plan has a lapse; graded answers are those of an observer without
   adaptive,           ///< in sessions of earlier versions: the schedule is adaptive
-  grey_levels,        ///< intervals of graded answers are not proven where contrasts are those of grey levels
-  few_presentations,  ///< too few to tell how graded answers scatter
-  no_function,        ///< graded ones were taken, and there was no function of the twin to fit them with
+  grey_levels,        ///< intervals of graded answers are not validated for contrasts in grey levels
+  few_presentations,  ///< too few to estimate the scatter of graded answers
+  no_function,        ///< graded answers were taken, but there was no function of the twin for the fit
   person,             ///< a person answered
-  package,            ///< behind a package of enhancement, with a Weibull function
-  moving_target,      ///< likewise of a target that moves
+  package,            ///< an enhancement package, with a Weibull function
+  moving_target,      ///< a moving target, with a Weibull function
 };
 inline constexpr std::array all_answers_reasons{
     AnswersReason::plan,     AnswersReason::twin,        AnswersReason::weibull,           AnswersReason::lapse,
     AnswersReason::adaptive, AnswersReason::grey_levels, AnswersReason::few_presentations, AnswersReason::no_function,
     AnswersReason::person,   AnswersReason::package,     AnswersReason::moving_target};
 [[nodiscard]] std::string_view to_string(AnswersReason reason);
-/// In a sentence: "the plan names them".
+/// For a sentence: "the plan names them".
 [[nodiscard]] std::string_view in_words(AnswersReason reason);
 
-/// The answers that a threshold rests on.
+/// The kind of answers behind a threshold.
 struct AnswersTaken {
   AnswerKind kind = AnswerKind::binary;
   int frames = 1;  ///< of a presentation, over which graded answers are averaged
@@ -46,29 +47,29 @@ struct AnswersTaken {
 
 /// One contrast of a TOD curve.
 struct TodPoint {
-  double set_delta_t_k = 0;  ///< what the target was told: the name by which points are paired
+  double set_delta_t_k = 0;  ///< set contrast: points are paired by it
   double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
-  /// Standard error of that mean: over the measurements of it (one per set-up and set-point) and the triangles each was
-  /// made by, contrast_error(); over the measurements alone where nothing is said of triangles; 0 of a single one then,
-  /// whose scatter nobody knows: contrast_se_k().
+  /// Standard error of that mean, contrast_error(): over its measurements (one per set-up and set-point) and their
+  /// triangles, or over the measurements alone if no triangles are recorded; then 0 for a single measurement, whose
+  /// scatter is not known: contrast_se_k().
   double delta_t_se_k = 0;
-  double delta_t_shared_se_k = 0;           ///< part of it that no scatter over the measurements shows
-  int delta_t_measurements = 0;             ///< how many those are; 0: not said
-  std::optional<double> delta_t_freedom{};  ///< degrees of freedom of that error; nothing: measurements less one
-  std::vector<Level> levels;                ///< counts per size, one row per size and cluster: what the fit saw
+  double delta_t_shared_se_k = 0;           ///< part of it that the scatter over measurements does not contain
+  int delta_t_measurements = 0;             ///< number of measurements; 0: not stated
+  std::optional<double> delta_t_freedom{};  ///< degrees of freedom of that error; empty: measurements minus one
+  std::vector<Level> levels;                ///< data of the fit: counts, one row per size and cluster
   PsychometricFit fit;                      ///< in mrad
-  /// Why the fit is with a Weibull function or with that of the twin; nothing: not said.
+  /// Reason for a Weibull function or for that of the twin; empty: not stated.
   std::optional<EstimatorReason> estimator_reason;
-  std::optional<AnswersTaken> answers;            ///< nothing: not said
+  std::optional<AnswersTaken> answers;            ///< empty: not stated
   std::optional<PsychometricFit> free_lapse_fit;  ///< the same with a free lapse, as a check
   bool lapse_warning = false;             ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
-  std::optional<Adequacy> adequacy;       ///< what speaks against the threshold; nothing: not examined
+  std::optional<Adequacy> adequacy;       ///< findings against the threshold; empty: not examined
   std::optional<double> direct_s75_mrad;  ///< simulated sensors only: no psychometric form assumed
   std::optional<double> direct_s75_se_mrad;
-  double saturated_share =
-      0;  ///< of the point's trials: those with saturated pixels inside the window of their triangle
-  std::optional<double>
-      noise_counts;  ///< temporal noise of a pixel in counts; nothing: not known or not counted in whole numbers
+  /// Share of the point's trials with saturated pixels inside the window of their triangle.
+  double saturated_share = 0;
+  /// Temporal noise of a pixel in counts; empty: not known, or not counted in whole numbers.
+  std::optional<double> noise_counts;
   std::optional<double> lag1_correlation;  ///< of a pixel's noise between successive frames
 };
 
@@ -78,13 +79,13 @@ struct TodCurve {
   std::vector<TodPoint> points;  ///< contrast decreasing
 };
 
-/// Twice the ln likelihood by which a free lapse has to be better for a warning: 5 % where the parameter is at its
-/// bound under the null hypothesis.
+/// Smallest gain in twice the ln likelihood by which a free lapse gives a warning: 5 % for a parameter at its bound
+/// under the null hypothesis.
 inline constexpr double boundary_drop = 2.705543454095404;
 
 /// Groups trials by set contrast, counts them per size and presentation, and fits each group. Intervals are clustered
-/// by presentation and by place on the plate (which shares fixed pattern); the wider one is reported. A group all of
-/// whose answers are graded is fitted by fit_graded(), with both clusterings in one variance.
+/// by presentation and by place on the plate (which shares fixed pattern); the wider one is reported. If all answers of
+/// a group are graded, it is fitted by fit_graded(), with both clusterings in one variance.
 [[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
 
 /// The same trials as right and wrong answers to one frame each.
@@ -93,10 +94,10 @@ inline constexpr double boundary_drop = 2.705543454095404;
 /// Answers with their presentations and places; right and wrong ones as probabilities of 1 and 0.
 [[nodiscard]] std::vector<GradedAnswer> graded_answers(std::span<const Trial> trials);
 
-/// Whether two set contrasts are the same one: equal to 0.5 % of the larger.
+/// Whether two set contrasts count as equal: to 0.5 % of the larger.
 [[nodiscard]] bool same_contrast(double a_k, double b_k);
 
-/// The point of a curve with this set contrast, the nearest of several; null where there is none.
+/// The point of a curve with this set contrast, the nearest of several; null if there is none.
 [[nodiscard]] const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -6,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/psychometric/clustered_variance.h"
 #include "tod/psychometric/psychometric_model.h"
 #include "tod/psychometric/twin_mean.h"
@@ -34,7 +35,7 @@ std::vector<PooledAnswers> pooled(std::span<const GradedAnswer> answers) {
   return rows;
 }
 
-/// The parameters that follow the answers, the size first.
+/// Fitted parameters, the size first.
 using Searched = std::vector<std::size_t>;
 
 Eigen::VectorXd gradient_of(const TwinMean::Value& mean, const Searched& searched) {
@@ -108,7 +109,7 @@ struct TwinMaximum {
   Searched searched;
 };
 
-/// Over `searched`, and a lapse from 0 on: where the answers ask for none, 0 is its maximum.
+/// Maximum over `searched` and a lapse from 0 on; 0 if the answers call for none.
 TwinMaximum with_free_lapse(const TwinShape& shape, TwinPlace place, const Searched& searched,
                             std::span<const PooledAnswers> rows) {
   place[twin_lapse] = 0;
@@ -121,7 +122,7 @@ TwinMaximum with_free_lapse(const TwinShape& shape, TwinPlace place, const Searc
   with.searched.push_back(twin_lapse);
   with.place = climb_from(shape, with.place, with.searched, rows);
   if (with.place[twin_lapse] >= largest) {
-    // At the end of its domain it is a fixed one.
+    // At the end of its domain it counts as fixed.
     with.searched.pop_back();
     with.place = climb_from(shape, with.place, with.searched, rows);
   }
@@ -136,7 +137,7 @@ AnswerScatter scatter_of(std::span<const GradedAnswer> answers) {
   return all_whole ? AnswerScatter::binomial : AnswerScatter::estimated;
 }
 
-/// Of the parameter `which`, one of `searched`.
+/// Variance of the parameter `which`, one of `searched`.
 ClusteredVariance variance_of(const TwinShape& shape, const TwinMaximum& at, std::span<const GradedAnswer> answers,
                               std::size_t which) {
   const TwinMean means(shape, at.place);
@@ -157,10 +158,10 @@ ClusteredVariance variance_of(const TwinShape& shape, const TwinMaximum& at, std
   return clustered_variance(scores, at.searched.size(), static_cast<std::size_t>(place), scatter_of(answers));
 }
 
-/// Probability at which a further parameter is taken in, or is a finding.
+/// Significance level for a further parameter, and for a finding.
 constexpr double asked_for = 0.01;
 
-/// A further parameter at its estimate: how many standard errors from nothing, and how many chance allows.
+/// A further parameter at its estimate: its value in standard errors, and the limit by chance.
 struct Further {
   TwinMaximum at;
   double t = 0, limit = 0;
@@ -169,7 +170,7 @@ struct Further {
 std::optional<Further> further(const TwinShape& shape, const TwinMaximum& from, std::size_t parameter,
                                std::span<const GradedAnswer> answers, std::span<const PooledAnswers> rows) {
   Further out{.at = from};
-  // Behind the size: a lapse stays the last one.
+  // After the size: a lapse stays the last one.
   out.at.searched.insert(out.at.searched.begin() + 1, parameter);
   out.at.place = climb_from(shape, from.place, out.at.searched, rows);
   const ClusteredVariance found = variance_of(shape, out.at, answers, parameter);
@@ -179,7 +180,7 @@ std::optional<Further> further(const TwinShape& shape, const TwinMaximum& from, 
   return out;
 }
 
-/// What the errors of the table do to the threshold: every node moved by its own, one after the other.
+/// Variance of the threshold from the errors of the table: every node is shifted by its own, one after the other.
 double variance_of_shape(const ProportionTable& table, const TwinMaximum& at, double ln_threshold,
                          std::span<const PooledAnswers> rows) {
   double variance = 0;
@@ -200,7 +201,7 @@ double weibull_slope(PsychometricForm form, double lapse, double derivative) {
   return derivative / (link.amplitude * link.kappa * std::exp(-link.kappa));
 }
 
-/// Against one free proportion per size.
+/// Deviance against one free proportion per size.
 double deviance_of(const TwinShape& shape, const TwinPlace& place, std::span<const PooledAnswers> rows) {
   const TwinMean means(shape, place);
   const auto part = [](double found, double expected) { return found > 0 ? found * std::log(found / expected) : 0; };
@@ -212,7 +213,7 @@ double deviance_of(const TwinShape& shape, const TwinPlace& place, std::span<con
   return 2 * sum;
 }
 
-/// The fit at a maximum; what is not of the parameters is that of `like`.
+/// The fit at a maximum; fields other than the parameters are those of `like`.
 PsychometricFit fit_at(const TwinShape& shape, const TwinMaximum& at, TwinShapeUse use,
                        std::span<const GradedAnswer> answers, std::span<const PooledAnswers> rows,
                        const PsychometricFit& like, PsychometricForm form) {
@@ -251,7 +252,7 @@ PsychometricFit fit_at(const TwinShape& shape, const TwinMaximum& at, TwinShapeU
   const double variance = found.variance + of_shape;
   fit.se_ln_threshold = std::sqrt(found.independent);
   fit.variance_inflation = variance / found.independent;
-  // The part of the table is known from thousands of draws: only the other part has few degrees of freedom
+  // The variance of the table is known from thousands of draws: only the other part has few degrees of freedom
   // (Satterthwaite).
   const double freedom = found.degrees_of_freedom * std::pow(variance / found.variance, 2);
   fit.clusters = freedom + 1;
@@ -275,9 +276,11 @@ Result<PsychometricFit> fit_twin_shape(std::span<const GradedAnswer> answers, co
   const auto shape = TwinShape::of(table);
   if (!shape) return tl::unexpected(shape.error());
   const double lapse = options.fixed_lapse.value_or(0);
-  if (!(lapse >= 0 && lapse <= max_free_lapse)) return fail(ErrorCode::invalid_input, "lapse outside [0, 0.1]");
+  if (!(lapse >= 0 && lapse <= max_free_lapse))
+    return fail(ErrorCode::invalid_input, "the lapse rate must be from 0 to 0.1");
   if (lapse > 0 && lapse > largest_twin_lapse(*shape))
-    return fail(ErrorCode::invalid_input, "twin shape: with that lapse 75 % lies beyond the sizes of the table");
+    return fail(ErrorCode::invalid_input,
+                "function of the twin: with this lapse rate, 75 % correct lies outside the sizes of its table");
   if (!has_regular_maximum(weibull)) return weibull;
   const std::vector<PooledAnswers> rows = pooled(answers);
   TwinMaximum at{.place = {std::log(*weibull.threshold) - shape->ln_threshold(), 0, 0, lapse}, .searched = {twin_size}};
@@ -303,7 +306,7 @@ Result<PsychometricFit> fit_twin_shape(std::span<const GradedAnswer> answers, co
 
 Result<PsychometricFit> twin_fit_with_free_lapse(std::span<const GradedAnswer> answers, const PsychometricFit& fit,
                                                  PsychometricForm form) {
-  if (!fit.twin_shape) return fail(ErrorCode::invalid_input, "twin shape: the fit has another function");
+  if (!fit.twin_shape) return fail(ErrorCode::invalid_input, "function of the twin: the fit used another function");
   const auto shape = TwinShape::of(fit.twin_shape->table);
   if (!shape) return tl::unexpected(shape.error());
   const std::vector<PooledAnswers> rows = pooled(answers);
@@ -336,7 +339,7 @@ Result<ShapeEstimate> twin_shape_estimate(std::span<const GradedAnswer> answers,
   const Eigen::MatrixXd information = expansion_at(*shape, place, searched, rows).information;
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (factor.info() != Eigen::Success || !(information(0, 0) > 0))
-    return fail(ErrorCode::invalid_input, "twin shape: the answers say nothing about the threshold");
+    return fail(ErrorCode::invalid_input, "function of the twin: the answers do not determine the threshold");
   const Eigen::VectorXd inverse = factor.solve(Eigen::VectorXd::Unit(static_cast<Eigen::Index>(searched.size()), 0));
   ShapeEstimate out{
       .ln_threshold = shape->ln_threshold() + place[twin_size], .direction = {}, .weight = {}, .influence = {}};

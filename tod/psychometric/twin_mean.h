@@ -1,4 +1,5 @@
-// The mean of answers by the function of a twin, as its parameters are searched.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mean of answers by the function of a twin, in the parameters of the search.
 #pragma once
 
 #include <array>
@@ -15,11 +16,11 @@ inline constexpr std::size_t twin_size = 0, twin_slope = 1, twin_bend = 2, twin_
 /// Without a bend.
 [[nodiscard]] TwinPlace twin_place(const TwinShapeUse& use, double lapse);
 
-/// Up to this lapse the table knows the size at which answers with lapses are right in 75 %; max_free_lapse at most.
+/// Largest lapse at which the table contains the size with 75 % correct answers; at most max_free_lapse.
 [[nodiscard]] double largest_twin_lapse(const TwinShape& shape);
 
 /// mu(S) = 1/4 + r (F(c + k d + e d^2) - 1/4), d = ln S - ln S75, r = 1 - lapse / (3/4), F(c) = 1/4 + 1/2 / r, so that
-/// mu(S75) = 3/4 whatever the lapse is. It keeps a reference to the shape.
+/// mu(S75) = 3/4 for every lapse. Keeps a reference to the shape.
 class TwinMean {
  public:
   TwinMean(const TwinShape& shape, const TwinPlace& place);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/twin_shape.h"
 
 // pchip.hpp calls isnan() without a namespace.
@@ -19,9 +20,9 @@ namespace todbench {
 namespace {
 
 constexpr std::size_t least_nodes = 5;
-/// Proportions nearer to chance or 1 than so many standard errors are not told from them.
+/// Proportions nearer to chance or 1 than this many standard errors are not distinguished from them.
 constexpr double told_apart = 3;
-/// Fitted proportions stay so far from 1: one wrong answer in ten thousand is a slip, not a proof.
+/// Distance of fitted proportions from 1: one wrong answer in ten thousand may be a slip.
 constexpr double least_wrong = 1e-4;
 
 double transformed(double p) {
@@ -37,26 +38,27 @@ struct Node {
 Result<std::vector<Node>> nodes_of(const ProportionTable& table) {
   const std::size_t n = table.size_mrad.size();
   if (table.proportion_correct.size() != n || table.standard_error.size() != n)
-    return fail(ErrorCode::invalid_input, "twin shape: the columns of the table differ in length");
+    return fail(ErrorCode::invalid_input, "function of the twin: the columns of its table differ in length");
   std::vector<Node> nodes;
   for (std::size_t k = 0; k < n; ++k) {
     const double size = table.size_mrad[k], p = table.proportion_correct[k], se = table.standard_error[k];
     const bool rising = k == 0 ? size > 0 : size > table.size_mrad[k - 1];
     if (!std::isfinite(size) || !rising || !(p >= 0 && p <= 1) || !(se >= 0 && std::isfinite(se)))
       return fail(ErrorCode::invalid_input,
-                  "twin shape: row " + std::to_string(k + 1) +
-                      ": sizes must rise, proportions be from 0 to 1 and their errors finite");
+                  "function of the twin: row " + std::to_string(k + 1) +
+                      ": sizes must increase, proportions must be from 0 to 1 and their errors must be finite");
     const double margin = std::max(told_apart * se, least_wrong);
     if (p < chance_level + margin || p > 1 - margin) continue;
     const double slope = 1 / (p - chance_level) + 1 / (1 - p);
     nodes.push_back({std::log(size), transformed(p), 1 / std::pow(std::max(se, 1e-6) * slope, 2)});
   }
   if (nodes.size() < least_nodes)
-    return fail(ErrorCode::invalid_input, "twin shape: fewer than five sizes between chance and certainty");
+    return fail(ErrorCode::invalid_input,
+                "function of the twin: fewer than five sizes lie between chance and certainty");
   return nodes;
 }
 
-/// The parabola through the neighbours of a node, weighted, at the node.
+/// The weighted parabola through the neighbours of a node, at the node.
 double smoothed(const std::vector<Node>& nodes, std::size_t middle) {
   constexpr std::size_t reach = 3;
   const std::size_t first = middle > reach ? middle - reach : 0, last = std::min(nodes.size() - 1, middle + reach);
@@ -74,7 +76,7 @@ double smoothed(const std::vector<Node>& nodes, std::size_t middle) {
   return normal.ldlt().solve(right)(0);
 }
 
-/// Rising by at least a little: neighbours that fall share their mean (pool adjacent violators).
+/// Rising at least slightly: neighbours that fall share their mean (pool adjacent violators).
 std::vector<double> made_rising(const std::vector<double>& values) {
   std::vector<std::pair<double, std::size_t>> blocks;  // mean, count
   for (const double value : values) {
@@ -120,14 +122,14 @@ Result<TwinShape> TwinShape::of(const ProportionTable& table) {
   ys = made_rising(ys);
   const double at_75 = transformed(0.75);
   if (!(ys.front() < at_75 && ys.back() > at_75))
-    return fail(ErrorCode::invalid_input, "twin shape: 75 % lies beyond the sizes of the table");
+    return fail(ErrorCode::invalid_input, "function of the twin: 75 % correct lies outside the sizes of its table");
   auto curve = std::make_shared<Curve>();
   const std::size_t n = xs.size();
   curve->first = xs.front();
   curve->last = xs.back();
   curve->y_first = ys.front();
   curve->y_last = ys.back();
-  // Over two intervals: one alone is noise.
+  // Over two intervals, because a single one is noisy.
   curve->slope_first = (ys[2] - ys[0]) / (xs[2] - xs[0]);
   curve->slope_last = (ys[n - 1] - ys[n - 3]) / (xs[n - 1] - xs[n - 3]);
   curve->between.emplace(std::move(xs), std::move(ys));
@@ -153,7 +155,7 @@ double TwinShape::largest_proportion() const {
 
 TwinShape::Value TwinShape::at(double ln_size) const {
   const auto [y, dy] = curve_->at(ln_size);
-  // P = 1/4 + 3/4 / (1 + e^-y), kept off its ends.
+  // P = 1/4 + 3/4 / (1 + e^-y), kept away from its ends.
   const double rise = 1 / (1 + std::exp(-std::clamp(y, -40.0, 40.0)));
   const double p = chance_level + 0.75 * rise;
   if (p > 1 - least_wrong) return {1 - least_wrong, 0};
@@ -173,7 +175,7 @@ TwinPlace twin_place(const TwinShapeUse& use, double lapse) {
 }
 
 double largest_twin_lapse(const TwinShape& shape) {
-  // 1/4 + 1/2 / r, the proportion of the twin that lapses make 75 %, has to be in its table.
+  // 1/4 + 1/2 / r, the proportion of the twin that lapses turn into 75 %, must be in its table.
   const double least_share = 0.5 / (shape.largest_proportion() - chance_level);
   return std::clamp(0.75 * (1 - least_share), 0.0, max_free_lapse);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/range/bars_sampled.h"
 
 #include <algorithm>
@@ -36,7 +37,7 @@ struct Sampled {
 template <typename Profile>
 Sampled sampled_at(const Profile& profile, double width, double phase) {
   const double reach = std::max(width / 2, 0.5);
-  // The samples stand at whole numbers + phase; rounding must not lose one that stands exactly at the edge.
+  // The samples are at whole numbers + phase; rounding must not lose one exactly at the edge.
   const auto extreme = [&](double centre, auto better, double start) {
     constexpr double edge = 1e-9;
     for (double k = std::ceil(centre - reach - phase - edge); k + phase <= centre + reach + edge; ++k)
@@ -80,7 +81,7 @@ BlurredBars::BlurredBars(double frequency_per_pitch, const std::function<double(
                          double band_per_pitch)
     : frequency_(frequency_per_pitch) {
   // The value is 2 int_0^band transfer spectrum cos(2 pi u x) du. At places within the pattern the integrand has at
-  // most 8 w band waves; sixteen nodes hold four of them to 1e-13.
+  // most 8 w band waves; sixteen nodes integrate four of them to 1e-13.
   const double width = 1 / (2 * frequency_per_pitch);
   const int pieces = static_cast<int>(std::ceil(band_per_pitch * (2 * width + 0.5))) * 2 + 8;
   static const auto rule = gauss_legendre(16);

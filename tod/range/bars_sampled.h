@@ -1,4 +1,5 @@
-// Four bars behind a transfer function and on a lattice of samples: how much of them is left, by phase.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Modulation of four bars after a transfer function and sampling, by phase.
 #pragma once
 
 #include <functional>
@@ -6,11 +7,11 @@
 
 namespace todbench {
 
-/// Four bars of width 1 / (2 f) with equal spaces, contrast 1, their middle at 0, behind a real transfer function along
+/// Four bars of width 1 / (2 f) with equal spaces, contrast 1, their middle at 0, after a real transfer function along
 /// the axis across them. Immutable, thread-safe.
 class BlurredBars {
  public:
-  /// `transfer` of the frequency in cycles per pitch, even and 1 at 0; nothing passes beyond `band_per_pitch`.
+  /// `transfer`: function of the frequency in cycles per pitch, even and 1 at 0; taken as 0 above `band_per_pitch`.
   BlurredBars(double frequency_per_pitch, const std::function<double(double)>& transfer, double band_per_pitch);
   /// The value at a place in pitches, to about 1e-12 within the pattern.
   [[nodiscard]] double at(double x_pitch) const;
@@ -21,18 +22,18 @@ class BlurredBars {
   std::vector<double> node_frequency_, node_weight_;
 };
 
-/// What sampling leaves. Of a bar counts its largest sample within max(w / 2, 1 / 2) of its centre, of a gap its
-/// smallest; the modulation is the mean of bars less the mean of gaps.
+/// Modulation after sampling: mean over bars of the largest sample within max(w / 2, 1 / 2) of a bar's centre, minus
+/// mean over gaps of the smallest one.
 struct BarModulation {
   double best = 0, mean = 0, worst = 0;  ///< over the phases
   double best_phase_pitch = 0;           ///< of the lattice against the middle of the pattern
-  int bars_separated_at_best = 1;        ///< 1 + the gaps that are lower than both neighbours
-  double share_of_four = 0;              ///< of the phases: with four bars
+  int bars_separated_at_best = 1;        ///< 1 + number of gaps that are lower than both neighbours
+  double share_of_four = 0;              ///< share of the phases that show four bars
 };
 /// Phases (i + 1/2) / phases - 1/2 pitch. Precondition: phases >= 1.
 [[nodiscard]] BarModulation bar_modulation(const BlurredBars& bars, int phases = 64);
-/// The same of any profile over the place in pitches, such as a measured one; it is asked for places up to
-/// 7 / (4 f) + 1 / 2 from the middle.
+/// Same for any profile over the place in pitches, for example a measured one; it is evaluated up to 7 / (4 f) + 1 / 2
+/// from the middle.
 [[nodiscard]] BarModulation bar_modulation(const std::function<double(double)>& profile, double frequency_per_pitch,
                                            int phases = 64);
 

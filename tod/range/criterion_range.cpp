@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/range/criterion_range.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@
 namespace todbench {
 namespace {
 
-/// Geometric bisection between a range where the ratio is above `wanted` and one where it is at most that or unknown.
+/// Geometric bisection between a range whose ratio is above `wanted` and one whose ratio is at most that or unknown.
 double bisected(const std::function<std::optional<double>(double)>& ratio, double wanted, double inside,
                 double outside) {
   for (int i = 0; i < 200; ++i) {
@@ -62,7 +63,7 @@ std::string_view to_string(DominantLimit limit) {
 std::optional<RangeSensitivity> sensitivity_of(
     const std::function<std::optional<double>(double size_factor, double contrast_factor)>& range) {
   constexpr double step = 0.01;
-  // Less of it: a range beyond the end of a table is not needed, nor a contrast above the highest of a curve.
+  // Decreases only: no range beyond the end of a table is needed, nor a contrast above the highest of a curve.
   const auto here = range(1, 1), smaller = range(std::exp(-step), 1), fainter = range(1, std::exp(-step));
   if (!here || !smaller || !fainter) return std::nullopt;
   return RangeSensitivity{std::log(*here / *smaller) / step, std::log(*here / *fainter) / step};
@@ -86,16 +87,17 @@ CriterionRange found_range(const ResolvedPerMrad& resolved, const CriterionTarge
   const auto best = resolved(target.contrast);
   if (!best || *best <= 0) {
     found.reason =
-        fmt::format("the target's contrast of {:g} lies below the lowest that the curve knows", target.contrast);
+        fmt::format("the target's contrast of {:g} lies below the lowest contrast of the curve", target.contrast);
     return found;
   }
-  // Without air the range would be this; air can only shorten it.
+  // The range without air; air can only shorten it.
   const double farthest = 1000 * target.size_m * *best / (criterion.at_half * wanted);
   const double end = std::min(farthest, air.end_m());
   if (const auto at_end = ratio(end); at_end && *at_end > wanted * (1 + 1e-12)) {
     found.at_least_m = end;
     found.reason = fmt::format(
-        "the table of transmittances ends at {:g} m, where the criterion is still exceeded; the range is at least that",
+        "the criterion is still exceeded at {0:g} m, the end of the table of transmittances: the range is at least "
+        "{0:g} m",
         end);
     return found;
   }
@@ -105,12 +107,12 @@ CriterionRange found_range(const ResolvedPerMrad& resolved, const CriterionTarge
     if (const auto x = ratio(inside); x && *x > wanted) break;
   }
   const double crossing = bisected(ratio, wanted, inside, end * (1 + 1e-12));
-  // Where the curve ends before the criterion is met: what lies below its lowest point is not known.
+  // The curve ends before the criterion is met: it is not known below its lowest point.
   if (const auto before = ratio(crossing * (1 - 1e-9)); !before || *before > wanted * (1 + 1e-6)) {
     found.at_least_m = crossing;
     found.reason = fmt::format(
-        "the apparent contrast falls below the lowest that the curve knows at {:.4g} m, where the criterion is still "
-        "exceeded; the range is at least that",
+        "the criterion is still exceeded at {0:.4g} m, beyond which the apparent contrast lies below the lowest "
+        "contrast of the curve: the range is at least {0:.4g} m",
         crossing);
     return found;
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ranges by criteria on a target: cycles (ACQUIRE, MTDP-like) and the TTP metric. Pure functions of curves and air.
 #pragma once
 
@@ -14,25 +15,24 @@
 
 namespace todbench {
 
-/// The target as a model of cycles or values knows it.
+/// The target in models of cycles or values.
 struct CriterionTarget {
   double size_m = 0;    ///< square root of the projected area, > 0
-  double contrast = 0;  ///< at the target, > 0: kelvin before an MRTD, a contrast of luminances before a CTF
+  double contrast = 0;  ///< at the target, > 0: kelvin for an MRTD, luminance contrast for a CTF
 };
 
-/// What is on the target at an apparent contrast, under one milliradian of its size: the highest frequency that is
-/// resolved, or the integral of the TTP metric. Does not decrease with contrast; nothing where the contrast lies below
-/// what the curve knows.
+/// Resolution of the target at an apparent contrast, per milliradian of its size: the highest resolved frequency, or
+/// the integral of the TTP metric. Does not decrease with contrast; empty if the contrast lies below the curve.
 using ResolvedPerMrad = std::function<std::optional<double>(double apparent_contrast)>;
 /// ACQUIRE: the highest frequency in cycles/mrad at which the curve is at most the contrast. Above the curve's highest
-/// point its last frequency: nothing is promised beyond it.
+/// point its last frequency, without extrapolation.
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve curve);
 /// The 2-D frequency of ACQUIRE, sqrt(f_h f_v) at the same contrast.
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve horizontal, LogLinearCurve vertical);
-/// TTP: the integral of sqrt(C / CTF) over the frequencies at which CTF < C, in 1/mrad. For two axes give the curve of
-/// the geometric mean, geometric_mean().
+/// TTP: the integral of sqrt(C / CTF) over the frequencies at which CTF < C, in 1/mrad. For two axes pass their
+/// geometric_mean().
 [[nodiscard]] ResolvedPerMrad resolved_values(LogLinearCurve ctf);
-/// sqrt(h v) at the frequencies of both curves where both are known. `invalid_input` where they do not overlap.
+/// sqrt(h v) at the frequencies of both curves in their common range. Errors: `invalid_input` if they do not overlap.
 [[nodiscard]] Result<LogLinearCurve> geometric_mean(const LogLinearCurve& horizontal, const LogLinearCurve& vertical);
 
 struct Criterion {
@@ -40,7 +40,7 @@ struct Criterion {
   ProbabilityForm form = ProbabilityForm::johnson;
 };
 
-/// Which of the two pays more where the probability is reached: the same relative change of size or of contrast.
+/// Which one has the larger effect at the range of the probability, for the same relative change of size or contrast.
 enum class DominantLimit { resolution, contrast };
 [[nodiscard]] std::string_view to_string(DominantLimit limit);
 
@@ -51,20 +51,20 @@ struct RangeSensitivity {
     return to_contrast > to_size ? DominantLimit::contrast : DominantLimit::resolution;
   }
 };
-/// By differences of 1 % of a function from (size factor, contrast factor) to a range; nothing where it has no value.
+/// By differences of 1 % of a function from (size factor, contrast factor) to a range; empty if it has no value.
 [[nodiscard]] std::optional<RangeSensitivity> sensitivity_of(
     const std::function<std::optional<double>(double size_factor, double contrast_factor)>& range);
 
-/// x at a range: what is on the target over the criterion; nothing where the curve or the air knows nothing.
+/// x at a range: resolution of the target over the criterion; empty outside the curve or the air's table.
 [[nodiscard]] std::optional<double> criterion_ratio(const ResolvedPerMrad& resolved, const CriterionTarget& target,
                                                     const Transmittance& air, const Criterion& criterion,
                                                     double range_m);
 
-/// The range at which a probability is reached, or why there is none.
+/// The range at which a probability is reached, or the reason why there is none.
 struct CriterionRange {
   std::optional<double> range_m;
-  std::optional<double> at_least_m;  ///< where there is no range: the probability is higher up to here
-  std::string reason;                ///< in a sentence; empty where there is a range
+  std::optional<double> at_least_m;  ///< without a range: the probability is higher up to here
+  std::string reason;                ///< a sentence; empty if there is a range
   std::optional<RangeSensitivity> sensitivity;
 };
 /// The smallest range at which the ratio falls to that of the probability. Preconditions: values of the target and the

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contrast threshold of the human eye.
 #pragma once
 
 namespace todbench {
 
-/// Who looks at what; the defaults are those of a display of 10 foot-lamberts.
+/// Viewing conditions; the defaults are those of a display of 10 foot-lamberts.
 struct EyeConditions {
   double luminance_cd_m2 = 34.26;
   double field_degrees = 15;  ///< side of the field

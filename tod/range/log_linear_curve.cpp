@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/range/log_linear_curve.h"
 
 #include <fmt/format.h>
@@ -10,8 +11,7 @@
 namespace todbench {
 namespace {
 
-/// Integral over a length on which an exponent goes linearly from a to b of exp(exponent): length (e^b - e^a) / (b -
-/// a).
+/// Integral of exp(exponent) over a length on which the exponent is linear from a to b: length (e^b - e^a) / (b - a).
 double mean_exponential(double a, double b) {
   const double d = b - a;
   return std::exp(a) * (std::abs(d) < 1e-12 ? 1 + d / 2 : std::expm1(d) / d);
@@ -24,7 +24,8 @@ LogLinearCurve::LogLinearCurve(std::vector<CurvePoint> points) : points_(std::mo
 }
 
 Result<LogLinearCurve> LogLinearCurve::of(std::span<const CurvePoint> points, std::string_view what) {
-  if (points.size() < 2) return fail(ErrorCode::invalid_input, fmt::format("the {} curve needs two points", what));
+  if (points.size() < 2)
+    return fail(ErrorCode::invalid_input, fmt::format("the {} curve needs at least two points", what));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& [frequency, value] = points[i];
     if (!std::isfinite(frequency) || frequency < 0)

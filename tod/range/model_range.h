@@ -1,4 +1,5 @@
-// The answer of one range model, as every page and program shows it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Result of one range model, as all reports and programs show it.
 #pragma once
 
 #include <optional>
@@ -18,18 +19,18 @@ struct ModelRangePoint {
 struct ModelRange {
   std::string name;       ///< "tod", "acquire", "ttp", "mtdp"
   std::string title;      ///< "TOD"
-  std::string criterion;  ///< name of the number: "M75", "N50", "V50"
+  std::string criterion;  ///< name of the criterion: "M75", "N50", "V50"
   double criterion_value = 0;
   std::string probability_form;  ///< by name
-  std::string reads;             ///< what the model reads, and where it is from: a sentence
+  std::string reads;             ///< input of the model and its source: a sentence
   std::optional<double> r50_m{}, r75_m{};
-  Interval r75_ci95_m{};  ///< of the curve and the air; open where nothing is known
+  Interval r75_ci95_m{};  ///< of the curve and the air; a side is open if unknown
   std::optional<RangeSensitivity> sensitivity{};
   std::string reason{};              ///< why there is no r75_m; else empty
-  std::vector<std::string> notes{};  ///< assumptions that this model needed
+  std::vector<std::string> notes{};  ///< assumptions of this model
   std::vector<ModelRangePoint> curve{};
 
-  /// Where there is no range the contrast was lost, or the air is not known.
+  /// Without a range: the contrast was lost, or the air is not known.
   [[nodiscard]] std::optional<DominantLimit> dominant() const {
     return sensitivity ? std::optional(sensitivity->dominant()) : std::nullopt;
   }

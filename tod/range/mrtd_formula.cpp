@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/range/mrtd_formula.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 namespace todbench {
 namespace {
 
-/// Second integral of a Gaussian density: max(x, 0) where it has no width.
+/// Second integral of a Gaussian density: max(x, 0) for a width of 0.
 double ramp(double x, double sd) {
   if (sd <= 0) return std::max(x, 0.0);
   const double z = x / sd;
@@ -15,8 +16,8 @@ double ramp(double x, double sd) {
 }
 
 /// 2 p int_0^inf shared_density(n, v p) N(v)^2 sinc^2(v length) dv. sinc^2 is the transform of a triangle of half-width
-/// `length`, N^2 that of a Gaussian of sqrt(2) sigma: the integral is p times what is left of the triangle under the
-/// Gaussian, at the distances at which samples are alike.
+/// `length`, N^2 that of a Gaussian of sqrt(2) sigma: the integral is p times the value of the triangle after the
+/// Gaussian, at the distances at which samples share noise.
 double spatial_share(double pitch_mrad, double length_mrad, double sigma_mrad, int alike) {
   const double sd = std::numbers::sqrt2 * sigma_mrad;
   double sum = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Target transfer probability functions, by name: from cycles or values on a target to the probability of a task.
 #pragma once
 
@@ -6,8 +7,8 @@
 
 namespace todbench {
 
-/// P = x^E / (1 + x^E), x the number on the target over the number for 50 %. A criterion belongs to one form: the range
-/// for 75 % differs by a fifth between the last two.
+/// P = x^E / (1 + x^E), x the number on the target over the number for 50 %. A criterion belongs to one form: the
+/// ranges for 75 % of the last two differ by a fifth.
 enum class ProbabilityForm {
   johnson,    ///< E = 2.7 + 0.7 x: cycles N / N50 of ACQUIRE
   ttp_2004,   ///< E = 1.51 + 0.24 x: V / V50 of the TTP metric as published in 2004

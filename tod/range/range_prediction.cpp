@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/range/range_prediction.h"
 #include "tod/psychometric/acuity.h"
 
@@ -13,9 +14,9 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Ratio V75 / V50 of the target transfer probability function: the x at which x^E = 3, E = 1.51 + 0.24 x.
 constexpr double v75_over_v50 = 1.7650293160712442;
-constexpr int pieces = 256;  ///< in which a crossing is looked for before it is bisected
+constexpr int pieces = 256;  ///< number of parts in the search for a crossing before bisection
 
-/// ln acuity at a contrast with the reach of its 95 % interval on both sides; infinite where a side is open.
+/// ln acuity at a contrast with the distance to both sides of its 95 % interval; infinite for an open side.
 struct LogAcuity {
   double value = 0, below = 0, above = 0;
 };
@@ -33,7 +34,7 @@ Node node_of(const TodThreshold& threshold) {
            low && *low > 0 ? std::max(0.0, -value - std::log(*low)) : infinity}};
 }
 
-/// Of two independent errors with weights; a weight of 0 takes an open side out.
+/// Weighted sum of two independent errors; a weight of 0 excludes an open side.
 double joined(double weight_a, double a, double weight_b, double b) {
   return std::hypot(weight_a > 0 ? weight_a * a : 0, weight_b > 0 ? weight_b * b : 0);
 }
@@ -65,7 +66,7 @@ double side_of(const LogAcuity& acuity, Side side) {
   return acuity.value;
 }
 
-/// The target line against one TOD curve, everything in natural logarithms of metres, 1/mrad and kelvin.
+/// The target line against one TOD curve, in natural logarithms of metres, 1/mrad and kelvin.
 class TargetLine {
  public:
   TargetLine(const std::vector<Node>& nodes, const RangeTask& task) : nodes_(nodes), task_(task) {}
@@ -82,15 +83,15 @@ class TargetLine {
     if (!acuity) return std::nullopt;
     return std::log(1000 * task_.size_m / task_.m75) - std::log(range_m) + side_of(*acuity, side);
   }
-  /// Where the apparent contrast leaves the TOD curve at its low end, or the table of the air ends; infinite without
-  /// extinction, negative where the target's contrast lies below the curve.
+  /// Range at which the apparent contrast leaves the TOD curve at its low end, or the table of the air ends; infinite
+  /// without extinction, negative if the target's contrast lies below the curve.
   [[nodiscard]] double end_m() const;
   [[nodiscard]] bool ends_with_the_table() const { return task_.air && end_m() >= task_.air->end_m(); }
   /// The range at which a TOD curve of constant acuity would be met.
   [[nodiscard]] double range_of(double ln_acuity) const {
     return 1000 * task_.size_m / task_.m75 * std::exp(ln_acuity);
   }
-  /// The smallest range at which M falls to M75; nothing when it does not before the curve ends.
+  /// The smallest range at which M falls to M75; empty if the curve ends before.
   [[nodiscard]] std::optional<double> crossing(Side side) const;
 
  private:
@@ -128,14 +129,14 @@ double TargetLine::bisected(double inside, double outside, Side side) const {
 std::optional<double> TargetLine::crossing(Side side) const {
   double lowest = infinity, highest = -infinity;
   for (const auto& node : nodes_) {
-    // An open side reaches nowhere in particular: the crossing is then unknown, unless other points decide it.
+    // With an open side the crossing is unknown, unless other points decide it.
     if (std::isfinite(side_of(node.acuity, side))) {
       lowest = std::min(lowest, side_of(node.acuity, side));
       highest = std::max(highest, side_of(node.acuity, side));
     }
   }
   if (!(lowest <= highest)) return std::nullopt;
-  // A band lies nowhere outside the outermost ends of its points, joined errors being smaller than single ones.
+  // A band is always inside the outermost ends of its points, because joined errors are smaller than single ones.
   const double first = range_of(lowest) * 0.99;
   const double last = std::min(end_m(), range_of(highest) * 1.01);
   double inside = std::min(first, last);
@@ -169,7 +170,8 @@ Result<void> check(std::span<const TodThreshold> thresholds, const RangeTask& ta
   if (!std::isfinite(task.extinction_per_km) || task.extinction_per_km < 0)
     return fail(ErrorCode::invalid_input, "the extinction must be 0 or more per km");
   if (task.air && task.extinction_per_km > 0)
-    return fail(ErrorCode::invalid_input, "the air has its own extinction: none may stand beside it");
+    return fail(ErrorCode::invalid_input,
+                "the air model contains the extinction: remove the separate extinction coefficient");
   if (thresholds.empty()) return fail(ErrorCode::invalid_input, "the TOD curve has no threshold");
   for (std::size_t i = 0; i < thresholds.size(); ++i) {
     const auto& t = thresholds[i];
@@ -209,7 +211,7 @@ std::vector<RangePoint> probabilities(const TargetLine& line, double up_to_m) {
   const double step = round_step(up_to_m / 60);
   std::vector<RangePoint> curve;
   for (int i = 1; i * step <= up_to_m * (1 + 1e-12); ++i) {
-    if (std::isinf(line.ln_contrast(i * step))) break;  // the table of the air has ended
+    if (std::isinf(line.ln_contrast(i * step))) break;  // end of the air's table
     curve.push_back(point_of(line, i * step));
   }
   return curve;
@@ -222,17 +224,18 @@ std::string why_not(const TargetLine& line, const RangeTask& task, double lowest
   }
   if (line.ends_with_the_table()) {
     return fmt::format(
-        "the table of transmittances ends at {:g} m, where M is still above M75 = {:g}; the range is at least that",
+        "M is still above M75 = {1:g} at {0:g} m, the end of the table of transmittances: the range is at least {0:g} "
+        "m",
         line.end_m(), task.m75);
   }
   return fmt::format(
-      "the target line does not meet the TOD curve: the apparent contrast falls below the lowest contrast of "
-      "the curve, {:g} K, at {:.4g} m, where M is still above M75 = {:g}; the range is at least that",
+      "the target line does not cross the TOD curve: M is still above M75 = {2:g} at {1:.4g} m, beyond which the "
+      "apparent contrast lies below the lowest contrast of the curve, {0:g} K; the range is at least {1:.4g} m",
       lowest_k, line.end_m(), task.m75);
 }
 
-/// Of the points that the curve's value anywhere between two contrasts depends on: the neighbours of what lies between
-/// two points, the highest above it.
+/// Findings of the points that determine the curve's value anywhere between two contrasts: the neighbours of values
+/// between two points, the highest above it.
 std::optional<Adequacy> findings_between(std::span<const TodThreshold> sorted, double low_k, double high_k) {
   std::optional<Adequacy> found;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
@@ -249,7 +252,7 @@ std::optional<Adequacy> findings_between(std::span<const TodThreshold> sorted, d
   return found;
 }
 
-/// From the apparent contrast at the far end of the interval to that at its near end; an open end reaches as far as the
+/// From the apparent contrast at the far end of the interval to that at its near end; an open end extends as far as the
 /// target and the curve do.
 std::optional<Adequacy> findings_of(const RangePrediction& prediction, const TargetLine& line,
                                     std::span<const TodThreshold> sorted) {
@@ -277,7 +280,8 @@ ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k)
   const auto same_sign = [&](const TodPoint& p) { return std::signbit(p.delta_t_k) == std::signbit(target_delta_t_k); };
   const bool any = std::any_of(curve.points.begin(), curve.points.end(), same_sign);
   if (!any && !curve.points.empty())
-    selection.notes.emplace_back("the TOD curve is of the opposite polarity: taken to be the same for both");
+    selection.notes.emplace_back(
+        "the TOD curve was measured at the opposite polarity: the acuity is assumed to be the same for both");
   for (const auto& point : curve.points) {
     if (any && !same_sign(point)) continue;
     if (!point.fit.threshold || point.fit.verdict == FitVerdict::flat_or_decreasing ||
@@ -318,7 +322,7 @@ Result<RangePoint> range_point(std::span<const TodThreshold> thresholds, const R
   task.delta_t_k = contrast_on_curve(thresholds, asked.delta_t_k);
   const std::vector<TodThreshold> sorted = sorted_by_contrast(thresholds);
   if (auto checked = check(sorted, task); !checked) return tl::unexpected(checked.error());
-  if (!(std::isfinite(range_m) && range_m > 0)) return fail(ErrorCode::invalid_input, "a range is above 0 m");
+  if (!(std::isfinite(range_m) && range_m > 0)) return fail(ErrorCode::invalid_input, "a range must be above 0 m");
   const std::vector<Node> nodes = nodes_of(sorted);
   return point_of(TargetLine(nodes, task), range_m);
 }
@@ -333,8 +337,8 @@ Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, 
   RangePrediction prediction;
   if (!same_contrast(task.delta_t_k, std::abs(asked.delta_t_k))) {
     prediction.notes.push_back(
-        fmt::format("the target has the set contrast {:g} K of a point of the TOD curve: the "
-                    "camera saw {:g} K there, which is taken",
+        fmt::format("the target has the set contrast of a point of the TOD curve, {:g} K: the effective contrast of "
+                    "that point, {:g} K, is used",
                     std::abs(asked.delta_t_k), task.delta_t_k));
   }
   prediction.r75_m = line.crossing(Side::estimate);
@@ -342,7 +346,7 @@ Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, 
     prediction.r75_ci95_m = {line.crossing(Side::low), line.crossing(Side::high)};
   } else {
     prediction.reason = why_not(line, task, sorted.front().delta_t_k);
-    // The curve, where it exists, bounds the range from below: by its lower side where that is met, else by its end.
+    // The curve bounds the range from below: by its lower side if that is met, else by its end.
     if (line.end_m() > 0 && std::isfinite(line.end_m())) {
       const auto low = line.crossing(Side::low);
       prediction.r75_ci95_m.low = low ? low : std::optional(line.end_m());
@@ -351,8 +355,8 @@ Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, 
   }
   if (std::abs(task.delta_t_k) > sorted.back().delta_t_k) {
     prediction.notes.push_back(
-        fmt::format("the target's contrast lies above the highest of the TOD curve, {:g} K: the acuity is "
-                    "taken to be constant there",
+        fmt::format("the target's contrast lies above the highest contrast of the TOD curve, {:g} K: the acuity is "
+                    "assumed to be constant there",
                     sorted.back().delta_t_k));
   }
   prediction.adequacy = findings_of(prediction, line, sorted);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/range/transmittance.h"
 
 #include <fmt/format.h>
@@ -54,8 +55,9 @@ Result<Transmittance> Transmittance::of_table(std::span<const TransmittancePoint
     air.rows_.push_back({rows[i].range_m, std::abs(std::log(rows[i].transmittance))});
   }
   if (air.rows_.size() < 2) {
-    return fail(ErrorCode::invalid_input,
-                "the table of transmittances needs two ranges above 0 m with a transmittance of 1e-8 or more");
+    return fail(
+        ErrorCode::invalid_input,
+        "the table of transmittances needs at least two ranges above 0 m with a transmittance of at least 1e-8");
   }
   return air;
 }
@@ -80,7 +82,7 @@ double Transmittance::table_depth(double range_m) const {
   const Row& b = before_first ? rows_[1] : *above;
   if (a.depth == 0) return before_first ? 0 : b.depth * (range_m - a.range_m) / (b.range_m - a.range_m);
   double power = std::log(b.depth / a.depth) / std::log(b.range_m / a.range_m);
-  // A table that does not change between its first rows says nothing about what lies before them: one coefficient.
+  // A table that is constant over its first rows does not determine the air before them: one coefficient.
   if (before_first && power <= 0) power = 1;
   return a.depth * std::pow(range_m / a.range_m, power);
 }
@@ -89,7 +91,7 @@ std::optional<double> Transmittance::optical_depth(double range_m) const {
   if (range_m > end_m()) return std::nullopt;
   if (!rows_.empty()) return factor_ * table_depth(range_m);
   const double range_km = range_m / 1000;
-  // Relative to the clearest wavelength, so that a long path does not underflow to nothing.
+  // Relative to the clearest wavelength, so that a long path does not underflow to 0.
   double clearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < weights_.size(); ++i) {
     if (weights_[i] > 0) clearest = std::min(clearest, extinction_per_km_[i]);

@@ -1,11 +1,12 @@
-// How much of a contrast is left behind so much air: by a table, by a spectrum, or by one coefficient.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Transmittance of the air over range: by a table, by a spectrum, or by one coefficient.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
@@ -15,29 +16,29 @@ struct TransmittancePoint {
   double transmittance = 1;  ///< 0 to 1
 };
 
-/// Band transmittance by range. Averaged over a band it is no exponential: strong lines are used up first and the
+/// Band transmittance over range. The mean over a band is not exponential: strong lines are absorbed first, and the
 /// effective extinction -ln(tau) / R falls with range. Immutable, thread-safe.
 class Transmittance {
  public:
   /// exp(-K R).
   [[nodiscard]] static Transmittance beer_lambert(double extinction_per_km);
   /// Rows with range increasing and transmittance not increasing; a row at 0 m has 1. Between rows ln(-ln tau) is
-  /// linear in ln R, and so it goes on below the first row towards tau = 1; where a row has exactly 1, -ln tau is
-  /// linear in R. Rows below 1e-8 are dropped: programs have a floor of their own there. Nothing is known beyond the
-  /// last row. `invalid_input` in one sentence: no rows, fewer than two above 0 m that can be used, unsorted or
-  /// repeated ranges, a transmittance outside 0 to 1 or one that increases.
+  /// linear in ln R, and continues so below the first row towards tau = 1; next to a row of exactly 1, -ln tau is
+  /// linear in R. Rows below 1e-8 are dropped, because programs have a floor there. Undefined beyond the last row.
+  /// Errors: `invalid_input` in one sentence (no rows, fewer than two usable ones above 0 m, unsorted or repeated
+  /// ranges, a transmittance outside 0 to 1 or one that increases).
   [[nodiscard]] static Result<Transmittance> of_table(std::span<const TransmittancePoint> rows);
   /// The mean of exp(-k_i R) with weights: Beer and Lambert at every wavelength. Exact at every range. Preconditions:
   /// as many weights as extinctions, at least one; weights >= 0 and not all 0, extinctions >= 0, all finite.
   [[nodiscard]] static Transmittance of_spectrum(std::vector<double> weights, std::vector<double> extinction_per_km);
 
-  /// -ln tau; nothing beyond end_m(). Precondition: range_m >= 0.
+  /// -ln tau; empty beyond end_m(). Precondition: range_m >= 0.
   [[nodiscard]] std::optional<double> optical_depth(double range_m) const;
-  /// tau; nothing beyond end_m().
+  /// tau; empty beyond end_m().
   [[nodiscard]] std::optional<double> at(double range_m) const;
-  /// The last range that the table knows; infinite without a table.
+  /// The last range of the table; infinite without a table.
   [[nodiscard]] double end_m() const;
-  /// The same air with every optical depth multiplied: what an error of the extinction does. Precondition: factor >= 0.
+  /// The same air with every optical depth multiplied: effect of an error of the extinction. Precondition: factor >= 0.
   [[nodiscard]] Transmittance with_depth_times(double factor) const;
 
  private:

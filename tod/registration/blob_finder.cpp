@@ -1,15 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/registration/blob_finder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "acquisition/core/median.h"
+#include "acquisition/base/median.h"
 
 namespace todbench {
 namespace {
 
-/// What stands above a surround wider than any blob: white top-hat (picture minus its opening) with the level of the
+/// Structures above a surround wider than any blob: white top-hat (picture minus its opening) with the level of the
 /// noise at zero.
 cv::Mat1d relief(const cv::Mat1d& picture, double largest_px) {
   cv::Mat1d smooth;
@@ -28,7 +29,7 @@ struct Region {
   cv::Point2d moment{0, 0};
 };
 
-/// Takes the connected pixels above `level` round `seed`; pixels are taken only once.
+/// Collects the connected pixels above `level` round `seed`; each pixel is used only once.
 Region grow(const cv::Mat1d& height, cv::Mat1b& taken, cv::Point seed, double level) {
   Region region;
   std::vector<cv::Point> open{seed};
@@ -54,8 +55,8 @@ Region grow(const cv::Mat1d& height, cv::Mat1b& taken, cv::Point seed, double le
 
 std::vector<Blob> find_warm_blobs(const cv::Mat1d& picture, double smallest_px, double largest_px) {
   constexpr double noise_factor = 6;       // one false maximum in about 1e8 pixels of white noise
-  constexpr double area_tolerance = 2.2;   // area above half height against the true area, for 2 px and more with blur
-  constexpr std::size_t most_blobs = 120;  // bounds the work of the matching; a plate has some twenty
+  constexpr double area_tolerance = 2.2;   // area above half height against the true area, for at least 2 px with blur
+  constexpr std::size_t most_blobs = 120;  // limits the work of the matching; a plate has about twenty
   const cv::Mat1d height = relief(picture, largest_px);
   cv::Mat1d magnitude = cv::abs(height);
   const double noise = 1.4826 * median({magnitude.begin(), magnitude.end()});

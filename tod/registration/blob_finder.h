@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Compact warm spots in a picture: candidates for the triangles of a plate.
 #pragma once
 
@@ -8,14 +9,14 @@ namespace todbench {
 
 /// A spot that stands out of its surround.
 struct Blob {
-  cv::Point2d centre;   ///< centre of mass above the background, good to about 0.3 px
+  cv::Point2d centre;   ///< centre of mass above the background, accurate to about 0.3 px
   double size_px = 0;   ///< square root of the area above half its height
   double strength = 0;  ///< height above the background, in the unit of the picture
 };
 
 /// Warm spots of `smallest_px` to `largest_px` (square root of area), the strongest first. Each is cut at half of its
 /// own height, so that a lamp in the picture does not hide a triangle. A background that changes over more than about
-/// twice `largest_px` does not matter. For cold spots give the negative picture.
+/// twice `largest_px` has no effect. For cold spots pass the negative picture.
 [[nodiscard]] std::vector<Blob> find_warm_blobs(const cv::Mat1d& picture, double smallest_px, double largest_px);
 
 }  // namespace todbench

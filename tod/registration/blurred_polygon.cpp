@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/registration/blurred_polygon.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "acquisition/core/multiversion.h"
+#include "acquisition/base/multiversion.h"
 
 namespace todbench {
 namespace {
@@ -72,10 +73,10 @@ inline double one_minus_exp(double z) {
   return (1 - power) - power * expm1_r;
 }
 
-/// Adds the part of one node of a side to every pixel, whose distance from the side's line and from its start along it
-/// are given. The flux through the side is that of the field whose
-/// divergence is the Gaussian round the pixel: F(v) = v / (2 pi |v|^2) (1 - exp(-|v|^2 / (2 blur^2))). Summed over all
-/// sides it is the blurred indicator (Gauss's theorem).
+/// Adds the contribution of one node of a side to every pixel, given the pixel's distance from the side's line and from
+/// its start along it. It is the flux through the side of the field whose divergence is the Gaussian round the pixel:
+/// F(v) = v / (2 pi |v|^2) (1 - exp(-|v|^2 / (2 blur^2))). The sum over all sides is the blurred indicator (Gauss's
+/// theorem).
 TODBENCH_MULTIVERSION
 void add_node(const double* distance, const double* start, std::size_t count, double node, double weight,
               double inverse, double* __restrict sums) {

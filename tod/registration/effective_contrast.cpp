@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // effective_contrast: inside minus surround of the large triangles.
 #include <algorithm>
 #include <cmath>
@@ -5,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "acquisition/core/median.h"
+#include "acquisition/base/median.h"
 #include "tod/plate/plate_outlines.h"
 #include "tod/registration/registration.h"
 
@@ -32,7 +33,7 @@ double depth(const Polygon& polygon, cv::Point2d at) {
   return inside >= 0 ? inside : -nearest;
 }
 
-/// Standard error of a median of white noise whose spread the median absolute deviation gives: sqrt(pi / 2) sigma /
+/// Standard error of a median of white noise with the spread of the median absolute deviation: sqrt(pi / 2) sigma /
 /// sqrt(n).
 double median_error(const std::vector<double>& values, double sigma) {
   return std::sqrt(std::numbers::pi / 2 / static_cast<double>(values.size())) * sigma;
@@ -103,7 +104,7 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
                                              LevelEstimate level) {
   const std::string doing = "measuring the contrast of plate \"" + mounted_plate.name + "\": ";
   if (picture.empty() || !cv::checkRange(picture)) {
-    return fail(ErrorCode::invalid_input, doing + "the picture is empty or has values that are not finite");
+    return fail(ErrorCode::invalid_input, doing + "the picture is empty or contains a value that is not finite");
   }
   std::vector<Polygon> outlines;
   for (const PlateTriangle& t : mounted_plate.triangles) {
@@ -119,7 +120,7 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
     if (size < min_size_px) continue;
     for (const cv::Point2d& p : outlines[k]) {
       if (p.x >= 0 && p.y >= 0 && p.x <= picture.cols - 1 && p.y <= picture.rows - 1) continue;
-      return fail(ErrorCode::calibration, doing + t.name + " leaves the picture");
+      return fail(ErrorCode::calibration, doing + t.name + " is not entirely inside the picture");
     }
     const double margin = std::min(inner_share * triangle_centroid_to_base * size, inner_most_px);
     const Samples s = samples(picture, outlines, k, margin);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/registration/homography.h"
 
 #include <Eigen/Dense>
@@ -26,7 +27,7 @@ struct Pair {
   Eigen::Vector2d to;
 };
 
-/// Elements of the homography row by row, the last one left out.
+/// Elements of the homography row by row, without the last one.
 using Elements = Eigen::Matrix<double, 8, 1>;
 
 Eigen::Matrix3d matrix_of(const Elements& h) {
@@ -35,7 +36,7 @@ Eigen::Matrix3d matrix_of(const Elements& h) {
   return out;
 }
 
-/// The linear solution: the vector that the equations to x H from = 0 leave the least of.
+/// The linear solution: the unit vector with the smallest residual of the equations to x H from = 0.
 std::optional<Elements> linear_solution(const std::vector<Pair>& pairs) {
   Eigen::MatrixXd equations(2 * static_cast<Eigen::Index>(pairs.size()), 9);
   Eigen::Index row = 0;
@@ -44,21 +45,21 @@ std::optional<Elements> linear_solution(const std::vector<Pair>& pairs) {
     equations.row(row++) << Eigen::RowVector3d::Zero(), pair.from.transpose(), -pair.to.y() * pair.from.transpose();
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(equations, Eigen::ComputeFullV);
-  // Of rank 8, or more than one homography fits.
+  // Rank 8, otherwise more than one homography fits.
   if (!(svd.singularValues()(7) > 1e-9 * svd.singularValues()(0))) return std::nullopt;
   const Eigen::VectorXd h = svd.matrixV().col(8);
   if (!(std::abs(h(8)) > 1e-9)) return std::nullopt;
   return h.head<8>() / h(8);
 }
 
-/// Of the residuals at `h`: sum of squares, gradient and the products of derivatives.
+/// Sum of squares of the residuals at `h`, gradient and products of derivatives.
 struct Normal {
   double sum = 0;
   Elements gradient = Elements::Zero();
   Eigen::Matrix<double, 8, 8> products = Eigen::Matrix<double, 8, 8>::Zero();
 };
 
-/// Nothing where a place is mapped to infinity or beyond.
+/// Empty if a place is mapped to infinity or beyond.
 std::optional<Normal> normal_at(const Elements& h, const std::vector<Pair>& pairs) {
   Normal out;
   const Eigen::Matrix3d matrix = matrix_of(h);

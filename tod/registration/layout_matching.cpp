@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/registration/layout_matching.h"
 
 #include <algorithm>
@@ -19,8 +20,8 @@ double scale_of(const cv::Matx33d& similarity) {
   return std::hypot(similarity(0, 0), similarity(1, 0));
 }
 
-/// How far from its predicted place a triangle may be found: 1 px, or 0.3 of its size, for blobs cut off centre and a
-/// plate seen aslant.
+/// Largest distance of a triangle from its predicted place: 1 px, or 0.3 of its size, for blobs cut off centre and an
+/// oblique view of the plate.
 double tolerance_px(double size_px) {
   return std::max(1.0, 0.3 * size_px);
 }
@@ -47,8 +48,8 @@ class Matcher {
   }
 
  private:
-  /// Pairs of triangles, the farthest apart first: they fix scale and rotation best. A bounded number, because each is
-  /// tried with every pair of blobs; 60 are all pairs of eleven triangles.
+  /// Pairs of triangles, the farthest apart first: they determine scale and rotation best. Limited in number, because
+  /// each is tried with every pair of blobs; 60 include all pairs of eleven triangles.
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> baselines() const {
     constexpr std::size_t most = 60;
     std::vector<std::pair<std::size_t, std::size_t>> all;
@@ -69,7 +70,7 @@ class Matcher {
   }
 
   void try_pair(std::size_t i, std::size_t j, std::size_t a, std::size_t b) {
-    // All cut-outs show the same black body; a small one is dimmed by blur to about 0.7.
+    // All cut-outs show the same black body; blur dims a small one to about 0.7.
     if (blobs_[a].strength > 2.5 * blobs_[b].strength || blobs_[b].strength > 2.5 * blobs_[a].strength) return;
     const cv::Point2d on_plate = triangles_[j].position_mm - triangles_[i].position_mm;
     const cv::Point2d in_picture = blobs_[b].centre - blobs_[a].centre;
@@ -86,7 +87,7 @@ class Matcher {
   void consider(const cv::Matx33d& hypothesis, double strength = 0) {
     LayoutMatch match = paired(hypothesis, strength);
     if (best_ && best_->better_than(match)) return;
-    // A second look with the similarity of all its pairs: the first one carries the errors of two blobs only.
+    // Repeated with the similarity of all its pairs: the first one carries the errors of two blobs only.
     for (int round = 0; round < 2 && match.pairs.size() >= 2; ++round) {
       std::vector<cv::Point2d> plate, pixels;
       for (const auto& [t, b] : match.pairs) {

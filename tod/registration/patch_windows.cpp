@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/registration/patch_windows.h"
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ bool inside(cv::Point2d p, const Polygon& convex) {
   return std::abs(turns) == static_cast<int>(convex.size());
 }
 
-/// Distance between two convex polygons that do not overlap; 0 when they do.
+/// Distance between two convex polygons; 0 if they overlap.
 double distance(const Polygon& a, const Polygon& b) {
   double smallest = 1e300;
   for (const auto& [p, q] : {std::pair(&a, &b), std::pair(&b, &a)}) {
@@ -47,13 +48,13 @@ PatchWindow patch_window(cv::Point2d centroid_px, int side) {
 }
 
 std::string sentence(const TouchingWindow& window) {
-  return fmt::format("{}: its window of {} px comes within {:.1f} px of {}; {:.1f} px are needed", window.triangle,
-                     window.side_px, window.gap_px, window.neighbour, window.least_gap_px);
+  return fmt::format("{}: its window of {} px comes within {:.1f} px of {}, at least {:.1f} px are needed",
+                     window.triangle, window.side_px, window.gap_px, window.neighbour, window.least_gap_px);
 }
 
 std::string sentence(const WindowOutOfPicture& window) {
   const cv::Rect& at = window.window;
-  return fmt::format("{}: its window, columns {} to {} and rows {} to {}, leaves the picture of {} x {}",
+  return fmt::format("{}: its window, columns {} to {} and rows {} to {}, is not inside the picture of {} x {} pixels",
                      window.triangle, at.x, at.x + at.width - 1, at.y, at.y + at.height - 1, window.picture.width,
                      window.picture.height);
 }

@@ -1,4 +1,5 @@
-// The windows that observers look through, on the plate and in the picture.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Windows of the observer, on the plate and in the picture.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -27,10 +28,10 @@ struct TouchingWindow {
   std::string triangle, neighbour;
   int side_px = 0;          ///< of the window
   double gap_px = 0;        ///< between the window with its search and the neighbour
-  double least_gap_px = 0;  ///< what blur needs
+  double least_gap_px = 0;  ///< required because of blur
 };
 
-/// A triangle whose window is not in the picture as a whole.
+/// A triangle whose window is not entirely in the picture.
 struct WindowOutOfPicture {
   std::string triangle;
   cv::Rect window;
@@ -42,12 +43,12 @@ struct WindowOutOfPicture {
 [[nodiscard]] std::string sentence(const WindowOutOfPicture& window);
 
 /// Triangles of a mounted plate whose window, widened by the observer's search and half a pixel, touches a neighbour
-/// (whose edge counts 1.5 px further out for blur) at `scale_px_per_mm`. `sides` and `search` belong to the triangles
-/// in order.
+/// (whose edge counts 1.5 px further out because of blur) at `scale_px_per_mm`. `sides` and `search` are in the order
+/// of the triangles.
 [[nodiscard]] std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, double scale_px_per_mm,
                                                            const std::vector<int>& sides, double search_px);
 
-/// Triangles whose window leaves a picture of this size, also when the plate moves by up to a pixel.
+/// Triangles whose window leaves a picture of this size, also if the plate moves by up to a pixel.
 [[nodiscard]] std::vector<WindowOutOfPicture> windows_out_of_picture(const TargetPlate& mounted_plate,
                                                                      const Registration& registration,
                                                                      const std::vector<int>& sides, cv::Size picture);

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/registration/plate_mapping.h"
 
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/plate/plate_outlines.h"
 #include "tod/registration/homography.h"
 #include "tod/registration/layout_matching.h"
@@ -52,9 +53,9 @@ double flatness(std::span<const cv::Point2d> plate_mm) {
   return middle + spread > 0 ? std::sqrt(std::max(0.0, middle - spread) / (middle + spread)) : 0;
 }
 
-/// Whether `larger` leaves less than chance explains of what `smaller` leaves.
+/// Whether `larger` explains more of the residuals of `smaller` than chance does.
 bool demanded(double smaller_sum, int smaller_parameters, double larger_sum, int larger_parameters, int equations) {
-  const double exact = 1e-12 * equations;  // residuals of a millionth of a pixel are arithmetic, not tilt
+  const double exact = 1e-12 * equations;  // residuals of a millionth of a pixel are rounding, not tilt
   if (smaller_sum <= exact) return false;
   const int more = larger_parameters - smaller_parameters;
   const int freedom = equations - larger_parameters;

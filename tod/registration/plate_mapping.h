@@ -1,4 +1,5 @@
-// The mapping from located centroids: as simple as they allow.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The simplest adequate mapping from located centroids.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -8,16 +9,16 @@
 
 namespace todbench {
 
-/// A mapping with the error it leaves.
+/// A mapping with its residual.
 struct FittedMapping {
   cv::Matx33d plate_to_pixel = cv::Matx33d::eye();
   PlateMapping mapping = PlateMapping::similarity;
   double residual_px = 0;  ///< rms distance
 };
 
-/// Similarity (4 parameters) by least squares; affine (6) or homography (8) where the sum of squares falls by more than
-/// chance explains (F test at 1 %), at least two triangles beyond the necessary ones are there, and they do not lie
-/// along one line. One place: translation at `default_scale`.
+/// Similarity (4 parameters) by least squares. Affine (6) or homography (8) if the sum of squares falls by more than
+/// chance explains (F test at 1 %), there are at least two triangles more than necessary, and they do not lie along one
+/// line. With one place: translation at `default_scale`.
 [[nodiscard]] FittedMapping fit_mapping(std::span<const cv::Point2d> plate_mm, std::span<const cv::Point2d> pixels,
                                         double default_scale);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/registration/registration.h"
 
 #include <algorithm>
@@ -15,13 +16,13 @@ namespace todbench {
 namespace {
 
 constexpr double first_blur_px = 0.45;     // optics, detector and sampling box of a focused camera
-constexpr double scale_range = 0.3;        // searched, so that a wrong scale is named
+constexpr double scale_range = 0.3;        // searched, so that a wrong scale can be reported
 constexpr double extra_rotation_deg = 10;  // searched beyond the limit, for the same reason
 constexpr int credible_pairs = 4;          // fewer blobs fit any layout by chance
-constexpr double agreement_needed = 0.75;  // of the large triangles must point as the plate says
-constexpr double reach_px = 2.5;           // of the fit from the place the blobs suggest
+constexpr double agreement_needed = 0.75;  // of the large triangles must point as the plate states
+constexpr double reach_px = 2.5;           // of the fit from the place that the blobs suggest
 
-/// Everything one attempt needs, fixed.
+/// Constant data of one attempt.
 struct Search {
   const cv::Mat1d& picture;
   const RegistrationOptions& options;
@@ -34,9 +35,9 @@ struct Attempt {
   double sign = 1;
   std::vector<PlateTriangle> large;
   LayoutMatch match;
-  std::vector<PlateTriangle> located;  ///< those that point as they should
+  std::vector<PlateTriangle> located;  ///< those with the stated orientation
   std::vector<cv::Point2d> pixels;     ///< their centroids
-  int judged = 0;                      ///< large triangles whose orientation could be seen
+  int judged = 0;                      ///< large triangles whose orientation could be determined
   double blur_px = first_blur_px;
   [[nodiscard]] int pairs() const { return static_cast<int>(match.pairs.size()); }
   [[nodiscard]] bool agrees() const {
@@ -51,7 +52,7 @@ std::vector<cv::Point2d> places(const std::vector<PlateTriangle>& triangles) {
   return result;
 }
 
-/// The blur at which the located triangles are explained best: golden section on its logarithm from 0.2 to 1.6 px.
+/// The blur that explains the located triangles best: golden section on its logarithm from 0.2 to 1.6 px.
 double best_blur(const cv::Mat1d& picture, const cv::Matx33d& mapping, const Attempt& at) {
   std::vector<Polygon> outlines;
   for (std::size_t i = 0; i < at.located.size(); ++i) {
@@ -82,15 +83,15 @@ double best_blur(const cv::Mat1d& picture, const cv::Matx33d& mapping, const Att
   return std::exp((low + high) / 2);
 }
 
-/// Where the triangle is if it points to `apex`, and how badly that explains the picture.
+/// Place of the triangle if it points to `apex`, and the quality of that explanation.
 std::optional<ShiftFit> locate(const cv::Mat1d& picture, const cv::Matx33d& mapping, const PlateTriangle& t, Apex apex,
                                double blur_px) {
   const Polygon outline = outline_in_picture(mapping, t, apex);
   return fit_shift(picture, std::span(&outline, 1), blur_px, {0, 0}, reach_px);
 }
 
-/// Which way each large triangle points (smallest unexplained variance of the four shapes, each at its best place);
-/// those that point as the plate says are located.
+/// Determines the orientation of each large triangle (smallest unexplained variance of the four shapes, each at its
+/// best place) and locates those that point as the plate states.
 void judge(const Search& search, Attempt& at) {
   for (const PlateTriangle& t : at.large) {
     std::optional<Apex> seen;
@@ -102,7 +103,7 @@ void judge(const Search& search, Attempt& at) {
       best = std::move(fit);
       seen = apex;
     }
-    // Half of the variance unexplained: there is something else than a triangle, or nothing.
+    // Half of the variance unexplained: the window shows another object, or none.
     if (!best || best->unexplained > 0.5) continue;
     ++at.judged;
     if (*seen != t.apex) continue;
@@ -111,7 +112,8 @@ void judge(const Search& search, Attempt& at) {
   }
 }
 
-/// The layout in one mounting against the warm and against the cold blobs; the better one, its orientations judged.
+/// Matches the layout in one mounting with the warm and with the cold blobs; returns the better one, with judged
+/// orientations.
 std::optional<Attempt> attempt(const Search& search, const TargetPlate& plate, Mounting relative) {
   const TargetPlate turned = mounted(plate, relative);
   const double scale = search.options.expected_scale_px_per_mm;
@@ -133,7 +135,7 @@ std::optional<Attempt> attempt(const Search& search, const TargetPlate& plate, M
   return best;
 }
 
-/// The fit without the triangle that disturbs it most, and which one that is.
+/// The index of the triangle that disturbs the fit most, and the fit without it.
 std::pair<std::size_t, FittedMapping> without_worst(const Attempt& at, double scale) {
   std::pair<std::size_t, FittedMapping> best;
   for (std::size_t i = 0; i < at.located.size(); ++i) {
@@ -147,8 +149,8 @@ std::pair<std::size_t, FittedMapping> without_worst(const Attempt& at, double sc
   return best;
 }
 
-/// Mapping, sharper places and blur in turn. Then triangles that a bad pixel or dirt pulls aside are left out while
-/// enough remain.
+/// Improves mapping, places and blur in turn. Then leaves out triangles displaced by a bad pixel or dirt while enough
+/// remain.
 FittedMapping refine(const Search& search, Attempt& at) {
   const double scale = search.options.expected_scale_px_per_mm;
   FittedMapping fitted = fit_mapping(places(at.located), at.pixels, scale);
@@ -160,8 +162,8 @@ FittedMapping refine(const Search& search, Attempt& at) {
     }
     fitted = fit_mapping(places(at.located), at.pixels, scale);
   }
-  // A third of the residual is left when one of eight is taken away: F(2, 10) = 40, for a given one by chance once in
-  // 60 000. Below 0.02 px it would not matter.
+  // A third of the residual remains when one of eight is removed: F(2, 10) = 40, for a given one by chance once in 60
+  // 000. Below 0.02 px it has no effect.
   constexpr double decisive = 3;
   constexpr double harmless_px = 0.02;
   while (static_cast<int>(at.located.size()) > search.options.min_triangles && fitted.residual_px > harmless_px) {
@@ -179,8 +181,8 @@ tl::unexpected<Error> contradiction(const TargetPlate& plate, const std::string&
   return fail(ErrorCode::calibration, "plate \"" + plate.name + "\" " + what);
 }
 
-/// The triangles that are not wholly inside the picture with the 2 px round them that a surround needs, as a sentence;
-/// empty when all are.
+/// Sentence about the triangles that are not entirely inside the picture with the 2 px round them that a surround
+/// needs; empty if all are.
 std::string outside_picture(const TargetPlate& plate, const cv::Matx33d& mapping, cv::Size picture) {
   constexpr double margin = 2;
   int count = 0;
@@ -195,9 +197,9 @@ std::string outside_picture(const TargetPlate& plate, const cv::Matx33d& mapping
     if (count++ == 0) first = t.name + " would be at (" + fixed(place.x, 1) + ", " + fixed(place.y, 1) + ")";
   }
   if (count == 0) return {};
-  return "is partly out of the picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) +
+  return "is partly outside the picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) +
          " pixels: " + std::to_string(count) + " of " + std::to_string(plate.triangles.size()) +
-         " triangles are not inside, " + first;
+         " triangles are not inside the picture, " + first;
 }
 
 Result<void> check_input(const cv::Mat1d& picture, const TargetPlate& plate, const RegistrationOptions& options) {
@@ -205,11 +207,11 @@ Result<void> check_input(const cv::Mat1d& picture, const TargetPlate& plate, con
     return fail(ErrorCode::invalid_input, "registering plate \"" + plate.name + "\": " + what);
   };
   if (!(options.expected_scale_px_per_mm > 0) || !std::isfinite(options.expected_scale_px_per_mm)) {
-    return wrong("the expected scale must be positive, it is " + fixed(options.expected_scale_px_per_mm, 4) + " px/mm");
+    return wrong("the expected scale must be positive, found " + fixed(options.expected_scale_px_per_mm, 4) + " px/mm");
   }
   if (options.min_triangles < 1) return wrong("min_triangles must be at least 1");
   if (picture.empty() || !cv::checkRange(picture))
-    return wrong("the picture is empty or has values that are not finite");
+    return wrong("the picture is empty or contains a value that is not finite");
   const auto large = triangles_from(plate, options.min_triangle_px / options.expected_scale_px_per_mm);
   if (static_cast<int>(large.size()) < options.min_triangles) {
     return wrong("only " + std::to_string(large.size()) + " of its " + std::to_string(plate.triangles.size()) +
@@ -220,7 +222,7 @@ Result<void> check_input(const cv::Mat1d& picture, const TargetPlate& plate, con
   return {};
 }
 
-/// Why the stated mounting was not found: another mounting, or too little that fits.
+/// Why the stated mounting was not found: another mounting, or too few matches.
 tl::unexpected<Error> explain(const Search& search, const TargetPlate& plate, const std::optional<Attempt>& stated) {
   for (const Mounting relative : all_mountings) {
     if (relative == Mounting::identity) continue;
@@ -230,21 +232,21 @@ tl::unexpected<Error> explain(const Search& search, const TargetPlate& plate, co
       return contradiction(plate, "seems to be mounted " + std::string(to_string(other->mounting)) + ", not " +
                                       std::string(to_string(plate.mounting)) + ": " +
                                       std::to_string(other->located.size()) + " of " + std::to_string(other->judged) +
-                                      " large triangles point that way, " +
-                                      std::to_string(stated ? stated->located.size() : 0) + " as stated");
+                                      " large triangles point as in that mounting, " +
+                                      std::to_string(stated ? stated->located.size() : 0) + " as in the stated one");
     }
   }
   const std::string spots = std::to_string(search.blobs[0].size()) + " warm and " +
-                            std::to_string(search.blobs[1].size()) + " cold spots were seen";
+                            std::to_string(search.blobs[1].size()) + " cold spots were found";
   const std::size_t wanted =
       triangles_from(plate, search.options.min_triangle_px / search.options.expected_scale_px_per_mm).size();
   if (!stated || stated->pairs() < credible_pairs) {
-    return contradiction(plate, "not found: " + std::to_string(stated ? stated->pairs() : 0) + " of its " +
+    return contradiction(plate, "was not found: " + std::to_string(stated ? stated->pairs() : 0) + " of its " +
                                     std::to_string(wanted) + " large triangles fit one arrangement, " + spots);
   }
-  return contradiction(plate, "does not look as its file says: its large triangles were found, but only " +
+  return contradiction(plate, "does not match its file: its large triangles were found, but only " +
                                   std::to_string(stated->located.size()) + " of " + std::to_string(stated->judged) +
-                                  " point as they should, in no mounting more; another plate?");
+                                  " point as stated, and no other mounting fits better: check which plate is inserted");
 }
 
 Registration describe(const FittedMapping& fitted, const Attempt& at, double expected_scale) {
@@ -327,19 +329,20 @@ Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate&
   const Registration result = describe(fitted, *found, scale);
   if (result.residual_px > options.max_residual_px) {
     return contradiction(mounted_plate, "does not fit its file: the located triangles are " +
-                                            fixed(result.residual_px, 3) + " px rms from where the file puts them, " +
+                                            fixed(result.residual_px, 3) +
+                                            " px rms from their places in the file, at most " +
                                             fixed(options.max_residual_px, 3) + " px are allowed");
   }
   if (std::abs(result.scale_deviation) > options.max_scale_deviation) {
-    return contradiction(mounted_plate, "has another scale than planned: the picture shows " +
+    return contradiction(mounted_plate, "does not have the planned scale: the picture shows " +
                                             fixed(result.scale_px_per_mm, 4) + " px/mm, distance and IFOV give " +
                                             fixed(scale, 4) + " px/mm, a deviation of " +
-                                            percent(result.scale_deviation) + " where " +
+                                            percent(result.scale_deviation) + "; at most " +
                                             percent(options.max_scale_deviation) + " are allowed");
   }
   if (std::abs(result.rotation_deg) > options.max_rotation_deg) {
-    return contradiction(mounted_plate, "is rotated by " + fixed(result.rotation_deg, 1) + " degrees where " +
-                                            fixed(options.max_rotation_deg, 1) + " are allowed");
+    return contradiction(mounted_plate, "is rotated by " + fixed(result.rotation_deg, 1) + " degrees; at most " +
+                                            fixed(options.max_rotation_deg, 1) + " degrees are allowed");
   }
   const std::string outside = outside_picture(mounted_plate, result.plate_to_pixel, picture.size());
   if (!outside.empty()) return contradiction(mounted_plate, outside);

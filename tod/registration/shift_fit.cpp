@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/registration/shift_fit.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "tod/registration/blurred_polygon.h"
@@ -33,7 +35,7 @@ Column column(const cv::Mat1d& whole) {
   return column(whole, cv::Rect({0, 0}, whole.size()));
 }
 
-/// Takes the best plane (an unknown background with its gradient) out of v. In a rectangle centred coordinates are
+/// Removes the best plane (an unknown background with its gradient) from v. In a rectangle centred coordinates are
 /// orthogonal.
 void remove_plane(Column& v, cv::Size size) {
   const double cx = (size.width - 1) / 2.0;
@@ -84,7 +86,7 @@ Polygon moved_by(const Polygon& polygon, cv::Point2d shift) {
 }
 
 /// The linearised comparison at one shift. Contrast and plane of each polygon are projected out (variable projection),
-/// so only the shift is left.
+/// so that only the shift remains.
 struct Linearised {
   cv::Matx22d normal = cv::Matx22d::zeros();
   cv::Vec2d gradient{0, 0};
@@ -136,7 +138,101 @@ ShiftFit summary(const Linearised& at, cv::Point2d shift) {
   return fit;
 }
 
+/// Data on the place of one polygon: the picture without contrast and background, and its derivatives by the shift.
+struct PlaceWindow {
+  cv::Rect window;
+  cv::Point2d from_centre;
+  Column data, dx, dy;
+
+  /// Derivatives of a pixel by shift and rotation, for a contrast of 1.
+  [[nodiscard]] cv::Vec3d derivative(std::size_t i) const {
+    return {dx[i], dy[i], from_centre.x * dy[i] - from_centre.y * dx[i]};
+  }
+};
+
+cv::Point2d middle(const Polygon& polygon) {
+  cv::Point2d sum(0, 0);
+  for (const cv::Point2d& p : polygon) sum += p;
+  return sum / static_cast<double>(polygon.size());
+}
+
+/// The largest variances of three assumptions on the noise: white, common to rows, common to columns.
+cv::Vec3d largest_variances(std::span<const PlaceWindow> windows, const cv::Matx33d& inverse, double amplitude,
+                            const cv::Vec3d& found, double white) {
+  std::map<int, cv::Vec3d> rows, columns;
+  for (const PlaceWindow& w : windows) {
+    for (std::size_t i = 0; i < w.data.size(); ++i) {
+      const cv::Vec3d derivative = amplitude * w.derivative(i);
+      const cv::Vec3d score = derivative * (w.data[i] - derivative.dot(found));
+      const int at = static_cast<int>(i);
+      rows[w.window.y + at / w.window.width] += score;
+      columns[w.window.x + at % w.window.width] += score;
+    }
+  }
+  cv::Vec3d largest = white * cv::Vec3d(inverse(0, 0), inverse(1, 1), inverse(2, 2));
+  for (const auto* clusters : {&rows, &columns}) {
+    cv::Matx33d middle_part = cv::Matx33d::zeros();
+    for (const auto& [index, score] : *clusters) middle_part += score * score.t();
+    const cv::Matx33d covariance = inverse * middle_part * inverse;
+    for (int k = 0; k < 3; ++k) largest[k] = std::max(largest[k], covariance(k, k));
+  }
+  return largest;
+}
+
 }  // namespace
+
+cv::Rect place_window(const Polygon& polygon) {
+  return window_round(polygon, {0, 0});
+}
+
+std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Polygon> polygons, double blur_px,
+                                  cv::Point2d centre) {
+  std::vector<PlaceWindow> windows;
+  double energy = 0, overlap = 0, residual = 0, samples = 0;
+  cv::Matx33d normal = cv::Matx33d::zeros();
+  cv::Vec3d gradient(0, 0, 0);
+  for (const Polygon& polygon : polygons) {
+    PlaceWindow w{
+        .window = place_window(polygon), .from_centre = middle(polygon) - centre, .data = {}, .dx = {}, .dy = {}};
+    if (!contains(picture, w.window)) return std::nullopt;
+    const BlurredPolygon model = blurred_polygon(polygon, blur_px, w.window);
+    Column shape = column(model.value);
+    w.data = column(picture, w.window), w.dx = column(model.d_shift_x), w.dy = column(model.d_shift_y);
+    for (Column* c : {&w.data, &shape, &w.dx, &w.dy}) remove_plane(*c, w.window.size());
+    const double own_energy = dot(shape, shape), own_overlap = dot(shape, w.data);
+    energy += own_energy, overlap += own_overlap;
+    // Each has its own contrast here, so that a slightly wrong blur does not look like a shift.
+    for (Column* c : {&w.dx, &w.dy}) subtract(*c, shape, dot(*c, shape) / own_energy);
+    subtract(w.data, shape, own_overlap / own_energy);
+    for (std::size_t i = 0; i < w.data.size(); ++i) {
+      const cv::Vec3d derivative = w.derivative(i);
+      normal += derivative * derivative.t();
+      gradient += derivative * w.data[i];
+    }
+    residual += dot(w.data, w.data);
+    samples += w.window.area();
+    windows.push_back(std::move(w));
+  }
+  if (windows.size() < 3) {
+    for (int k = 0; k < 3; ++k) normal(2, k) = normal(k, 2) = k == 2 ? 1 : 0;
+    gradient[2] = 0;
+  }
+  if (!(energy > 0) || !(cv::determinant(normal) > 0) || overlap == 0) return std::nullopt;
+  PlaceFit fit;
+  fit.amplitude = overlap / energy;
+  const cv::Vec3d found = normal.inv() * gradient / fit.amplitude;
+  residual = std::max(0.0, residual - fit.amplitude * found.dot(gradient));
+  // Four parameters of each polygon, shift and rotation.
+  const double variance = residual / std::max(1.0, samples - 4.0 * static_cast<double>(windows.size()) - 3);
+  const cv::Matx33d inverse = normal.inv() * (1 / (fit.amplitude * fit.amplitude));
+  const cv::Vec3d errors = largest_variances(windows, inverse, fit.amplitude, found, variance);
+  fit.amplitude_error = std::sqrt(variance / energy);
+  fit.shift = {found[0], found[1]};
+  fit.standard_error = {std::sqrt(errors[0]), std::sqrt(errors[1])};
+  if (windows.size() >= 3) fit.turn_rad = found[2], fit.turn_error_rad = std::sqrt(errors[2]);
+  fit.residual_rms = std::sqrt(variance);
+  return fit;
+}
 
 std::optional<ShiftFit> fit_shift(const cv::Mat1d& picture, std::span<const Polygon> polygons, double blur_px,
                                   cv::Point2d start, double reach_px) {
@@ -148,7 +244,7 @@ std::optional<ShiftFit> fit_shift(const cv::Mat1d& picture, std::span<const Poly
     data.push_back(column(picture, windows.back()));
   }
   constexpr int most_steps = 30;
-  constexpr double longest_step_px = 0.7;  // Gauss-Newton is trusted within about the width of an edge
+  constexpr double longest_step_px = 0.7;  // valid range of Gauss-Newton: about the width of an edge
   constexpr double enough_px = 1e-4;
   cv::Point2d shift = start;
   for (int step = 0; step < most_steps; ++step) {

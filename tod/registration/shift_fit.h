@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Least-squares location of blurred polygons in a picture: maximum likelihood for white noise, with unknown contrast
 // and background.
 #pragma once
@@ -11,9 +12,9 @@
 
 namespace todbench {
 
-/// How a picture differs from the polygons that were expected in it.
+/// Difference between a picture and the expected polygons.
 struct ShiftFit {
-  cv::Point2d shift;                     ///< of all polygons together, from where they were given, px
+  cv::Point2d shift;                     ///< of all polygons together, from their given places, px
   cv::Point2d standard_error;            ///< from the residuals, px
   std::vector<double> amplitudes;        ///< contrast of each polygon, in the unit of the picture
   std::vector<double> amplitude_errors;  ///< their standard errors
@@ -23,21 +24,38 @@ struct ShiftFit {
 };
 
 /// Fits one common shift of `polygons` (pixels), starting at `start`, with a free contrast and a free background plane
-/// for each. Each is compared in its bounding box and 3 px round it, so other things should be farther away than that.
-/// Nothing when a window leaves the picture, the shift goes farther than `reach_px` from `start`, or the picture is
-/// flat.
+/// for each. Each is compared in its bounding box and 3 px round it; other objects should be farther away. Empty if a
+/// window leaves the picture, the shift exceeds `reach_px` from `start`, or the picture is flat.
 ///
-/// Why not the centre of mass: it weighs noise with the distance from the centre (0.14 px for S = 5 px at contrast /
-/// noise = 13), the fit only along the edges (0.023 px).
+/// More precise than the centre of mass: that weighs noise with the distance from the centre (0.14 px for S = 5 px at
+/// contrast / noise = 13), the fit only along the edges (0.023 px).
 [[nodiscard]] std::optional<ShiftFit> fit_shift(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                 double blur_px, cv::Point2d start, double reach_px);
 
-/// Sum of squared residuals of the polygons as they stand, with contrast and background planes fitted: smallest at the
-/// right blur.
+/// First-order displacement of polygons of one contrast from their given places.
+struct PlaceFit {
+  double amplitude = 0, amplitude_error = 0;  ///< common contrast, in the unit of the picture
+  cv::Point2d shift, standard_error;          ///< of all of them, px
+  double turn_rad = 0, turn_error_rad = 0;    ///< about `centre`, clockwise in the picture; 0 for fewer than 3 polygons
+  double residual_rms = 0;                    ///< unit of the picture
+};
+
+/// One Gauss-Newton step from the given places. It is linear in the picture, so that it is unbiased and has a known
+/// error even if the noise hides every single polygon; a shift above half a pixel is underestimated. The standard error
+/// is the largest of three: pixels independent, rows in common, columns in common (sandwich estimate). Empty if a
+/// window leaves the picture or the polygons do not determine a shift.
+[[nodiscard]] std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Polygon> polygons,
+                                                double blur_px, cv::Point2d centre);
+
+/// The window of a polygon in fit_place().
+[[nodiscard]] cv::Rect place_window(const Polygon& polygon);
+
+/// Sum of squared residuals of the polygons at their places, with contrast and background planes fitted: smallest at
+/// the right blur.
 [[nodiscard]] double misfit(const cv::Mat1d& picture, std::span<const Polygon> polygons, double blur_px);
 
 /// Coarse search: the whole-pixel offset, up to `reach_px` in x and y, at which the polygons with one common contrast
-/// of either sign explain most of the picture. Nothing when no offset keeps all windows inside the picture.
+/// of either sign explain most of the picture. Empty if no offset keeps all windows inside the picture.
 [[nodiscard]] std::optional<cv::Point> coarse_offset(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                      double blur_px, int reach_px);
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/schedule/adaptive_schedule.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tod/psychometric/tod_curve.h"
 #include "tod/psychometric/twin_shape.h"
 
@@ -17,7 +18,7 @@ constexpr int least_presentations = 8;
 constexpr double contradiction = 0.001;  // p of the deviance
 constexpr double frame_s = 0.1;          // a presentation without any change: exposures after the change and the frame
 
-/// Thresholds are looked for from a third of the smallest size to three times the largest.
+/// Range of thresholds: from a third of the smallest size to three times the largest.
 PsiOptions prior_over(const std::vector<TargetPlate>& plates, double distance_m, PsychometricForm form) {
   double smallest = plates.front().triangles.front().size_mm, largest = smallest;
   for (const TargetPlate& plate : plates) {
@@ -34,7 +35,7 @@ PsiOptions prior_over(const std::vector<TargetPlate>& plates, double distance_m,
 }
 
 bool contradicted(const PsychometricFit& fit) {
-  // How graded answers scatter is their finding.
+  // The scatter of graded answers is a result of the fit, so that it cannot contradict it.
   if (fit.dispersion) return false;
   if (!fit.deviance || fit.degrees_of_freedom < 1 || *fit.deviance <= 0) return false;
   const distribution::ChiSquared law(fit.degrees_of_freedom);

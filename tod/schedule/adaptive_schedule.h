@@ -1,4 +1,5 @@
-// Presentations chosen by what the answers so far leave open.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Presentations chosen by the remaining uncertainty of the answers so far.
 #pragma once
 
 #include <map>
@@ -14,35 +15,35 @@
 namespace todbench {
 
 struct AdaptiveOptions {
-  /// Plates, mountings, contrasts, pixel and costs of changes. `phases` is the number of presentations per visit: one
-  /// contrast in one set-up, before something else is changed.
+  /// Plates, mountings, contrasts, pixel and costs of changes. `phases`: presentations per visit, which is one contrast
+  /// in one set-up before something else is changed.
   ConstantStimuliOptions stimuli;
-  std::vector<TargetPlate> plates;  ///< identity mounting; the sizes that each shows
+  std::vector<TargetPlate> plates;  ///< identity mounting; with the sizes that each shows
   double distance_m = 0;
-  FitOptions fit;  ///< with which the result will be fitted
-  /// Of the twin by contrast, where the result will be fitted with them; a contrast without one has a Weibull function.
+  FitOptions fit;  ///< of the final fit
+  /// Functions of the twin by contrast, if the final fit uses them; a contrast without one has a Weibull function.
   std::map<double, ProportionTable> functions{};
-  double half_width_percent = 10;  ///< wanted: half the width of the 95 % interval of ln S75, at every contrast
-  int max_presentations = 1000;    ///< hard cap, over all contrasts; at least one visit to each contrast is made
+  double half_width_percent = 10;  ///< target for half the width of the 95 % interval of ln S75, at every contrast
+  int max_presentations = 1000;    ///< hard limit, over all contrasts; at least one visit to each contrast is made
 };
 
-/// Where a contrast stands.
+/// Progress of a contrast.
 struct ContrastProgress {
   double delta_t_k = 0;
   double trials = 0;
   int presentations = 0;
-  std::optional<double> half_width_percent;  ///< nothing while a side of the interval is open
+  std::optional<double> half_width_percent;  ///< empty while a side of the interval is open
   bool settled = false;
 };
 
-/// All triangles of a picture are answered at once and for nothing; what costs time is to change the target. So the
-/// schedule chooses set-ups (plate and mounting): the one whose triangles are expected to take most entropy from the
-/// thresholds of the contrasts still open (PsiPlacement::expected_gain, summed over triangles) per second of changing
-/// the target, set-ups visited before counting less, so that places on the plate vary. A visit begins at the highest
-/// contrast, where the plate is registered, and goes on with the open ones. A contrast is settled when it has 40 trials
-/// of three sizes in eight presentations or more, a two-sided interval with half-width below the wanted one, and a fit
-/// that the data do not contradict (deviance, p > 0.001; graded answers have their own interval and no deviance); it
-/// ends in the middle of a visit. The run ends when all are settled or at the cap. The shifts of a visit are those of
+/// All triangles of a picture are answered at once without cost; changing the target costs time. The schedule therefore
+/// chooses set-ups (plate and mounting): the one whose triangles are expected to remove most entropy from the
+/// thresholds of the open contrasts (PsiPlacement::expected_gain, summed over triangles) per second of changing the
+/// target. Set-ups visited before count less, so that places on the plate vary. A visit begins at the highest contrast,
+/// where the plate is registered, and continues with the open ones. A contrast is settled, also in the middle of a
+/// visit, when it has at least 40 trials of three sizes in eight presentations, a two-sided interval with a half-width
+/// below the target, and a fit that the data do not contradict (deviance, p > 0.001; graded answers have their own
+/// interval and no deviance). The run ends when all are settled or at the limit. The shifts of a visit are those of
 /// even_phases(), over the mountings of its plate; those of every further visit of a set-up lie between them.
 class AdaptiveSchedule final : public TrialSchedule {
  public:
@@ -71,7 +72,7 @@ class AdaptiveSchedule final : public TrialSchedule {
   };
 
   void begin_visit();
-  /// Of the next presentation of a contrast in this set-up, as a fraction of a pixel.
+  /// Phase of the next presentation of a contrast in this set-up, as a fraction of a pixel.
   [[nodiscard]] cv::Point2d next_phase(const Contrast& contrast) const;
   [[nodiscard]] double value_per_second(const SetUp& set_up) const;
   void judge(Contrast& contrast) const;
@@ -81,7 +82,7 @@ class AdaptiveSchedule final : public TrialSchedule {
   std::vector<EvenPhases> phases_;  ///< of each plate
   std::vector<Contrast> contrasts_;
   std::size_t current_set_up_ = 0;
-  std::vector<std::size_t> to_visit_;  ///< contrasts of this visit still to come, the present one first
+  std::vector<std::size_t> to_visit_;  ///< remaining contrasts of this visit, the present one first
   int shown_here_ = 0;                 ///< of the present contrast in this visit
   bool registered_ = false;            ///< the visit has shown its first contrast
   int shown_ = 0;

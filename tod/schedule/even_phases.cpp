@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/schedule/even_phases.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 namespace todbench {
 namespace {
 
-constexpr std::size_t most_together = 2048;  // shifts put in order, triangles whose phases are chosen together
+constexpr std::size_t most_together = 2048;  // shifts in an ordered lattice; triangles with joint phases
 
 double fraction(double x) {
   const double part = x - std::floor(x);
@@ -27,8 +28,8 @@ struct Harmonic {
   [[nodiscard]] double squared() const { return static_cast<double>(x * x + y * y); }
 };
 
-/// A lattice that contains the whole numbers, by its dual: whole multiples of (a, 0) and (b, d), 0 <= b < a. It has
-/// a d points in the unit square.
+/// A lattice that contains the whole numbers, by its dual: whole multiples of (a, 0) and (b, d), 0 <= b < a. It has a d
+/// points in the unit square.
 struct PhaseLattice {
   long a = 1, b = 0, d = 1;
 
@@ -62,7 +63,7 @@ struct PhaseLattice {
   }
 };
 
-/// Those whose shortest dual vector is longest.
+/// Lattices with the longest shortest dual vector.
 std::vector<PhaseLattice> best_lattices(int count) {
   constexpr std::size_t most = 6;
   std::vector<PhaseLattice> best;
@@ -111,8 +112,8 @@ std::vector<Harmonic> harmonics_of(const PhaseLattice& lattice) {
   return all;
 }
 
-/// The sum of squared discrepancies as a function of where the groups lie. A set of triangles with sums a_g(h) of waves
-/// over group g has the squared discrepancy sum_h w(h) |sum_g a_g(h) wave(h, c_g)|^2 / n^2.
+/// The sum of squared discrepancies as a function of the places of the groups. A set of triangles with sums a_g(h) of
+/// waves over group g has the squared discrepancy sum_h w(h) |sum_g a_g(h) wave(h, c_g)|^2 / n^2.
 class GroupPlacement {
  public:
   GroupPlacement(std::span<const PhasedTriangle> triangles, std::size_t groups, const PhaseLattice& lattice)
@@ -139,7 +140,7 @@ class GroupPlacement {
     }
   }
 
-  /// Moves one group after the other, the first one stays; the sum that is reached.
+  /// Moves one group after the other except the first; returns the final sum.
   double descend() {
     constexpr int sweeps = 12;
     for (const std::vector<Step>* steps : {&coarse_, &fine_}) {
@@ -174,7 +175,7 @@ class GroupPlacement {
     return all;
   }
 
-  /// Over the groups but one.
+  /// Sum over all groups except one.
   [[nodiscard]] std::complex<double> total(const Set& set, std::size_t k, std::size_t without) const {
     std::complex<double> sum = 0;
     for (std::size_t g = 0; g < places_.size(); ++g) {
@@ -196,7 +197,7 @@ class GroupPlacement {
     return all;
   }
 
-  /// Moves a group by the best of the steps, or not; whether it moved.
+  /// Moves a group by the best of the steps, if any; returns whether it moved.
   bool place(std::size_t group, const std::vector<Step>& steps) {
     Waves slope(harmonics_.size());
     for (std::size_t k = 0; k < harmonics_.size(); ++k) {
@@ -204,7 +205,7 @@ class GroupPlacement {
         slope[k] += set.weight * std::conj(total(set, k, group)) * set.sums[group][k] * waves_[group][k];
       slope[k] *= weight(k);
     }
-    // What of the sum depends on the place of the group, halved.
+    // Part of the sum that depends on the place of the group, halved.
     double least = 0;
     for (const auto& s : slope) least += s.real();
     const Step* best = nullptr;
@@ -258,7 +259,7 @@ EvenPhases even_phases(std::span<const PhasedTriangle> triangles, std::size_t gr
   for (const PhaseLattice& candidate : best_lattices(count)) {
     GroupPlacement placement(shown, groups, candidate);
     const double found = placement.descend();
-    // Equal ones, of two ways to compute: the first.
+    // Of equal ones within rounding: the first.
     if (!(places.empty() || found < least * (1 - 1e-9))) continue;
     least = found;
     lattice = candidate;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sub-pixel phases of all triangles of a plate, chosen together.
 #pragma once
 
@@ -10,12 +11,12 @@
 
 namespace todbench {
 
-/// A triangle as a group of presentations shows it before any shift. A group is what has shifts in common: a mounting.
+/// A triangle of a group of presentations before any shift. A group (a mounting) shares its shifts.
 struct PhasedTriangle {
   std::size_t group = 0;
-  double size = 0;          ///< triangles of equal size are to see their phases evenly together; any unit
-  Apex apex = Apex::up;     ///< and so are those of them that point alike
-  cv::Point2d position_px;  ///< of the centroid; one that all triangles are displaced by does not matter
+  double size = 0;          ///< any unit; triangles of equal size get even phases together
+  Apex apex = Apex::up;     ///< so do those of equal size and apex
+  cv::Point2d position_px;  ///< of the centroid; a common displacement of all triangles has no effect
 };
 
 /// Triangles of a plate in one mounting, for a pixel of `pixel_mm` on the plate.
@@ -25,20 +26,20 @@ struct PhasedTriangle {
 /// Shifts of every group, in pixels, in [0, 1)^2.
 struct EvenPhases {
   std::vector<std::vector<cv::Point2d>> shifts;  ///< per group
-  cv::Point2d cell[2];  ///< sides of the cell of the lattice: by it and its multiples a group may be shifted unnoticed
+  cv::Point2d cell[2];  ///< sides of the lattice cell: a shift of a group by multiples of it changes nothing
 };
 
-/// `count` shifts for each of `groups` > 0. Those of a group are a lattice, of all with that many points the one whose
-/// shortest dual vector is longest: the mean of a function of the phase over it has no error from harmonics below
-/// that, for every triangle by itself. The groups are displaced against each other so that the phases of each size, and
-/// of each size and orientation, are as even as can be: least sum of squared wrap-around discrepancies (its Fourier
-/// series, harmonics of the dual lattice), by descent over one group after the other. Deterministic; the beginning of
-/// a group is even too, up to 2048 shifts. No triangles, or more than 2048, whose phases are even by their number:
-/// displaced as one triangle would be.
+/// `count` shifts for each of `groups` > 0. Those of a group are a lattice: of all with that many points, the one whose
+/// shortest dual vector is longest. The mean of a function of the phase over it has no error from harmonics below that,
+/// for every triangle. The groups are displaced relative to each other so that the phases of each size, and of each
+/// size and orientation, are as even as possible: least sum of squared wrap-around discrepancies (its Fourier series,
+/// harmonics of the dual lattice), by descent over one group after the other. Deterministic; the beginning of a group
+/// is even too, up to 2048 shifts. Without triangles, or with more than 2048, whose phases are even by their number,
+/// the groups are displaced as for one triangle.
 [[nodiscard]] EvenPhases even_phases(std::span<const PhasedTriangle> triangles, std::size_t groups, int count);
 
-/// Wrap-around L2 discrepancy of points on the unit torus (Hickernell 1998); integer parts do not count. That of n
-/// independent points is 0.687 / sqrt(n) in the root mean square. Precondition: not empty.
+/// Wrap-around L2 discrepancy of points on the unit torus (Hickernell 1998); integer parts do not count. The root mean
+/// square for n independent points is 0.687 / sqrt(n). Precondition: not empty.
 [[nodiscard]] double wraparound_discrepancy(std::span<const cv::Point2d> points);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/schedule/psi_placement.h"
 
 #include <algorithm>
@@ -52,7 +53,7 @@ void PsiPlacement::lay_grid(double centre, double step) {
     }
   }
   for (const Answers& answers : answers_) add(answers);
-  // Candidates: from the lowest threshold of the grid to 3.7 times the highest, as far as anything can be told there.
+  // Candidates: from the lowest threshold of the grid to 3.7 times the highest, the range of informative sizes.
   first_candidate_ = options_.size_step * std::ceil((ts_.front() - 0.5) / options_.size_step);
   const double last = ts_.back() + reach_candidates;
   table_.clear();
@@ -124,7 +125,7 @@ void PsiPlacement::renew_where_needed() {
     const bool leans = (below > edge_share && ts_.front() > low) || (above > edge_share && ts_.back() < high);
     if (leans) {
       const double widest = (high - low) / static_cast<double>(t_nodes - 1);
-      // A grid that already has the centre it would move to has to widen.
+      // A grid that is already centred has to widen instead of moving.
       const bool centred = std::abs(mean_ - ts_[t_nodes / 2]) < step_;
       lay_grid(mean_, centred ? std::min(2 * step_, widest) : step_);
     } else if (sd_ < 2 * step_) {
@@ -152,7 +153,7 @@ void PsiPlacement::observe(double size, double correct, double total) {
   renew_where_needed();
 }
 
-/// Entropy of the marginal now, less what is expected to be left of it.
+/// Entropy of the marginal now minus its expected value after an answer.
 double PsiPlacement::gain(const double* right) const {
   std::array<double, t_nodes> joint{};
   for (std::size_t j = 0; j < q_nodes; ++j) {
@@ -163,7 +164,7 @@ double PsiPlacement::gain(const double* right) const {
   double p_right = 0, left = 0;
   for (std::size_t i = 0; i < t_nodes; ++i) {
     p_right += joint[i];
-    // Nodes of no weight: below 1e-12 an entropy term is below 3e-11.
+    // Nodes without weight: below 1e-12 an entropy term is below 3e-11.
     if (marginal_[i] > 1e-12) left -= x_ln_x(joint[i]) + x_ln_x(std::max(0.0, marginal_[i] - joint[i]));
   }
   return entropy_ - (left + x_ln_x(p_right) + x_ln_x(1 - p_right));
@@ -180,9 +181,9 @@ double PsiPlacement::least_entropy_size() const {
   const auto at = [&](std::size_t c) { return first_candidate_ + options_.size_step * static_cast<double>(c); };
   for (std::size_t c = 0; c < table_.size() / block; ++c) {
     const double x = at(c);
-    // Beyond these an answer tells next to nothing of the threshold.
+    // Outside this range an answer carries almost no information on the threshold.
     if (x < mean_ - 3 * sd_ - 0.7 || x > mean_ + 3 * sd_ + 0.9) continue;
-    // Ties, as between equally useless sizes, are broken at random.
+    // Ties, for example between equally uninformative sizes, are broken at random.
     const double value = gain(&table_[c * block]) * (1 + 1e-9 * stream_.sub(asked_).uniform(c + 1));
     if (value > best) {
       best = value;

@@ -1,10 +1,11 @@
-// Where to ask next: the Psi method for one psychometric function.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Adaptive placement of sizes: the Psi method for one psychometric function.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tod/psychometric/psychometric_fit.h"
 
 namespace todbench {
@@ -13,35 +14,35 @@ struct PsiOptions {
   PsychometricForm form = PsychometricForm::size;
   double first_size = 1;  ///< prior of the threshold: uniform in its logarithm between these two, > 0
   double last_size = 10;
-  double size_step = 0.05;          ///< of the sizes that can be asked for, in ln
-  double selection_lapse = 0.01;    ///< in the selection model only, so that one slip cannot rule out the truth
-  double lapse_probe_share = 0.05;  ///< asked at 2.5 thresholds, where only a lapse is wrong
-  double slope_probe_share = 0.1;   ///< asked where 45 % are right, which tells the slope
+  double size_step = 0.05;          ///< of the candidate sizes, in ln
+  double selection_lapse = 0.01;    ///< in the selection model only, so that one slip cannot exclude the truth
+  double lapse_probe_share = 0.05;  ///< share of trials at 2.5 thresholds, where only a lapse gives a wrong answer
+  double slope_probe_share = 0.1;   ///< share of trials at 45 % correct, which determine the slope
 };
 
 /// Chooses sizes one after the other: the size whose answer is expected to leave the least entropy in the marginal of
-/// the threshold (Kontsevich and Tyler 1999; the slope is a nuisance, Prins 2013). The posterior lives on a grid of
-/// ln threshold and ln slope in logarithms; when its spread falls below two grid steps the grid is centred anew and
-/// halved, when it leans on an edge the grid moves, and the posterior is computed afresh from all answers. For placing
-/// trials only: thresholds come from fit_psychometric(), and the interval of answers placed one by one is its
-/// posterior's; the profile interval is up to 2.6 points short of 95 % for them (docs/uncertainty.md). One thread at a
-/// time.
+/// the threshold (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013). The posterior is stored on
+/// a grid of ln threshold and ln slope in logarithms. If its spread falls below two grid steps, the grid is centred
+/// anew and halved; if it leans on an edge, the grid moves; the posterior is then recomputed from all answers. For
+/// placing trials only: thresholds come from fit_psychometric(). For answers placed one by one use its posterior
+/// interval: the coverage of its profile interval is up to 2.6 points below 95 % (docs/method/uncertainty.md). One
+/// thread at a time.
 class PsiPlacement {
  public:
   /// `stream` decides on probes and on ties.
   PsiPlacement(const PsiOptions& options, RandomStream stream);
 
-  /// The size to ask at. Repeats itself until observe() is called.
+  /// The next size. Unchanged until observe() is called.
   [[nodiscard]] double next() const;
-  /// Answers at a size > 0; counts as in Level. Any size, also one that next() did not name.
+  /// Adds answers at a size > 0; counts as in Level. Any size is allowed.
   void observe(double size, double correct, double total);
 
-  /// Of the marginal posterior of ln threshold.
+  /// Mean and standard deviation of the marginal posterior of ln threshold.
   [[nodiscard]] double mean_ln_threshold() const { return mean_; }
   [[nodiscard]] double sd_ln_threshold() const { return sd_; }
   /// Mean of ln slope.
   [[nodiscard]] double mean_ln_slope() const { return mean_q_; }
-  /// Entropy of the marginal of ln threshold in nats that one answer at `size` is expected to take away, >= 0.
+  /// Expected reduction by one answer at `size` of the entropy of the marginal of ln threshold, in nats, >= 0.
   [[nodiscard]] double expected_gain(double size) const;
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/schedule/schedule.h"
 
 #include <algorithm>
@@ -12,12 +13,12 @@ namespace todbench {
 namespace {
 
 /// Positive root of x^3 = x + 1: its powers are the pair of numbers that is hardest to approximate by fractions with
-/// one denominator, hence the evenness of the sequence at every length.
+/// one denominator, which makes the sequence even at every length.
 constexpr double plastic_number = 1.3247179572447460;
 
 enum Dimension : std::size_t { plate_dimension, mounting_dimension, contrast_dimension, shift_dimension, dimensions };
 
-/// The four loops of constant_stimuli, the outermost first.
+/// The four loops of constant_stimuli(), the outermost first.
 class Nesting {
  public:
   Nesting(const ConstantStimuliOptions& options, const RandomStream& stream)
@@ -51,7 +52,7 @@ class Nesting {
     return std::ranges::find(order_, dimension) < std::ranges::find(order_, shift_dimension);
   }
 
-  /// The triangles that share shifts with those of plate `index_`: of every plate where that loop is inside.
+  /// The triangles that share shifts with those of plate `index_`: of every plate if that loop is inside.
   [[nodiscard]] std::vector<PhasedTriangle> triangles_together() const {
     std::vector<PhasedTriangle> all;
     for (std::size_t p = 0; p < options_.plates.size(); ++p) {
@@ -67,9 +68,9 @@ class Nesting {
     return all;
   }
 
-  /// The shifts of this turn of the loops outside. Mountings have one random start in common, so that their phases fit
-  /// together; plates and contrasts have their own. Loops inside the shift share shifts, because there a new one would
-  /// cost more than what they change.
+  /// The shifts of this turn of the outer loops. Mountings have one random start in common, so that their phases
+  /// interleave; plates and contrasts have their own. Loops inside the shift share shifts, because a new one would cost
+  /// more there than their own change.
   [[nodiscard]] std::vector<cv::Point2d> shifts() {
     const std::size_t plate = outside(plate_dimension) ? index_[plate_dimension] : 0;
     const std::size_t group = outside(mounting_dimension) ? index_[mounting_dimension] : 0;

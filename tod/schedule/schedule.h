@@ -1,4 +1,5 @@
-// What to show next.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Choice of the next presentation.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tod/plate/target_plate.h"
 #include "tod/presentation/target.h"
 #include "tod/presentation/trial.h"
@@ -18,19 +19,19 @@ namespace todbench {
 class TrialSchedule {
  public:
   virtual ~TrialSchedule() = default;
-  /// The next state, or nothing when enough has been shown.
+  /// The next state; empty when enough has been shown.
   [[nodiscard]] virtual std::optional<TargetState> next() = 0;
-  /// Presentations in all, for progress and time left; the most there can be where answers decide.
+  /// Total number of presentations, for progress and remaining time; the largest possible number if answers decide.
   [[nodiscard]] virtual std::size_t planned() const = 0;
-  /// The answers to the state that next() gave last. Schedules that do not adapt ignore them.
+  /// Takes the answers to the last state of next(). Schedules that do not adapt ignore them.
   virtual void observe(std::span<const Trial> trials);
 };
 
 /// The method of constant stimuli on plates: every plate in every mounting at every contrast in every phase.
 struct ConstantStimuliOptions {
   std::vector<std::string> plates;
-  /// Of the plates, by name: phases of their triangles are chosen together. A plate that is not here counts as one
-  /// triangle in its middle.
+  /// Drawings of the plates, by name, from which the phases of their triangles are chosen together. A plate without one
+  /// counts as one triangle in its middle.
   std::vector<TargetPlate> drawings{};
   std::vector<Mounting> mountings;
   std::vector<double> delta_t_k;
@@ -44,13 +45,13 @@ struct ConstantStimuliOptions {
 [[nodiscard]] std::vector<cv::Point2d> plastic_points(int count);
 
 /// `count` sub-pixel shifts in [0, 1)^2, spread evenly for every count (additive recurrence with the plastic number,
-/// Roberts 2018), started at a random place of `stream`.
+/// Roberts 2018), from a random start drawn from `stream`.
 [[nodiscard]] std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream);
 
-/// Presentations nested so that what takes longest to change changes least often; within a contrast group the highest
-/// contrast comes first, because the plate is registered there. Ties keep the order plate, mounting, contrast, shift.
-/// Shifts are those of even_phases(), over mountings where a shift is cheaper than a mounting, from a place of the
-/// pixel that is random for every plate and contrast.
+/// Presentations nested so that the slowest change is made least often. Within a contrast group the highest contrast
+/// comes first, because the plate is registered there. Ties keep the order plate, mounting, contrast, shift. The shifts
+/// come from even_phases(). They are spread over the mountings together if a shift is cheaper than a mounting. Each
+/// plate and contrast has a random start within the pixel.
 [[nodiscard]] std::vector<TargetState> constant_stimuli(const ConstantStimuliOptions& options,
                                                         const RandomStream& stream);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/align_presenter.h"
 
 #include <cmath>
@@ -32,17 +33,17 @@ std::vector<std::pair<QString, QString>> AlignPresenter::figures() const {
   const Registration& r = *alignment_->registration;
   const auto number = [](double value, int decimals, const char* unit) {
     const double smallest = std::pow(10.0, -decimals);
-    // Nothing is shown as minus nothing.
+    // Avoids a displayed minus zero.
     const double shown = std::abs(value) < smallest / 2 ? 0 : value;
     return QString("%1 %2").arg(shown, 0, 'f', decimals).arg(QString::fromUtf8(unit));
   };
   return {{"Residual", number(r.residual_px, 3, "px rms")},
           {"Scale", number(r.scale_px_per_mm, 4, "px/mm")},
-          {"Scale against plan", number(100 * r.scale_deviation, 2, "%")},
+          {"Scale deviation", number(100 * r.scale_deviation, 2, "%")},
           {"Rotation", number(r.rotation_deg, 2, "°")},
           {"Mapping", QString::fromUtf8(to_string(r.mapping).data(), static_cast<int>(to_string(r.mapping).size()))},
           {"Edge blur", number(r.blur_px, 2, "px")},
-          {"Edge blur expected", number(alignment_->expected_blur_px, 2, "px")},
+          {"Expected edge blur", number(alignment_->expected_blur_px, 2, "px")},
           {"Drift since start", number(alignment_->drift_px, 3, "px")},
           {"Temporal noise", number(1000 * alignment_->temporal_noise_k, 1, "mK")},
           {"Triangles used", QString::number(r.triangles_used)}};

@@ -1,4 +1,5 @@
-// Setting up the plate before the camera, look by look.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Alignment of the plate in front of the camera, look by look.
 #pragma once
 
 #include <QObject>
@@ -11,7 +12,7 @@
 
 namespace todbench {
 
-/// In the window's thread.
+/// Used in the window's thread.
 class AlignPresenter final : public QObject {
   Q_OBJECT
 
@@ -21,11 +22,11 @@ class AlignPresenter final : public QObject {
   void stop() { bench_.stop(); }
 
   [[nodiscard]] const std::optional<Alignment>& alignment() const { return alignment_; }
-  /// How often the plate was looked at since start().
+  /// Number of looks since start().
   [[nodiscard]] int looks() const { return looks_; }
-  /// Name, value with unit.
+  /// Name and value with unit.
   [[nodiscard]] std::vector<std::pair<QString, QString>> figures() const;
-  /// What to mend, one sentence each; empty: ready to measure.
+  /// Corrections that the user has to make, one sentence each; empty: ready to measure.
   [[nodiscard]] QStringList hints() const;
 
  signals:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/chain_presenter.h"
 
 #include <algorithm>
@@ -17,34 +18,34 @@
 namespace todbench {
 namespace {
 
-constexpr int fine = 16;                 ///< points per pitch of what is continuous
+constexpr int fine = 16;                 ///< points per pitch of continuous stages
 constexpr int enlarged = 8;              ///< points per sample of display and observer
-const cv::Point2d centre_px{0.3, -0.2};  ///< of the triangle, from the middle of the picture: no special phase
+const cv::Point2d centre_px{0.3, -0.2};  ///< of the triangle, from the centre of the picture: not a special phase
 
-/// The square that is shown, and what is in it.
+/// The displayed square and its content.
 struct Setting {
   SensorSpec sensor;
   TemplateObserverSpec observer;
   SensorPlan effects;
   PlateScene scene;
-  Polygon shape_pitch;  ///< round the origin
-  cv::Point2d centre;   ///< of the triangle, in pitches from the middle of the square
+  Polygon shape_pitch;  ///< around the origin
+  cv::Point2d centre;   ///< of the triangle, in pitches from the centre of the square
   int side_pitch = 0;
 };
 
-Result<Setting> setting_of(const ChainOptions& options) {
+Result<Setting> setting_of(const ChainSettings& options) {
   Setting s;
   auto sensor = load_sensor(options.sensor);
   if (!sensor) return tl::unexpected(sensor.error());
   auto observer = load_observer(options.observer);
   if (!observer) return tl::unexpected(observer.error());
-  if (!(options.size_pitch > 0)) return fail(ErrorCode::invalid_input, "the size must be positive");
+  if (!(options.size_pitch > 0)) return fail(ErrorCode::invalid_input, "the size of the triangle must be above 0");
   s.sensor = *sensor;
   s.observer = *observer;
   s.effects = full_plan(s.sensor, options.skip, {});
   s.side_pitch = 2 * static_cast<int>(std::ceil(options.size_pitch + 3));
   s.sensor.width = s.sensor.height = s.side_pitch;
-  s.sensor.distortion_percent = s.sensor.distortion_r4_percent = 0;  // what is shown is the middle of the picture
+  s.sensor.distortion_percent = s.sensor.distortion_r4_percent = 0;  // the centre of the picture is shown
   s.scene.distance_m = 1;
   s.scene.delta_t_k = options.delta_t_k;
   s.scene.background_k = s.sensor.scene_temperature_k;
@@ -58,13 +59,13 @@ Result<Setting> setting_of(const ChainOptions& options) {
   return s;
 }
 
-/// Place of the first fine point, in pitches from the triangle's centroid.
+/// Position of the first fine point, in pitches from the triangle's centroid.
 cv::Point2d first_point(const Setting& s) {
   const double corner = -s.side_pitch / 2.0 + 0.5 / fine;
   return cv::Point2d(corner, corner) - s.centre;
 }
 
-/// The sharp shape: the share of each point's square that it covers, by 8 x 8 places.
+/// The sharp shape: the share of each point's square that it covers, sampled at 8 x 8 positions.
 cv::Mat1d sharp(const Setting& s) {
   constexpr int places = 8;
   const int side = s.side_pitch * fine;
@@ -104,21 +105,21 @@ cv::Mat1d continuous(const Setting& s, const SensorPlan& plan) {
   return chain.image(s.shape_pitch).sample(first_point(s), 1.0 / fine, {side, side});
 }
 
-cv::Mat1d modelled(const Setting& s, const SensorPlan& plan, const ChainOptions& options) {
+cv::Mat1d modelled(const Setting& s, const SensorPlan& plan, const ChainSettings& options) {
   const SensorModel model(s.sensor, plan, Accuracy::normal(), options.seed);
   cv::Mat1d out;
   model.picture(s.scene, options.index).convertTo(out, CV_64F);
   return out;
 }
 
-/// What is on a display that interpolates between samples.
+/// The picture on a display that interpolates between samples.
 cv::Mat1d displayed(const cv::Mat1d& samples) {
   cv::Mat1d out;
   cv::resize(samples, out, {}, enlarged, enlarged, cv::INTER_CUBIC);
   return out;
 }
 
-/// Every sample spread by the observer's Gaussian: correlating an ideal shape with this is what the observer does.
+/// Convolves the samples with the observer's Gaussian: the observer correlates this with an ideal shape.
 cv::Mat1d filtered(const cv::Mat1d& samples, double sigma) {
   if (!(sigma > 0)) return displayed(samples);
   const int side = samples.rows * enlarged;
@@ -132,11 +133,11 @@ cv::Mat1d filtered(const cv::Mat1d& samples, double sigma) {
   return spread * samples * spread.t();
 }
 
-/// The stages of a scene in the order of the views; counts are those of the display, a pixel a sample.
-Result<std::vector<StagePicture>> scene_chain(const ChainOptions& options) {
+/// Stages of a scene in the order of the views; counts are those of the display, one pixel per sample.
+Result<std::vector<StagePicture>> scene_chain(const ChainSettings& options) {
   ScenePicturesTask task;
   auto scene = load_scene(options.scene, [](const std::string& path) -> Result<StoredPicture> {
-    return fail(ErrorCode::invalid_input, path + ": a scene of a picture is shown by 'todbench picture'");
+    return fail(ErrorCode::invalid_input, path + ": this page shows no scenes with pictures; use 'todbench picture'");
   });
   if (!scene) return tl::unexpected(scene.error());
   auto sensor = load_sensor(options.sensor);
@@ -208,7 +209,7 @@ QString name_of(Stage stage) {
   return {};
 }
 
-Result<std::vector<StagePicture>> chain_pictures(const ChainOptions& options) {
+Result<std::vector<StagePicture>> chain_pictures(const ChainSettings& options) {
   if (!options.scene.empty()) return scene_chain(options);
   auto setting = setting_of(options);
   if (!setting) return tl::unexpected(setting.error());
@@ -227,12 +228,13 @@ Result<std::vector<StagePicture>> chain_pictures(const ChainOptions& options) {
   out.push_back({Stage::optics, k * continuous(s, without(plan, {Effect::detector})), fine,
                  onoff(plan, Effect::diffraction, QString("f/%1").arg(s.sensor.f_number)) + ", aberration " +
                      onoff(plan, Effect::aberration, QString("σ %1 pitch").arg(s.sensor.aberration_sigma_pitch))});
-  out.push_back(
-      {Stage::detector, k * continuous(s, plan), fine,
-       onoff(plan, Effect::detector, QString("%1 of %2 µm").arg(s.sensor.detector_um).arg(s.sensor.pitch_um))});
+  out.push_back({Stage::detector, k * continuous(s, plan), fine,
+                 onoff(plan, Effect::detector,
+                       QString("width %1 µm, pitch %2 µm").arg(s.sensor.detector_um).arg(s.sensor.pitch_um))});
   out.push_back({Stage::samples, samples, per_pitch, QString("%1 per pitch").arg(per_pitch)});
   out.push_back({Stage::noise, noisy, per_pitch,
-                 onoff(plan, Effect::temporal_noise, QString("NETD %1 mK").arg(1000 * s.sensor.netd_k)) + ", fixed " +
+                 onoff(plan, Effect::temporal_noise, QString("NETD %1 mK").arg(1000 * s.sensor.netd_k)) +
+                     ", fixed pattern " +
                      onoff(plan, Effect::fixed_pattern, QString("%1 mK").arg(1000 * s.sensor.fixed_pattern_k))});
   out.push_back({Stage::quantised, quantised, per_pitch,
                  onoff(plan, Effect::quantisation, QString("%1 mK per count").arg(1000 * s.sensor.kelvin_per_count))});
@@ -244,7 +246,7 @@ Result<std::vector<StagePicture>> chain_pictures(const ChainOptions& options) {
 
 ChainPresenter::ChainPresenter(Workbench& bench, QObject* parent) : QObject(parent), bench_(bench) {}
 
-void ChainPresenter::set_options(const ChainOptions& options) {
+void ChainPresenter::set_options(const ChainSettings& options) {
   options_ = options;
   busy_ = true;
   const std::uint64_t request = ++request_;

@@ -1,4 +1,5 @@
-// One triangle, or a scene behind air, on its way through the simulated sensor: the picture after every stage.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The picture of one triangle, or of a scene behind air, after every stage of the simulated sensor.
 #pragma once
 
 #include <QObject>
@@ -14,7 +15,7 @@
 
 namespace todbench {
 
-struct ChainOptions {
+struct ChainSettings {
   std::string sensor = "sc2000", observer = "hvs-1";  ///< names or files
   double size_pitch = 3;                              ///< square root of area, in detector pitches
   double delta_t_k = 1;
@@ -22,7 +23,7 @@ struct ChainOptions {
   std::vector<Effect> skip;
   std::uint64_t seed = 1;
   std::uint64_t index = 0;  ///< of the exposure
-  std::string scene;        ///< in place of the triangle, by name; empty: the triangle
+  std::string scene;        ///< name; replaces the triangle; empty: the triangle
   std::string atmosphere = "clear";
   double range_m = 400;  ///< from camera to scene
 };
@@ -36,23 +37,24 @@ struct StagePicture {
   Stage stage = Stage::scene;
   cv::Mat1d kelvin;                                   ///< above the surround
   double pixels_per_pitch = 1;                        ///< of this picture
-  QString note;                                       ///< what happened here, with numbers
+  QString note;                                       ///< effect of the stage, with numbers
   std::optional<std::pair<double, double>> grey_k{};  ///< black and white of a scene, the same in every picture
 };
 
-/// Scene, optics and detector are sampled 16 times per pitch; samples, noise and quantisation are the pictures of the
-/// sensor model itself. Display and observer are enlarged 8 times. Every picture shows the same square. Errors: as the
-/// loaders. Of a scene they are those of `todbench picture` (scene_pictures()) at the accuracy `draft`.
-[[nodiscard]] Result<std::vector<StagePicture>> chain_pictures(const ChainOptions& options);
+/// Computes the pictures. Scene, optics and detector are sampled 16 times per pitch; samples, noise and quantisation
+/// are the pictures of the sensor model itself; display and observer are enlarged 8 times. All pictures show the same
+/// square. A scene is computed by `todbench picture` (scene_pictures()) at the accuracy `draft`. Errors: as the
+/// loaders.
+[[nodiscard]] Result<std::vector<StagePicture>> chain_pictures(const ChainSettings& options);
 
-/// Computes in the background. In the window's thread.
+/// Computes in the background. Used in the window's thread.
 class ChainPresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit ChainPresenter(Workbench& bench, QObject* parent = nullptr);
-  [[nodiscard]] const ChainOptions& options() const { return options_; }
-  void set_options(const ChainOptions& options);
+  [[nodiscard]] const ChainSettings& options() const { return options_; }
+  void set_options(const ChainSettings& options);
   [[nodiscard]] const std::vector<StagePicture>& pictures() const { return pictures_; }
   [[nodiscard]] QString problem() const { return problem_; }
   [[nodiscard]] bool busy() const { return busy_; }
@@ -62,7 +64,7 @@ class ChainPresenter final : public QObject {
 
  private:
   Workbench& bench_;
-  ChainOptions options_;
+  ChainSettings options_;
   std::vector<StagePicture> pictures_;
   QString problem_;
   bool busy_ = false;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/colour_map.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@ namespace {
 
 constexpr int entries = 256;
 
-/// Nodes of a map at equal distances, red, green, blue.
+/// Nodes of a map at equal distances: red, green, blue.
 using Nodes = std::vector<std::array<double, 3>>;
 
 Nodes nodes_of(ColourMap map) {
@@ -47,7 +48,7 @@ std::size_t entry(double value, const LevelSpan& level) {
 }
 
 constexpr QRgb saturated_colour = qRgb(213, 94, 0);  // vermillion of Okabe and Ito
-constexpr QRgb empty_colour = qRgb(0, 114, 178);     // blue of the same
+constexpr QRgb empty_colour = qRgb(0, 114, 178);     // blue of Okabe and Ito
 
 }  // namespace
 
@@ -134,8 +135,8 @@ std::vector<cv::Point> dead_pixels(const cv::Mat1w& counts, double limit_counts)
       const double middle = around[4];
       const double excess = std::abs(counts(row, column) - middle);
       const auto [low, high] = std::minmax_element(around.begin(), around.end());
-      // The smallest triangle, blurred by optics and detector, leaves more than this in a neighbour; a stuck pixel
-      // nothing.
+      // The smallest triangle, blurred by optics and detector, changes a neighbour by more than this share; a stuck
+      // pixel does not.
       const double spread = std::max(*high - middle, middle - *low);
       if (excess > limit_counts && spread < 0.05 * excess) out.emplace_back(column, row);
     }

@@ -1,4 +1,5 @@
-// Counts to a picture on a screen: colour maps, level and span, histogram.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Converts counts to a picture on a screen: colour maps, level and span, histogram.
 #pragma once
 
 #include <QImage>
@@ -15,31 +16,31 @@ inline constexpr std::array all_colour_maps{ColourMap::white_hot, ColourMap::bla
                                             ColourMap::viridis};
 [[nodiscard]] QString name_of(ColourMap map);
 
-/// Values from low to high take the map from end to end. high > low.
+/// Range of values mapped to the whole colour map. high > low.
 struct LevelSpan {
   double low = 0, high = 1;
   [[nodiscard]] double level() const { return (low + high) / 2; }
   [[nodiscard]] double span() const { return high - low; }
 };
 
-/// From the 0.05 to the 99.95 % quantile (a few bad pixels do not count, the triangles of a plate do), at least
-/// `least_span` wide: noise alone does not fill the map.
+/// Returns the range from the 0.05 to the 99.95 % quantile (ignores a few bad pixels, keeps the triangles of a plate).
+/// It is at least `least_span` wide, so that noise alone does not fill the map.
 [[nodiscard]] LevelSpan automatic_level(const cv::Mat1w& counts, double least_span);
 
 /// Marks over a picture.
 struct PictureMarks {
-  int saturated_from = -1;  ///< counts from here on, and counts of 0, are marked; < 0: none are
+  int saturated_from = -1;  ///< marks counts from here on, and counts of 0; < 0: no marks
 };
 
 [[nodiscard]] QImage to_image(const cv::Mat1w& counts, const LevelSpan& level, ColourMap map, PictureMarks marks);
 /// The same for values of any unit, without marks.
 [[nodiscard]] QImage to_image(const cv::Mat1d& values, const LevelSpan& level, ColourMap map);
 
-/// Pixels per bin between the ends of `level`; those outside are in the first and last bin.
+/// Pixels per bin between the ends of `level`; values outside fall into the first and last bin.
 [[nodiscard]] std::vector<int> histogram(const cv::Mat1w& counts, const LevelSpan& level, int bins);
 
-/// Pixels that are stuck: more than `limit_counts` from the median of their eight neighbours, of which none shares in
-/// it by a twentieth.
+/// Returns stuck pixels: those that differ by more than `limit_counts` from the median of their eight neighbours, if no
+/// neighbour differs by a twentieth of that.
 [[nodiscard]] std::vector<cv::Point> dead_pixels(const cv::Mat1w& counts, double limit_counts);
 
 }  // namespace todbench

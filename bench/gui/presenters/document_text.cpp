@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/document_text.h"
 
 #include <QByteArray>
@@ -12,7 +13,7 @@
 #include <numeric>
 #include <vector>
 
-#include "acquisition/core/safe_text.h"
+#include "acquisition/base/safe_text.h"
 
 namespace todbench {
 namespace {
@@ -92,7 +93,7 @@ QTextTableCellFormat cell_format(const QTextCharFormat& base, CellKind kind) {
   return format;
 }
 
-/// What a column needs: for all of its texts on one line, and for the longest word of them.
+/// Widths of a column: all of its texts on one line, and its longest word.
 struct Need {
   double line_px = 0, word_px = 0;
 };
@@ -117,9 +118,9 @@ Need need_of(const Table& table, std::size_t column, const QFontMetricsF& metric
           std::min(std::ceil(need.word_px) + padding_px, longest_px)};
 }
 
-/// Parts of the width in per cent. Columns whose texts fit into an even share are as wide as these, the narrowest
-/// first; the others share what is left by the square roots of their lengths, and none is narrower than its longest
-/// word as long as there is room. Left to itself Qt breaks words of narrow columns. Empty where everything fits.
+/// Returns column widths in percent. Columns that fit into an even share get their own width, the narrowest first. The
+/// others share the rest by the square roots of their lengths; none is narrower than its longest word if there is room.
+/// Without this Qt breaks words of narrow columns. Empty if the whole table fits.
 std::vector<double> widths_of(const Table& table) {
   constexpr double text_width_px = 673;
   QFont font("DejaVu Sans");
@@ -154,8 +155,8 @@ std::vector<double> widths_of(const Table& table) {
   return widths;
 }
 
-/// Appends block after block. A block of text is begun where none waits; behind a table Qt leaves an empty one, which
-/// the next paragraph takes.
+/// Appends block after block. Starts a block of text unless an empty one waits: Qt leaves an empty block after a table,
+/// and the next paragraph uses it.
 class TextWriter {
  public:
   TextWriter(QTextDocument& text, DrawingTextObject& drawings) : drawings_(drawings), cursor_(&text) {}
@@ -190,7 +191,7 @@ class TextWriter {
   void operator()(const Table& table) {
     caption(table.caption);
     QTextTableFormat format = ruled(widths_of(table));
-    // Again at the head of every page that the table goes over.
+    // Repeats the header on every page of the table.
     format.setHeaderRowCount(1);
     QTextTable* cells =
         begin_table(static_cast<int>(table.rows.size()) + 1, static_cast<int>(table.header.size()), format);
@@ -221,7 +222,7 @@ class TextWriter {
   }
 
   void operator()(const FigurePairs& pairs) {
-    // A table for each row, so that a row can move to the next page as a whole.
+    // One table per row, so that a row can move to the next page as a whole.
     for (std::size_t i = 0; i < pairs.figures.size(); i += 2) {
       QTextTable* cells = begin_table(1, 2, borderless({50, 50}));
       for (std::size_t k = i; k < std::min(i + 2, pairs.figures.size()); ++k) {
@@ -300,7 +301,7 @@ class TextWriter {
   }
 
  private:
-  /// Widths of the columns in per cent; none: by what is in them.
+  /// Widths of the columns in percent; empty: by their contents.
   static QTextTableFormat borderless(const std::vector<double>& widths_percent = {}) {
     QTextTableFormat format;
     QList<QTextLength> widths;
@@ -333,7 +334,7 @@ class TextWriter {
     waiting_ = false;
   }
 
-  /// A table right behind another, or first of all: the block between them is there and has nothing to show.
+  /// Starts a table directly after another, or first in the document; the block between them exists and stays empty.
   QTextTable* begin_table(int rows, int columns, const QTextTableFormat& format = ruled()) {
     if (waiting_) {
       QTextBlockFormat empty;
@@ -371,7 +372,7 @@ class TextWriter {
 
   DrawingTextObject& drawings_;
   QTextCursor cursor_;
-  bool waiting_ = true;  ///< the block at the cursor is empty and belongs to nothing yet
+  bool waiting_ = true;  ///< the block at the cursor is empty and still unused
 };
 
 }  // namespace

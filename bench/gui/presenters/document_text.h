@@ -1,4 +1,5 @@
-// A document of the report as the text of QTextDocument.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Converts a document of the report to the text of QTextDocument.
 #pragma once
 
 #include <QTextDocument>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Writes `document` into the empty `text`, whose layout paints with `drawings`; both are borrowed for the call.
+/// Writes `document` into the empty `text`, whose layout paints with `drawings`; borrows both for the call.
 void write_text(QTextDocument& text, DrawingTextObject& drawings, const Document& document);
 
 }  // namespace todbench

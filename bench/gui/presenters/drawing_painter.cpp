@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/drawing_painter.h"
 
 #include <QByteArray>
@@ -20,7 +21,7 @@ QPen pen_of(const PenStyle& style, PlotTone tone) {
   QPen pen(colour(style.stroke, tone), style.width);
   pen.setCapStyle(Qt::FlatCap);
   pen.setJoinStyle(Qt::RoundJoin);
-  // Qt counts dashes in widths of the pen.
+  // Qt measures dashes in pen widths.
   if (style.dash[0] > 0) pen.setDashPattern({style.dash[0] / style.width, style.dash[1] / style.width});
   return pen;
 }
@@ -55,7 +56,7 @@ struct ShapePainter {
   void operator()(const Box& box) const { painter.drawRect(rectangle(box)); }
   void operator()(const Raster& raster) const {
     const QByteArray text(raster.png_base64.data(), static_cast<qsizetype>(raster.png_base64.size()));
-    // Else a PDF holds a JPEG, with grey values that nobody measured.
+    // Without this a PDF contains a JPEG with altered grey values.
     painter.setRenderHint(QPainter::LosslessImageRendering);
     painter.drawImage(rectangle(raster.place), QImage::fromData(QByteArray::fromBase64(text), "PNG"));
   }
@@ -73,7 +74,7 @@ void paint(QPainter& painter, const Label& label) {
   const LabelStyle style = style_of(label.role);
   QFont font("DejaVu Sans");
   font.setPixelSize(static_cast<int>(style.size));
-  // In a PDF a ligature would be read back as another character.
+  // A ligature in a PDF would be read back as another character.
   font.setStyleStrategy(QFont::PreferNoShaping);
   const QString text = QString::fromStdString(label.text);
   const double width = QFontMetricsF(font).horizontalAdvance(text);

@@ -1,4 +1,5 @@
-// A drawing of the report, painted: for pages of a PDF. Interactive plots are views/plot_view.h.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Paints a drawing of the report for pages of a PDF. Interactive plots are in views/plot_view.h.
 #pragma once
 
 #include <QPainter>
@@ -8,7 +9,7 @@
 
 namespace todbench {
 
-/// Fills `area` with the drawing in light shades, as lines and text. Thread-safe for painters of its own.
+/// Fills `area` with the drawing in light shades, as lines and text. Thread-safe if each thread has its own painter.
 void paint_drawing(QPainter& painter, const QRectF& area, const Drawing& drawing);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Drawings inside a text document.
 #pragma once
 
@@ -9,7 +10,7 @@
 
 namespace todbench {
 
-/// Paints drawing number property(index_property) of those added, at a width of its own.
+/// Paints the added drawing with index property(index_property), at its own width.
 class DrawingTextObject final : public QObject, public QTextObjectInterface {
   Q_OBJECT
   Q_INTERFACES(QTextObjectInterface)
@@ -18,7 +19,7 @@ class DrawingTextObject final : public QObject, public QTextObjectInterface {
   static constexpr int object_type = QTextFormat::UserObject + 1;
   static constexpr int index_property = 1;
   explicit DrawingTextObject(double page_width_px);
-  /// The format of the character that stands for `drawing`.
+  /// Adds a drawing. Returns the format of the character that represents it.
   [[nodiscard]] QTextCharFormat add(const Drawing& drawing);
   QSizeF intrinsicSize(QTextDocument* document, int position, const QTextFormat& format) override;
   void drawObject(QPainter* painter, const QRectF& area, QTextDocument* document, int position,

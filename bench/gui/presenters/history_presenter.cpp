@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/history_presenter.h"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ double days_since_first(const HistorySeries& series, double days) {
   return days - series.values.front().days;
 }
 
-/// An axis that holds these numbers with a margin; never empty.
+/// Returns an axis that contains these numbers with a margin; never empty.
 PlotAxis axis_around(std::string label, std::vector<double> numbers) {
   const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
   const double room = *high > *low ? 0.08 * (*high - *low) : std::max(std::abs(*high) * 0.1, 1.0);
@@ -59,7 +60,7 @@ Plot values_plot(const HistorySeries& series, const std::optional<ControlChart>&
   return plot;
 }
 
-/// Lines of a chart in standard deviations over the same time.
+/// Draws lines of a chart in standard deviations over the same time.
 Plot standard_plot(const HistorySeries& series, const ControlChart& chart, std::string id, std::string label,
                    const std::vector<std::pair<PlotSeries, double (*)(const ChartPoint&)>>& lines) {
   Plot plot;
@@ -111,9 +112,10 @@ HistoryChart history_chart(const HistorySeries& series) {
   const auto chart = control_chart(series.values, {});
   HistoryChart shown{.values = values_plot(series, chart), .ewma = {}, .cusum = {}, .remark = {}};
   if (!chart) {
-    shown.remark = QString("Values so far: %1. A chart needs one more than the %2 of its reference.")
-                       .arg(series.values.size())
-                       .arg(ChartDesign{}.reference_values);
+    shown.remark =
+        QString("Values so far: %1. The charts need more than %2 values, because the first %2 are the reference.")
+            .arg(series.values.size())
+            .arg(ChartDesign{}.reference_values);
     return shown;
   }
   shown.ewma =
@@ -126,7 +128,7 @@ HistoryChart history_chart(const HistorySeries& series) {
       {{limit_line("limit"), [](const ChartPoint&) { return ChartDesign{}.cusum_h; }},
        {chart_line("upwards", PlotTone::first), [](const ChartPoint& point) { return point.cusum_up; }},
        {chart_line("downwards", PlotTone::second), [](const ChartPoint& point) { return point.cusum_down; }}});
-  shown.remark = chart->signalled() ? "✗ The last check is beyond a limit of the charts: the unit has changed."
+  shown.remark = chart->signalled() ? "✗ The last check exceeds a limit of the charts: the unit has changed."
                                     : "✓ Within the limits of both charts.";
   return shown;
 }
@@ -153,7 +155,7 @@ void HistoryPresenter::refresh() {
   series_.clear();
   trouble_.clear();
   std::error_code none;
-  const auto nothing = QString("No unit has a history yet: add the sessions of this folder.");
+  const auto nothing = QString("The history is empty. Add the sessions of this folder.");
   if (!std::filesystem::exists(index_, none)) {
     trouble_ = nothing;
     emit changed();

@@ -1,4 +1,5 @@
-// The history of units without widgets: which series there are, and the chart of one.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The history of units without widgets: the available series, and the chart of one.
 #pragma once
 
 #include <QObject>
@@ -13,32 +14,32 @@
 
 namespace todbench {
 
-/// A chart as the window shows it.
+/// A chart as displayed in the window.
 struct HistoryChart {
   Plot values;  ///< over days since the first, with 95 % intervals and the reference
-  /// In standard deviations; nothing where there are too few values.
+  /// In standard deviations; empty if there are too few values.
   std::optional<Plot> ewma, cusum;
-  QString remark;  ///< what the charts say, in a sentence
+  QString remark;  ///< interpretation of the charts, one sentence
 };
 
-/// The chart of a series.
+/// Returns the chart of a series.
 [[nodiscard]] HistoryChart history_chart(const HistorySeries& series);
 /// "acuity dT=2K", "A655sc, serial number 48000123".
 [[nodiscard]] QString title_of(const HistorySeries& series);
 [[nodiscard]] QString unit_of(const HistorySeries& series);
 
-/// Reads the index when it is asked to; the GUI's thread.
+/// Reads the index on request. Used in the window's thread.
 class HistoryPresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit HistoryPresenter(std::filesystem::path index, QObject* parent = nullptr);
 
-  /// Adds the sessions at or below a folder and reads again. What is no session with a camera is not added.
+  /// Adds the sessions with a camera in a folder and its subfolders, and reads the index again.
   void add_sessions(const std::filesystem::path& folder);
   void refresh();
   [[nodiscard]] const std::vector<HistorySeries>& series() const { return series_; }
-  /// Why there is nothing to show; empty where there is.
+  /// Reason why there is no series; empty if there is one.
   [[nodiscard]] const QString& trouble() const { return trouble_; }
   [[nodiscard]] const std::filesystem::path& index() const { return index_; }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/human_presenter.h"
 
 #include <algorithm>
@@ -6,13 +7,13 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/gui/presenters/colour_map.h"
 
 namespace todbench {
 namespace {
 
-/// Fisher-Yates with numbers that repeat.
+/// Fisher-Yates shuffle with reproducible random numbers.
 void shuffle(std::vector<std::size_t>& items, const RandomStream& stream) {
   for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[stream.below(i, i)]);
 }
@@ -28,7 +29,7 @@ double median(cv::Mat1f values) {
 
 std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials, const HumanOptions& options) {
   const RandomStream stream(options.seed, "human");
-  // Sizes of one row of the plate are equal to the last bit of the description: micrometres tell them apart.
+  // Sizes of one row of the plate differ in the last bits of the description; micrometres identify them.
   std::map<std::pair<double, std::int64_t>, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < trials.size(); ++i)
     groups[{trials[i].trial.set_delta_t_k, std::llround(trials[i].trial.size_mm * 1000)}].push_back(i);
@@ -71,7 +72,7 @@ HumanPresenter::HumanPresenter(QObject* parent) : QObject(parent) {
 
 QString HumanPresenter::begin(const std::vector<JudgedTrial>& trials, const Plan& plan,
                               const std::filesystem::path& session, const HumanOptions& options) {
-  if (trials.empty()) return "There are no frames to show: measure first.";
+  if (trials.empty()) return "There are no frames to show. Run a measurement first.";
   options_ = options;
   plan_ = plan;
   session_ = session;
@@ -111,7 +112,7 @@ void HumanPresenter::answer(Apex apex) {
   Trial trial = patch.trial;
   trial.answer = apex;
   trial.scores = {};
-  // What the model thought of the patch is not what this person did.
+  // Remove the model's answer: this trial is the person's.
   trial.probability_correct.reset();
   trial.frames = 1;
   answers_.push_back(std::move(trial));

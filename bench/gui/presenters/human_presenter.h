@@ -1,4 +1,5 @@
-// The same patches for a person: four alternatives, arrow keys, no feedback, blind to the model.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shows the same patches to a person: four alternatives, arrow keys, no feedback, blind to the model.
 #pragma once
 
 #include <QImage>
@@ -15,34 +16,34 @@
 namespace todbench {
 
 struct HumanOptions {
-  int per_size = 8;             ///< patches per contrast and size, or all where there are fewer
-  std::optional<int> shown_ms;  ///< nothing: until answered
-  int magnification = 24;       ///< screen pixels per displayed sample: far above what display and eye resolve
+  int per_size = 8;             ///< patches per contrast and size, or all if there are fewer
+  std::optional<int> shown_ms;  ///< empty: until answered
+  int magnification = 24;       ///< screen pixels per displayed sample: far more than display and eye resolve
   std::uint64_t seed = 1;
 };
 
 enum class HumanState { idle, showing, hidden, finished };
 
-/// A balanced random choice of the camera's patches in random order.
+/// Returns a balanced random choice of the camera's patches in random order.
 [[nodiscard]] std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials,
                                                             const HumanOptions& options);
-/// The temperatures that are shown black and white.
+/// Returns the temperatures of black and white.
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged);
-/// The patch enlarged by bicubic interpolation. Grey levels span three contrasts and more round the surround, the same
-/// for every answer: nothing depends on where the triangle points.
+/// Returns the patch enlarged by bicubic interpolation. Grey levels span three contrasts or more around the surround,
+/// the same for all answers, so that they do not reveal the direction of the triangle.
 [[nodiscard]] QImage picture_for_a_person(const JudgedTrial& judged, int magnification);
 
-/// In the window's thread.
+/// Used in the window's thread.
 class HumanPresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit HumanPresenter(QObject* parent = nullptr);
 
-  /// Begins with the patches of a finished run. Returns in one sentence why it cannot.
+  /// Starts with the patches of a finished run. Returns an error sentence; empty: success.
   [[nodiscard]] QString begin(const std::vector<JudgedTrial>& trials, const Plan& plan,
                               const std::filesystem::path& session, const HumanOptions& options);
-  /// The person's choice for the patch that is or was shown.
+  /// The person's answer to the patch shown now or last.
   void answer(Apex apex);
   void abort();
 
@@ -50,9 +51,9 @@ class HumanPresenter final : public QObject {
   [[nodiscard]] const QImage& picture() const { return picture_; }
   [[nodiscard]] std::size_t done() const { return answers_.size(); }
   [[nodiscard]] std::size_t planned() const { return patches_.size(); }
-  /// When finished: what was written into the session.
+  /// When finished: the record written to the session.
   [[nodiscard]] const std::optional<HumanRecord>& record() const { return record_; }
-  /// Why the answers could not be kept; empty otherwise.
+  /// Reason why the answers could not be stored; otherwise empty.
   [[nodiscard]] QString problem() const { return problem_; }
 
  signals:

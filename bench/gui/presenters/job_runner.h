@@ -1,4 +1,5 @@
-// One thread that does one job after the other.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A thread that runs jobs one after the other.
 #pragma once
 
 #include <QObject>
@@ -13,9 +14,9 @@
 
 namespace todbench {
 
-/// A started job asks the running one to stop and begins when it has ended; jobs that wait are dropped for it. A queued
-/// job leaves the others alone and begins after them.
-/// Methods are called from the thread that owns the object and return at once; jobs run on the runner's own thread.
+/// A started job stops the running one, drops the waiting ones and starts when the running one has ended. A queued job
+/// starts after all others. Methods are called from the thread that owns the object and return at once; jobs run on the
+/// runner's own thread.
 class JobRunner final : public QObject {
   Q_OBJECT
 
@@ -27,13 +28,13 @@ class JobRunner final : public QObject {
 
   void start(Job job);
   void queue(Job job);
-  /// What became of jobs that had not begun.
+  /// Whether stop() dropped jobs that had not started.
   enum class Waiting { none, dropped };
-  /// Asks the running job to stop and drops those that wait.
+  /// Asks the running job to stop and drops the waiting ones.
   Waiting stop();
-  /// Stops and waits for the end of the running job; nothing runs after it.
+  /// Stops and waits for the end of the running job; later jobs do not run.
   void shut_down();
-  /// A job runs or waits.
+  /// Whether a job runs or waits.
   [[nodiscard]] bool busy() const;
 
  private:
@@ -44,7 +45,7 @@ class JobRunner final : public QObject {
   std::deque<Job> waiting_;
   std::optional<std::stop_source> running_;
   std::stop_source end_;
-  std::unique_ptr<QThread> thread_;  ///< Qt's own: documents of a report have timers
+  std::unique_ptr<QThread> thread_;  ///< a QThread, because documents of a report have timers
 };
 
 }  // namespace todbench

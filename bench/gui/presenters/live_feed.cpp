@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/live_feed.h"
 
 #include <utility>
@@ -19,7 +20,7 @@ void LiveFeed::put(const Frame& frame) {
   const std::lock_guard lock(mutex_);
   if (!gate_) gate_.emplace(IntegrityOptions{});
   const auto rejection = gate_->judge(frame);
-  // The first frame behind a gap is a whole picture: it is not measured, but may be looked at.
+  // The first frame after a gap is complete: it is not measured, but can be shown.
   const bool showable = !rejection || *rejection == Rejection::gapped;
   arrivals_ns_.push_back(frame.host_time_ns);
   while (arrivals_ns_.size() > 2 && arrivals_ns_.front() < frame.host_time_ns - 1'000'000'000) arrivals_ns_.pop_front();
@@ -28,7 +29,7 @@ void LiveFeed::put(const Frame& frame) {
     counters.rejected[std::string(to_string(reason))] = count;
   const auto span_ns = arrivals_ns_.back() - arrivals_ns_.front();
   if (span_ns > 0) counters.rate_hz = static_cast<double>(arrivals_ns_.size() - 1) * 1e9 / static_cast<double>(span_ns);
-  // A frame that may not be measured is counted, not shown, unless nothing better has come.
+  // A rejected frame is counted but not shown, unless there is no better one.
   if (showable || !latest_) {
     latest_ = LiveFrame{frame, std::move(counters)};
   } else {

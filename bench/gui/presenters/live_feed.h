@@ -1,4 +1,5 @@
-// Frames on their way from whatever takes them to the live picture: the latest one and the counters of all.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Passes frames from the acquiring thread to the live picture: the latest one and the counters of all.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +14,11 @@
 
 namespace todbench {
 
-/// What has come since the feed was opened.
+/// Counters since the feed was opened.
 struct FrameCounters {
   std::uint64_t good = 0, lost = 0;
   std::map<std::string, std::uint64_t> rejected;  ///< by reason
-  double rate_hz = 0;                             ///< over the last second; 0: not known yet
+  double rate_hz = 0;                             ///< over the last second; 0: unknown yet
 };
 
 struct LiveFrame {
@@ -25,15 +26,15 @@ struct LiveFrame {
   FrameCounters counters;
 };
 
-/// Written by the thread that takes frames, read by the window. Thread-safe.
+/// Written by the acquiring thread, read by the window. Thread-safe.
 class LiveFeed {
  public:
-  /// A camera begins: counters start at zero.
+  /// Starts a camera: counters are reset to zero.
   void open(const SourceInfo& info);
   void put(const Frame& frame);
-  /// The latest frame that has not been taken, or nothing.
+  /// Returns the latest frame if it was not taken yet; otherwise empty.
   [[nodiscard]] std::optional<LiveFrame> take();
-  /// Of the camera that was opened last.
+  /// Of the last opened camera.
   [[nodiscard]] std::optional<SourceInfo> info() const;
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/look_presenter.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ constexpr int picture_period_ms = 40;
 constexpr double least_span_counts = 40;
 constexpr double dead_pixel_counts = 400;  ///< 4 K at 10 mK per count: fifty times the noise of a good camera
 constexpr int histogram_bins = 64;
-/// An emulated camera computes a plate before its first exposure; on a busy machine that takes seconds.
+/// An emulated camera computes a plate before its first exposure, which takes seconds on a busy machine.
 constexpr std::chrono::milliseconds frame_timeout{6000};
 
 Result<void> show_first_state(const Plan& plan, const std::vector<TargetPlate>& plates, Target& target,
@@ -28,7 +29,7 @@ Result<void> show_first_state(const Plan& plan, const std::vector<TargetPlate>& 
   return {};
 }
 
-/// Camera and target of the plan where the target needs no hand; otherwise the camera alone.
+/// Opens camera and target of the plan if the target needs no operator; otherwise the camera alone.
 Result<OpenedBench> open_for_looking(const Plan& plan, const std::stop_token& stop) {
   const bool driven = plan.target.kind == TargetKind::scene ||
                       (plan.target.kind == TargetKind::scpi && !plan.target.black_body.empty());
@@ -59,11 +60,12 @@ Result<void> look(const Plan& plan, LiveFeed& feed, const std::stop_token& stop)
     auto frame = camera.next(frame_timeout);
     if (stop.stop_requested()) break;
     if (!frame && frame.error().code == ErrorCode::timeout) {
-      return fail(ErrorCode::disconnected, "camera " + camera.info().id + " sends no frames");
+      return fail(ErrorCode::disconnected,
+                  "camera " + camera.info().id + " sends no frames; check the connection with 'todbench doctor'");
     }
     if (!frame) return tl::unexpected(frame.error());
     feed.put(*frame);
-    // A simulated camera is as fast as it is asked; nobody sees more than its frame rate.
+    // A simulated camera is as fast as requested; frames beyond the display rate are useless.
     if (bench->simulated) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   camera.stop();
@@ -150,7 +152,7 @@ QString LookPresenter::counters() const {
 QString LookPresenter::camera() const {
   const auto info = bench_.feed().info();
   if (!info) return {};
-  QString text = QString::fromStdString(info->vendor + " " + info->model + ", serial " + info->serial);
+  QString text = QString::fromStdString(info->vendor + " " + info->model + ", serial number " + info->serial);
   text += QString(", %1 × %2, %3, %4")
               .arg(info->width)
               .arg(info->height)

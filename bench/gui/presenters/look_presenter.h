@@ -1,4 +1,5 @@
-// The live picture: which camera, how its counts become colours, what is under the cursor.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The live picture: choice of the camera, colours of its counts, value under the cursor.
 #pragma once
 
 #include <QImage>
@@ -14,24 +15,24 @@
 
 namespace todbench {
 
-/// Level and span: from the picture, or held.
+/// Level and span: from the picture, or fixed.
 enum class LevelMode { automatic, fixed };
 
-/// A pixel in the units that people think in.
+/// Values of one pixel.
 struct PixelReading {
   int column = 0, row = 0;
   int counts = 0;
-  std::optional<double> kelvin;  ///< nothing without a temperature scale
+  std::optional<double> kelvin;  ///< empty without a temperature scale
 };
 
-/// Takes the latest frame 25 times a second, whoever runs the camera. In the window's thread.
+/// Takes the latest frame 25 times a second from the running camera. Used in the window's thread.
 class LookPresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit LookPresenter(Workbench& bench, QObject* parent = nullptr);
 
-  /// Runs the selected camera; a target that the plan can drive shows the plan's highest contrast first.
+  /// Runs the selected camera; a target that the plan can drive first shows the plan's highest contrast.
   void start();
   void stop() { bench_.stop(); }
 
@@ -44,15 +45,15 @@ class LookPresenter final : public QObject {
   [[nodiscard]] ColourMap colour_map() const { return map_; }
   void set_colour_map(ColourMap map);
   void set_level_mode(LevelMode mode);
-  /// Holds level and span, in counts; span is at least 1.
+  /// Fixes level and span, in counts; span is at least 1.
   void set_level(double level, double span);
   void set_marks(bool on);
 
-  /// Nothing outside the picture or before the first frame.
+  /// Empty outside the picture and before the first frame.
   [[nodiscard]] std::optional<PixelReading> reading(int column, int row) const;
   /// "12 good, 1 incomplete, 2 lost, 50.0 Hz, buffer 33554432 bytes".
   [[nodiscard]] QString counters() const;
-  /// Camera as it was read back, in words; empty before the first frame.
+  /// Settings read from the camera, as text; empty before the first frame.
   [[nodiscard]] QString camera() const;
 
  signals:

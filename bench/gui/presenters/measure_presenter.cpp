@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/measure_presenter.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ constexpr qint64 least_fit_period_ms = 700;
 constexpr std::size_t recent_trials = 60;
 constexpr int most_notes = 200;
 
-/// Sizes of the triangles as the camera sees them; plates that cannot be read are left to the run to complain of.
+/// Sizes of the triangles in the camera's view; errors of unreadable plates are left to the run.
 std::vector<double> sizes_of(const Plan& plan) {
   std::vector<double> sizes_mrad;
   for (const std::string& name : plan.target.plates) {
@@ -38,9 +39,9 @@ MeasurePresenter::MeasurePresenter(Workbench& bench, QObject* parent) : QObject(
     plan_ = bench_.plan();
     emit updated();
   });
-  // Devices that cannot be made ready, or a stop before they are, end the run before it begins.
+  // If devices cannot be prepared, or a stop comes before they are ready, the run ends before it starts.
   connect(&bench_, &Workbench::activity_changed, this, [this] {
-    if (bench_.activity() == Activity::idle) conclude(fail(ErrorCode::interrupted, "the run did not begin"));
+    if (bench_.activity() == Activity::idle) conclude(fail(ErrorCode::interrupted, "the run did not start"));
   });
   timer_.setInterval(collect_period_ms);
   connect(&timer_, &QTimer::timeout, this, &MeasurePresenter::collect);
@@ -217,7 +218,7 @@ void MeasurePresenter::abort() {
 
 void MeasurePresenter::camera_lost(const SourceInfo& camera, std::chrono::milliseconds patience) {
   if (state_ == RunState::idle) return;
-  away_ = Away{QString::fromStdString(camera.model + ", serial " + camera.serial),
+  away_ = Away{QString::fromStdString(camera.model + ", serial number " + camera.serial),
                std::chrono::steady_clock::now() + patience};
   bench_.report_health(DeviceHealth::lost);
   emit updated();
@@ -227,8 +228,8 @@ QString MeasurePresenter::camera_away() const {
   if (!away_) return {};
   const auto left = std::chrono::ceil<std::chrono::seconds>(away_->until - std::chrono::steady_clock::now());
   return QString(
-             "Camera %1 is gone. It is waited for: %2 s left. When it is back the run goes on by itself; what was "
-             "measured is kept in any case.")
+             "Camera %1 was lost. The run waits for it: %2 s left. It continues by itself when the camera is back. "
+             "All data so far are kept in any case.")
       .arg(away_->camera)
       .arg(std::max<qint64>(0, left.count()));
 }
@@ -287,7 +288,7 @@ void MeasurePresenter::fit() {
   std::vector<Trial> measured;
   measured.reserve(trials_.size());
   for (const auto& judged : trials_) measured.push_back(judged.trial);
-  // One job at a time has it.
+  // Only one job at a time uses `fit`.
   jobs_.start([this, run = run_, fit = running_fit_, measured = std::move(measured),
                twin = twin_trials_](const std::stop_token& stop) {
     bench_.post([this, run, measured_curve = fit->curve_of(measured, stop), twin_curve = fit->curve_of(twin, stop)] {
@@ -339,15 +340,15 @@ QString MeasurePresenter::next_step() const {
   }
   switch (state_) {
     case RunState::paused:
-      return "Paused: press Resume to go on";
+      return "Paused. Press Resume to continue.";
     case RunState::stopping:
       return "Stopping";
     case RunState::running:
-      return waiting_.isEmpty() ? QString() : "Nothing to do: the bench waits for its target";
+      return waiting_.isEmpty() ? QString() : "No action needed. The bench waits for the target.";
     case RunState::idle:
       break;
   }
-  return outcome_ || !phase_.isEmpty() ? QString() : "Press Start: the bench measures by itself from there";
+  return outcome_ || !phase_.isEmpty() ? QString() : "Press Start. The bench then measures by itself.";
 }
 
 QString MeasurePresenter::time_left() const {

@@ -1,4 +1,5 @@
-// A measurement as it goes on: progress, answers, curves.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A running measurement: progress, answers, curves.
 #pragma once
 
 #include <QElapsedTimer>
@@ -14,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-#include "bench/gui/presenters/operator_desk.h"
+#include "bench/gui/presenters/operator_requests.h"
 #include "bench/gui/presenters/workbench.h"
 #include "bench/report/plot.h"
 #include "bench/run/experiment.h"
@@ -22,17 +23,17 @@
 
 namespace todbench {
 
-/// An answer with what was judged.
+/// An answer with the judged patch.
 struct JudgedTrial {
   SessionCurve curve = SessionCurve::main;
   Trial trial;
   cv::Mat1f patch_k;   ///< kelvin
-  double noise_k = 0;  ///< temporal noise of a sample, as the observer was told
+  double noise_k = 0;  ///< temporal noise of a sample, as passed to the observer
 };
 
 enum class RunState { idle, running, paused, stopping };
 
-/// Drives one measurement at a time through measure_plan(). In the window's thread.
+/// Runs one measurement at a time through measure_plan(). Used in the window's thread.
 class MeasurePresenter final : public QObject {
   Q_OBJECT
 
@@ -41,13 +42,13 @@ class MeasurePresenter final : public QObject {
 
   /// Measures the plan of the workbench into a new session folder.
   void start();
-  /// Measures again from the recorded frames of a session, whose plan is `plan`, into a new session folder.
+  /// Replays the recorded frames of a session with the plan `plan` into a new session folder.
   void replay(const std::filesystem::path& session, const Plan& plan);
-  /// The same as last time: start() or replay().
+  /// Repeats the last start() or replay().
   void again();
   void pause();
   void resume();
-  /// Ends the run within a second; what was measured stays.
+  /// Ends the run within a second; the results so far stay.
   void abort();
   /// Answers the request of operator_request().
   void operator_done() { desk_->answer(OperatorAnswer::done); }
@@ -56,30 +57,30 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] QString phase() const { return phase_; }
   [[nodiscard]] std::size_t done() const { return done_; }
   [[nodiscard]] std::size_t planned() const { return planned_; }
-  /// "1 min 12 s left", from the presentations of this phase; empty when not known.
+  /// "1 min 12 s left", from the presentations of this phase; empty if unknown.
   [[nodiscard]] QString time_left() const;
-  /// What the run waits for the operator to do; nothing: it does not wait.
+  /// Request to the operator that the run waits for; empty: it does not wait.
   [[nodiscard]] const std::optional<OperatorRequest>& operator_request() const { return request_; }
-  /// What the target is being waited for, with what was asked and what is reached; empty: it is not.
+  /// State of the target that the run waits for, with requested and reached values; empty: it does not wait.
   [[nodiscard]] const QString& waiting() const { return waiting_; }
-  /// What the operator does next, in a few words: the request's own, or that there is nothing to do.
+  /// Next step of the operator in a few words: the open request, or that no action is needed.
   [[nodiscard]] QString next_step() const;
-  /// While a lost camera is waited for: what happened, how long it is still waited for; empty otherwise.
+  /// While a lost camera is awaited: the event and the remaining time; otherwise empty.
   [[nodiscard]] QString camera_away() const;
   [[nodiscard]] const QStringList& notes() const { return notes_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
-  /// Of the camera and of its twin: fitted while it goes on, from the session's own results when it is over.
+  /// Curves of the camera and of its twin: fitted during the run, afterwards the results of the session.
   [[nodiscard]] const std::optional<TodCurve>& measured() const { return measured_; }
   [[nodiscard]] const std::optional<TodCurve>& twin() const { return twin_; }
-  /// What the simulated sensor lets expect, shown until its own trials come.
+  /// Curve predicted by the simulated sensor, shown until its own trials arrive.
   void set_predicted(std::optional<TodCurve> predicted) { predicted_ = std::move(predicted); }
   [[nodiscard]] const std::optional<ExperimentOutcome>& outcome() const { return outcome_; }
-  /// Of a finished replay: whether trials and fits are those of the session, byte for byte.
+  /// After a replay: whether trials and fits equal those of the session, byte for byte.
   [[nodiscard]] std::optional<bool> same_as_recorded() const { return same_; }
   /// Trials of the camera.
   [[nodiscard]] const std::vector<JudgedTrial>& trials() const { return trials_; }
-  /// The last answers of either curve, newest first.
+  /// The last answers for both curves, newest first.
   [[nodiscard]] const std::deque<JudgedTrial>& recent() const { return recent_; }
 
   /// Set contrasts of the plan, in its order.
@@ -88,23 +89,23 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] Plot tod_plot(AxisScale acuity_axis) const;
 
  signals:
-  /// Something that is shown has changed; at most ten times a second.
+  /// Displayed values have changed; at most ten times a second.
   void updated();
   void state_changed();
-  /// The run waits for the operator from now on.
+  /// The run starts to wait for the operator.
   void operator_needed();
-  /// The session is whole and closed.
+  /// The session is complete and closed.
   void finished(const QString& folder);
 
  private:
-  /// What the device thread leaves for the window.
+  /// Data from the device thread for the window.
   struct Inbox {
     std::mutex mutex;
     std::vector<JudgedTrial> trials;
     std::optional<std::pair<std::size_t, std::size_t>> progress;
     bool frame_came = false;
   };
-  /// A camera that was lost and may come back.
+  /// A lost camera that may come back.
   struct Away {
     QString camera;
     std::chrono::steady_clock::time_point until;
@@ -113,7 +114,7 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] ExperimentListener listener();
   [[nodiscard]] ExperimentHost host();
   void begin(const Plan& plan);
-  /// Hands the end of a run over to the window; what ended it early is the job's own error.
+  /// Passes the end of a run to the window; the reason of an early end is the job's own error.
   [[nodiscard]] Result<void> hand_over(std::uint64_t run, const Result<ExperimentOutcome>& outcome,
                                        std::optional<bool> same);
   void set_state(RunState state);
@@ -144,9 +145,9 @@ class MeasurePresenter final : public QObject {
   std::optional<ExperimentOutcome> outcome_;
   std::optional<bool> same_;
   std::optional<Away> away_;
-  std::optional<std::filesystem::path> replayed_;  ///< nothing: the last run was of the camera
+  std::optional<std::filesystem::path> replayed_;  ///< empty: the last run used the camera
   Pause pause_;
-  std::shared_ptr<OperatorDesk> desk_ = std::make_shared<OperatorDesk>();
+  std::shared_ptr<OperatorRequests> desk_ = std::make_shared<OperatorRequests>();
   Inbox inbox_;
   QTimer timer_;
   JobRunner jobs_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/pdf_report.h"
 
 #include <QAbstractTextDocumentLayout>
@@ -34,14 +35,14 @@ QTextTable* table_at(const QTextBlock& block) {
   return QTextCursor(block).currentTable();
 }
 
-/// The first block from here on that shows something: tables and figures stand behind empty ones.
+/// Returns the next block with content: empty blocks precede tables and figures.
 QTextBlock content_after(QTextBlock block) {
   do block = block.next();
   while (block.isValid() && block.text().trimmed().isEmpty());
   return block;
 }
 
-/// The block of a row that reaches lowest, whichever cell it is in.
+/// Returns the lowest block of a row, over all cells.
 QTextBlock lowest_of(const QTextDocument& document, const QTextTable& table, int row) {
   QTextBlock lowest = table.cellAt(row, 0).lastCursorPosition().block();
   for (int column = 1; column < table.columns(); ++column) {
@@ -54,8 +55,8 @@ QTextBlock lowest_of(const QTextDocument& document, const QTextTable& table, int
   return lowest;
 }
 
-/// The block that has to be on the page of a heading or of a caption: the first line of what is below, the end of a
-/// table of a few rows, the first row of a longer one.
+/// Returns the block that has to be on the same page as a heading or caption: the first line below, the end of a short
+/// table, or the first row of a longer one.
 QTextBlock belongs_to(const QTextDocument& document, const QTextBlock& block) {
   constexpr int few_rows = 6;
   QTextBlock content = content_after(block);
@@ -68,12 +69,12 @@ QTextBlock belongs_to(const QTextDocument& document, const QTextBlock& block) {
   return content;
 }
 
-/// A move shifts all that follows. Qt leaves blocks without lines where only the changed one is laid out again.
+/// A move shifts all following blocks. Qt leaves blocks without lines if only the changed one is laid out again.
 void lay_out_from(QTextDocument& document, int position) {
   document.markContentsDirty(position, document.characterCount() - position);
 }
 
-/// A table of one row, which holds figures side by side or the verdict, begins a page where it would go over two.
+/// Moves a table of one row (figures side by side, or the verdict) to the next page if it would be split.
 void keep_row_together(QTextDocument& document, QTextTable& table) {
   const QTextBlock first = table.firstCursorPosition().block();
   if (table.rows() > 1 || page_of(document, first) == page_of(document, lowest_of(document, table, 0))) return;
@@ -83,7 +84,7 @@ void keep_row_together(QTextDocument& document, QTextTable& table) {
   lay_out_from(document, table.firstPosition());
 }
 
-/// Where the text of a row begins and ends, in the height of all pages.
+/// Top and bottom of the text of a row, in the height of all pages.
 struct RowExtent {
   double top = 0, bottom = 0;
 };
@@ -97,9 +98,8 @@ RowExtent extent_of(const QTextDocument& document, const QTextTable& table, int 
   return out;
 }
 
-/// A row whose lines would lie on two pages begins on the second: the row before it is as much higher, for Qt knows no
-/// break before a row. One that is higher than half a page stays as it is, and so does the first below the header,
-/// which moves with its caption.
+/// Moves a row that would be split to the next page by extending the row before it, because Qt has no page break before
+/// a row. Rows higher than half a page stay, and so does the first below the header, which moves with its caption.
 void keep_rows_whole(QTextDocument& document, QTextTable& table) {
   const double height = document.pageSize().height();
   for (int row = 2; row < table.rows(); ++row) {
@@ -116,7 +116,7 @@ void keep_rows_whole(QTextDocument& document, QTextTable& table) {
   }
 }
 
-/// The first of the headings right over a block: what moves to the next page takes them along.
+/// Returns the first of the headings directly above a block; they move to the next page with it.
 QTextBlock with_headings(const QTextBlock& block) {
   QTextBlock above = block.previous();
   while (above.isValid() && above.text().trimmed().isEmpty()) above = above.previous();
@@ -124,7 +124,7 @@ QTextBlock with_headings(const QTextBlock& block) {
   return heading ? with_headings(above) : block;
 }
 
-/// Whether one of its lines lies on two pages: behind a table Qt sets some there.
+/// Whether a line of the block is split between two pages: Qt places some like this after a table.
 bool is_cut(const QTextDocument& document, const QTextBlock& block) {
   const double top = document.documentLayout()->blockBoundingRect(block).top(), height = document.pageSize().height();
   constexpr double rounding = 0.5;
@@ -144,7 +144,7 @@ void move_to_next_page(QTextDocument& document, const QTextBlock& block) {
   lay_out_from(document, moved.position());
 }
 
-/// A heading, a caption or a figure at the foot of a page moves to the next one, with what it belongs to.
+/// Moves a heading, caption or figure at the bottom of a page to the next one, together with its content.
 void keep_together(QTextDocument& document) {
   for (QTextBlock block = document.begin(); block.isValid(); block = block.next()) {
     if (QTextTable* table = table_at(block); table != nullptr) {
@@ -168,7 +168,7 @@ void keep_together(QTextDocument& document) {
   }
 }
 
-/// The text of the first block that the layout has left without a line: it would be missing on the page.
+/// Returns the text of the first block without a line in the layout: it would be missing on the page.
 std::optional<QString> lost_text(const QTextDocument& document) {
   (void)document.documentLayout()->documentSize();  // finishes the layout
   for (QTextBlock block = document.begin(); block.isValid(); block = block.next())
@@ -218,14 +218,14 @@ Result<void> write_pdf(const Document& document, const std::filesystem::path& fi
   text.setUndoRedoEnabled(false);
   text.setDocumentMargin(0);
   text.setUseDesignMetrics(true);
-  // One glyph per character: a ligature is read back as another character, and words as other words.
+  // One glyph per character: a ligature would be read back as another character and change words.
   QFont font("DejaVu Sans");
   font.setPixelSize(10);
   font.setStyleStrategy(QFont::PreferNoShaping);
   text.setDefaultFont(font);
   text.documentLayout()->registerHandler(DrawingTextObject::object_type, &drawings);
   write_text(text, drawings, document);
-  // A line that just fits would leave the lower edge of its cell, or of its own letters, to the next page.
+  // Without this room, the lower edge of the last line or its cell would move to the next page.
   constexpr double room_below_px = 10;
   QTextFrameFormat page = text.rootFrame()->frameFormat();
   page.setBottomMargin(room_below_px);
@@ -233,7 +233,7 @@ Result<void> write_pdf(const Document& document, const std::filesystem::path& fi
   text.setPageSize({text_width, text_height});
   keep_together(text);
   if (const auto lost = lost_text(text))
-    return fail(ErrorCode::internal, "the PDF would leave out \"" + lost->toStdString() + "\"");
+    return fail(ErrorCode::internal, "the PDF would omit the text \"" + lost->toStdString() + "\"");
 
   QByteArray bytes;
   QBuffer buffer(&bytes);

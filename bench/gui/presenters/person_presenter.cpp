@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/person_presenter.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace {
 /// Room above three rows of icons on the smallest page.
 constexpr int widest_px = 800, highest_px = 360;
 
-/// Enlarged by bicubic interpolation, by a whole factor that leaves it on the screen.
+/// Enlarges by bicubic interpolation with an integer factor that fits on the screen.
 QImage picture_of(const cv::Mat1f& kelvin, const GreyScale& grey, int magnification) {
   const int factor = std::max(1, std::min({magnification, widest_px / kelvin.cols, highest_px / kelvin.rows}));
   cv::Mat1d fine;
@@ -26,7 +27,7 @@ QImage picture_of(const cv::Mat1f& kelvin, const GreyScale& grey, int magnificat
   return to_image(fine, {grey.black_k, grey.white_k}, ColourMap::white_hot);
 }
 
-/// "person-20260131T123456Z-identify", with a number behind it where there is one of this second.
+/// "person-20260131T123456Z-identify", with a number if the name is already used in this second.
 std::filesystem::path new_folder(const std::filesystem::path& sessions, PersonTask task) {
   constexpr std::string_view before = "session";
   const std::string name = "person" + session_folder_name(std::string(to_string(task))).substr(before.size());

@@ -1,4 +1,5 @@
-// A person in place of the observer of `identify` or `mrtd`: one frame after the other, answered by its alternatives,
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A person in place of the observer of `identify` or `mrtd`: frames in sequence, answered by their alternatives,
 // without feedback.
 #pragma once
 
@@ -16,10 +17,10 @@
 
 namespace todbench {
 
-/// An alternative as an icon: white hot on the grey of the background, whatever the theme.
+/// Returns an alternative as an icon: white hot on the grey of the background, for every theme.
 [[nodiscard]] QImage icon_image(const cv::Mat1d& icon);
 
-/// What a person is asked, in the words of the page.
+/// The question to a person, as entered on the page.
 struct PersonQuestion {
   PersonTask task = PersonTask::identify;
   std::string sensor = "sc2000";
@@ -29,23 +30,23 @@ struct PersonQuestion {
   std::vector<double> of_nyquist{};                     ///< bars: frequencies
   BarAxis axis = BarAxis::horizontal;                   ///< bars
   BarCriterion criterion = BarCriterion::four_or_five;  ///< bars
-  int each = 2;  ///< of every target and range, or of every contrast and frequency
+  int each = 2;                                         ///< per target and range, or per contrast and frequency
   std::uint64_t seed = 1;
 };
-/// The frames of that question, at the accuracy `normal`. Errors: of the loaders and of PersonExperiment.
+/// Computes the frames of a question at the accuracy `normal`. Errors: those of the loaders and of PersonExperiment.
 [[nodiscard]] Result<PersonExperiment> person_experiment(const PersonQuestion& question);
 
-/// In the window's thread.
+/// Used in the window's thread.
 class PersonPresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit PersonPresenter(QObject* parent = nullptr);
 
-  /// Answers go into a new folder below `sessions`.
+  /// Answers are written to a new folder in `sessions`.
   void begin(PersonExperiment experiment, const std::filesystem::path& sessions, std::optional<int> shown_ms,
              int magnification = 24);
-  /// The person's choice for the frame that is or was shown.
+  /// The person's answer to the frame shown now or last.
   void answer(std::size_t alternative);
   /// Ends with the answers so far.
   void abort();
@@ -53,10 +54,10 @@ class PersonPresenter final : public QObject {
   [[nodiscard]] HumanState state() const { return state_; }
   [[nodiscard]] const QImage& picture() const { return picture_; }
   [[nodiscard]] const std::optional<PersonExperiment>& experiment() const { return experiment_; }
-  [[nodiscard]] const std::vector<PersonAnswer>& answers() const { return answers_; }
-  /// Where they were written; empty before.
+  [[nodiscard]] const std::vector<ExperimentAnswer>& answers() const { return answers_; }
+  /// Folder of the written answers; empty before.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// Why the answers could not be kept; empty otherwise.
+  /// Reason why the answers could not be stored; otherwise empty.
   [[nodiscard]] QString problem() const { return problem_; }
 
  signals:
@@ -70,7 +71,7 @@ class PersonPresenter final : public QObject {
   std::filesystem::path sessions_, folder_;
   std::optional<int> shown_ms_;
   int magnification_ = 24;
-  std::vector<PersonAnswer> answers_;
+  std::vector<ExperimentAnswer> answers_;
   QElapsedTimer since_shown_;
   QImage picture_;
   HumanState state_ = HumanState::idle;

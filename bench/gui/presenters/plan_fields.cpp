@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/plan_fields.h"
 
 #include <algorithm>
@@ -26,13 +27,18 @@ QStringList list_of(const std::vector<std::string>& words) {
   return out;
 }
 
+QString with_full_stop(const QString& text) {
+  return text.endsWith('.') ? text : text + ".";
+}
+
 QString tool_tip_of(const KeyAt& at) {
   const QString takes = QString::fromStdString(expected_of(at.key->type));
   const QString standard = QString::fromStdString(plain_text(at.key->type, default_of(at)));
-  return text_of(at.key->sentence) + ". Takes " + takes + (standard.isEmpty() ? "" : "; default " + standard);
+  return with_full_stop(text_of(at.key->sentence)) + " Value: " + takes +
+         (standard.isEmpty() ? "" : "; default " + standard);
 }
 
-/// Why a text is no value of a key; otherwise it is in the plan.
+/// Sets a text in the plan; returns an error if it is not a value of the key.
 QString enter(const KeyAt& at, Plan& plan, const QString& text) {
   const auto value = value_from_text(type_in(*at.key, plan), text.toStdString());
   if (!value) return text_of(at.key->name) + ": " + QString::fromStdString(value.error().message);
@@ -44,7 +50,7 @@ QString shown_value(const KeyAt& at, const Plan& plan) {
   return QString::fromStdString(plain_text(at.key->type, at.key->place.get(plan, at.row)));
 }
 
-/// What the type of a key asks for.
+/// Sets the kind of input for the type of a key.
 struct AskFor {
   PlanField& field;
   const PlanKey& key;
@@ -71,7 +77,7 @@ struct AskFor {
     field.words = list_of(type.words);
   }
   void operator()(const NumbersKey& type) const {
-    // As many as there have to be are written in one line; otherwise there are rows to add and remove.
+    // A fixed number of values is written in one line; otherwise the field has rows to add and remove.
     if (type.count) return;
     field.kind = FieldKind::rows;
     const QString noun = text_of(type.noun);
@@ -104,7 +110,7 @@ PlanField field_of(const KeyAt& at) {
   return field;
 }
 
-/// The section whose rows stand beside the elements of a key, if there is one.
+/// Returns the section with one row per element of a key, if there is one.
 const PlanSection* section_beside(std::string_view path) {
   for (const PlanSection& section : plan_sections()) {
     if (section.form.beside == path) return &section;
@@ -138,7 +144,7 @@ QString rows_shown(const KeyAt& list, const PlanSection& section, const Plan& pl
   return rows.join(", ");
 }
 
-/// The rows of the section that belong to elements that have values; those of no element go with it.
+/// Sets the rows of elements with values; rows of removed elements are removed too.
 QString enter_rows(const KeyAt& list, const PlanSection& section, Plan& plan, const QString& text) {
   Plan changed = plan;
   QStringList elements;
@@ -147,7 +153,7 @@ QString enter_rows(const KeyAt& list, const PlanSection& section, Plan& plan, co
     QStringList values;
     for (const QString& value : row.split(':')) values << value.trimmed();
     if (values.size() > static_cast<qsizetype>(section.keys.size()))
-      return "'" + row.trimmed() + "': more values than columns";
+      return "'" + row.trimmed() + "' has more values than the table has columns";
     elements << values.front();
     rows.push_back(std::move(values));
   }
@@ -159,7 +165,7 @@ QString enter_rows(const KeyAt& list, const PlanSection& section, Plan& plan, co
     if (std::all_of(rows[i].begin() + 1, rows[i].end(), [](const QString& v) { return v.isEmpty(); })) continue;
     const std::size_t row = section.count(changed);
     section.rows.resize(changed, row + 1);
-    // A row that was there keeps the number that it was written with.
+    // An existing row keeps the number as it was written.
     const auto before = row_at(section, plan, numbers[i]);
     section.keys.front().place.set(changed, row, KeyValue(before ? first_of(section, plan, *before) : numbers[i]));
     for (std::size_t k = 1; k < section.keys.size(); ++k) {
@@ -172,10 +178,11 @@ QString enter_rows(const KeyAt& list, const PlanSection& section, Plan& plan, co
   return {};
 }
 
-/// A list with the section beside it as one table.
+/// A list and its section as one table.
 PlanField field_of(const KeyAt& list, const PlanSection& section) {
   PlanField field = field_of(list);
-  field.tool_tip += ". Beside it: " + text_of(section.sentence) + " Empty: none is demanded";
+  field.tool_tip = with_full_stop(field.tool_tip) + " Next column: " + with_full_stop(text_of(section.sentence)) +
+                   " An empty cell sets no limit.";
   for (std::size_t k = 1; k < section.keys.size(); ++k)
     field.columns.push_back({with_unit(text_of(section.form.label), section.keys[k].unit), {}});
   for (const PlanKey& key : section.keys) field.paths.push_back(path_of(section, key));
@@ -184,7 +191,7 @@ PlanField field_of(const KeyAt& list, const PlanSection& section) {
   return field;
 }
 
-/// A name of a key as the head of a column, its unit once: "At least", "Delta t (K)".
+/// A name of a key as a column heading with its unit: "At least", "Delta t (K)".
 QString column_head(const PlanKey& key) {
   QString words = text_of(key.name);
   if (const QString unit = "_" + text_of(key.unit).toLower(); words.endsWith(unit)) words.chop(unit.size());
@@ -216,7 +223,7 @@ QString enter_table(const PlanSection& section, Plan& plan, const QString& text)
   section.rows.resize(changed, rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].size() > static_cast<qsizetype>(section.keys.size()))
-      return "'" + rows[i].join(": ") + "': more values than columns";
+      return "'" + rows[i].join(": ") + "' has more values than the table has columns";
     for (std::size_t k = 0; k < section.keys.size(); ++k) {
       const QString value = rows[i].value(static_cast<qsizetype>(k));
       // A new row has the defaults.
@@ -229,7 +236,7 @@ QString enter_table(const PlanSection& section, Plan& plan, const QString& text)
   return {};
 }
 
-/// The rows of a repeated section as a table of their own.
+/// The rows of a repeated section as a separate table.
 PlanField field_of(const PlanSection& section) {
   PlanField field{.label = text_of(section.form.label),
                   .tool_tip = text_of(section.sentence),
@@ -264,7 +271,7 @@ QString text_of_rows(const std::vector<QStringList>& rows) {
 std::vector<QStringList> rows_of_text(const QString& text) {
   std::vector<QStringList> rows;
   QString value;
-  bool quoted = false, empty = true;  // whether the row has anything in it
+  bool quoted = false, empty = true;  // `empty`: the row has no content yet
   QStringList row;
   const auto end_value = [&] {
     row << value.trimmed();

@@ -1,5 +1,6 @@
-// The lines of the plan's form as values, from the table of the plan's keys: what each asks for, how it reads a plan
-// and changes one.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lines of the plan's form as values, from the table of the plan's keys: kind of input, reading from a plan, change of
+// a plan.
 #pragma once
 
 #include <QString>
@@ -11,7 +12,7 @@
 
 namespace todbench {
 
-/// What a value asks for.
+/// Kind of input of a value.
 enum class FieldKind {
   text,
   number,
@@ -21,42 +22,42 @@ enum class FieldKind {
   name,    ///< one of `words`, or a file
   file,    ///< the name of a file
   boxes,   ///< any of `words`, with commas
-  rows,    ///< rows with commas, their values with colons; empty values where a column is not needed. A value with one
-           ///< of these in it stands in double quotes, its own quotes doubled; not in rows of one column
+  /// Rows with commas, their values with colons; unused columns have empty values. A value that contains one of these
+  /// is in double quotes, its own quotes doubled; not in rows of one column.
+  rows,
 };
 
-/// Tables of more columns than this stand below their label, not beside it.
+/// Tables with more columns are placed below their label instead of next to it.
 inline constexpr std::size_t most_columns_beside = 3;
 
-/// The text of rows of several columns, and the rows of such a text.
+/// Converts rows of several columns to text, and back.
 [[nodiscard]] QString text_of_rows(const std::vector<QStringList>& rows);
 [[nodiscard]] std::vector<QStringList> rows_of_text(const QString& text);
 
 /// A column of a field of rows.
 struct FieldColumn {
   QString title;      ///< with the unit
-  QStringList words;  ///< names that may stand in it, beside others; none: anything
-  QString longest{};  ///< that has to be seen whole; empty: the title
+  QStringList words;  ///< suggested names; empty: none. Other texts are accepted too
+  QString longest{};  ///< text that has to be fully visible; empty: the title
 };
 
-/// A line of the form. What it accepts is what can be read and is in range; what the rest of the plan says against it
-/// is the plan's to judge.
+/// A line of the form. It accepts every readable value in range; the plan itself judges conflicts with other values.
 struct PlanField {
   QString label;        ///< with the unit
-  QString tool_tip;     ///< what it is, what it takes and its default
-  QString object_name;  ///< of the part of the window
+  QString tool_tip;     ///< meaning, accepted values and default
+  QString object_name;  ///< of the widget
   FieldKind kind = FieldKind::text;
   QStringList words{};
-  QString when_empty{};  ///< what an empty text means, where it may be empty
+  QString when_empty{};  ///< meaning of an empty text, if it may be empty
   std::vector<FieldColumn> columns{};
   int low = 0, high = 0;
-  std::vector<std::string> paths{};  ///< of its keys: Error::key with one of these is about this line
+  std::vector<std::string> paths{};  ///< of its keys: an Error::key equal to one of them belongs to this line
   std::function<QString(const Plan&)> shown{};
-  /// Puts a text into the plan. Returns in one sentence why it cannot, and leaves the plan as it is.
+  /// Sets a text in the plan. On an error returns a sentence and leaves the plan as it is.
   std::function<QString(Plan&, const QString&)> entered{};
 };
 
-/// The keys that have a line, in the order of the table (bench/plan/plan_key_table.cpp).
+/// Returns the keys that have a line, in the order of the table (bench/plan/plan_key_table.cpp).
 [[nodiscard]] std::vector<PlanField> plan_fields();
 
 }  // namespace todbench

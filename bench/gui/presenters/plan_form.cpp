@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/plan_form.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ void PlanForm::enter(std::size_t i, const QString& text) {
   Line& line = lines_[i];
   line.entered = true;
   const QString wrong = fields_[i].entered(draft_, text.trimmed());
-  // A null text says that there is none; an empty one may be what was entered.
+  // A null text means no error; an empty one may be an entered text.
   line.unreadable = wrong.isEmpty() ? QString() : text.isNull() ? QString("") : text;
   line.problem = wrong;
   judge();

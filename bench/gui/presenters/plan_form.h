@@ -1,4 +1,5 @@
-// The plan's form while it is filled in: what was entered, and what is wrong with it line by line.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plan's form while it is edited: entered texts, and errors line by line.
 #pragma once
 
 #include <QString>
@@ -10,34 +11,34 @@
 
 namespace todbench {
 
-/// Lines that need each other (a target of kind scpi needs addresses) are entered one after the other: until all are
-/// right the plan on the bench stays what it was.
+/// Lines that depend on each other (a target of kind scpi needs addresses) are entered one after the other. Until all
+/// are valid, the plan of the bench does not change.
 class PlanForm {
  public:
   explicit PlanForm(const Plan& plan);
 
   [[nodiscard]] const std::vector<PlanField>& fields() const { return fields_; }
-  /// What line `i` shows: what was entered last, or what the plan says.
+  /// Displayed text of line `i`: the last entered one, or that of the plan.
   [[nodiscard]] QString text(std::size_t i) const;
-  /// Why line `i` is not right; empty: it is.
+  /// Error of line `i`; empty: it is valid.
   [[nodiscard]] QString problem(std::size_t i) const { return lines_[i].problem; }
-  /// What is wrong with keys that have no line.
+  /// Errors of keys without a line.
   [[nodiscard]] const QStringList& other_problems() const { return others_; }
-  /// Nothing is wrong: draft() can be put on the bench.
+  /// Whether there are no errors: draft() can become the plan of the bench.
   [[nodiscard]] bool right() const;
   [[nodiscard]] const Plan& draft() const { return draft_; }
 
   void enter(std::size_t i, const QString& text);
-  /// The bench refuses the draft, for example because a file cannot be read.
+  /// Reports that the bench rejects the draft, for example because a file cannot be read.
   void refused(const Error& error);
-  /// Everything as the plan says; what was entered is forgotten.
+  /// Shows the plan in all lines and discards entered texts.
   void reset(const Plan& plan);
-  /// The plan has changed elsewhere: what was entered and is not in it stays entered.
+  /// Adopts a plan that was changed elsewhere; entered texts that are not in it stay.
   void rebase(const Plan& plan);
 
  private:
   struct Line {
-    QString unreadable;  ///< what was entered and is no value
+    QString unreadable;  ///< entered text that is not a valid value
     QString problem;
     bool entered = false;
   };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/plan_presenter.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ QString why_not(const Result<void>& done) {
   return done ? QString() : sentence(done.error());
 }
 
-/// Whether the expected thresholds of one plan hold for the other.
+/// Whether the expected thresholds of one plan are valid for the other.
 bool same_thresholds(const Plan& a, const Plan& b) {
   return a.target.delta_t_k == b.target.delta_t_k && a.target.plates == b.target.plates &&
          a.target.distance_m == b.target.distance_m && a.fit == b.fit && a.observer == b.observer &&
@@ -28,7 +29,7 @@ bool same_thresholds(const Plan& a, const Plan& b) {
          a.simulation.skip == b.simulation.skip && a.simulation.force == b.simulation.force;
 }
 
-/// The plan without what a tolerance sets: prices of plans that are equal so are equal.
+/// Returns the plan without the settings of a tolerance: plans that are then equal have equal prices.
 Plan without_tolerance(Plan plan) {
   plan.simulation.tolerance_percent = 1;
   plan.schedule.half_width_percent = 10;
@@ -41,7 +42,7 @@ struct LookAhead {
   QString misfit;
 };
 
-/// `expected` where the thresholds of the plan are known already.
+/// `expected`: the thresholds of the plan, if already known.
 Result<LookAhead> looked_ahead(const LoadedPlan& loaded, std::optional<std::vector<ExpectedThreshold>> expected,
                                EffectPlanner& planner, const std::stop_token& stop) {
   LookAhead out{.expected = std::move(expected), .misfit = {}};
@@ -71,13 +72,13 @@ PlanPresenter::PlanPresenter(Workbench& bench, QObject* parent) : QObject(parent
   connect(&delay_, &QTimer::timeout, this, &PlanPresenter::look_ahead);
   last_ = bench_.plan();
   connect(&bench_, &Workbench::plan_changed, this, &PlanPresenter::plan_changed);
-  // A plan names its device: an older one would be for another.
+  // A plan names its device: older plans of the undo list belong to another.
   connect(&bench_, &Workbench::device_selected, this, [this] {
     undone_to_.clear();
     redone_to_.clear();
     emit updated();
   });
-  // What was put off during a measurement.
+  // Runs the forecasts that were postponed during a measurement.
   connect(&bench_, &Workbench::activity_changed, this, [this] {
     if (bench_.activity() != Activity::idle) return;
     if (expected_.empty()) delay_.start();
@@ -198,7 +199,7 @@ void PlanPresenter::plan_changed() {
   }
   if (!expected_of_ || !same_thresholds(*expected_of_, bench_.plan())) expected_.clear();
   if (!prices_of_ || without_tolerance(bench_.plan()) != *prices_of_) prices_.clear();
-  // Another contrast, plate or sensor: what was foreseen is of something else.
+  // The contrasts, plate or sensor changed: the forecast is no longer valid.
   if (forecast_ && without_tolerance(forecast_->plan) != without_tolerance(bench_.plan())) forecast_.reset();
   refresh();
   foresee();
@@ -220,7 +221,7 @@ void PlanPresenter::foresee() {
   forecasts_.start([this, loaded = *loaded_, priced, measuring](const std::stop_token& stop) {
     const Plan& plan = loaded.plan();
     auto seen = todbench::forecast(loaded, planner_);
-    // Also when a newer plan waits: while a slider moves the table follows plan by plan.
+    // Posted even if a newer plan waits, so that the table follows a moving slider plan by plan.
     bench_.post([this, plan, seen] {
       if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
       trouble_ = seen ? QString() : sentence(seen.error());
@@ -241,7 +242,7 @@ void PlanPresenter::foresee() {
 
 void PlanPresenter::look_ahead() {
   if (!loaded_) return;
-  // A running measurement needs the processor more than a forecast does.
+  // A running measurement has priority over a forecast.
   if (bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying) return;
   const auto known = expected_.empty() ? std::nullopt : std::optional(expected_);
   jobs_.start([this, loaded = *loaded_, known](const std::stop_token& stop) {

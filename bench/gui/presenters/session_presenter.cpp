@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/session_presenter.h"
 
 #include <QRegularExpression>
@@ -19,13 +20,13 @@
 namespace todbench {
 namespace {
 
-/// Without "session-" and the time, which stands in a column of its own.
+/// The name without "session-" and the time, which has a separate column.
 QString short_name(const QString& session) {
   static const QRegularExpression stamp("^session-[0-9]{8}T[0-9]{6}Z-");
   return QString(session).remove(stamp);
 }
 
-/// The unit under test in the words of the plan.
+/// The unit under test as named in the plan.
 QString unit_of(const std::filesystem::path& folder) {
   const auto text = read_text_file(folder / "session.toml");
   if (!text) return {};
@@ -33,7 +34,7 @@ QString unit_of(const std::filesystem::path& folder) {
   return reader ? QString::fromStdString(reader->text("unit", "")) : QString();
 }
 
-/// What the list shows comes from these files; the others are checked when the session is opened.
+/// Whether the manifest lists the files of the displayed columns; the others are checked when the session is opened.
 bool shown_files_listed(const std::filesystem::path& folder) {
   std::error_code none;
   for (const char* file : {"provenance.json", "session.toml", "verdict.json"}) {
@@ -57,7 +58,8 @@ Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
   const auto text = read_text_file(folder / "provenance.json");
   if (!text) return tl::unexpected(text.error());
   const Json json = Json::parse(*text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, folder.string() + ": provenance.json is not JSON");
+  if (json.is_discarded())
+    return fail(ErrorCode::invalid_input, folder.string() + ": provenance.json is not valid JSON");
   auto provenance = provenance_from(json);
   if (!provenance) return tl::unexpected(provenance.error());
   SessionEntry entry;
@@ -93,7 +95,7 @@ std::vector<SessionEntry> matching(const std::vector<SessionEntry>& sessions, co
 }
 
 Result<Exported> export_reports(const OpenedSession& opened) {
-  // Since it was opened the files may have been changed.
+  // The files may have changed since the session was opened.
   if (!opened.session.cut_off) {
     if (auto intact = require_intact(opened.folder); !intact) return tl::unexpected(intact.error());
   }
@@ -187,7 +189,7 @@ void SessionPresenter::compare_with(const std::filesystem::path& other) {
 
 void SessionPresenter::compare(const std::filesystem::path& other) {
   if (!current_->session.curve) {
-    emit problem(current_->name + ": the session holds no curve");
+    emit problem(current_->name + ": the session contains no TOD curve and cannot be compared");
     return;
   }
   in_background<ComparedSessions>(

@@ -1,4 +1,5 @@
-// Sessions on disk: list, open, compare, export, run again.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sessions on disk: list, open, compare, export, repeat.
 #pragma once
 
 #include <QObject>
@@ -17,32 +18,33 @@ namespace todbench {
 struct SessionEntry {
   std::filesystem::path folder;
   QString name, when, state;
-  QString unit;     ///< in the plan's words, else the camera's model; "simulation" where there is none
-  QString serial;   ///< of the camera; empty: there is none
-  QString verdict;  ///< "pass", "fail", "inconclusive"; empty: there is none that the manifest vouches for
+  QString unit;     ///< as in the plan, otherwise the camera's model; "simulation" without a camera
+  QString serial;   ///< of the camera; empty: no camera
+  QString verdict;  ///< "pass", "fail", "inconclusive"; empty: no verdict that the manifest confirms
 };
 
-/// The sessions whose serial number, unit, name, date, verdict or state has every word of `filter` in it, in any case.
+/// Returns the sessions whose serial number, unit, name, date, verdict or state contains every word of `filter`,
+/// ignoring case.
 [[nodiscard]] std::vector<SessionEntry> matching(const std::vector<SessionEntry>& sessions, const QString& filter);
 
-/// A session as values.
+/// The data of a session.
 struct OpenedSession {
   std::filesystem::path folder;
   QString name;
   Session session;
   ReportData report;
   std::optional<HumanRecord> human;
-  bool recorded = false;  ///< the frames are in it: it can be replayed
+  bool recorded = false;  ///< contains its frames and can be replayed
 };
 
-/// Two sessions side by side.
+/// Two compared sessions.
 struct ComparedSessions {
   QString a, b;
   TodCurve curve_a, curve_b;
   Comparison comparison;
 };
 
-/// Reads and writes in the background, in the order in which it is asked. In the window's thread.
+/// Reads and writes in the background, in the order of the requests. Used in the window's thread.
 class SessionPresenter final : public QObject {
   Q_OBJECT
 
@@ -55,16 +57,16 @@ class SessionPresenter final : public QObject {
   /// Reads a session; opened() or problem() follows.
   void open(const std::filesystem::path& folder);
   [[nodiscard]] const std::optional<OpenedSession>& current() const { return current_; }
-  /// The session that is open, or the one that is being opened, against another with the margin of its plan; compared()
-  /// or problem() follows.
+  /// Compares the open session (or the one being opened) with another, with the margin of its plan; compared() or
+  /// problem() follows.
   void compare_with(const std::filesystem::path& other);
   [[nodiscard]] const std::optional<ComparedSessions>& compared_sessions() const { return compared_; }
-  /// Writes report.html and report.pdf into the session that is open; exported() or problem() follows.
+  /// Writes report.html and report.pdf into the open session; exported() or problem() follows.
   void export_reports();
-  /// Puts the plan of the session that is open back on the bench, for another run.
+  /// Puts the plan of the open session back on the bench, for another run.
   void use_plan_again();
 
-  /// Of the session that is open, or of the comparison when there is one.
+  /// Of the open session, or of the comparison if there is one.
   [[nodiscard]] Plot tod_figure(AxisScale acuity_axis) const;
 
  signals:
@@ -83,20 +85,20 @@ class SessionPresenter final : public QObject {
   std::vector<SessionEntry> sessions_;
   std::optional<OpenedSession> current_;
   std::optional<ComparedSessions> compared_;
-  int opening_ = 0;  ///< sessions that are on their way to be current_
+  int opening_ = 0;  ///< sessions being opened as current_
   std::optional<std::filesystem::path> compare_when_opened_;
   JobRunner list_jobs_, jobs_;
 };
 
-/// Reads a session with everything that is shown of it. Errors: as open_session(), report_data(), read_human().
+/// Reads a session with all displayed data. Errors: those of open_session(), report_data() and read_human().
 [[nodiscard]] Result<OpenedSession> read_opened_session(const std::filesystem::path& folder);
 struct Exported {
   QString html, pdf;
 };
-/// Writes report.html and report.pdf into the session's folder and their sums into its manifest. Any thread. `io` with
-/// the path; `invalid_input` when files of the session were changed.
+/// Writes report.html and report.pdf into the session's folder and their hashes into its manifest. Any thread. Errors:
+/// `io` with the path; `invalid_input` if files of the session were changed.
 [[nodiscard]] Result<Exported> export_reports(const OpenedSession& opened);
-/// Sessions directly below a folder, newest first; unreadable ones are left out.
+/// Returns the sessions directly in a folder, newest first; unreadable ones are left out.
 [[nodiscard]] std::vector<SessionEntry> sessions_below(const std::filesystem::path& folder);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/workbench.h"
 
 #include <algorithm>
@@ -17,14 +18,14 @@ std::vector<DeviceEntry> built_in_devices() {
   entries.push_back({.id = emulated_laboratory,
                      .group = "Emulated",
                      .label = "Emulated laboratory",
-                     .detail = "GigE camera, black body and plate stage, on loopback",
+                     .detail = "GigE camera, black body and plate stage on the loopback interface",
                      .health = DeviceHealth::ready});
 #endif
   for (const auto& name : resource_names(ResourceKind::sensor)) {
     entries.push_back({.id = QString::fromStdString(camera_id(camera_scheme::sim, name)),
                        .group = "Simulated sensors",
                        .label = QString::fromStdString(name),
-                       .detail = "Sensor model, as fast as the processor",
+                       .detail = "Sensor model; the processor limits the frame rate",
                        .health = DeviceHealth::ready});
   }
   return entries;
@@ -106,13 +107,13 @@ void Workbench::rescan() {
     post([this, listing] {
       auto entries = built_in_devices();
       for (const auto& camera : listing.cameras) {
-        // The emulated laboratory and the shipped sensors are in the list already.
+        // The emulated laboratory and the shipped sensors are already in the list.
         const QString id = QString::fromStdString(camera.id);
         if (camera_name(camera.id, camera_scheme::sim) || camera.address.starts_with("127.")) continue;
         entries.push_back({.id = id,
                            .group = QString::fromStdString(camera.transport),
                            .label = QString::fromStdString(camera.vendor + " " + camera.model),
-                           .detail = QString::fromStdString("serial " + camera.serial +
+                           .detail = QString::fromStdString("serial number " + camera.serial +
                                                             (camera.address.empty() ? "" : ", at " + camera.address)),
                            .health = DeviceHealth::ready});
       }
@@ -143,7 +144,8 @@ Result<Plan> Workbench::with_devices(Plan plan, const QString& device, const std
   }
   return with_laboratory(std::move(plan), *laboratory_);
 #else
-  return fail(ErrorCode::not_found, "this build has no camera libraries: nothing can be emulated");
+  return fail(ErrorCode::not_found,
+              "this build has no camera libraries and cannot emulate the laboratory; choose a simulated sensor");
 #endif
 }
 
@@ -169,7 +171,7 @@ void Workbench::begin(Activity activity, Devices devices, DeviceJob job) {
           result = tl::unexpected(ready.error());
         }
 #ifdef TODBENCH_WITH_ARAVIS
-        // A laboratory whose camera is gone is of no use any more: the next run starts another.
+        // A laboratory without its camera is useless: the next run starts another.
         if (!result && result.error().code == ErrorCode::disconnected) {
           const std::lock_guard lock(laboratory_mutex_);
           laboratory_.reset();
@@ -180,7 +182,7 @@ void Workbench::begin(Activity activity, Devices devices, DeviceJob job) {
 }
 
 void Workbench::stop() {
-  // A job that was waiting never says that it has ended.
+  // A dropped job does not report its end.
   if (bench_.stop() == JobRunner::Waiting::dropped) {
     ++run_;
     set_activity(Activity::idle);

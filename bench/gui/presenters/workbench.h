@@ -1,4 +1,5 @@
-// What all views share: the plan, the devices, the thread that works with them, the live pictures.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// State shared by all views: the plan, the devices, the device thread, the live pictures.
 #pragma once
 
 #include <QObject>
@@ -16,7 +17,7 @@
 
 namespace todbench {
 
-/// What a badge says about a device.
+/// State of a device on its badge.
 enum class DeviceHealth { ready, in_use, lost };
 [[nodiscard]] QString name_of(DeviceHealth health);
 
@@ -28,16 +29,16 @@ struct DeviceEntry {
 };
 inline constexpr const char* emulated_laboratory = "emulated";
 
-/// What the bench does now. One at a time.
+/// Present activity of the bench. One at a time.
 enum class Activity { idle, looking, aligning, measuring, replaying };
 [[nodiscard]] QString name_of(Activity activity);
 
-/// Lives in the thread of the window; members marked so may be called from jobs.
+/// Lives in the window's thread; members marked "any thread" may be called from jobs.
 class Workbench final : public QObject {
   Q_OBJECT
 
  public:
-  /// Sessions are looked for and written in `sessions`.
+  /// Sessions are read from and written to `sessions`.
   explicit Workbench(std::filesystem::path sessions, QObject* parent = nullptr);
   ~Workbench() override;
 
@@ -47,32 +48,32 @@ class Workbench final : public QObject {
 
   [[nodiscard]] const std::vector<DeviceEntry>& devices() const { return devices_; }
   [[nodiscard]] QString device() const { return device_; }
-  /// Puts the device into the plan. Errors: `invalid_input` for a simulated sensor that cannot be read.
+  /// Puts the device into the plan. Errors: `invalid_input` for an unreadable simulated sensor.
   [[nodiscard]] Result<void> select_device(const QString& id);
-  /// Looks for cameras; devices_changed() follows.
+  /// Searches for cameras; devices_changed() follows.
   void rescan();
 
   [[nodiscard]] Activity activity() const { return activity_; }
-  /// Runs a job with the devices; what ran before is stopped. `job` is called on the device thread with the plan whose
-  /// devices are ready; the error that it returns (`interrupted` is none) becomes a trouble().
+  /// Stops the running job and runs another with the devices. `job` is called on the device thread with the plan, whose
+  /// devices are ready; the error that it returns becomes a trouble(), except `interrupted`.
   using DeviceJob = std::function<Result<void>(const Plan&, std::stop_token)>;
   void run(Activity activity, DeviceJob job);
-  /// The same for a job that needs none of the devices: it gets the plan as it is.
+  /// The same for a job without devices: it gets the plan as it is.
   void run_without_devices(Activity activity, DeviceJob job);
   void stop();
-  /// Ends all jobs and waits for them. To be called before anything that a job uses goes.
+  /// Ends all jobs and waits for them. Call it before objects that a job uses are destroyed.
   void shut_down();
   [[nodiscard]] LiveFeed& feed() { return feed_; }
 
-  /// Cuts the power of the emulated camera, as a pulled cable does: to show and to test what happens then. Any thread.
+  /// Cuts the power of the emulated camera, like a pulled cable, for demonstrations and tests. Any thread.
   void switch_emulated_camera_off();
 
-  /// What a job learns about the device it uses. Window's thread.
+  /// State of the device as a job observes it. Window's thread.
   void report_health(DeviceHealth health) { set_health(health); }
 
-  /// Calls `what` in the window's thread, unless the workbench is gone by then. Any thread.
+  /// Calls `what` in the window's thread, unless the workbench no longer exists. Any thread.
   void post(std::function<void()> what);
-  /// Says something to the user. Any thread.
+  /// Shows a message to the user. Any thread.
   void note(const std::string& sentence);
 
  signals:
@@ -81,7 +82,7 @@ class Workbench final : public QObject {
   void device_selected();
   void activity_changed();
   void noted(const QString& sentence);
-  /// Something went wrong; `retry` says whether doing the same again may help.
+  /// An error occurred; the window offers to retry.
   void trouble(const QString& sentence);
 
  private:
@@ -97,7 +98,7 @@ class Workbench final : public QObject {
   QString device_ = emulated_laboratory;
   std::vector<DeviceEntry> devices_;
   Activity activity_ = Activity::idle;
-  std::uint64_t run_ = 0;  ///< number of the last run: an older one that ends says nothing
+  std::uint64_t run_ = 0;  ///< number of the last run; the end of an older one is ignored
   LiveFeed feed_;
 #ifdef TODBENCH_WITH_ARAVIS
   std::mutex laboratory_mutex_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/align_view.h"
 
 #include <QHBoxLayout>
@@ -17,7 +18,7 @@ QPolygonF polygon_of(const Polygon& points) {
   return out;
 }
 
-/// What has to be seen, with a twentieth round it; empty where nothing was found.
+/// Bounding rectangle of the outlines with a margin of a twentieth; empty without outlines.
 QRectF with_margin(const std::vector<PictureOutline>& outlines) {
   QRectF all;
   for (const auto& outline : outlines) all |= outline.points.boundingRect();
@@ -32,7 +33,8 @@ AlignView::AlignView(Workbench& bench, AlignPresenter& presenter, LookPresenter&
   auto* layout = new QHBoxLayout(this);
   picture_ = new PictureView;
   picture_->setObjectName("alignPicture");
-  picture_->set_placeholder("Start to show the first plate of the plan at its highest contrast and find it.");
+  picture_->set_placeholder(
+      "Start the alignment. It shows the first plate of the plan at its highest contrast and locates it.");
   picture_->setAccessibleName("Plate");
   layout->addWidget(picture_, 1);
   auto* panel = new QWidget;
@@ -55,13 +57,13 @@ AlignView::AlignView(Workbench& bench, AlignPresenter& presenter, LookPresenter&
   figures_ = plain_table({"Quantity", "Value"}, "alignFigures");
   figures_->setColumnWidth(0, 150);
   side->addWidget(figures_, 1);
-  side->addWidget(title_label("To mend"));
-  hints_ = hint_label("Nothing known yet.");
+  side->addWidget(title_label("Corrections"));
+  hints_ = hint_label("Not known yet.");
   hints_->setObjectName("alignHints");
   side->addWidget(hints_);
   side->addWidget(
-      hint_label("Blue: triangles where the plate says they are. Orange: what the observer will see. "
-                 "Green: the edge of the plate."));
+      hint_label("Blue: triangles at their nominal places. Orange: windows that the observer judges. "
+                 "Green: edge of the plate."));
   start_ = primary_button("Start alignment", "startAligning");
   side->addWidget(start_);
   layout->addWidget(panel);
@@ -87,7 +89,7 @@ void AlignView::show_alignment() {
   for (const auto& [name, value] : presenter_.figures()) rows << QStringList{name, value};
   fill_table(*figures_, rows);
   const QStringList hints = presenter_.hints();
-  hints_->setText(hints.isEmpty() ? "Nothing." : "• " + hints.join("\n• "));
+  hints_->setText(!presenter_.alignment() ? "Not known yet." : hints.isEmpty() ? "None." : "• " + hints.join("\n• "));
   const auto& alignment = presenter_.alignment();
   if (!alignment) {
     verdict_->setText("Not aligned yet");
@@ -104,7 +106,7 @@ void AlignView::show_alignment() {
     const QRectF window(t.window.x - 0.5, t.window.y - 0.5, t.window.width, t.window.height);
     outlines.push_back({QPolygonF(window), QColor(230, 159, 0), Qt::DotLine});
   }
-  // The plate may cover a tenth of the picture: large here, in its place there.
+  // The plate may cover a tenth of the picture: this view is enlarged, the other shows its place.
   whole_->set_outlines({outlines.front()});
   picture_->set_region(with_margin(outlines));
   picture_->set_outlines(std::move(outlines));

@@ -1,4 +1,5 @@
-// Align: the plate over the live picture, and what to mend.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Align view: the plate over the live picture, and the necessary corrections.
 #pragma once
 
 #include <QWidget>

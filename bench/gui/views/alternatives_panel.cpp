@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/alternatives_panel.h"
 
 #include <QGridLayout>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr int icon_columns = 8;
 
-/// Shown before the name: "1" to "9", then "a", "b", ...
+/// Key shown before the name: "1" to "9", then "a", "b", ...
 QString key_of_alternative(int alternative) {
   return alternative < 9 ? QString::number(alternative + 1) : QString(QChar('a' + alternative - 9));
 }
@@ -39,7 +40,7 @@ void AlternativesPanel::set_alternatives(const PersonExperiment& experiment) {
     button->setText(count == 2 ? name : key_of_alternative(i) + "  " + name);
     button->setToolTip(name);
     button->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
-    button->setFocusPolicy(Qt::NoFocus);  // the keys are those of the page
+    button->setFocusPolicy(Qt::NoFocus);  // the page handles the keys
     connect(button, &QToolButton::clicked, this, [this, i] { emit chosen(i); });
     grid_->addWidget(button, i / icon_columns, i % icon_columns, Qt::AlignCenter);
     buttons_.push_back(button);
@@ -50,7 +51,7 @@ void AlternativesPanel::clear() {
   for (QToolButton* button : buttons_) {
     grid_->removeWidget(button);
     button->hide();
-    button->deleteLater();  // the click that answered the last question may come from it
+    button->deleteLater();  // the button may be the sender of the current click
   }
   buttons_.clear();
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The alternatives of a question as icons, each a button with its key.
 #pragma once
 
@@ -18,9 +19,9 @@ class AlternativesPanel final : public QWidget {
  public:
   explicit AlternativesPanel(QWidget* parent = nullptr);
   void set_alternatives(const PersonExperiment& experiment);
-  /// Without any: nothing is shown.
+  /// Removes all alternatives: the panel is empty.
   void clear();
-  /// The alternative of a key: 1 to 9, then letters; the arrows of two. -1: none.
+  /// Returns the alternative of a key: 1 to 9, then letters; arrow keys for two alternatives. -1: none.
   [[nodiscard]] int of_key(int key) const;
 
  signals:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/chain_view.h"
 
 #include <QCheckBox>
@@ -27,7 +28,7 @@ QString words(std::string_view name) {
   return text;
 }
 
-/// The slider's range, in steps of 0.5 %.
+/// Range of the slider, in steps of 0.5 %.
 constexpr double nearest_m = 50, farthest_m = 8000;
 constexpr int range_steps = 1000;
 
@@ -38,7 +39,7 @@ ChainView::ChainView(ChainPresenter& presenter, QWidget* parent) : QWidget(paren
   auto* grid = new QGridLayout;
   int place = 0;
   for (const Stage stage : all_stages) {
-    // Title, picture and note have rows of their own: a note of three lines makes all four pictures smaller, not one.
+    // Title, picture and note have separate rows: a note of three lines then shrinks all four pictures equally.
     const int row = 3 * (place / 4), column = place % 4;
     grid->addWidget(title_label(QString("%1  %2").arg(place + 1).arg(name_of(stage))), row, column);
     auto* picture = new PictureView;
@@ -97,7 +98,7 @@ QWidget* ChainView::options_panel() {
   form->addRow("Exposure", index_);
   add_scene_rows(*form);
   layout->addLayout(form);
-  layout->addWidget(title_label("Simulate"));
+  layout->addWidget(title_label("Simulated effects"));
   auto* boxes = new QGridLayout;
   boxes->setHorizontalSpacing(4);
   boxes->setVerticalSpacing(4);
@@ -115,7 +116,7 @@ QWidget* ChainView::options_panel() {
   layout->addLayout(boxes);
   problem_ = hint_label();
   layout->addWidget(problem_);
-  layout->addWidget(hint_label("White is hot. All pictures show the same square at the same grey levels."));
+  layout->addWidget(hint_label("White is hot. All pictures show the same field with the same grey levels."));
   layout->addStretch();
   connect(what_, &QComboBox::currentIndexChanged, this, [this] {
     show_rows();
@@ -145,7 +146,7 @@ void ChainView::add_scene_rows(QFormLayout& form) {
   }
   form.addRow("Range", range_);
   form.addRow("", range_text_);
-  form.addRow("Air", air_);
+  form.addRow("Atmosphere", air_);
   connect(range_, &QSlider::valueChanged, this, &ChainView::request);
   connect(air_, &QComboBox::currentIndexChanged, this, &ChainView::request);
 }
@@ -168,7 +169,7 @@ void ChainView::showEvent(QShowEvent* event) {
 }
 
 void ChainView::request() {
-  ChainOptions options;
+  ChainSettings options;
   options.sensor = sensor_->currentText().toStdString();
   options.size_pitch = size_->value();
   options.delta_t_k = contrast_->value();

@@ -1,4 +1,5 @@
-// See the chain: the picture after every stage, side by side.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Chain view: the picture after every stage, side by side.
 #pragma once
 
 #include <QWidget>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/field_editor.h"
 
 #include <QApplication>
@@ -22,7 +23,7 @@ namespace {
 
 constexpr int most_rows_shown = 6;
 
-/// A line whose own undo has nothing to undo leaves Ctrl+Z to the plan.
+/// A line edit that passes Ctrl+Z to the plan if it has no change of its own to undo.
 class PlanLineEdit final : public QLineEdit {
  public:
   bool event(QEvent* event) override {
@@ -39,7 +40,7 @@ class PlanLineEdit final : public QLineEdit {
   }
 };
 
-/// Rolling the form past a box does not change what is in it.
+/// A combo box that ignores the wheel, so that scrolling the form does not change its value.
 class StillComboBox final : public QComboBox {
  protected:
   void wheelEvent(QWheelEvent* event) override { event->ignore(); }
@@ -75,7 +76,7 @@ bool edits_a_cell(const QTableWidget& table) {
   return focus != nullptr && table.viewport()->isAncestorOf(focus);
 }
 
-/// Says so to whoever listens to the table.
+/// Emits the table's signals.
 void add_row(QTableWidget& table, const QString& text) {
   const int row = table.rowCount();
   table.insertRow(row);
@@ -83,7 +84,7 @@ void add_row(QTableWidget& table, const QString& text) {
   table.setItem(row, 0, new QTableWidgetItem(text));  // NOLINT: of the table
 }
 
-/// An empty row is no value yet: what is typed into it will be.
+/// An empty row is not a value yet; typing into it makes it one.
 void edit_new_row(QTableWidget& table) {
   const QSignalBlocker quiet(&table);
   const int row = table.rowCount();
@@ -95,7 +96,7 @@ void edit_new_row(QTableWidget& table) {
   table.editItem(table.item(row, 0));
 }
 
-/// Which rows a text has; a colon separates values only where there are several columns.
+/// Shows the rows of a text; a colon separates values only if there are several columns.
 void show_rows(QTableWidget& table, const QString& text) {
   const QSignalBlocker quiet(&table);
   std::vector<QStringList> rows;

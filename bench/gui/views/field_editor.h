@@ -1,4 +1,5 @@
-// One line of the plan's form: the part that its value asks for, with what is wrong below it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One line of the plan's form: the widget for its kind of value, with its error below.
 #pragma once
 
 #include <QWidget>
@@ -10,21 +11,21 @@ class QLabel;
 
 namespace todbench {
 
-/// Shows and takes the text of a field, whatever it is edited with.
+/// Shows and edits the text of a field.
 class FieldEditor final : public QWidget {
   Q_OBJECT
 
  public:
-  /// The inner part has the field's object name, the sentence below it that name with "Problem".
+  /// The inner widget has the field's object name, the error label below it that name with "Problem".
   explicit FieldEditor(const PlanField& field, QWidget* parent = nullptr);
 
   [[nodiscard]] QString text() const { return text_(); }
-  /// Emits nothing. Where somebody is typing the text stays.
+  /// Sets the text without emitting a signal. While the user is typing, the text stays.
   void show_text(const QString& text);
   void show_problem(const QString& sentence);
 
  signals:
-  /// Somebody changed the value.
+  /// The user changed the value.
   void edited();
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/histogram_view.h"
 
 #include <QPainter>
@@ -24,7 +25,7 @@ void HistogramView::paintEvent(QPaintEvent* /*event*/) {
   const QRectF area(0, 0, width(), height() - text - 2);
   painter.fillRect(area, palette().color(QPalette::Base));
   if (bins_.empty()) return;
-  // Logarithmic heights: a plate of triangles is a few percent of the pixels.
+  // Logarithmic heights: the triangles of a plate are a few percent of the pixels.
   const double highest = std::log1p(*std::max_element(bins_.begin(), bins_.end()));
   const double step = area.width() / static_cast<double>(bins_.size());
   for (std::size_t i = 0; i < bins_.size() && highest > 0; ++i) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Counts per bin as bars.
 #pragma once
 
@@ -11,7 +12,7 @@ class HistogramView final : public QWidget {
 
  public:
   explicit HistogramView(QWidget* parent = nullptr);
-  /// Bins between two ends, which stand below in `unit`.
+  /// Shows bins between two ends, whose labels stand below.
   void show_bins(std::vector<int> bins, const QString& low, const QString& high);
   [[nodiscard]] QSize sizeHint() const override { return {200, 90}; }
   [[nodiscard]] QSize minimumSizeHint() const override { return {120, 70}; }

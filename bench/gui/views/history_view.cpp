@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/history_view.h"
 
 #include <QHBoxLayout>
@@ -36,7 +37,8 @@ QWidget* HistoryView::list_panel() {
   wrap_words(*list_);
   layout->addWidget(list_, 1);
   auto* add = plain_button("Add the sessions of this folder", "historyAdd");
-  add->setToolTip("Sessions of a camera with a serial number; one that is there already is not added again.");
+  add->setToolTip(
+      "Adds the sessions of cameras that have a serial number. Sessions already in the history are skipped.");
   layout->addWidget(add);
   connect(add, &QPushButton::clicked, this, [this] { presenter_.add_sessions(sessions_); });
   return panel;

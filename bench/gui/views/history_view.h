@@ -1,4 +1,5 @@
-// History: the measures of every unit over the years, each with its control charts.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// History view: the measures of every unit over the years, each with its control charts.
 #pragma once
 
 #include <QWidget>
@@ -17,7 +18,7 @@ class HistoryView final : public QWidget {
   Q_OBJECT
 
  public:
-  /// `sessions` is the folder whose sessions a button adds.
+  /// `sessions`: folder whose sessions a button adds.
   HistoryView(HistoryPresenter& presenter, std::filesystem::path sessions, QWidget* parent = nullptr);
 
  protected:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/human_view.h"
 
 #include <QCheckBox>
@@ -29,7 +30,7 @@ namespace {
 /// Questions of the page, in the order of the list.
 constexpr int of_triangles = 0, of_set = 1, of_bars = 2;
 
-/// "400, 800"; nothing where something is no number.
+/// Parses "400, 800"; empty if a part is not a number.
 std::optional<std::vector<double>> numbers_of(const QString& text) {
   std::vector<double> numbers;
   for (const QString& part : text.split(',', Qt::SkipEmptyParts)) {
@@ -55,10 +56,10 @@ QString question_title(BarCriterion criterion) {
     case BarCriterion::four_or_five:
       break;
   }
-  return "Which has four bars?";
+  return "Which one has four bars?";
 }
 
-/// Of frames without bars, all frequencies together.
+/// False alarms for frames without bars, over all frequencies.
 QString false_alarms_in_words(const PersonResult& result) {
   int seen = 0, shown = 0;
   for (const PersonShare& share : result.false_alarms) {
@@ -66,10 +67,10 @@ QString false_alarms_in_words(const PersonResult& result) {
     shown += share.shown;
   }
   return result.false_alarms.empty() ? QString()
-                                     : QString("<p>Bars seen in %1 of %2 frames without any</p>").arg(seen).arg(shown);
+                                     : QString("<p>Bars reported in %1 of %2 empty frames</p>").arg(seen).arg(shown);
 }
 
-/// What the answers say, and where they are.
+/// Summary of the answers and their folder.
 QString result_of_a_person(const PersonPresenter& person) {
   const PersonExperiment& experiment = *person.experiment();
   const PersonResult result = person_result(experiment, person.answers());
@@ -91,12 +92,13 @@ QString result_of_a_person(const PersonPresenter& person) {
   }
   const bool set = experiment.task() == PersonTask::identify;
   QString text = "<table cellspacing=4><tr><th>" + QString(set ? "Range" : "Frequency") + "</th><th>" +
-                 QString(set ? "right" : "75 %") + "</th></tr>" + rows + "</table>";
+                 QString(set ? "Correct" : "75 % point") + "</th></tr>" + rows + "</table>";
   if (set && result.r75_m.value)
-    text += "<p>75 % at " + QString::fromStdString(with_interval(result.r75_m.value, result.r75_m.ci95)) + " m</p>";
+    text +=
+        "<p>75 % correct at " + QString::fromStdString(with_interval(result.r75_m.value, result.r75_m.ci95)) + " m</p>";
   text += false_alarms_in_words(result);
   const QString where = QString::fromStdString(person.folder().filename().string());
-  return text + "<p>" + (person.problem().isEmpty() ? "Kept in " + where.toHtmlEscaped() : person.problem()) + "</p>";
+  return text + "<p>" + (person.problem().isEmpty() ? "Saved in " + where.toHtmlEscaped() : person.problem()) + "</p>";
 }
 
 }  // namespace
@@ -110,7 +112,7 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresente
   picture_ = new PictureView;
   picture_->setObjectName("humanPicture");
   picture_->setFocusPolicy(Qt::NoFocus);
-  // The grey of the surround of every patch: the eye adapts to one luminance.
+  // Grey of the surround of every patch: the eye adapts to one luminance.
   picture_->set_surround(QColor(128, 128, 128));
   picture_->setToolTip({});
   seen->addWidget(picture_, 1);
@@ -150,9 +152,9 @@ QWidget* HumanView::side_panel() {
   shown_ms_->setRange(50, 10000);
   shown_ms_->setValue(1000);
   shown_ms_->setSuffix(" ms");
-  shown_ms_->setAccessibleName("Time that a patch is shown");
+  shown_ms_->setAccessibleName("Display time of a patch");
   shown_ms_->setEnabled(false);
-  form->addRow("Number of each", per_size_);
+  form->addRow("Repetitions", per_size_);
   form->addRow(limited_, shown_ms_);
   side->addLayout(form);
   begin_ = primary_button("Begin", "beginHuman");
@@ -187,7 +189,7 @@ void HumanView::add_questions(QFormLayout& form) {
   air_ = new QComboBox;
   air_->setObjectName("humanAir");
   for (const auto& name : atmosphere_names()) {
-    // It has a number of its own, which this page does not ask for.
+    // Needs a coefficient, which this page does not ask for.
     if (name != "beer-lambert") air_->addItem(QString::fromStdString(name));
   }
   criterion_ = new QComboBox;
@@ -199,11 +201,11 @@ void HumanView::add_questions(QFormLayout& form) {
   axis_->setObjectName("humanAxis");
   axis_->addItems({"horizontal", "vertical"});
   form.addRow("Question", question_);
-  form.addRow("Set", set_);
+  form.addRow("Target set", set_);
   form.addRow("Ranges (m)", ranges_);
-  form.addRow("Air", air_);
+  form.addRow("Atmosphere", air_);
   form.addRow("Criterion", criterion_);
-  form.addRow("Of Nyquist", frequencies_);
+  form.addRow("f / Nyquist", frequencies_);
   form.addRow("Axis", axis_);
 }
 
@@ -226,19 +228,19 @@ void HumanView::show_question() {
   title_->setText(question == of_set    ? "Which one is it?"
                   : question == of_bars ? question_title(criterion())
                                         : "Which way does it point?");
-  const QString keys = question == of_set    ? "Answer with the keys of the icons, or click them."
-                       : question == of_bars ? "Answer with the left and right arrow keys, or click."
+  const QString keys = question == of_set    ? "Press the key of an icon, or click the icon."
+                       : question == of_bars ? "Answer with the left or right arrow key, or click."
                                              : "Answer with the arrow keys.";
   const bool yes_or_no = question == of_bars && criterion() == BarCriterion::bars_resolved;
   hint_->setText(keys +
-                 (yes_or_no ? " Left: four bars, all apart. Some frames have none. There is no feedback. "
-                            : " There is no feedback; guess when you do not see it. ") +
-                 (triangles() ? "You judge the camera's own frames, and do not see what the model answered."
-                              : "You judge frames of the simulated sensor of the plan, those that the model "
-                                "observer judges."));
-  per_size_->setToolTip(question == of_set    ? "frames of every target at every range"
-                        : question == of_bars ? "questions at every contrast and frequency"
-                                              : "patches of every contrast and size");
+                 (yes_or_no ? " Left: four separate bars. Some frames have no bars. There is no feedback. "
+                            : " There is no feedback. If you are not sure, guess. ") +
+                 (triangles() ? "You judge the camera's own frames. The answers of the model are not shown."
+                              : "You judge the same frames of the plan's simulated sensor as the model "
+                                "observer."));
+  per_size_->setToolTip(question == of_set    ? "Frames per target and range"
+                        : question == of_bars ? "Questions per contrast and frequency"
+                                              : "Patches per contrast and size");
   show_state();
 }
 
@@ -267,7 +269,7 @@ void HumanView::begin_person() {
                           .seed = bench_.plan().seed};
   const auto ranges = numbers_of(ranges_->text()), frequencies = numbers_of(frequencies_->text());
   if (!ranges || !frequencies) {
-    emit bench_.trouble("Ranges and frequencies are numbers with commas between them.");
+    emit bench_.trouble("Enter ranges and frequencies as numbers separated by commas, for example 400, 800.");
     return;
   }
   question.ranges_m = *ranges;
@@ -329,7 +331,7 @@ void HumanView::show_person() {
   abort_->setEnabled(running);
   picture_->set_placeholder(state == HumanState::hidden ? "Which one was it?"
                             : running                   ? ""
-                                                        : "Begin when you sit well.");
+                                                        : "Press Begin when you are ready.");
   picture_->set_image(state == HumanState::showing ? person_.picture() : QImage());
   picture_->set_zoom(1);
   const auto& experiment = person_.experiment();
@@ -352,9 +354,9 @@ void HumanView::show_triangles() {
   abort_->setEnabled(running);
   picture_->set_placeholder(state == HumanState::hidden ? "Which way did it point?"
                             : running                   ? ""
-                            : ready                     ? "Begin when you sit well."
-                                                        : "Measure first: a person judges the frames of that run.");
-  // A fixed number of screen pixels per sample: nothing about the size of the window changes what is seen.
+                            : ready                     ? "Press Begin when you are ready."
+                                                        : "Run a measurement first. A person then judges its frames.");
+  // A fixed number of screen pixels per sample: the size of the window does not affect the picture.
   picture_->set_image(state == HumanState::showing ? presenter_.picture() : QImage());
   picture_->set_zoom(1);
   progress_->setText(running ? QString("%1 of %2").arg(presenter_.done()).arg(presenter_.planned()) : QString());

@@ -1,4 +1,5 @@
-// Human observer: one patch and four keys, or a frame and its alternatives as icons.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Human observer view: one patch and four keys, or a frame and its alternatives as icons.
 #pragma once
 
 #include <QWidget>

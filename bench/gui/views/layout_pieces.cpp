@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/layout_pieces.h"
 
 #include <QHeaderView>
@@ -42,7 +43,7 @@ QTableWidget* plain_table(const QStringList& header, const QString& object_name)
   table->setTabKeyNavigation(false);
   table->setWordWrap(false);
   table->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
-  // What is left, and never more: a stretched last section keeps its default width at least.
+  // Exactly the remaining width: a stretched last section would keep at least its default width.
   table->horizontalHeader()->setSectionResizeMode(static_cast<int>(header.size()) - 1, QHeaderView::Stretch);
   table->horizontalHeader()->setHighlightSections(false);
   table->verticalHeader()->setDefaultSectionSize(table->fontMetrics().height() + 8);

@@ -1,4 +1,5 @@
-// The few widgets that every view is made of.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Widgets common to all views.
 #pragma once
 
 #include <QLabel>
@@ -12,19 +13,19 @@ namespace todbench {
 [[nodiscard]] QLabel* title_label(const QString& text);
 /// Small grey text that wraps.
 [[nodiscard]] QLabel* hint_label(const QString& text = {});
-/// The button that does what the view is for.
+/// The button of the main action of a view.
 [[nodiscard]] QPushButton* primary_button(const QString& text, const QString& object_name);
 [[nodiscard]] QPushButton* plain_button(const QString& text, const QString& object_name);
 /// A read-only table with a header row.
 [[nodiscard]] QTableWidget* plain_table(const QStringList& header, const QString& object_name);
-/// Cells too narrow for their text show it in several lines; for tables of few rows.
+/// Wraps texts that are too long for their cell; for tables of few rows.
 void wrap_words(QTableWidget& table);
-/// Columns as wide as their headings and these texts, one for each column from the first; the last takes what is left.
-/// Returns the width of a table that these columns just fit into.
+/// Sets column widths for their headings and these texts, one per column from the first; the last column takes the
+/// rest. Returns the table width that fits these columns exactly.
 int column_widths(QTableWidget& table, const QStringList& longest);
-/// As high as its rows, between one and so many.
+/// Fits the height to the rows, between one and `most_rows`.
 void fit_height(QTableWidget& table, int most_rows);
-/// As high as its rows are with their words wrapped, now and after every change, between these heights in pixels.
+/// Fits the height to the rows with wrapped words, now and after every change, between these heights in pixels.
 void fit_rows(QTableWidget& table, int least, int most);
 /// Replaces the rows of a table.
 void fill_table(QTableWidget& table, const QList<QStringList>& rows);

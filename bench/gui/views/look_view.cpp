@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/look_view.h"
 
 #include <QCheckBox>
@@ -55,7 +56,7 @@ LookView::LookView(Workbench& bench, LookPresenter& presenter, QWidget* parent)
   picture_->set_placeholder("Choose a camera and start its live picture.");
   middle->addWidget(picture_, 1);
   auto* line = new QHBoxLayout;
-  reading_ = new QLabel("Point at a pixel to read it.");
+  reading_ = new QLabel("Point at a pixel to read its value.");
   reading_->setObjectName("pixelReading");
   counters_ = new QLabel(presenter_.counters());
   counters_->setObjectName("frameCounters");
@@ -66,7 +67,7 @@ LookView::LookView(Workbench& bench, LookPresenter& presenter, QWidget* parent)
   layout->addLayout(middle, 1);
   layout->addWidget(display_panel());
   connect(&bench_, &Workbench::devices_changed, this, &LookView::list_devices);
-  // Queued: the tree may be what the device was selected with.
+  // Queued, because the tree itself may have selected the device.
   connect(&bench_, &Workbench::device_selected, this, &LookView::list_devices, Qt::QueuedConnection);
   connect(&bench_, &Workbench::activity_changed, this, &LookView::show_activity);
   connect(&presenter_, &LookPresenter::updated, this, &LookView::show_frame);
@@ -128,7 +129,7 @@ QWidget* LookView::display_panel() {
   mode_->setAccessibleName("Level");
   level_ = new PlainSpinBox;
   span_ = new PlainSpinBox;
-  level_->setAccessibleName("Middle of the grey levels");
+  level_->setAccessibleName("Centre of the grey levels");
   span_->setAccessibleName("Span of the grey levels");
   for (QDoubleSpinBox* box : {level_, span_}) {
     box->setRange(0, 65535);
@@ -141,11 +142,11 @@ QWidget* LookView::display_panel() {
   marks_->setChecked(true);
   form->addRow("Colours", colours_);
   form->addRow("Level", mode_);
-  form->addRow("Middle", level_);
+  form->addRow("Centre", level_);
   form->addRow("Span", span_);
   layout->addLayout(form);
   layout->addWidget(marks_);
-  layout->addWidget(hint_label("Orange: full scale, blue: zero, ring: dead pixel."));
+  layout->addWidget(hint_label("Orange: full scale. Blue: zero. Ring: dead pixel."));
   layout->addWidget(title_label("Histogram"));
   histogram_ = new HistogramView;
   layout->addWidget(histogram_);

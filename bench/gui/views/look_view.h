@@ -1,4 +1,5 @@
-// Choose and look: the device tree and the live picture.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Look view: the device tree and the live picture.
 #pragma once
 
 #include <QWidget>

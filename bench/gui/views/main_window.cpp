@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/main_window.h"
 
 #include <QActionGroup>
@@ -39,7 +40,7 @@ namespace todbench {
 QString name_of(View view) {
   switch (view) {
     case View::look:
-      return "Choose and look";
+      return "Camera";
     case View::align:
       return "Align";
     case View::plan:
@@ -49,7 +50,7 @@ QString name_of(View view) {
     case View::human:
       return "Human observer";
     case View::chain:
-      return "See the chain";
+      return "Imaging chain";
     case View::report:
       return "Compare and report";
     case View::history:
@@ -62,7 +63,7 @@ QString name_of(View view) {
 
 namespace {
 
-/// What is remembered of a table is for one with as many columns.
+/// Stored column widths apply to a table with the same number of columns.
 QString columns_key(const QTableWidget& table) {
   return QString("columns/%1-%2").arg(table.objectName()).arg(table.columnCount());
 }
@@ -89,7 +90,7 @@ MainWindow::MainWindow(const std::filesystem::path& sessions, Memory memory, QWi
   if (memory_ == Memory::remember) recall();
   set_theme(theme_);
   setAcceptDrops(true);
-  // A file that is dropped is for the window, not a name for the line below the mouse.
+  // A dropped file is opened by the window, not inserted as text into the field under the mouse.
   for (QLineEdit* edit : findChildren<QLineEdit*>()) edit->setAcceptDrops(false);
   for (QPlainTextEdit* edit : findChildren<QPlainTextEdit*>()) edit->setAcceptDrops(false);
   show_view(first_start_ ? View::start : View::look);
@@ -97,7 +98,7 @@ MainWindow::MainWindow(const std::filesystem::path& sessions, Memory memory, QWi
 }
 
 MainWindow::~MainWindow() {
-  // Jobs use presenters: they end before any of these goes.
+  // Jobs use presenters: end them before the presenters are destroyed.
   bench_.shut_down();
 }
 
@@ -118,7 +119,7 @@ void MainWindow::make_views() {
     auto* shortcut = new QShortcut(QKeySequence(QString("Ctrl+%1").arg(number)), this);
     connect(shortcut, &QShortcut::activated, this, [this, view] { show_view(view); });
   }
-  // The start page is no step of the work: the list knows it and does not show it.
+  // The start page is not a step of the work: the list contains it but hides it.
   (new QListWidgetItem(name_of(View::start), navigation_))->setHidden(true);
   views_->addWidget(new LookView(bench_, look_));
   views_->addWidget(new AlignView(bench_, align_, look_));
@@ -221,8 +222,8 @@ void MainWindow::make_menu() {
   connect(bench->addAction("&Stop"), &QAction::triggered, this, [this] { bench_.stop(); });
   connect(bench->addAction("&Open a session…"), &QAction::triggered, this, &MainWindow::choose_session);
   connect(bench->addAction("S&tart page"), &QAction::triggered, this, [this] { show_view(View::start); });
-  QAction* cable = bench->addAction("&Pull the emulated camera's cable");
-  cable->setToolTip("Cuts the power of the emulated camera, to see what happens then");
+  QAction* cable = bench->addAction("&Disconnect the emulated camera");
+  cable->setToolTip("Switches the emulated camera off, to show how the bench handles a lost camera");
   connect(cable, &QAction::triggered, this, [this] { bench_.switch_emulated_camera_off(); });
   bench->addSeparator();
   QAction* quit = bench->addAction("&Quit");
@@ -244,7 +245,7 @@ void MainWindow::connect_parts() {
   connect(&sessions_, &SessionPresenter::problem, this, &MainWindow::show_trouble);
   connect(&bench_, &Workbench::noted, this, [this](const QString& text) { statusBar()->showMessage(text, 8000); });
   connect(&bench_, &Workbench::activity_changed, this, [this] {
-    statusBar()->clearMessage();  // what was said belongs to what ended
+    statusBar()->clearMessage();  // the message belongs to the ended activity
     if (bench_.activity() != Activity::idle) {
       last_activity_ = bench_.activity();
       message_->hide();
@@ -269,12 +270,12 @@ void MainWindow::connect_parts() {
   connect(&plan_, &PlanPresenter::updated, this, [this] {
     measure_.set_predicted(plan_.expected_known() ? std::optional(as_curve(plan_.expected())) : std::nullopt);
   });
-  // What has just been measured is what one wants to see next.
+  // Show the finished measurement next.
   connect(&measure_, &MeasurePresenter::finished, this, [this](const QString& folder) {
     sessions_.refresh();
     sessions_.open(folder.toStdString());
   });
-  // Whoever runs a bench by hand looks at the plate, not at the screen.
+  // A user who operates the bench by hand looks at the plate, not at the screen.
   connect(&measure_, &MeasurePresenter::operator_needed, this, [this] {
     QApplication::beep();
     QApplication::alert(this);
@@ -348,9 +349,9 @@ void MainWindow::recall() {
   restoreGeometry(settings.value("geometry").toByteArray());
   if (settings.contains("theme")) theme_ = settings.value("theme").toInt() == 1 ? Theme::dark : Theme::light;
   const QString device = settings.value("device", emulated_laboratory).toString();
-  // A device that is not there any more leaves the one that always is.
+  // If the stored device no longer exists, the default one stays.
   if (!device.isEmpty() && device != bench_.device()) (void)bench_.select_device(device);
-  // A plan that this version does not read any more leaves the shipped one.
+  // If this version cannot read the stored plan, the shipped one stays.
   if (const QString plan = settings.value("plan").toString(); !plan.isEmpty()) (void)plan_.apply_toml(plan);
   if (auto* colours = findChild<QComboBox*>("colourMap"))
     colours->setCurrentIndex(std::clamp(settings.value("colourMap", 0).toInt(), 0, colours->count() - 1));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The window: eight views and a start page, one message line, one state.
 #pragma once
 
@@ -28,29 +29,29 @@ namespace todbench {
 class PlanView;
 
 enum class View { look, align, plan, measure, human, chain, report, history, start };
-/// Those of the list on the left; the start page is reached by the menu.
+/// The views in the list on the left; the start page is opened from the menu.
 inline constexpr std::array all_views{View::look,  View::align, View::plan,   View::measure,
                                       View::human, View::chain, View::report, View::history};
 [[nodiscard]] QString name_of(View view);
 
-/// What the window remembers from one start to the next.
+/// Whether the window restores its state at the next start.
 enum class Memory { remember, forget };
 
 class MainWindow final : public QMainWindow {
   Q_OBJECT
 
  public:
-  /// Sessions are listed and written in `sessions`.
+  /// Sessions are read from and written to `sessions`.
   MainWindow(const std::filesystem::path& sessions, Memory memory, QWidget* parent = nullptr);
   ~MainWindow() override;
 
   void show_view(View view);
   [[nodiscard]] View view() const;
   void set_theme(Theme theme);
-  /// Opens a session (its folder or session.toml) or a plan (another TOML file), and says why where it cannot.
+  /// Opens a session (its folder or session.toml) or a plan (another TOML file); shows an error if it cannot.
   void open_path(const std::filesystem::path& path);
 
-  // The parts behind the views, for tests and pictures.
+  // Access to the presenters, for tests and pictures.
   [[nodiscard]] Workbench& bench() { return bench_; }
   [[nodiscard]] LookPresenter& look() { return look_; }
   [[nodiscard]] AlignPresenter& align() { return align_; }
@@ -74,7 +75,7 @@ class MainWindow final : public QMainWindow {
   void connect_parts();
   void choose_session();
   void show_trouble(const QString& sentence);
-  /// Message with the time left and the ways back while a lost camera is waited for.
+  /// Shows a message with the remaining time and the possible actions while a lost camera is awaited.
   void show_camera_away();
   void show_state();
   void recall();
@@ -92,8 +93,8 @@ class MainWindow final : public QMainWindow {
   SessionPresenter sessions_;
   HistoryPresenter history_;
   Theme theme_ = Theme::light;
-  bool first_start_ = false;  ///< nothing is remembered
-  bool away_ = false;         ///< the message says that a camera is waited for
+  bool first_start_ = false;  ///< no stored state exists
+  bool away_ = false;         ///< the message about a lost camera is shown
   Activity last_activity_ = Activity::idle;
   QListWidget* navigation_ = nullptr;
   QStackedWidget* views_ = nullptr;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/measure_view.h"
 
 #include <QCheckBox>
@@ -19,7 +20,7 @@ QString text_of(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
-/// Changes whenever a curve does: thresholds and numbers of trials.
+/// Changes with every curve: thresholds and numbers of trials.
 std::vector<double> key_of(const MeasurePresenter& presenter) {
   std::vector<double> key;
   for (const auto* curve : {&presenter.measured(), &presenter.twin()}) {
@@ -127,8 +128,8 @@ QWidget* MeasureView::log_panel() {
   auto* panel = new QWidget;
   auto* layout = new QHBoxLayout(panel);
   layout->setContentsMargins(0, 0, 0, 0);
-  log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Of"}, "trialLog");
-  log_->setToolTip("Scores of the four alternatives: the observer answers with the highest");
+  log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Source"}, "trialLog");
+  log_->setToolTip("Scores of the four directions. The observer answers the direction with the highest score.");
   column_widths(*log_, {"16.900", "", "right", "right ✓", "0.00", "right", "0.00", "0.00", "camera"});
   layout->addWidget(log_, 1);
   auto* side = new QVBoxLayout;
@@ -136,7 +137,7 @@ QWidget* MeasureView::log_panel() {
   judged_->setObjectName("judgedPatch");
   judged_->set_placeholder("Patch");
   judged_->setFixedSize(110, 110);
-  judged_text_ = hint_label("The patch of the answer that is selected, or of the last one");
+  judged_text_ = hint_label("Patch of the selected answer, or of the last one");
   judged_text_->setFixedWidth(110);
   side->addWidget(judged_);
   side->addWidget(judged_text_);
@@ -225,7 +226,7 @@ void MeasureView::show_judged() {
   const std::size_t row = selected.isEmpty() ? 0 : static_cast<std::size_t>(selected.front().row());
   const JudgedTrial& judged = recent[std::min(row, recent.size() - 1)];
   judged_->set_image(picture_for_a_person(judged, 1));
-  judged_text_->setText(QString("%1, %2, of the %3: %4 px, %5 mrad at %6 K")
+  judged_text_->setText(QString("%1, %2, %3: %4 px, %5 mrad at %6 K")
                             .arg(QString::fromStdString(judged.trial.plate),
                                  QString::fromStdString(judged.trial.triangle),
                                  judged.curve == SessionCurve::main ? "camera" : "twin")

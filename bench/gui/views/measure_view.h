@@ -1,4 +1,5 @@
-// Measure: progress, the curves as they grow, the answers as they come.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measure view: progress, the growing curves, the arriving answers.
 #pragma once
 
 #include <QWidget>

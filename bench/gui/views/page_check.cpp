@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/page_check.h"
 
 #include <QAbstractButton>
@@ -27,7 +28,7 @@ QString cut(const QWidget& part, const QString& text) {
   return name_of(part) + ": cut off: " + QString(text).replace('\n', ' ').left(60);
 }
 
-/// Inside the page, not behind the edge of something that scrolls.
+/// Whether a widget is on the page and not scrolled out of view.
 bool on_the_page(const QWidget& part) {
   return part.isVisible() && !part.visibleRegion().isEmpty();
 }
@@ -59,7 +60,7 @@ void check_table(const QTableWidget& table, QStringList& faults) {
     for (int row = 0; row < table.rowCount(); ++row) {
       const QTableWidgetItem* item = table.item(row, column);
       if (item == nullptr || table.cellWidget(row, column) != nullptr) continue;
-      // Rows that are scrolled away are as wide as those on the page.
+      // Rows scrolled out of view are as wide as visible ones.
       const QRect room(0, 0, table.columnWidth(column) - margin, table.rowHeight(row));
       const int flags = table.wordWrap() ? Qt::TextWordWrap : Qt::TextSingleLine;
       const QRect needed = metrics.boundingRect(room, flags, item->text());
@@ -67,9 +68,9 @@ void check_table(const QTableWidget& table, QStringList& faults) {
     }
   }
   if (table.property("whole").toBool() && table.verticalScrollBar()->maximum() > 0)
-    faults << name_of(table) + ": rows are behind its edge";
+    faults << name_of(table) + ": rows are hidden below its edge";
   const int width = table.horizontalHeader()->length();
-  if (width > table.viewport()->width()) faults << name_of(table) + ": wider than its place";
+  if (width > table.viewport()->width()) faults << name_of(table) + ": wider than its space";
 }
 
 void check_tree(const QTreeWidget& tree, QStringList& faults) {

@@ -1,4 +1,5 @@
-// What a page must not show: an error, a plot or picture without content, text that is cut off.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finds faults of a page: an error, a plot or picture without content, truncated text.
 #pragma once
 
 #include <QString>
@@ -8,8 +9,8 @@ class QWidget;
 
 namespace todbench {
 
-/// A sentence for every fault of the visible parts below `page`, with the part's object name; empty: none. Only what is
-/// on the page counts: what has to be scrolled to is not looked at.
+/// Returns a sentence for every fault of the visible widgets below `page`, with the widget's object name; empty: none.
+/// Widgets outside the visible part of a scroll area are ignored.
 [[nodiscard]] QStringList faults_of(const QWidget& page);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/pattern_window.h"
 
 #include <QGuiApplication>
@@ -65,12 +66,13 @@ void PatternWindow::step(int by) {
 Result<void> PatternWindow::show_levels(const cv::Mat1d& levels) {
   const cv::Size room = screen_px();
   if (levels.empty() || levels.cols > room.width || levels.rows > room.height) {
-    return fail(ErrorCode::invalid_input, QString("a picture of %1 x %2 pixels does not fit on the screen of %3 x %4")
-                                              .arg(levels.cols)
-                                              .arg(levels.rows)
-                                              .arg(room.width)
-                                              .arg(room.height)
-                                              .toStdString());
+    return fail(ErrorCode::invalid_input,
+                QString("a picture of %1 x %2 pixels does not fit on the screen of %3 x %4 pixels")
+                    .arg(levels.cols)
+                    .arg(levels.rows)
+                    .arg(room.width)
+                    .arg(room.height)
+                    .toStdString());
   }
   image_ = grey_image(levels);
   repaint();
@@ -85,7 +87,7 @@ void PatternWindow::paintEvent(QPaintEvent*) {
   }
   const double scale = devicePixelRatioF();
   painter.fillRect(rect(), QColor(image_.pixel(0, 0)));
-  // In pixels of the screen: the painter's own scale is taken back.
+  // Work in physical pixels: undo the painter's scale.
   painter.scale(1 / scale, 1 / scale);
   const int room_x = static_cast<int>(std::lround(width() * scale)),
             room_y = static_cast<int>(std::lround(height() * scale));
@@ -119,14 +121,15 @@ Result<cv::Mat1f> PatternWindow::on_screen() {
   if (seen.size() != whole) seen = grab().toImage();
   seen = seen.convertToFormat(QImage::Format_RGB32);
   const QPoint origin((whole.width() - image_.width()) / 2, (whole.height() - image_.height()) / 2);
-  if (seen.size() != whole || image_.isNull()) return fail(ErrorCode::integrity, "the screen cannot be read");
+  if (seen.size() != whole || image_.isNull()) return fail(ErrorCode::integrity, "the screen cannot be read back");
   cv::Mat1f levels(image_.height(), image_.width());
   for (int row = 0; row < levels.rows; ++row) {
     const auto* line = reinterpret_cast<const QRgb*>(seen.constScanLine(row + origin.y())) + origin.x();
     for (int column = 0; column < levels.cols; ++column) {
       const int grey = qGreen(line[column]);
       if (qRed(line[column]) != grey || qBlue(line[column]) != grey)
-        return fail(ErrorCode::integrity, "what is on the screen is not grey");
+        return fail(ErrorCode::integrity,
+                    "the picture on the screen is not grey; switch off colour correction and night mode");
       levels(row, column) = static_cast<float>(grey) / 255;
     }
   }

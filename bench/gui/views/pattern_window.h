@@ -1,4 +1,5 @@
-// A test picture on a whole screen, a pixel of the picture on a pixel of the screen.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shows a test picture full-screen, one pixel of the picture per pixel of the screen.
 #pragma once
 
 #include <QImage>
@@ -8,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 namespace todbench {
 
@@ -23,17 +24,17 @@ class PatternWindow final : public QWidget {
 
  public:
   explicit PatternWindow(QScreen& screen);
-  /// In pixels of the screen, whatever its scale.
+  /// Size in physical pixels, for every scale of the screen.
   [[nodiscard]] cv::Size screen_px() const;
-  /// On the whole screen, without a pointer.
+  /// Fills the whole screen and hides the pointer.
   void fill_screen();
-  /// Steps with right, space and left; escape and q end. The first is shown.
+  /// Shows the first one. Right, space and left step; escape and q end.
   void set_patterns(std::vector<NamedPattern> patterns);
   [[nodiscard]] std::size_t current() const { return current_; }
-  /// In the middle; what is round it has the level of its first pixel. `invalid_input`: larger than the screen.
+  /// Shows a centred picture, surrounded by the level of its first pixel. `invalid_input`: larger than the screen.
   [[nodiscard]] Result<void> show_levels(const cv::Mat1d& levels);
-  /// What is on the screen where the picture is, levels 0 to 1; what was painted where a screen cannot be read. The
-  /// eight bits of grey that all three colours have; `integrity` where the colours differ.
+  /// Returns the screen content at the picture, levels 0 to 1; the painted picture if the screen cannot be read. It is
+  /// the 8-bit grey value common to all three colours. Errors: `integrity` (the colours differ).
   [[nodiscard]] Result<cv::Mat1f> on_screen();
 
  signals:

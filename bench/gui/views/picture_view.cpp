@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/picture_view.h"
 
 #include <QKeyEvent>
@@ -90,7 +91,7 @@ void PictureView::paintEvent(QPaintEvent* /*event*/) {
   painter.translate(origin());
   painter.scale(scale(), scale());
   painter.drawImage(QPointF(0, 0), image_);
-  // Pixel centres at integers: the corner of the picture is half a pixel before the first.
+  // Pixel centres are at integers, so the corner of the picture is half a pixel before the first.
   painter.translate(0.5, 0.5);
   painter.setRenderHint(QPainter::Antialiasing);
   for (const auto& outline : outlines_) {
@@ -126,7 +127,7 @@ void PictureView::wheelEvent(QWheelEvent* event) {
 
 void PictureView::zoom_by(double factor, const QPointF& about) {
   const double before = scale();
-  // From a region one goes on from where it is.
+  // Zooming starts at the displayed region.
   if (zoom_ <= 0 && !region_.isEmpty()) {
     shift_ += (QPointF(image_.width(), image_.height()) / 2 - region_.center() - QPointF(0.5, 0.5)) * before;
     zoom_ = before;
@@ -170,7 +171,7 @@ void PictureView::keyPressEvent(QKeyEvent* event) {
   }
   update();
   if (image_.isNull()) return;
-  // The keys read the middle, as the mouse reads what it points at.
+  // With keys, the reported pixel is in the centre; with the mouse it is under the pointer.
   const QPoint pixel = pixel_at(middle);
   emit hovered(pixel.x(), pixel.y());
 }

@@ -1,4 +1,5 @@
-// A picture with pixels that can be counted: zoom, marks and outlines over it, the pixel under the cursor.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A picture with countable pixels: zoom, marks and outlines over it, the pixel under the cursor.
 #pragma once
 
 #include <QImage>
@@ -9,7 +10,7 @@
 
 namespace todbench {
 
-/// Something drawn over a picture, in its pixels (pixel centres at integers).
+/// A line drawn over a picture, in its pixels (pixel centres at integers).
 struct PictureOutline {
   QPolygonF points;
   QColor colour;
@@ -25,20 +26,20 @@ class PictureView final : public QWidget {
   [[nodiscard]] const QImage& image() const { return image_; }
   void set_outlines(std::vector<PictureOutline> outlines);
   [[nodiscard]] const std::vector<PictureOutline>& outlines() const { return outlines_; }
-  /// Pixels with a ring round them.
+  /// Pixels marked by a ring.
   void set_rings(std::vector<QPoint> rings);
-  /// What surrounds a picture; default: the base colour of the theme.
+  /// Colour around a picture; default: the base colour of the theme.
   void set_surround(const QColor& colour);
-  /// What stands in place of a picture.
+  /// Text shown without a picture.
   void set_placeholder(const QString& text);
 
-  /// Shows this part of the picture (in its pixels) as large as fits, whatever the size of the widget; an empty one:
-  /// the whole picture.
+  /// Shows this part of the picture (in its pixels) as large as fits, for every size of the widget; empty: the whole
+  /// picture.
   void set_region(const QRectF& region);
   /// Screen pixels per picture pixel; 0: as large as fits.
   void set_zoom(double zoom);
   [[nodiscard]] double zoom() const { return zoom_; }
-  /// The picture pixel at a place of the widget, also outside the picture.
+  /// Returns the picture pixel at a position of the widget, also outside the picture.
   [[nodiscard]] QPoint pixel_at(const QPointF& place) const;
 
   [[nodiscard]] QSize sizeHint() const override { return {480, 360}; }
@@ -65,9 +66,9 @@ class PictureView final : public QWidget {
   std::vector<QPoint> rings_;
   QString placeholder_;
   std::optional<QColor> surround_;
-  QRectF region_;  ///< while nobody has zoomed or moved
+  QRectF region_;  ///< until the user zooms or moves
   double zoom_ = 0;
-  QPointF shift_;  ///< of the middle, in screen pixels
+  QPointF shift_;  ///< of the centre, in screen pixels
   QPointF dragged_from_;
 };
 

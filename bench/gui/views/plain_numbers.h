@@ -1,19 +1,19 @@
-// Numbers of the window: those of plans, files and reports.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Number format of the window: that of plans, files and reports.
 #pragma once
 
 #include <QDoubleSpinBox>
 
 namespace todbench {
 
-/// Decimals with a point, no separators of thousands, whatever the user's locale: where a comma is the decimal sign,
-/// "1.000" typed into a field would be a thousand, while plans, reports and the command line mean one. For the C
-/// library too, because what reads the numbers of cameras and files with strtod() would expect a comma. To be called
-/// once an application is there, which sets the locale of the C library. Of widgets that are made later. Thread: that
-/// of the window.
+/// Sets decimals with a point, without thousands separators, in every locale: with a decimal comma, "1.000" in a field
+/// would be a thousand, but one in plans, reports and the command line. Applies to the C library too, because strtod()
+/// on numbers of cameras and files would expect a comma. Call it after the application object exists, which sets the
+/// locale of the C library. Affects widgets created later. Window's thread.
 void use_plain_numbers();
 
-/// A field of a number that takes no comma: Qt reads one as a separator of thousands even where its locale rejects
-/// them, and so "1,5" as fifteen.
+/// A number field that rejects a comma: Qt reads "1,5" as fifteen, because it takes the comma as a thousands separator
+/// even if its locale rejects these.
 class PlainSpinBox final : public QDoubleSpinBox {
  public:
   using QDoubleSpinBox::QDoubleSpinBox;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/plan_view.h"
 
 #include <QFileDialog>
@@ -14,7 +15,7 @@
 #include "bench/gui/presenters/plan_presenter.h"
 #include "bench/gui/views/field_editor.h"
 #include "bench/gui/views/layout_pieces.h"
-#include "bench/gui/views/plan_outlook_view.h"
+#include "bench/gui/views/plan_preview_view.h"
 
 namespace todbench {
 
@@ -35,9 +36,9 @@ PlanView::PlanView(PlanPresenter& presenter, QWidget* parent)
   left->addWidget(problem_);
   left->addLayout(buttons());
   layout->addLayout(left, 1);
-  auto* outlook = new PlanOutlookView(presenter_);
+  auto* outlook = new PlanPreviewView(presenter_);
   layout->addWidget(outlook, 1);
-  connect(outlook, &PlanOutlookView::problem, this, &PlanView::complain);
+  connect(outlook, &PlanPreviewView::problem, this, &PlanView::complain);
   connect(&presenter_, &PlanPresenter::updated, this, &PlanView::plan_updated);
   show_plan();
 }
@@ -49,8 +50,8 @@ QLayout* PlanView::buttons() {
   auto* demo = plain_button("Demonstration plan", "demoPlan");
   undo_ = plain_button("Undo", "undoPlan");
   redo_ = plain_button("Redo", "redoPlan");
-  undo_->setToolTip("Takes the last change of the plan back (Ctrl+Z)");
-  redo_->setToolTip("Makes the change again that was taken back (Ctrl+Shift+Z)");
+  undo_->setToolTip("Undoes the last change of the plan (Ctrl+Z)");
+  redo_->setToolTip("Repeats the change that was undone (Ctrl+Shift+Z)");
   for (QPushButton* button : {open, save, demo, undo_, redo_}) line->addWidget(button);
   line->addStretch();
   connect(open, &QPushButton::clicked, this, [this] {
@@ -100,7 +101,7 @@ QWidget* PlanView::form_page() {
   scroll->setFrameShape(QFrame::NoFrame);
   scroll->setFocusPolicy(Qt::NoFocus);
   scroll->setWidget(content);
-  // Rolled up and down only: never narrower than its lines.
+  // Scrolls vertically only: at least as wide as its lines.
   scroll->setMinimumWidth(content->minimumSizeHint().width() +
                           scroll->style()->pixelMetric(QStyle::PM_ScrollBarExtent) + 2);
   return scroll;
@@ -132,7 +133,7 @@ void PlanView::open_plan(const QString& reference) {
 }
 
 void PlanView::undo() {
-  // What was entered and is not right yet is the last change.
+  // Entered text that is not valid yet is the last change.
   if (form_.right()) presenter_.undo();
   start_afresh();
 }
@@ -162,7 +163,7 @@ void PlanView::enter(std::size_t line) {
 void PlanView::complain(const QString& sentence) {
   QString text = sentence;
   if (text.isEmpty() && !form_.right()) {
-    text = "The plan on the bench is the last one that was right.";
+    text = "The bench still uses the last valid plan.";
     for (const QString& other : form_.other_problems()) text += "\n" + other;
   }
   problem_->setText(text.isEmpty() ? QString() : "✗ " + text);

@@ -1,4 +1,5 @@
-// Plan: the form, the TOML under it, and beside them what it will cost.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plan view: the form, its TOML, and next to them the predicted cost.
 #pragma once
 
 #include <QWidget>
@@ -22,7 +23,7 @@ class PlanView final : public QWidget {
 
  public:
   explicit PlanView(PlanPresenter& presenter, QWidget* parent = nullptr);
-  /// A file or the name of a shipped plan; says below the form why it cannot be read.
+  /// Opens a file or a shipped plan by name; shows an error below the form if it cannot be read.
   void open_plan(const QString& reference);
 
  private:

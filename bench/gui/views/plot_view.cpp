@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/plot_view.h"
 
 #include <QPainter>
@@ -27,7 +28,7 @@ Qt::PenStyle pen_style(PlotLine line) {
   return Qt::SolidLine;
 }
 
-/// Ticks where the report has them.
+/// Ticks at the positions of the report.
 class ReportTicker final : public QCPAxisTicker {
  public:
   explicit ReportTicker(PlotAxis axis) : axis_(std::move(axis)) {}
@@ -84,7 +85,7 @@ PlotView::PlotView(QWidget* parent) : QCustomPlot(parent) {
   });
   setNoAntialiasingOnDrag(true);
   axisRect()->setupFullAxesBox(false);
-  // Above the axes, where it hides no data.
+  // Above the axes, so that it hides no data.
   plotLayout()->insertRow(0);
   plotLayout()->addElement(0, 0, legend);
   plotLayout()->setRowStretchFactor(0, 0.001);
@@ -92,7 +93,7 @@ PlotView::PlotView(QWidget* parent) : QCustomPlot(parent) {
   legend->setBorderPen(Qt::NoPen);
   legend->setBrush(Qt::NoBrush);
   legend->setMargins({8, 4, 8, 0});
-  // A legend without entries would be the narrowest of its column, the axes included.
+  // An empty legend would limit the width of its column, including the axes.
   legend->setMaximumSize(QWIDGETSIZE_MAX - 1, QWIDGETSIZE_MAX);
 }
 
@@ -267,7 +268,7 @@ void PlotView::draw_plot() {
   replot(QCustomPlot::rpQueuedReplot);
 }
 
-/// In as many columns as the words have room.
+/// Uses as many columns as fit.
 void PlotView::arrange_legend() {
   constexpr int column_px = 110;
   legend->setWrap(std::clamp(width() / column_px, 2, 4));

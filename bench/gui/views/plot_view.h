@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A plot of the report in the window: the same values, with zoom and the theme's colours.
 #pragma once
 
@@ -7,16 +8,16 @@
 
 namespace todbench {
 
-/// Drag and wheel, or arrow keys, plus and minus, move and zoom; a double click or 0 shows everything again.
+/// Drag and wheel, or arrow keys, plus and minus, move and zoom; a double click or 0 shows the whole plot.
 class PlotView final : public QCustomPlot {
   Q_OBJECT
 
  public:
   explicit PlotView(QWidget* parent = nullptr);
-  /// Shows a plot; the view stays where the user has zoomed to while the axes' scales stay.
+  /// Shows a plot; keeps the user's zoom if the scales of the axes stay.
   void show_plot(const Plot& plot);
   [[nodiscard]] const Plot& shown() const { return plot_; }
-  /// Points of a series as they are drawn; none for an unknown label.
+  /// Returns the drawn points of a series; empty for an unknown label.
   [[nodiscard]] QVector<QPointF> points(const QString& label) const;
 
   [[nodiscard]] QSize minimumSizeHint() const override { return {160, 120}; }

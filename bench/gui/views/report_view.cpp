@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/report_view.h"
 
 #include <QCheckBox>
@@ -21,7 +22,7 @@ QString text_of(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
-constexpr int most_ratios = 5;  // in view at once
+constexpr int most_ratios = 5;  // visible at once
 constexpr int logo_px = 40;
 
 QString verdict_text(ReportVerdict verdict) {
@@ -31,23 +32,23 @@ QString verdict_text(ReportVerdict verdict) {
     case ReportVerdict::fail:
       return "✗ FAIL: a limit is not met";
     case ReportVerdict::inconclusive:
-      return "? INCONCLUSIVE: a limit is not decided";
+      return "? INCONCLUSIVE: the data do not decide a limit";
     case ReportVerdict::interrupted:
       return "? INTERRUPTED: the run ended early";
     case ReportVerdict::changed:
       return "✗ FILES CHANGED: no verdict";
     case ReportVerdict::not_judged:
-      return "Not judged: no limits were asked for";
+      return "Not judged: the plan has no limits";
   }
   return {};
 }
 
-/// With a sign, as colour alone says nothing to some.
+/// Adds a sign, because some users cannot distinguish the colours.
 QString in_a_list(const QString& verdict) {
   return (verdict == "pass" ? "✓ " : verdict == "fail" ? "✗ " : "? ") + verdict;
 }
 
-/// The ratios that decide.
+/// Rows of the ratios that decide the comparison.
 QList<QStringList> ratio_rows(const Comparison& comparison) {
   const Comparison decided = as_decided(comparison);
   QList<QStringList> rows;
@@ -90,8 +91,8 @@ QWidget* ReportView::browser() {
   filter_ = new QLineEdit;
   filter_->setObjectName("sessionFilter");
   filter_->setPlaceholderText("Serial number, unit, date or verdict");
-  filter_->setToolTip("Lists the sessions that have every one of these words");
-  filter_->setAccessibleName("Filter of the sessions");
+  filter_->setToolTip("Lists the sessions that contain all of these words");
+  filter_->setAccessibleName("Filter for sessions");
   filter_->setClearButtonEnabled(true);
   layout->addWidget(filter_);
   connect(filter_, &QLineEdit::textChanged, this, &ReportView::list_sessions);
@@ -101,7 +102,7 @@ QWidget* ReportView::browser() {
   layout->addWidget(sessions_, 1);
   auto* buttons = new QHBoxLayout;
   auto* open = primary_button("Open", "openSession");
-  compare_ = plain_button("Compare with the open one", "compareSessions");
+  compare_ = plain_button("Compare with open session", "compareSessions");
   buttons->addWidget(open);
   buttons->addWidget(compare_);
   buttons->addStretch();
@@ -151,10 +152,9 @@ QWidget* ReportView::session_panel() {
   export_ = primary_button("Write HTML and PDF", "exportReports");
   page_ = plain_button("Show the PDF", "showPdf");
   replay_ = plain_button("Replay", "replaySession");
-  replay_->setToolTip(
-      "Measures again from the recorded frames of the session and says whether every answer is the same.");
+  replay_->setToolTip("Judges the recorded frames of the session again and reports whether all answers are the same.");
   again_ = plain_button("Measure this plan again", "measureAgain");
-  again_->setToolTip("A new measurement with the plan of this session and the camera that is chosen now.");
+  again_->setToolTip("Loads the plan of this session for a new measurement with the selected camera.");
   for (QPushButton* button : {export_, page_, replay_, again_}) {
     button->setEnabled(false);
     buttons->addWidget(button);
@@ -265,9 +265,9 @@ void ReportView::show_session() {
   for (QPushButton* button : {export_, again_, compare_}) button->setEnabled(true);
   replay_->setEnabled(opened.recorded);
   frames_->setText(opened.recorded
-                       ? "The frames are in the session: Replay judges them again."
-                       : "No frames were recorded in this session: it cannot be replayed, only measured again. "
-                         "\"Keep frames\" in the plan records them.");
+                       ? "The session contains its frames. Replay judges them again."
+                       : "No frames were recorded in this session. It cannot be replayed, only measured again. "
+                         "To record frames, select \"Keep frames for replay\" in the plan.");
   std::error_code none;
   page_->setEnabled(std::filesystem::exists(opened.folder / "report.pdf", none));
   show_plot();

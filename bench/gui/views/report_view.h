@@ -1,4 +1,5 @@
-// Compare and report: sessions, their curves, their verdict.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compare and report view: sessions, their curves, their verdict.
 #pragma once
 
 #include <QWidget>
@@ -26,9 +27,9 @@ class ReportView final : public QWidget {
   explicit ReportView(SessionPresenter& presenter, QWidget* parent = nullptr);
 
  signals:
-  /// The session that is open is to be replayed from its frames.
+  /// The open session has to be replayed from its frames.
   void replay();
-  /// The plan of the session that is open is to be measured again.
+  /// The plan of the open session has to be measured again.
   void again();
 
  protected:
@@ -38,18 +39,18 @@ class ReportView final : public QWidget {
   [[nodiscard]] QWidget* browser();
   [[nodiscard]] QWidget* session_panel();
   [[nodiscard]] QWidget* letterhead_line();
-  /// The session of the row that is chosen; nothing: none is.
+  /// The session of the selected row; empty: no selection.
   [[nodiscard]] std::optional<std::filesystem::path> chosen() const;
   void list_sessions();
   void show_session();
-  /// That of the laboratory, over the session that keeps one.
+  /// Shows the letterhead of the laboratory, above the session that contains it.
   void show_letterhead(const std::optional<Letterhead>& letterhead);
   void show_comparison();
   void show_ratios(const std::optional<Comparison>& comparison);
   void show_plot();
 
   SessionPresenter& presenter_;
-  std::vector<SessionEntry> listed_;  ///< a row each
+  std::vector<SessionEntry> listed_;  ///< one per row
   QLineEdit* filter_;
   QTableWidget *sessions_, *ratios_, *limits_;
   QLabel *title_, *verdict_, *frames_, *files_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/start_view.h"
 
 #include <QHBoxLayout>
@@ -22,17 +23,17 @@ constexpr std::array choices{
     StartChoice{
         "startDemo", "Try without hardware",
         "The emulated laboratory is a camera, a black body and a plate stage on this computer. A whole measurement "
-        "takes about a minute, from the plan to the report.",
+        "takes about 40 s, from the plan to the report.",
         &StartView::try_without_hardware},
     StartChoice{
         "startCamera", "Connect a camera",
-        "Looks for cameras on the network, on USB and behind the kernel's drivers, and shows the live picture of the "
-        "one that is chosen.",
+        "Looks for cameras on the network, on USB and through the drivers of the kernel. Shows the live picture of the "
+        "camera that you choose.",
         &StartView::connect_camera},
     StartChoice{
         "startSession", "Open a session",
-        "Shows the curves, the ratios and the verdict of a measurement on disk. A session or a plan can also be "
-        "dropped onto this window.",
+        "Shows the curves, the ratios and the verdict of a measurement on disk. You can also drop a session or a plan "
+        "onto this window.",
         &StartView::open_session},
 };
 

@@ -1,4 +1,5 @@
-// The page of a first start: three ways to begin.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Start page: three ways to begin.
 #pragma once
 
 #include <QWidget>

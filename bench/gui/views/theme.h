@@ -1,4 +1,5 @@
-// Light and dark.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light and dark theme.
 #pragma once
 
 #include <QColor>
@@ -11,20 +12,20 @@ namespace todbench {
 
 enum class Theme { light, dark };
 [[nodiscard]] QPalette palette_of(Theme theme);
-/// Of check boxes, whose frames the style derives from the window: on a dark one they would not be seen.
+/// Palette of check boxes: their frames, which the style derives from the window, would be invisible on a dark one.
 [[nodiscard]] QPalette box_palette_of(Theme theme);
-/// Colours of the plots of a window: the tones of the report on a ground of the theme.
+/// Colours of plots in the window: the tones of the report on the background of the theme.
 struct PlotColours {
   QColor ground, ink, grid;
   QColor first, second, third, muted;
   [[nodiscard]] QColor of(PlotTone tone) const;
 };
 [[nodiscard]] PlotColours plot_colours_of(Theme theme);
-/// What the desktop prefers, as its palette tells.
+/// Returns the theme of the desktop, from its palette.
 [[nodiscard]] Theme desktop_theme();
 /// The theme that a palette belongs to.
 [[nodiscard]] Theme theme_of(const QPalette& palette);
-/// Style sheet of the few things that the palette does not reach.
+/// Style sheet for the parts that the palette does not reach.
 [[nodiscard]] QString style_sheet(Theme theme);
 
 }  // namespace todbench

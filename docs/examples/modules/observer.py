@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A module: an observer that compares what it sees with the four triangles themselves, drawn by the part of each pixel that they cover (numpy).
 # [[module]] command = "python3 observer.py", place = "observer"
 import functools, sys, types, numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A module: a sensor without optics (numpy). Every detector averages what falls on its sensitive square, then noise is added.
 # In a sensor file: [[module]] command = "python3 sensor.py", place = "sensor". todbench module check "python3 sensor.py" --place sensor
 import json, sys, types, numpy as np

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A module: sharpens with the mean of the four neighbours. todbench module check ./sharpen
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A module: sharpens with the mean of the four neighbours (numpy). todbench module check "python3 sharpen.py"
 import sys, types, numpy as np
 from_bench, to_bench = types.SimpleNamespace(read=sys.stdin.buffer.read), types.SimpleNamespace(write=sys.stdout.buffer.write)

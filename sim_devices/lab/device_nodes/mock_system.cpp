@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/device_nodes/mock_system.h"
 
 #include <umockdev.h>
@@ -28,8 +29,8 @@ std::vector<std::string> command_line() {
   return words;
 }
 
-/// The runtime of a sanitizer, where the program is built with one as a shared library; else empty. It has to come
-/// before every other library: calls that umockdev passes on would not be checked otherwise.
+/// Runtime of the sanitizer if the program is built with one as a shared library; otherwise empty. It must precede
+/// every other library, or calls that umockdev forwards are not checked.
 std::string sanitizer_runtime() {
   std::istringstream maps(content_of("/proc/self/maps"));
   for (std::string line; std::getline(maps, line);) {
@@ -57,7 +58,7 @@ bool MockSystem::is_preloaded() {
 }
 
 void MockSystem::enter() {
-  // A second failure would start the program for ever.
+  // A second failure would restart the program endlessly.
   constexpr const char* tried = "TODBENCH_MOCK_SYSTEM";
   if (is_preloaded() || std::getenv(tried) != nullptr) return;
   const char* before = std::getenv("LD_PRELOAD");

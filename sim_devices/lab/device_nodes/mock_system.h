@@ -1,18 +1,19 @@
-// A /dev, /sys and udev of its own for programs that run under umockdev's preload library: emulated devices are real to
-// them, to open, ioctl, mmap and udev.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Own /dev, /sys and udev for programs under umockdev's preload library. For them emulated devices are real in open,
+// ioctl, mmap and udev.
 #pragma once
 
 #include <memory>
 #include <string>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 
 struct _UMockdevTestbed;
 
 namespace todbench {
 
-/// One per process: it says through the environment variable UMOCKDEV_DIR where it is. Devices attach to it; it is
-/// destroyed after them. Methods may be called from any thread, one at a time.
+/// One per process: the environment variable UMOCKDEV_DIR states its folder. Devices attach to it and are destroyed
+/// before it. Methods may be called from any thread, one at a time.
 class MockSystem {
  public:
   [[nodiscard]] static std::shared_ptr<MockSystem> create();
@@ -20,25 +21,25 @@ class MockSystem {
   MockSystem(const MockSystem&) = delete;
   MockSystem& operator=(const MockSystem&) = delete;
 
-  /// Whether *this* process looks at emulated devices: the preload library is loaded. Its children do when the
-  /// environment names it.
+  /// True if this process has the preload library loaded and uses emulated devices. Its children do so if the
+  /// environment names the library.
   [[nodiscard]] static bool is_preloaded();
-  /// Starts this program again, in this process, with the preload library; returns only when it is loaded already or
-  /// cannot be. Files and threads of the process are gone then: call it first.
+  /// Restarts this program in this process with the preload library. Returns only if the library is already loaded or
+  /// cannot be. Open files and threads are lost: call it first.
   static void enter();
-  /// What LD_PRELOAD has to be for a client.
+  /// Value of LD_PRELOAD for a client.
   [[nodiscard]] static std::string preload_library();
-  /// What UMOCKDEV_DIR has to be for a client.
+  /// Value of UMOCKDEV_DIR for a client.
   [[nodiscard]] std::string folder() const;
 
   /// Adds devices described in umockdev's format ("P:", "N:", "E:", "A:" lines) and announces them to udev monitors.
   [[nodiscard]] Result<void> add(const std::string& description);
-  /// Announces "add" or "remove" of a device.
+  /// Sends the udev event "add" or "remove" for a device.
   void announce(const std::string& device_path, const std::string& action);
-  /// Removes a device that was announced.
+  /// Removes an announced device.
   void remove(const std::string& device_path);
 
-  /// For what attaches ioctl handlers. Owned by this.
+  /// For code that attaches ioctl handlers. Owned by this.
   [[nodiscard]] _UMockdevTestbed* testbed() const { return testbed_; }
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/genicam/genicam_description.h"
 
 #include <fmt/format.h>
@@ -56,7 +57,7 @@ bool lies_in_chunk(const CameraFeature& f) {
   return f.kind == FeatureKind::chunk_integer || f.kind == FeatureKind::chunk_scaled;
 }
 
-/// The node that reads the bytes; features refer to it by name.
+/// Node that reads the bytes. Features refer to it by name.
 std::string register_node(const CameraFeature& f, std::endian order) {
   const bool floating = f.kind == FeatureKind::ieee_float || f.kind == FeatureKind::formula;
   const bool has_sign = f.kind == FeatureKind::scaled || f.kind == FeatureKind::chunk_scaled;
@@ -104,7 +105,7 @@ std::string converter(const CameraFeature& f, const std::string& to, const std::
 std::string rate(const CameraFeature& f) {
   CameraFeature period = f;
   period.name += "Converter";
-  // The register keeps the name of the feature.
+  // The register has the name of the feature.
   return opening("Float", f) + tag("pValue", period.name) + tag("Min", shortest(least_rate_hz)) +
          tag("Max", shortest(most_rate_hz)) + tag("Unit", "Hz") + "  </Float>\n" + opening("Converter", period) +
          tag("FormulaTo", "1000000 / FROM") + tag("FormulaFrom", "1000000 / TO") + value_node(f) + "  </Converter>\n";
@@ -116,7 +117,7 @@ std::string formula(const CameraFeature& f) {
          "  </SwissKnife>\n";
 }
 
-/// The node that clients know.
+/// Node that clients use.
 std::string feature_node(const CameraFeature& f) {
   const std::string factor = shortest(f.per_raw);
   switch (f.kind) {
@@ -163,7 +164,7 @@ std::string category(const std::string& name, const std::vector<std::string>& me
   return out + "  </Category>\n";
 }
 
-/// A number as it lies in memory.
+/// Bytes of a number as in memory.
 std::vector<std::uint8_t> in_order(std::uint64_t value, std::uint32_t bytes, std::endian order) {
   std::vector<std::uint8_t> out(bytes);
   for (std::uint32_t i = 0; i < bytes; ++i) {

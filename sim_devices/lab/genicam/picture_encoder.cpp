@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/genicam/picture_encoder.h"
 
 #include <algorithm>
@@ -80,7 +81,7 @@ std::vector<std::uint8_t> PictureEncoder::encode(const cv::Mat1w& counts, const 
   if (settings.format == PixelFormat::mono8 && settings.gain == GainControl::linear && !settings.test_ramp) {
     sent = gain_controlled(counts);
   } else if (settings.format == PixelFormat::mono8 && settings.significant_bits > 8) {
-    sent = sent.clone();  // the picture before keeps its bits
+    sent = sent.clone();  // `previous_` keeps its bits
     for (auto& count : sent) count = static_cast<std::uint16_t>(count >> (settings.significant_bits - 8));
   }
   auto bytes = encode_pixels(sent, {.format = settings.format,

@@ -1,4 +1,5 @@
-// What a thermal camera makes of an exposure before it sends it: scale, processing, test pattern, bits and bytes.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Conversion of an exposure before it is sent: scale, processing, test pattern, bits and bytes.
 #pragma once
 
 #include <cstdint>
@@ -15,32 +16,31 @@ enum class SignalKind {
   linear,       ///< kelvin / `kelvin_per_signal`
   radiometric,  ///< by the Planck-like formula
   as_exposed,   ///< the exposure's own counts
-  tenths,       ///< a tenth of them
+  tenths,       ///< a tenth of the exposure's own counts
 };
 
-/// What a camera makes of its counts on their way to eight bits.
+/// Conversion of counts to eight bits.
 enum class GainControl {
   none,    ///< the highest eight bits
-  linear,  ///< range_of_means() to grey levels 26 ... 230, at most four grey levels a count
+  linear,  ///< range_of_means() to grey levels 26 ... 230, at most four grey levels per count
 };
 
-/// Lowest and highest mean of 3 x 3 counts, not beyond the picture: what a gain control takes for the range of the
-/// scene.
+/// Lowest and highest mean of 3 x 3 counts within the picture: the range of the scene for a gain control.
 struct CountRange {
   double low = 0, high = 0;
 };
 [[nodiscard]] CountRange range_of_means(const cv::Mat1w& counts);
-/// Grey levels of a linear gain control, cut off at 0 and 255.
+/// Grey levels of a linear gain control, clipped at 0 and 255.
 [[nodiscard]] cv::Mat1w gain_controlled(const cv::Mat1w& counts);
 
 struct EncoderSettings {
   SignalKind signal = SignalKind::as_exposed;
   double kelvin_per_signal = 0.04;
-  unsigned significant_bits = 14;            ///< larger values are cut off, as those that the format does not hold
-  PixelFormat format = PixelFormat::mono16;  ///< of mono8 the highest eight of the significant bits
-  GainControl gain = GainControl::none;      ///< of mono8, on the exposure's own counts
-  bool test_ramp = false;  ///< pixel x of a row has the count x, modulo the full scale, instead of the picture
-  bool averages = false;   ///< with the picture before, as noise reduction does
+  unsigned significant_bits = 14;            ///< larger values are clipped, also to the range of the format
+  PixelFormat format = PixelFormat::mono16;  ///< mono8: the highest eight of the significant bits
+  GainControl gain = GainControl::none;      ///< for mono8, applied to the exposure's own counts
+  bool test_ramp = false;  ///< pixel x of a row has the count x, modulo full scale, instead of the picture
+  bool averages = false;   ///< averages with the picture before, as noise reduction does
   bool big_endian = false;
   bool operator==(const EncoderSettings&) const = default;
 };
@@ -60,11 +60,11 @@ class PictureEncoder {
   double kelvin_per_count_, offset_k_;
   PlanckScale radiometric_;
   EncoderSettings table_settings_;
-  std::vector<std::uint16_t> table_;  ///< signal of every count; empty: not yet made
+  std::vector<std::uint16_t> table_;  ///< signal for every count; empty: not yet computed
   cv::Mat1w previous_;
 };
 
-/// Exchanges the bytes of every pair.
+/// Exchanges the two bytes of every pair.
 void swap_bytes(std::vector<std::uint8_t>& data);
 
 }  // namespace todbench

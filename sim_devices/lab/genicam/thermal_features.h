@@ -1,4 +1,5 @@
-// Features that the emulated GenICam cameras share, and one camera made of them for any interface.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Features common to the emulated GenICam cameras, and a complete camera made of them for any interface.
 #pragma once
 
 #include <cmath>
@@ -7,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "acquisition/pixel_formats/pixel_formats.h"
 #include "sim_devices/lab/genicam/genicam_description.h"
 
 namespace todbench {
 
-/// What an emulated camera says of itself, and what its registers hold at power-up.
+/// Identity of an emulated camera, and contents of its registers at power-up.
 struct ThermalCameraOptions {
   std::string vendor, model, serial, firmware;
   int width = 0, height = 0;
@@ -22,7 +23,7 @@ struct ThermalCameraOptions {
   double kelvin_per_count = 0.01, offset_k = 0;
 };
 
-/// Those of the configuration of a camera.
+/// Options from the configuration of a camera.
 template <typename Config>
 [[nodiscard]] ThermalCameraOptions options_of(const Config& config) {
   return {.vendor = config.vendor,
@@ -37,14 +38,14 @@ template <typename Config>
           .offset_k = config.offset_k};
 }
 
-/// Builders of rows. Addresses are those of the registers.
+/// Builders of features. Addresses are those of the registers.
 namespace features {
 
 using Entries = std::vector<std::pair<std::string, std::uint32_t>>;
 
 [[nodiscard]] CameraFeature text(const char* name, std::uint32_t address, std::uint32_t bytes, std::string content);
 [[nodiscard]] CameraFeature choice(const char* name, std::uint32_t address, std::uint32_t initial, Entries entries);
-/// `value`: what executes it.
+/// `value` executes the command.
 [[nodiscard]] CameraFeature command(const char* name, std::uint32_t address, std::uint32_t value);
 /// Read-only.
 [[nodiscard]] CameraFeature state(const char* name, std::uint32_t address, std::uint32_t initial);
@@ -60,7 +61,7 @@ using Entries = std::vector<std::pair<std::string, std::uint32_t>>;
 
 }  // namespace features
 
-/// Where a camera keeps the registers of thermal_features().
+/// Addresses of the registers of thermal_camera().
 struct ThermalRegisters {
   std::uint32_t vendor = 0, model = 0, firmware = 0, serial = 0;
   std::uint32_t name_bytes = 0, serial_bytes = 0;
@@ -76,17 +77,17 @@ inline constexpr std::uint32_t nuc_mode_manual = 0, nuc_mode_automatic = 1;
 /// Value of the register of AcquisitionMode.
 inline constexpr std::uint32_t acquisition_continuous = 1;
 
-/// A camera whose counts are linear in temperature: geometry, Mono14 and Mono16, a free frame rate, IRFormat with its
-/// two linear entries, and a correction on command. The categories are DeviceControl, ImageFormatControl,
-/// AcquisitionControl and ThermalControl; a camera that can more appends to them with more_of().
+/// A camera with counts linear in temperature: geometry, Mono14 and Mono16, a free frame rate, IRFormat with its two
+/// linear entries, and a correction on command. The categories are DeviceControl, ImageFormatControl,
+/// AcquisitionControl and ThermalControl. A camera with more features appends them with more_of().
 [[nodiscard]] CameraDescription thermal_camera(const ThermalRegisters& registers, const ThermalCameraOptions& options);
 
-/// The features of a category, to be extended; a new category where there is none of that name.
+/// Features of a category, to be extended. Adds the category if it does not exist.
 [[nodiscard]] std::vector<CameraFeature>& more_of(CameraDescription& camera, const std::string& category);
-/// A feature of the description. Precondition: it is there.
+/// A feature of the description. Precondition: it exists.
 [[nodiscard]] CameraFeature& feature_named(CameraDescription& camera, const std::string& name);
 
-/// What every emulated camera asks of its configuration; `who` begins the sentence. Errors: `invalid_input`.
+/// Checks the configuration of an emulated camera; `who` begins the message. Errors: `invalid_input`.
 template <typename Config>
 [[nodiscard]] Result<void> validate_emulation(const std::string& who, const Config& config) {
   const auto bad = [&](const char* what) { return fail(ErrorCode::invalid_input, who + ": " + what); };

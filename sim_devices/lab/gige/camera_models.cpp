@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/gige/camera_models.h"
 
 #include <array>
@@ -29,14 +30,14 @@ std::uint32_t nearest_video_standard(double rate_hz) {
   return best.value;
 }
 
-/// The strings of discovery as features.
+/// Strings of discovery as features.
 Features device_control(const ThermalCameraOptions& o) {
   return {
       text("DeviceVendorName", gev::vendor_name, 32, o.vendor), text("DeviceModelName", gev::model_name, 32, o.model),
       text("DeviceVersion", gev::device_version, 32, o.firmware), text("DeviceID", gev::serial_number, 16, o.serial)};
 }
 
-/// What every model has of the transport layer; the rest of it is in the registers of the standard.
+/// Features of the transport layer of every model. The rest is in the registers of the standard.
 Features transport_control() {
   return {{.name = "GevSCPSBigEndian",
            .kind = Kind::bit,
@@ -53,7 +54,7 @@ Features chunk_control(std::uint32_t mode) {
            .address = mode,
            .entries = {{"Off", 0}, {"On", 1}},
            .locked_while_streaming = true,
-           .about = "Appends what the camera knows of the exposure to every frame."},
+           .about = "Appends data of the exposure to every frame."},
           {.name = "ChunkExposureIndex",
            .kind = Kind::chunk_integer,
            .access = read_only,
@@ -80,7 +81,7 @@ Features image_control(const ThermalCameraOptions& o, const ModelRegisters& r,
           command("AcquisitionStop", r.acquisition_stop, 1)};
 }
 
-/// What the Ax5 takes the scene for: factors in steps of 1/8192, temperatures of hundredths above 273 K. Neutral.
+/// Object parameters of the Ax5: factors in steps of 1/8192, temperatures in hundredths above 273 K. Neutral values.
 Features ax5_object_parameters() {
   const auto factor = [](const char* name, std::uint32_t address) {
     return CameraFeature{
@@ -95,7 +96,7 @@ Features ax5_object_parameters() {
           factor("AtmosphericTransmission", 0xEA2C), kelvin("AtmosphericTemperature", 0xEA30)};
 }
 
-/// At power-up as a camera as shipped: automatic corrections, counts instead of temperatures, eight bits, sharpening.
+/// Power-up state as shipped: automatic corrections, counts instead of temperatures, eight bits, sharpening.
 Features ax5_thermal(const ThermalCameraOptions& o, const ModelRegisters& r) {
   std::vector<std::pair<std::string, std::uint32_t>> standards;
   for (const auto& s : video_standards) standards.emplace_back(s.name, s.value);
@@ -137,7 +138,7 @@ Features ax5_thermal(const ThermalCameraOptions& o, const ModelRegisters& r) {
       temperature("DeviceTemperature", 0xEA98, 0.1, 305)};
 }
 
-/// The whole of a model from its own part.
+/// Completes a model from its own part.
 ModelDescription composed(const ThermalCameraOptions& o, const ModelRegisters& r, const char* file_name,
                           const std::vector<PixelFormat>& formats, Features thermal) {
   Features image = image_control(o, r, formats);
@@ -180,7 +181,7 @@ ModelDescription ax5(ThermalCameraOptions o) {
   return camera;
 }
 
-/// Registers of the models that have no published ones: any addresses will do.
+/// Registers of the models without published ones: arbitrary addresses.
 ModelRegisters own_registers() {
   ModelRegisters r;
   r.width = 0xB000;
@@ -225,7 +226,7 @@ ModelDescription a_series(ThermalCameraOptions o, CameraModel which) {
                    frame_rate(o)};
   auto out = composed(o, r, "todbench_a_series.xml", {PixelFormat::mono16}, std::move(thermal));
   if (legacy) {
-    // The order of bytes is not to be asked for, and not to be changed.
+    // The byte order cannot be read or changed.
     std::erase_if(more_of(out.genicam, "TransportLayerControl"),
                   [](const CameraFeature& f) { return f.name == "GevSCPSBigEndian"; });
   }

@@ -1,4 +1,5 @@
-// The cameras that the GigE Vision emulation can be: registers, features and what they do to the picture.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models of the GigE Vision emulation: registers, features and their effect on the picture.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +14,20 @@ namespace todbench {
 enum class CameraModel {
   ax5,       ///< FLIR A5 ... A65: TemperatureLinearMode, CMOSBitDepth, NUCMode, test ramp, rates by video standard
   a_series,  ///< FLIR A3xx ... A700: IRFormat, NoiseReduction, AcquisitionFrameRate
-  legacy_science,  ///< FLIR A305sc and A320G: Mono16 with the high byte first, and no feature that says so
-  unlisted,        ///< a vendor nobody knows: raw counts and a shutter with a name of its own
+  legacy_science,  ///< FLIR A305sc and A320G: Mono16 with the high byte first, not stated by any feature
+  unlisted,        ///< an unknown vendor: raw counts, and a feature of its own name for the shutter
 };
 
 [[nodiscard]] std::string_view to_string(CameraModel model);
 /// "ax5", "a-series", "legacy-science", "unlisted".
 [[nodiscard]] std::optional<CameraModel> camera_model(std::string_view name);
 
-/// Addresses of the registers that the emulation itself looks at; 0: the model has none.
+/// Addresses of the registers that the emulation itself reads; 0: the model has none.
 struct ModelRegisters {
   std::uint32_t width = 0, height = 0, pixel_format = 0, payload_size = 0;
   std::uint32_t acquisition_start = 0, acquisition_stop = 0;
-  std::uint32_t temperature_linear_mode = 0, temperature_linear_resolution = 0;  ///< as the Ax5 has them
-  std::uint32_t ir_format = 0;                                                   ///< as the A series has it
+  std::uint32_t temperature_linear_mode = 0, temperature_linear_resolution = 0;  ///< of the Ax5
+  std::uint32_t ir_format = 0;                                                   ///< of the A series
   std::uint32_t video_standard = 0;                                              ///< Ax5 enumeration
   std::uint32_t image_adjust = 0;  ///< Ax5 enumeration ImageAdjustMethod: 1 is Linear
   std::uint32_t test_pattern = 0;
@@ -38,7 +39,7 @@ struct ModelRegisters {
   std::uint32_t largest_count = 0;
 };
 
-/// Ids of the chunks behind a frame, where chunk mode is on.
+/// Ids of the chunks after a frame, if chunk mode is on.
 inline constexpr std::uint32_t chunk_image = 0x00000001;
 inline constexpr std::uint32_t chunk_exposure = 0xA0000001;            ///< ChunkExposureIndex
 inline constexpr std::uint32_t chunk_sensor_temperature = 0xA0000002;  ///< ChunkSensorTemperature, raw/10
@@ -49,10 +50,10 @@ struct ModelDescription {
   ModelRegisters registers;
 };
 
-/// Registers and features of a model; an empty vendor or model is that of the family.
+/// Registers and features of a model. An empty vendor or model name is that of the family.
 [[nodiscard]] ModelDescription describe_camera(CameraModel model, const ThermalCameraOptions& options);
 
-/// Frames per second of a value of the Ax5's SensorVideoStandard; 0 for one that does not exist.
+/// Frames per second for a value of the Ax5's SensorVideoStandard; 0 for an unknown value.
 [[nodiscard]] double video_standard_hz(std::uint32_t value);
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/gige/gige_camera.h"
 
 #include <arv.h>
@@ -15,6 +16,7 @@
 
 #include "acquisition/aravis/gev_registers.h"
 #include "acquisition/aravis/gvcp_client.h"
+#include "acquisition/base/descriptor.h"
 #include "sim_devices/lab/genicam/picture_encoder.h"
 #include "sim_devices/lab/genicam/thermal_features.h"
 
@@ -24,7 +26,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// This camera's own registers, beside those of Aravis' fake camera.
+/// Registers of this camera in addition to those of Aravis' fake camera.
 constexpr std::uint32_t register_ir_format = 0xA000;
 constexpr std::uint32_t register_nuc_mode = 0xA004;
 constexpr std::uint32_t register_nuc_action = 0xA008;
@@ -65,7 +67,7 @@ std::uint32_t raw_temperature(double temperature_c) {
   return static_cast<std::uint32_t>(std::lround(100 * temperature_c));
 }
 
-/// The camera of thermal_camera() and what only this one has.
+/// The camera of thermal_camera() with the features that only this one has.
 CameraDescription described(const EmulatedGigeCameraConfig& c) {
   using namespace features;
   auto camera = thermal_camera(registers_of_this, options_of(c));
@@ -88,7 +90,7 @@ CameraDescription described(const EmulatedGigeCameraConfig& c) {
   thermal.push_back(
       {.name = "NUCIntervalFrames", .address = register_nuc_interval, .initial = 9000, .least = 1, .most = 1'000'000});
   thermal.push_back(choice("NoiseReduction", register_noise_reduction, 1, {{"Off", 0}, {"On", 1}}));
-  // The fake camera keeps nothing but the size of packets in its register.
+  // The fake camera keeps only the packet size in its register.
   more_of(camera, "TransportLayerControl")
       .push_back({.name = "GevSCPSBigEndian",
                   .kind = FeatureKind::bit,
@@ -98,29 +100,24 @@ CameraDescription described(const EmulatedGigeCameraConfig& c) {
   return camera;
 }
 
-/// Commands are noticed this often while no frame is being exposed.
+/// Interval at which commands are noticed as long as no frame is exposed.
 constexpr auto command_poll_period = 20ms;
 
-/// A file that exists only in memory, for a library that wants a path.
+/// A file in memory, for a library that expects a path.
 class MemoryFile {
  public:
   explicit MemoryFile(std::string_view content) : fd_(memfd_create("genicam", MFD_CLOEXEC)) {
     std::size_t written = 0;
-    while (fd_ >= 0 && written < content.size()) {
-      const auto size = ::write(fd_, content.data() + written, content.size() - written);
+    while (fd_.is_open() && written < content.size()) {
+      const auto size = ::write(fd_.get(), content.data() + written, content.size() - written);
       if (size <= 0) break;
       written += static_cast<std::size_t>(size);
     }
   }
-  ~MemoryFile() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(fd_); }
+  [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(fd_.get()); }
 
  private:
-  int fd_;
+  Descriptor fd_;
 };
 
 struct Unref {
@@ -134,7 +131,7 @@ Result<void> validate(const EmulatedGigeCameraConfig& config) {
   if (config.vendor.size() > 31 || config.model.size() > 31 || config.firmware.size() > 31) {
     return bad("vendor, model and firmware must have at most 31 characters");
   }
-  if (config.first_frame_id == 0) return bad("frame id 0 does not exist");
+  if (config.first_frame_id == 0) return bad("first_frame_id must not be 0");
   return {};
 }
 
@@ -145,9 +142,9 @@ struct EmulatedGigeCamera::State {
   Exposure exposure;
   NucObserver on_nuc;
   CameraDescription description;
-  std::optional<PictureEncoder> encoder;  ///< of the camera's thread
+  std::optional<PictureEncoder> encoder;  ///< used by the camera's thread
 
-  mutable std::mutex mutex;  ///< guards what follows, down to `polled`
+  mutable std::mutex mutex;  ///< guards all members down to `polled`
   std::uint64_t exposures = 0;
   std::uint64_t failed_exposures = 0;
   std::uint64_t corrections = 0;
@@ -158,9 +155,9 @@ struct EmulatedGigeCamera::State {
   std::vector<std::uint8_t> last_sent;
   std::condition_variable_any polled;
 
-  std::unique_ptr<ArvFakeCamera, Unref> registers;  ///< outlives the camera's thread, which reads it until the end
+  std::unique_ptr<ArvFakeCamera, Unref> registers;  ///< outlives the camera's thread, which reads it
   std::unique_ptr<ArvGvFakeCamera, Unref> camera;
-  std::jthread poll;  ///< last member: stops before anything that it uses goes
+  std::jthread poll;  ///< last member: stops before anything that it uses is destroyed
 
   ~State() {
     poll = {};
@@ -237,7 +234,7 @@ cv::Mat1w EmulatedGigeCamera::State::expose() {
   try {
     counts = exposure(index);
   } catch (...) {
-    // Nothing may propagate into the C library that called; the owner sees the count.
+    // No exception may propagate into the calling C library; the owner reads the count.
     counts = {};
   }
   if (counts.cols == config.width && counts.rows == config.height) return counts;
@@ -266,13 +263,13 @@ void EmulatedGigeCamera::State::fill(ArvBuffer* buffer, ArvPixelFormat format) {
   }
   for (unsigned i = 0; i < lost; ++i) static_cast<void>(expose());
   const cv::Mat1w counts = expose();
-  // The buffer was allocated for the geometry in the registers, which a client that ignores read-only may have changed.
+  // The buffer has the geometry of the registers, which a client that ignores read-only may have changed.
   const auto known = pixel_format_of_pfnc(format);
   const bool fits = read(ARV_FAKE_CAMERA_REGISTER_WIDTH) == static_cast<std::uint32_t>(config.width) &&
                     read(ARV_FAKE_CAMERA_REGISTER_HEIGHT) == static_cast<std::uint32_t>(config.height) &&
                     (known == PixelFormat::mono14 || known == PixelFormat::mono16);
   const std::lock_guard lock(mutex);
-  // Ids follow 65535 with 1.
+  // The id after 65535 is 1.
   const auto id = static_cast<std::uint16_t>((next_frame_id - 1U + lost) % 65535U + 1U);
   next_frame_id = static_cast<std::uint16_t>(id % 65535U + 1U);
   arv_buffer_set_frame_id(buffer, id);
@@ -290,7 +287,7 @@ EmulatedGigeCamera::~EmulatedGigeCamera() = default;
 Result<std::unique_ptr<EmulatedGigeCamera>> EmulatedGigeCamera::start(EmulatedGigeCameraConfig config,
                                                                       Exposure exposure, NucObserver on_nuc) {
   if (const auto valid = validate(config); !valid) return tl::unexpected(valid.error());
-  if (!exposure) return fail(ErrorCode::invalid_input, "emulated camera: there is nothing to expose");
+  if (!exposure) return fail(ErrorCode::invalid_input, "emulated camera: the exposure function is missing");
   const std::string address = config.interface_address;
   auto state = std::make_unique<State>();
   state->config = std::move(config);
@@ -305,8 +302,8 @@ Result<std::unique_ptr<EmulatedGigeCamera>> EmulatedGigeCamera::start(EmulatedGi
   }
   state->registers.reset(ARV_FAKE_CAMERA(g_object_ref(arv_gv_fake_camera_get_fake_camera(state->camera.get()))));
   state->power_up();
-  // is_running says true even when the port was taken, and a client would then drive somebody else's camera. Only the
-  // answer over the wire tells: a value that no other camera has (clock and process) must come back.
+  // is_running is true even if the port was taken, and a client would then control a foreign camera. Only an answer
+  // over the wire is proof: a value that no other camera has (clock and process) must be returned.
   const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
   const auto instance = static_cast<std::uint32_t>(now ^ (now >> 32) ^ (std::int64_t{getpid()} << 12));
   state->write(register_instance, instance);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/gige/gvcp_device.h"
 
 #include "acquisition/aravis/gev_registers.h"
@@ -21,7 +22,7 @@ std::optional<Bytes> GvcpDevice::answer(std::span<const std::uint8_t> datagram, 
   if (request->command == static_cast<std::uint16_t>(GvcpCommand::packet_resend)) {
     const auto resend = parse_resend_request(request->payload);
     if (resend && may_ask_again(from) && handlers_.on_resend) handlers_.on_resend(*resend);
-    return std::nullopt;  // packets are the answer
+    return std::nullopt;  // the packets are the answer
   }
   const Reply reply = reply_to(*request, from);
   {
@@ -150,7 +151,7 @@ void GvcpDevice::forget_controller() {
 void GvcpDevice::deny_access() {
   const std::lock_guard lock(mutex_);
   denied_ = true;
-  // What a client reads who asks before it tries.
+  // For a client that reads the register before it tries.
   if (!controller_) registers_.set(gev::control_privilege, gev::control_access);
 }
 

@@ -1,5 +1,6 @@
-// How a GigE Vision camera answers control messages: privilege, heartbeat, registers. No sockets and no clock: what
-// comes in and when are arguments.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Answers of a GigE Vision camera to control messages: privilege, heartbeat, registers. Without sockets and clock:
+// messages and times are arguments.
 #pragma once
 
 #include <chrono>
@@ -14,18 +15,18 @@
 
 namespace todbench {
 
-/// Where a message came from.
+/// Sender of a message.
 struct GvcpEndpoint {
   std::uint32_t address = 0;  ///< IPv4, host byte order
   std::uint16_t port = 0;
   bool operator==(const GvcpEndpoint&) const = default;
 };
 
-/// What the rest of a camera does about messages. Called on the thread that calls GvcpDevice, without locks.
+/// Callbacks to the rest of the camera. Called without locks on the thread that calls GvcpDevice.
 struct GvcpHandlers {
-  std::function<void(std::uint32_t address, std::uint32_t value)> on_write;  ///< after it was stored
+  std::function<void(std::uint32_t address, std::uint32_t value)> on_write;  ///< after the value is stored
   std::function<void(const ResendRequest&)> on_resend;                       ///< from the controller's host only
-  std::function<void()> on_control_lost;  ///< the controller went, or was silent for the heartbeat timeout
+  std::function<void()> on_control_lost;  ///< the controller left, or was silent for the heartbeat timeout
 };
 
 /// Thread-safe.
@@ -35,19 +36,19 @@ class GvcpDevice {
 
   GvcpDevice(RegisterMap& registers, GvcpHandlers handlers) : registers_(registers), handlers_(std::move(handlers)) {}
 
-  /// The answer to a datagram; nothing when there is none.
+  /// Answer to a datagram; empty if there is none.
   [[nodiscard]] std::optional<Bytes> answer(std::span<const std::uint8_t> datagram, const GvcpEndpoint& from,
                                             Clock::time_point now);
-  /// Ends the control of a client that has been silent for the heartbeat timeout.
+  /// Ends the control of a client that was silent for the heartbeat timeout.
   void check_heartbeat(Clock::time_point now);
-  /// Forgets the controller without telling anybody, as a reset does.
+  /// Forgets the controller without a callback, as a reset does.
   void forget_controller();
-  /// From now on nobody gets control, as if another program had it; whoever has it keeps it.
+  /// From now on no client gets control, as if another program had it. The present controller keeps it.
   void deny_access();
   void permit_access();
 
   [[nodiscard]] bool controlled() const;
-  /// Requests that were answered with an error, since the beginning.
+  /// Requests answered with an error since creation.
   [[nodiscard]] std::uint64_t refused() const;
 
  private:
@@ -63,12 +64,12 @@ class GvcpDevice {
   [[nodiscard]] GvcpStatus write(std::uint32_t address, std::uint32_t value, const GvcpEndpoint& from);
   [[nodiscard]] GvcpStatus change_privilege(std::uint32_t value, const GvcpEndpoint& from);
   [[nodiscard]] bool is_controller(const GvcpEndpoint& from) const;
-  /// Requests for packets come from the socket that receives them, not from the controller's.
+  /// Resend requests come from the socket that receives packets, not from the controller's.
   [[nodiscard]] bool may_ask_again(const GvcpEndpoint& from) const;
 
   RegisterMap& registers_;
   GvcpHandlers handlers_;
-  mutable std::mutex mutex_;  ///< guards what follows
+  mutable std::mutex mutex_;  ///< guards all members below
   std::optional<GvcpEndpoint> controller_;
   Clock::time_point last_heard_;
   bool denied_ = false;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Messages of the GigE Vision control protocol (GVCP) as values. Source: GigE Vision 2.0, chapters 14 to 18.
 #pragma once
 
@@ -30,7 +31,7 @@ enum class GvcpStatus : std::uint16_t {
   busy = 0x8007,
 };
 
-/// A request as it came; `command` may be a number that is none of GvcpCommand.
+/// A request as received; `command` may be a number outside GvcpCommand.
 struct GvcpRequest {
   std::uint16_t command = 0;
   std::uint16_t id = 0;
@@ -41,21 +42,21 @@ struct GvcpRequest {
 /// Longest payload of a message: a READMEM of 536 bytes with its address.
 inline constexpr std::size_t gvcp_most_payload_bytes = 540;
 
-/// Nothing unless the datagram begins with the key 0x42, has an id and is as long as it says: such a datagram is not
-/// answered.
+/// Parses a request. Empty, and to be left without an answer, if the datagram does not begin with the key 0x42, has the
+/// id 0, or differs from its stated length.
 [[nodiscard]] std::optional<GvcpRequest> parse_gvcp_request(std::span<const std::uint8_t> datagram);
 
-/// The acknowledge of a request; its command is that of the request plus one.
+/// Acknowledge of a request. Its command is that of the request plus one.
 [[nodiscard]] Bytes gvcp_acknowledge(const GvcpRequest& request, GvcpStatus status,
                                      std::span<const std::uint8_t> payload);
 
-/// What a PACKETRESEND asks for.
+/// Contents of a PACKETRESEND.
 struct ResendRequest {
   std::uint16_t block_id = 0;
   std::uint32_t first_packet = 0, last_packet = 0;  ///< 24 bits each, inclusive
 };
 
-/// Nothing when the payload is too short or asks for packets backwards.
+/// Empty if the payload is too short or the range of packets is reversed.
 [[nodiscard]] std::optional<ResendRequest> parse_resend_request(std::span<const std::uint8_t> payload);
 
 }  // namespace todbench

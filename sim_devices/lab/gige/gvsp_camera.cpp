@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/gige/gvsp_camera.h"
 
 #include <utility>
@@ -21,7 +22,7 @@ Result<void> validate(const GvspCameraConfig& c) {
       c.image_padding_bytes > 65535) {
     return bad("padding must be 0 ... 65535 bytes");
   }
-  if (c.first_block_id == 0) return bad("block id 0 does not exist");
+  if (c.first_block_id == 0) return bad("first_block_id must not be 0");
   return {};
 }
 
@@ -31,7 +32,7 @@ ModelDescription described(const GvspCameraConfig& c) {
                                    .serial = c.serial,
                                    .firmware = c.firmware,
                                    .width = c.width,
-                                   .height = c.height,
+                                   .height = c.height + c.rows_not_sent,
                                    .significant_bits = c.significant_bits,
                                    .frame_rate_hz = c.frame_rate_hz});
 }
@@ -39,7 +40,7 @@ ModelDescription described(const GvspCameraConfig& c) {
 }  // namespace
 
 GvspCamera::State::State(GvspCameraConfig c, Exposure e, ControlSockets control_sockets, StreamSocket stream_socket,
-                         const NetworkInterface& where)
+                         const LocalInterface& where)
     : config(std::move(c)),
       exposure(std::move(e)),
       description(described(config)),
@@ -69,7 +70,7 @@ GvspCamera::~GvspCamera() {
 
 Result<std::unique_ptr<GvspCamera>> GvspCamera::start(GvspCameraConfig config, Exposure exposure) {
   if (const auto valid = validate(config); !valid) return tl::unexpected(valid.error());
-  if (!exposure) return fail(ErrorCode::invalid_input, "emulated camera: there is nothing to expose");
+  if (!exposure) return fail(ErrorCode::invalid_input, "emulated camera: the exposure function is missing");
   const auto where = find_interface(config.interface_address);
   if (!where) {
     return fail(ErrorCode::not_found,

@@ -1,4 +1,5 @@
-// What an emulated GVSP camera does when it is spoken to: registers and their side effects.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Control thread of an emulated GVSP camera: registers and their side effects.
 #include <fmt/format.h>
 #include <cmath>
 
@@ -10,9 +11,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-/// How often the heartbeat is looked at.
+/// Interval between checks of the heartbeat.
 constexpr auto control_patience = 50ms;
-/// What chunk mode adds to an image: four chunks with id and length, with contents of 8, 4 and 4 bytes beside the
+/// Bytes that chunk mode adds to an image: four chunks with id and length, and contents of 8, 4 and 4 bytes besides the
 /// image.
 constexpr std::uint32_t chunk_bytes = 4 * 8 + 8 + 4 + 4;
 constexpr std::uint32_t default_packet_bytes = 1400;
@@ -60,14 +61,15 @@ void GvspCamera::State::power_up() {
   set(gev::stream_packet_delay, 0);
   set(gev::stream_source_port, stream.port());
   next_block_id = config.first_block_id;
+  if (config.chunks_at_power_up) set(description.registers.chunk_mode, 1);
   update_payload_size();
-  // Until the client chooses a video standard, the rate may be one that no standard has.
+  // Until the client selects a video standard, the rate may differ from all standards.
   period_ns = gvsp_period_ns(config.frame_rate_hz);
 }
 
 void GvspCamera::State::serve_control(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    // A heartbeat that waited while this thread could not run came in time: what has come is heard first.
+    // A heartbeat that waited while this thread could not run was in time: received messages are handled first.
     if (const auto request = control.receive(control_patience)) {
       answer(*request, stop);
     } else {
@@ -80,7 +82,7 @@ void GvspCamera::State::answer(const GvcpDatagram& request, const std::stop_toke
   {
     std::unique_lock lock(mutex);
     if (Clock::now() < link_down_until || Clock::now() < control_down_until) return;
-    // Slow, and still to be switched off at any moment.
+    // Waits before the answer, but can be switched off at any moment.
     if (config.memory_delay > 0ms && asks_for_memory(request.content))
       changed.wait_for(lock, stop, config.memory_delay, [] { return false; });
   }
@@ -88,6 +90,10 @@ void GvspCamera::State::answer(const GvcpDatagram& request, const std::stop_toke
 }
 
 void GvspCamera::State::on_write(std::uint32_t address, std::uint32_t value) {
+  for (const auto& [category, features] : description.genicam.categories) {
+    for (const CameraFeature& feature : features)
+      if (feature.address == address && feature.name == config.deaf_feature) registers.set(address, feature.initial);
+  }
   const ModelRegisters& r = description.registers;
   if (address == r.acquisition_start) {
     registers.lock_transport();
@@ -115,7 +121,8 @@ void GvspCamera::State::on_write(std::uint32_t address, std::uint32_t value) {
 void GvspCamera::State::update_payload_size() {
   const ModelRegisters& r = description.registers;
   const auto format = pixel_format_of_pfnc(registers.get(r.pixel_format)).value_or(PixelFormat::mono16);
-  const auto image = static_cast<std::uint32_t>(facts_of(format).bytes_per_pixel * config.width * config.height);
+  const auto image = static_cast<std::uint32_t>(facts_of(format).bytes_per_pixel * config.width *
+                                                (config.height + config.rows_not_sent));
   const auto padding =
       static_cast<std::uint32_t>(config.row_padding_bytes * config.height + config.image_padding_bytes);
   registers.set(r.payload_size, image + padding + (registers.get(r.chunk_mode) != 0 ? chunk_bytes : 0));

@@ -1,4 +1,5 @@
-// The inside of an emulated GVSP camera: what the control thread and the streaming thread share. Private to them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// State of an emulated GVSP camera, shared by control thread and streaming thread. Private to them.
 #pragma once
 
 #include <chrono>
@@ -11,7 +12,7 @@
 #include <thread>
 
 #include "acquisition/aravis/gev_registers.h"
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "sim_devices/lab/genicam/picture_encoder.h"
 #include "sim_devices/lab/gige/gvcp_device.h"
 #include "sim_devices/lab/gige/gvsp_camera.h"
@@ -19,33 +20,33 @@
 
 namespace todbench {
 
-/// Bytes of a stream packet below which no header fits.
+/// Size of a stream packet in bytes below which no header fits.
 inline constexpr std::uint32_t gvsp_least_packet_bytes = 46;
 
-/// In whole microseconds, as exposure_index() assumes.
+/// Frame period in whole microseconds, as exposure_index() assumes.
 [[nodiscard]] std::uint64_t gvsp_period_ns(double rate_hz);
 
 struct GvspCamera::State {
   State(GvspCameraConfig c, Exposure e, ControlSockets control_sockets, StreamSocket stream_socket,
-        const NetworkInterface& where);
+        const LocalInterface& where);
 
   const GvspCameraConfig config;
   const Exposure exposure;
   const ModelDescription description;
-  const NetworkInterface interface;
+  const LocalInterface interface;
   ControlSockets control;
   StreamSocket stream;
   std::mutex sending;  ///< one sender on `stream` at a time; no other lock is taken under it
   RegisterMap registers;
   GvcpDevice device;
-  PictureEncoder encoder;  ///< of the streaming thread
-  Bytes last_picture;      ///< of the streaming thread
+  PictureEncoder encoder;  ///< used by the streaming thread
+  Bytes last_picture;      ///< used by the streaming thread
   const RandomStream random;
 
-  std::mutex mutex;  ///< guards what follows
+  std::mutex mutex;  ///< guards the members below
   std::condition_variable_any changed;
   bool acquiring = false;
-  std::uint64_t acquisitions = 0;  ///< how often it was started
+  std::uint64_t acquisitions = 0;  ///< number of starts
   std::uint64_t clock_ns = 0;
   std::uint64_t period_ns = 0;
   std::uint16_t next_block_id = 1;
@@ -56,7 +57,7 @@ struct GvspCamera::State {
   std::chrono::steady_clock::time_point link_down_until, control_down_until;
   std::uint64_t resend_draws = 0;
 
-  std::jthread control_thread, stream_thread;  ///< last members: they stop before anything that they use goes
+  std::jthread control_thread, stream_thread;  ///< last members: they stop before anything that they use is destroyed
 
   [[nodiscard]] std::string description_served() const;
   void power_up();

@@ -1,4 +1,5 @@
-// Frames of an emulated GVSP camera: exposing, packing, sending, sending again.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Streaming thread of an emulated GVSP camera: exposing, packing, sending, resending.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -11,14 +12,14 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-/// Frames that a camera keeps for packets that are asked for again.
+/// Frames that a camera keeps for resend requests.
 constexpr std::size_t kept_frames = 16;
-/// A camera that fell behind by more than this goes on from now instead of catching up.
+/// A camera that is late by more than this continues from now instead of catching up.
 constexpr auto most_lag = 250ms;
-/// What padding and surplus are made of: as pixels they would be near full scale.
+/// Value of padding and surplus bytes: as pixels they would be near full scale.
 constexpr std::uint8_t surplus_byte = 0x3E;
 
-/// A picture with the padding of the camera behind its rows and behind all of it.
+/// A picture with the camera's padding after its rows and after the image.
 Bytes padded(Bytes picture, const GvspCameraConfig& config) {
   if (config.row_padding_bytes == 0 && config.image_padding_bytes == 0) return picture;
   const std::size_t row_bytes = picture.size() / static_cast<std::size_t>(config.height);
@@ -122,7 +123,7 @@ Bytes GvspCamera::State::picture_of(const Exposed& exposed, const EncoderSetting
   try {
     counts_of_exposure = exposure(exposed.index);
   } catch (...) {
-    // A thread must not end here; the owner sees the count.
+    // No exception may end a thread; the owner reads the count.
     counts_of_exposure = {};
   }
   if (counts_of_exposure.cols != config.width || counts_of_exposure.rows != config.height) {
@@ -160,7 +161,8 @@ std::shared_ptr<const GvspFrame> GvspCamera::State::frame_of(const Exposed& expo
   }
   frame->data.resize(frame->data.size() + exposed.planned.surplus_bytes, surplus_byte);
   if (registers.get(description.registers.chunk_mode) == 0) return frame;
-  frame->payload_type = 0x4001;
+  frame->payload_type = config.chunk_payload_type;
+  if (frame->payload_type == 4) frame->width = frame->height = 0;
   const Bytes image = std::move(frame->data);
   frame->data.clear();
   append_chunk(frame->data, chunk_image, image);
@@ -183,7 +185,7 @@ void GvspCamera::State::send_frame(const GvspFrame& frame, const Exposed& expose
       schedule_packets(frame.packets(), exposed.planned, exposed.faults, random, exposed.index);
   {
     const std::lock_guard lock(mutex);
-    // An exposure that was under way when the client stopped belongs to no later stream.
+    // An exposure in progress when the client stopped belongs to no later stream.
     if (!acquiring || acquisitions != exposed.acquisition) return;
     counts.faults.packets_lost += schedule.lost;
     counts.faults.packets_duplicated += schedule.duplicated;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/gige/gvsp_faults.h"
 
 #include <utility>
@@ -5,7 +6,7 @@
 namespace todbench {
 namespace {
 
-/// Positions of the draws of a frame as a whole, each with its own so that one probability never shifts another's.
+/// Positions of the draws for a whole frame. They are separate, so that one probability never changes another draw.
 enum FrameDraw : std::uint64_t {
   draw_lost,
   draw_frozen,
@@ -15,7 +16,7 @@ enum FrameDraw : std::uint64_t {
   draw_too_long,
   draw_surplus
 };
-/// Draws per packet, behind those of the frame.
+/// Draws per packet, after those of the frame.
 enum PacketDraw : std::uint64_t { draw_loss, draw_duplicate, draw_reorder, draws_per_packet };
 constexpr std::uint64_t first_packet_draw = 16;
 
@@ -23,7 +24,7 @@ bool happens(double probability, const RandomStream& random, std::uint64_t posit
   return probability > 0 && random.uniform(position) < probability;
 }
 
-/// From one byte to more than a packet.
+/// From one byte to more than one packet.
 std::size_t surplus_of(const RandomStream& random) {
   return static_cast<std::size_t>(1) << static_cast<unsigned>(random.uniform(draw_surplus) * 15);
 }

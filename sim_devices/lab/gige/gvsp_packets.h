@@ -1,4 +1,5 @@
-// Packets of the GigE Vision streaming protocol (GVSP) of one frame. Source: GigE Vision 2.0, chapters 23 to 25.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Packets of one frame in the GigE Vision streaming protocol (GVSP). Source: GigE Vision 2.0, chapters 23 to 25.
 #pragma once
 
 #include <array>
@@ -10,14 +11,14 @@
 
 namespace todbench {
 
-/// IPv4, UDP and GVSP headers: what a packet of GevSCPSPacketSize carries beside data.
+/// Bytes of a packet of GevSCPSPacketSize besides its data: IPv4, UDP and GVSP headers.
 inline constexpr std::size_t gvsp_overhead_bytes = 20 + 8 + 8;
 
 inline constexpr std::uint16_t gvsp_status_success = 0x0000;
 inline constexpr std::uint16_t gvsp_status_resent = 0x0100;
 inline constexpr std::uint16_t gvsp_status_packet_unavailable = 0x800C;
 
-/// One frame on the wire. Immutable once made.
+/// One frame on the wire. Immutable after creation.
 struct GvspFrame {
   std::uint16_t block_id = 1;
   std::uint64_t exposure = 0;
@@ -25,16 +26,16 @@ struct GvspFrame {
   std::uint32_t pixel_format = 0;
   std::uint32_t width = 0, height = 0;         ///< as the leader states them
   std::uint16_t x_padding = 0, y_padding = 0;  ///< the same, in bytes
-  std::uint16_t payload_type = 0x0001;         ///< 0x4001 with chunks behind the image
+  std::uint16_t payload_type = 0x0001;         ///< 0x4001 with chunks after the image
   std::size_t bytes_per_packet = 0;            ///< of data
-  Bytes data;                                  ///< image, and chunks behind it
+  Bytes data;                                  ///< image, then chunks
 
   /// Leader, data packets and trailer: packet ids 0 ... packets() - 1.
   [[nodiscard]] std::uint32_t packets() const;
 };
 
-/// A datagram in two parts, so that pixels are not copied once more: its header, or all of it for leader and trailer,
-/// and a slice of GvspFrame::data.
+/// A datagram in two parts, so that pixels are not copied again: its header (all of it for leader and trailer) and a
+/// slice of GvspFrame::data.
 struct GvspPacket {
   std::array<std::uint8_t, 44> head{};
   std::size_t head_bytes = 0;
@@ -44,7 +45,7 @@ struct GvspPacket {
 /// Packet `id` of a frame. Precondition: id < frame.packets().
 [[nodiscard]] GvspPacket gvsp_packet(const GvspFrame& frame, std::uint32_t id, std::uint16_t status);
 
-/// The answer to a request for a packet that is not kept any more.
+/// Answer to a request for a packet that is not kept any more.
 [[nodiscard]] GvspPacket gvsp_unavailable(std::uint16_t block_id, std::uint32_t id);
 
 /// Appends one chunk: its data, then its id and length.

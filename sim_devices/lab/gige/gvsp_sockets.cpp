@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/gige/gvsp_sockets.h"
 
 #include <arpa/inet.h>
@@ -20,11 +21,11 @@
 namespace todbench {
 namespace {
 
-/// The longest control message with its header; longer ones are cut off and then refused for their length.
+/// Longest control message with its header. Longer ones are truncated, and rejected for their length.
 constexpr std::size_t most_datagram_bytes = 1024;
 /// Packets handed to the kernel in one call.
 constexpr std::size_t batch = 64;
-/// Room for several frames, so that sending waits for the reader and not for this program.
+/// Space for several frames, so that sending waits for the reader and not for this program.
 constexpr int send_buffer_bytes = 8 << 20;
 
 sockaddr_in socket_address(std::uint32_t address, std::uint16_t port) {
@@ -40,8 +41,8 @@ bool bind_to(int fd, std::uint32_t address, std::uint16_t port) {
   return ::bind(fd, reinterpret_cast<const sockaddr*>(&where), sizeof where) == 0;
 }
 
-Socket udp_socket() {
-  return Socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+Descriptor udp_socket() {
+  return Descriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
 }
 
 std::uint32_t host_order(const sockaddr* address) {
@@ -50,7 +51,7 @@ std::uint32_t host_order(const sockaddr* address) {
   return ntohl(in.sin_addr.s_addr);
 }
 
-/// Index of the interface on which a datagram came in; 0 when the kernel does not say.
+/// Index of the interface on which a datagram arrived; 0 if the kernel does not report it.
 int arrival_interface(msghdr& message) {
   for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
     if (c->cmsg_level != IPPROTO_IP || c->cmsg_type != IP_PKTINFO) continue;
@@ -89,68 +90,57 @@ std::optional<Received> receive_from(int fd) {
 
 }  // namespace
 
-Socket::~Socket() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
-Socket::Socket(Socket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-
-Socket& Socket::operator=(Socket&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  return *this;
-}
-
-std::optional<NetworkInterface> find_interface(const std::string& ipv4) {
+std::optional<LocalInterface> find_interface(const std::string& ipv4) {
   in_addr wanted{};
   if (inet_pton(AF_INET, ipv4.c_str(), &wanted) != 1) return std::nullopt;
   ifaddrs* list = nullptr;
   if (getifaddrs(&list) != 0) return std::nullopt;
-  std::optional<NetworkInterface> found;
+  std::optional<LocalInterface> found;
   for (const ifaddrs* entry = list; entry != nullptr && !found; entry = entry->ifa_next) {
     if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET || (entry->ifa_flags & IFF_UP) == 0)
       continue;
     if (host_order(entry->ifa_addr) != ntohl(wanted.s_addr)) continue;
-    found = NetworkInterface{static_cast<int>(if_nametoindex(entry->ifa_name)), ntohl(wanted.s_addr),
-                             entry->ifa_netmask != nullptr ? host_order(entry->ifa_netmask) : 0xFF000000};
+    found = LocalInterface{static_cast<int>(if_nametoindex(entry->ifa_name)), ntohl(wanted.s_addr),
+                           entry->ifa_netmask != nullptr ? host_order(entry->ifa_netmask) : 0xFF000000};
   }
   freeifaddrs(list);
   return found;
 }
 
-Result<ControlSockets> ControlSockets::open(const NetworkInterface& where) {
+Result<ControlSockets> ControlSockets::open(const LocalInterface& where) {
   ControlSockets out;
   out.interface_ = where.index;
   out.own_ = udp_socket();
   out.broadcast_ = udp_socket();
-  out.wake_ = Socket(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-  if (out.own_.fd() < 0 || out.broadcast_.fd() < 0 || out.wake_.fd() < 0) {
-    return fail(ErrorCode::not_found, std::string("no socket: ") + std::strerror(errno));
+  out.wake_ = Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (out.own_.get() < 0 || out.broadcast_.get() < 0 || out.wake_.get() < 0) {
+    return fail(ErrorCode::not_found, std::string("the socket cannot be created: ") + std::strerror(errno));
   }
-  if (!bind_to(out.own_.fd(), where.address, gvcp_port)) {
+  if (!bind_to(out.own_.get(), where.address, gvcp_port)) {
     return fail(ErrorCode::not_found, std::string("UDP port 3956 is busy: ") + std::strerror(errno));
   }
-  // Every camera of a host hears broadcasts. Where that cannot be had, the camera is found by its address only.
+  // Every camera of a host receives broadcasts. If that is impossible, the camera is found only by its address.
   const int on = 1;
-  setsockopt(out.broadcast_.fd(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  setsockopt(out.broadcast_.fd(), IPPROTO_IP, IP_PKTINFO, &on, sizeof on);
-  if (!bind_to(out.broadcast_.fd(), INADDR_BROADCAST, gvcp_port)) out.broadcast_ = Socket();
+  setsockopt(out.broadcast_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  setsockopt(out.broadcast_.get(), IPPROTO_IP, IP_PKTINFO, &on, sizeof on);
+  if (!bind_to(out.broadcast_.get(), INADDR_BROADCAST, gvcp_port)) out.broadcast_ = Descriptor();
   return out;
 }
 
 std::optional<GvcpDatagram> ControlSockets::receive(std::chrono::milliseconds patience) {
-  std::array<pollfd, 3> waiting{{{own_.fd(), POLLIN, 0}, {wake_.fd(), POLLIN, 0}, {broadcast_.fd(), POLLIN, 0}}};
+  std::array<pollfd, 3> waiting{{{own_.get(), POLLIN, 0}, {wake_.get(), POLLIN, 0}, {broadcast_.get(), POLLIN, 0}}};
   if (::poll(waiting.data(), waiting.size(), static_cast<int>(patience.count())) <= 0) return std::nullopt;
   if ((waiting[1].revents & POLLIN) != 0) {
     eventfd_t count = 0;
-    eventfd_read(wake_.fd(), &count);
+    eventfd_read(wake_.get(), &count);
     return std::nullopt;
   }
   if ((waiting[0].revents & POLLIN) != 0) {
-    if (auto received = receive_from(own_.fd())) return std::move(received->datagram);
+    if (auto received = receive_from(own_.get())) return std::move(received->datagram);
   }
   if ((waiting[2].revents & POLLIN) != 0) {
-    auto received = receive_from(broadcast_.fd());
-    // A broadcast that came in elsewhere would be answered with an address that the asker cannot stream from.
+    auto received = receive_from(broadcast_.get());
+    // The answer to a broadcast on another interface would contain an address from which the client cannot stream.
     if (received && received->interface == interface_) return std::move(received->datagram);
   }
   return std::nullopt;
@@ -158,25 +148,25 @@ std::optional<GvcpDatagram> ControlSockets::receive(std::chrono::milliseconds pa
 
 void ControlSockets::send(std::span<const std::uint8_t> datagram, const GvcpEndpoint& to) {
   const sockaddr_in where = socket_address(to.address, to.port);
-  // A client that does not listen any more is none of the camera's business.
-  static_cast<void>(::sendto(own_.fd(), datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&where),
+  // Errors are ignored, because a client may have stopped listening.
+  static_cast<void>(::sendto(own_.get(), datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&where),
                              sizeof where));
 }
 
 void ControlSockets::wake() {
-  eventfd_write(wake_.fd(), 1);
+  eventfd_write(wake_.get(), 1);
 }
 
 Result<StreamSocket> StreamSocket::open(std::uint32_t address) {
   StreamSocket out;
   out.socket_ = udp_socket();
-  if (out.socket_.fd() < 0 || !bind_to(out.socket_.fd(), address, 0)) {
-    return fail(ErrorCode::not_found, std::string("no socket for frames: ") + std::strerror(errno));
+  if (out.socket_.get() < 0 || !bind_to(out.socket_.get(), address, 0)) {
+    return fail(ErrorCode::not_found, std::string("the socket for frames cannot be created: ") + std::strerror(errno));
   }
-  setsockopt(out.socket_.fd(), SOL_SOCKET, SO_SNDBUF, &send_buffer_bytes, sizeof send_buffer_bytes);
+  setsockopt(out.socket_.get(), SOL_SOCKET, SO_SNDBUF, &send_buffer_bytes, sizeof send_buffer_bytes);
   sockaddr_in bound{};
   socklen_t size = sizeof bound;
-  getsockname(out.socket_.fd(), reinterpret_cast<sockaddr*>(&bound), &size);
+  getsockname(out.socket_.get(), reinterpret_cast<sockaddr*>(&bound), &size);
   out.port_ = ntohs(bound.sin_port);
   return out;
 }
@@ -200,8 +190,8 @@ void StreamSocket::send(std::span<const GvspPacket> packets, const GvcpEndpoint&
       messages[i].msg_hdr.msg_iovlen = packet.data.empty() ? 1 : 2;
     }
     for (std::size_t sent = 0; sent < count;) {
-      const int done = ::sendmmsg(socket_.fd(), messages.data() + sent, static_cast<unsigned>(count - sent), 0);
-      // The answer "nobody listens" to an earlier packet; this one has not been sent.
+      const int done = ::sendmmsg(socket_.get(), messages.data() + sent, static_cast<unsigned>(count - sent), 0);
+      // ECONNREFUSED refers to an earlier packet; this packet has not been sent.
       if (done <= 0 && errno != ECONNREFUSED && errno != EINTR) return;
       sent += done > 0 ? static_cast<std::size_t>(done) : 0;
     }

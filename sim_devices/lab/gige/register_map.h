@@ -1,4 +1,5 @@
-// The registers of an emulated GigE Vision camera: its memory, what may be written and when.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Registers of an emulated GigE Vision camera: memory, and rules for writing it.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +15,29 @@
 
 namespace todbench {
 
-/// Memory with rules. The standard's own registers (0 ... 0xAFF and stream channel 0 at 0xD00 ... 0xD2F) can be read
-/// everywhere and written where the standard lets a client write; the camera's registers as their table says; nothing
-/// else exists. Thread-safe.
+/// Memory with rules. The standard's own registers (0 ... 0xAFF and stream channel 0 at 0xD00 ... 0xD2F) can all be
+/// read, and written if the standard allows it. The camera's registers follow their table. Other addresses do not
+/// exist. Thread-safe.
 class RegisterMap {
  public:
-  /// Registers of the features at their power-up values, and `xml` to be read from `xml_address` on.
+  /// Sets the registers of the features to their power-up values and places `xml` at `xml_address`.
   RegisterMap(CameraDescription description, std::string xml);
 
-  /// Where the description lies.
+  /// Address of the description.
   static constexpr std::uint32_t xml_address = 0x00100000;
 
-  /// As a client reads: whole words. Errors: bad_alignment, invalid_address.
+  /// Read by a client: whole words. Errors: bad_alignment, invalid_address.
   [[nodiscard]] tl::expected<Bytes, GvcpStatus> read(std::uint32_t address, std::size_t bytes) const;
-  /// As a client writes one word. Errors: bad_alignment, invalid_address, write_protect, busy (locked while streaming).
+  /// Write of a word by a client. Errors: bad_alignment, invalid_address, write_protect, busy (locked while streaming).
   [[nodiscard]] GvcpStatus write(std::uint32_t address, std::uint32_t value);
-  /// From now on registers that are locked while streaming refuse a write, or take it again.
+  /// Registers that are locked while streaming reject writes from lock_transport() to unlock_transport().
   void lock_transport();
   void unlock_transport();
 
-  /// Puts the features' registers to their power-up values again.
+  /// Restores the power-up values of the features' registers.
   void power_up();
 
-  /// As the camera itself reads and writes: no rules. Addresses below 64 KiB.
+  /// Access by the camera itself, without rules. Addresses below 64 KiB.
   [[nodiscard]] std::uint32_t get(std::uint32_t address) const;
   void set(std::uint32_t address, std::uint32_t value);
   void set_text(std::uint32_t address, std::string_view text, std::size_t bytes);
@@ -52,7 +53,7 @@ class RegisterMap {
   mutable std::mutex mutex_;
   Bytes memory_;
   std::string xml_;
-  std::map<std::uint32_t, Rule> rules_;  ///< by address of a word
+  std::map<std::uint32_t, Rule> rules_;  ///< by address of the word
   bool locked_ = false;
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/instruments/black_body.h"
 
 #include <algorithm>
@@ -74,7 +75,7 @@ void BlackBody::set_point(double delta_t_k) {
   const auto time = options_.now();
   const double rounded = std::round(delta_t_k / options_.resolution_k) * options_.resolution_k;
   const std::scoped_lock lock(mutex_);
-  if (rounded == settling_.set_point_k) return;  // the same again does not start the dwell anew
+  if (rounded == settling_.set_point_k) return;  // a repeated set-point does not restart the dwell
   settling_.start_k = indicated(settling_, time);
   settling_.set_point_k = rounded;
   settling_.since = std::max(time, settling_.since);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/instruments/plate_stage.h"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 
 namespace todbench {
 namespace {
@@ -45,7 +46,7 @@ auto value_at(const C& change, TimePoint time) {
   return is_complete(change, time) ? change.to : change.from;
 }
 
-// Starts a change from what is there now. The same goal again changes nothing.
+// Starts a change from the present state. A repeated goal changes nothing.
 template <typename C, typename T>
 void change_to(C& change, T value, TimePoint time, double duration_s) {
   if (change.to == value) return;
@@ -232,7 +233,7 @@ std::vector<ScpiCommand> PlateStage::run_commands() {
     const auto time = options_.now();
     const std::scoped_lock lock(mutex_);
     const cv::Point2d here = place_in(motion_, camera_time);
-    if (here.x == *x) return tl::unexpected(ScpiError{-221, "Settings conflict; the plate is there"});
+    if (here.x == *x) return tl::unexpected(ScpiError{-221, "Settings conflict; the plate is already there"});
     motion_.position = {{*x, here.y}, {*x, here.y}, time, 0};
     motion_.run = PlateRun{.from_mm = here.x, .to_mm = *x, .speed_mm_s = *speed, .start_s = camera_time};
     return "";

@@ -1,19 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An emulated plate stage: a changer with named slots, a turning mount and an x/y table, controlled over SCPI/TCP.
 //
-//   ROUTe:PLATe "name"      ROUTe:PLATe?      ROUTe:PLATe:ACTual?      asked for / in the beam now
-//   ROUTe:PLATe:CATalog?                                               -> "name","name",...
-//   ROUTe:MOUNting IDENtity|ROTated|HMIRrored|VMIRrored   ROUTe:MOUNting?   ROUTe:MOUNting:ACTual?   answers in short
-//   form [SOURce:]POSition <x>,<y>   [SOURce:]POSition?                     set-point in mm, rounded to the resolution
-//   [SOURce:]POSition:LIMits?                                          -> x min,x max,y min,y max in mm
-//   MEASure:POSition?                                                  encoders now, mm
-//   [SOURce:]SCAN <x>,<speed>                                          run along x at constant speed, mm and mm/s
-//   [SOURce:]SCAN:LIMits?                                              -> lowest,highest speed
-//   MEASure:SCAN?                                                      -> from,to,speed,start: of the last run; when it
-//   began in s of the clock that stamps the camera's frames, 9.91E37 without a trigger
-//   STATus:OPERation:CONDition?                                        bit 1 (value 2, SETTling): moving, or not yet at
-//   rest *RST                                                               position 0,0; plate and mounting stay
-// beside *IDN?, *CLS, *OPC?, SYSTem:ERRor?, SYSTem:VERSion?. x is to the right and y down, as the camera sees the
-// plate.
+//   ROUTe:PLATe "name"                                    selects a plate
+//   ROUTe:PLATe?  ROUTe:PLATe:ACTual?                     -> selected plate; plate in the beam now
+//   ROUTe:PLATe:CATalog?                                  -> "name","name",...
+//   ROUTe:MOUNting IDENtity|ROTated|HMIRrored|VMIRrored   selects a mounting
+//   ROUTe:MOUNting?  ROUTe:MOUNting:ACTual?               -> selected mounting; present mounting; in short form
+//   [SOURce:]POSition <x>,<y>  [SOURce:]POSition?         set-point in mm, rounded to the resolution
+//   [SOURce:]POSition:LIMits?                             -> x min,x max,y min,y max in mm
+//   MEASure:POSition?                                     -> encoders now, mm
+//   [SOURce:]SCAN <x>,<speed>                             runs along x at constant speed, mm and mm/s
+//   [SOURce:]SCAN:LIMits?                                 -> lowest,highest speed
+//   MEASure:SCAN?                                         -> from,to,speed,start of the last run
+//   STATus:OPERation:CONDition?                           -> bit 1 (value 2, SETTling): moving, or not yet at rest
+//   *RST                                                  position 0,0; plate and mounting stay
+// and *IDN?, *CLS, *OPC?, SYSTem:ERRor?, SYSTem:VERSion?. The start of a run is in s of the clock that stamps the
+// camera's frames, 9.91E37 without a trigger. x is to the right and y down in the picture of the camera.
 #pragma once
 
 #include <chrono>
@@ -25,7 +27,7 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/lab/instruments/scpi_server.h"
 #include "tod/plate/target_plate.h"
 #include "tod/presentation/moving_target.h"
@@ -36,33 +38,37 @@ struct PlateStageOptions {
   ScpiServerOptions server;
   std::string serial = "PS-0001";
   std::vector<std::string> plates;  ///< names of the slots, distinct; the first is in the beam at the start
-  double travel_mm = 5;             ///< either side of the middle, on both axes
+  double travel_mm = 5;             ///< to either side of the middle, on both axes
   double speed_mm_per_s = 10;
   double settle_s = 0.2;         ///< from arrival to rest
   double resolution_mm = 0.001;  ///< of the set-point
   double plate_change_s = 5;
   double mounting_change_s = 3;
-  double slowest_run_mm_per_s = 0.01;  ///< the fastest has the speed of the table
-  double run_jitter_mm = 0;            ///< standard deviation of the place in a run, anew every millisecond
+  double slowest_run_mm_per_s = 0.01;  ///< the fastest run has the speed of the table
+  double run_jitter_mm = 0;            ///< standard deviation of the place during a run, new every millisecond
   std::uint64_t seed = 1;              ///< of the jitter
-  /// Time base of runs, seconds: the clock that stamps the camera's frames, now. Called from any thread. Empty: `now`.
+  /// Error of the stage: real place of the plate for an indication of `indicated_mm`; finite. Called from any thread.
+  /// Empty: no error. The owner of the scene applies it; the encoders do not contain it.
+  std::function<cv::Point2d(cv::Point2d indicated_mm)> real_place_mm{};
+  /// Time base of runs in seconds: the present time of the clock that stamps the camera's frames. Called from any
+  /// thread. Empty: `now`.
   std::function<double()> camera_clock_s = {};
-  bool has_trigger = true;  ///< whether MEASure:SCAN? tells when a run began in the camera's clock
-  /// Time base of all movements; called from any thread. Never runs backwards.
+  bool has_trigger = true;  ///< MEASure:SCAN? states the start of a run in the camera's clock
+  /// Time base of all movements. Called from any thread. Never runs backwards.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
-/// The stage at one moment.
+/// State of the stage at one moment.
 struct PlateStageState {
-  std::string plate;                       ///< in the beam; the old one until the change is complete
+  std::string plate;                       ///< in the beam; the old plate until the change is complete
   Mounting mounting = Mounting::identity;  ///< likewise
   cv::Point2d shift_mm{0, 0};
-  double speed_mm_per_s = 0;  ///< of a run, along x with its sign; 0: none, however the table moves
-  bool is_moving = false;     ///< anything moves or is not yet at rest
+  double speed_mm_per_s = 0;  ///< of a run along x, with sign; 0 for other movements of the table
+  bool is_moving = false;     ///< something moves or is not yet at rest
 };
 
-/// Serves from creation to destruction. The table runs to a new position in a straight line at constant speed, from
-/// wherever it is.
+/// Serves from creation to destruction. The table moves to a new position in a straight line at constant speed,
+/// starting from its present place.
 class PlateStage {
   template <typename T>
   struct Change {  ///< `from` until `since` + `duration_s`, then `to`
@@ -73,8 +79,8 @@ class PlateStage {
   struct Motion {
     Change<std::string> plate;
     Change<Mounting> mounting;
-    Change<cv::Point2d> position;  ///< duration of the run, without the time to come to rest
-    std::optional<PlateRun> run;   ///< the last one, over or not, until the table is sent elsewhere
+    Change<cv::Point2d> position;  ///< time of travel, without coming to rest
+    std::optional<PlateRun> run;   ///< the last run, finished or not, until the table moves elsewhere
   };
 
  public:
@@ -86,9 +92,9 @@ class PlateStage {
   PlateStage& operator=(const PlateStage&) = delete;
   ~PlateStage() = default;
 
-  /// The state now. Any thread; this is how an emulated camera sees the plate move.
+  /// State now, for an emulated camera that observes the movement. Any thread.
   [[nodiscard]] PlateStageState state() const { return state_at(camera_time_s()); }
-  /// The same with runs where they are at another time of the camera's clock.
+  /// The same at another time of the camera's clock, on which runs depend.
   [[nodiscard]] PlateStageState state_at(double camera_time_s) const;
   /// "address:port". Any thread.
   [[nodiscard]] std::string endpoint() const { return server_->endpoint(); }
@@ -107,7 +113,7 @@ class PlateStage {
   const PlateStageOptions options_;
   mutable std::mutex mutex_;
   Motion motion_;                       // under mutex_
-  std::unique_ptr<ScpiServer> server_;  // last: its thread ends before what its commands use
+  std::unique_ptr<ScpiServer> server_;  // last: its thread ends before the members that its commands use
 };
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/instruments/scpi_server.h"
 
 #include <arpa/inet.h>
@@ -22,8 +23,8 @@ struct Client {
   Descriptor socket;
   ScpiSession session;
   std::string line, unsent;
-  bool skipping = false;  // the rest of a line that was too long
-  bool ended = false;     // sends no more; its answers are still delivered
+  bool skipping = false;  // skips the rest of a line that was too long
+  bool ended = false;     // the client sends no more; its answers are still delivered
   bool lost = false;
 };
 
@@ -80,7 +81,7 @@ void deliver(Client& client) {
   }
 }
 
-// False when the system has no descriptor for the connection that waits.
+// Returns false if the system has no descriptor for the waiting connection.
 bool accept_one(int listener, std::list<Client>& clients, const ScpiLanguage& language,
                 const ScpiServerOptions& options) {
   Descriptor socket(::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
@@ -92,14 +93,14 @@ bool accept_one(int listener, std::list<Client>& clients, const ScpiLanguage& la
 }
 
 void serve(const std::stop_token& stop, int listener, const ScpiLanguage& language, const ScpiServerOptions& options) {
-  constexpr int pause_ms = 200;  // after an accept that failed for want of descriptors; the connection still waits
+  constexpr int pause_ms = 200;  // after an accept that failed for lack of descriptors; the connection still waits
   const StopEvent stop_event(stop);
   std::list<Client> clients;
   bool accepting = true;
   while (!stop.stop_requested()) {
     std::vector<pollfd> polled{{stop_event.fd(), POLLIN, 0}, {accepting ? listener : -1, POLLIN, 0}};
     for (const auto& client : clients)
-      // While answers are unread nothing more is taken from a client: its sender is slowed by TCP.
+      // As long as answers are unread, no data are read from a client: TCP slows its sender.
       polled.push_back({client.socket.get(), static_cast<short>(client.unsent.empty() ? POLLIN : POLLOUT), 0});
     ::poll(polled.data(), polled.size(), accepting ? 500 : pause_ms);
     accepting = true;

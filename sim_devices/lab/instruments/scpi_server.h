@@ -1,4 +1,5 @@
-// The network half of an emulated SCPI instrument: one message per line over TCP.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Network part of an emulated SCPI instrument: one message per line over TCP.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +8,9 @@
 #include <string>
 #include <thread>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/descriptor.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/lab/instruments/scpi_session.h"
-#include "tod/instruments/descriptor.h"
 
 namespace todbench {
 
@@ -17,12 +18,12 @@ struct ScpiServerOptions {
   std::string address = "127.0.0.1";    ///< IPv4 address to listen on
   std::uint16_t port = 0;               ///< 0: the system chooses
   std::size_t longest_message = 512;    ///< characters; a longer line is skipped to its end and reported as -363
-  std::size_t most_clients = 8;         ///< one more is closed at once
-  std::size_t most_unread = 64 * 1024;  ///< characters of answers a client may leave unread before it is dropped
+  std::size_t most_clients = 8;         ///< a further client is disconnected at once
+  std::size_t most_unread = 64 * 1024;  ///< characters of unread answers after which a client is disconnected
 };
 
-/// Serves one instrument from a thread of its own until destroyed. Commands run on that thread, one at a time, whatever
-/// client they come from. Every byte received is untrusted: memory per client is bounded by the options.
+/// Serves one instrument from its own thread until destroyed. Commands of all clients run on that thread, one at a
+/// time. All received bytes are untrusted: the options limit the memory per client.
 class ScpiServer {
   struct Listening {
     Descriptor socket;
@@ -30,9 +31,9 @@ class ScpiServer {
   };
 
  public:
-  /// `not_found` when the address cannot be listened on.
+  /// `not_found` if the address cannot be listened on.
   [[nodiscard]] static Result<std::unique_ptr<ScpiServer>> start(ScpiServerOptions options, ScpiLanguage language);
-  /// For start() only: nobody else can make a Listening.
+  /// For start() only: Listening is private.
   ScpiServer(ScpiServerOptions options, ScpiLanguage language, Listening listening);
   ScpiServer(const ScpiServer&) = delete;
   ScpiServer& operator=(const ScpiServer&) = delete;
@@ -47,7 +48,7 @@ class ScpiServer {
   const ScpiServerOptions options_;
   const ScpiLanguage language_;
   const Listening listening_;
-  std::jthread thread_;  // last: ends before what it uses
+  std::jthread thread_;  // last: ends before the members that it uses
 };
 
 }  // namespace todbench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/instruments/scpi_session.h"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ std::pair<std::vector<std::string_view>, bool> split_outside_quotes(std::string_
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (quote != 0) {
-      if (c == quote) quote = 0;  // a doubled quote closes and opens again, which comes to the same
+      if (c == quote) quote = 0;  // a doubled quote closes and opens again, with the same effect
     } else if (c == '"' || c == '\'') {
       quote = c;
     } else if (c == separator) {
@@ -65,7 +66,7 @@ std::string unquoted(std::string_view text) {
   return plain;
 }
 
-// The first node of a command's header: its mnemonic without brackets, whether it may be left out, and what follows.
+// First node of a command's header: its mnemonic without brackets, whether it is optional, and the rest.
 struct Node {
   std::string_view mnemonic, rest;
   bool optional = false;
@@ -88,8 +89,8 @@ Node first_node(std::string_view header) {
   return node;
 }
 
-// `header` as in a manual and `text` as received, both without the '?' of a query. Recursion as deep as the header has
-// nodes.
+// Compares `header` as in a manual with `text` as received, both without the '?' of a query. The recursion is as deep
+// as the header has nodes.
 bool matches(std::string_view header, std::string_view text) {
   if (header.empty()) return text.empty();
   const Node node = first_node(header);
@@ -125,7 +126,7 @@ tl::expected<double, ScpiError> scpi_number(std::string_view text, double min, d
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
-  // from_chars also reads "inf" and "nan", which are no SCPI numbers here.
+  // from_chars also accepts "inf" and "nan", which are not SCPI numbers here.
   if (parsed.ec == std::errc::result_out_of_range) return tl::unexpected(ScpiError{-222, "Data out of range"});
   if (parsed.ec != std::errc{} || !std::isfinite(value)) return tl::unexpected(ScpiError{-104, "Data type error"});
   const auto suffix = trimmed(text.substr(static_cast<std::size_t>(parsed.ptr - text.data())));
@@ -141,7 +142,7 @@ tl::expected<void, ScpiError> scpi_count(std::span<const std::string> parameters
 }
 
 std::string scpi_decimal(double value, int decimals) {
-  // SCPI's number for "not a number" (SCPI-99 volume 1, 7.2.1.5).
+  // SCPI's code for "not a number" (SCPI-99 volume 1, 7.2.1.5).
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "9.91E37";
 }
 
@@ -180,7 +181,7 @@ ScpiAnswer ScpiSession::run(const std::string& header, std::span<const std::stri
   if (is("*IDN?") || is("*CLS") || is("*OPC?") || is("SYSTem:ERRor[:NEXT]?") || is("SYSTem:VERSion?")) {
     if (!no_parameters) return tl::unexpected(ScpiError{-108, "Parameter not allowed"});
     if (is("*IDN?")) return language_->identity();
-    if (is("*OPC?")) return "1";  // commands are accepted one after the other; settling is in the status register
+    if (is("*OPC?")) return "1";  // commands run one after the other; the status register reports settling
     if (is("SYSTem:VERSion?")) return "1999.0";
     if (is("SYSTem:ERRor[:NEXT]?")) return next_error();
     errors_.clear();

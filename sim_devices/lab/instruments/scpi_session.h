@@ -1,4 +1,5 @@
-// The language half of an emulated SCPI instrument: program messages in, response messages out, no sockets.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Language part of an emulated SCPI instrument: program messages in, response messages out, no sockets.
 #pragma once
 
 #include <cstddef>
@@ -18,38 +19,38 @@ struct ScpiError {
   std::string message;
 };
 
-/// The response data of one command; empty for a command that is no query.
+/// Response data of one command; empty for a command that is not a query.
 using ScpiAnswer = tl::expected<std::string, ScpiError>;
 
-/// One command. `header` is written as in manuals: "[SOURce:]TEMPerature:DIFFerence?"; upper case is the short form,
-/// brackets are optional nodes, a query ends with '?'. `run` gets the parameters, quotes removed, on the thread that
+/// One command. `header` is written as in manuals: "[SOURce:]TEMPerature:DIFFerence?". Upper case is the short form,
+/// brackets are optional nodes, a query ends with '?'. `run` receives the parameters without quotes, on the thread that
 /// executes the message.
 struct ScpiCommand {
   std::string header;
   std::function<ScpiAnswer(std::span<const std::string> parameters)> run;
 };
 
-/// True when `text` is the short or long form of a mnemonic such as "DIFFerence", in any case.
+/// True if `text` is the short or long form of a mnemonic such as "DIFFerence", in any case.
 [[nodiscard]] bool scpi_keyword(std::string_view text, std::string_view mnemonic);
 
-/// A number in [min, max], or MINimum/MAXimum; an optional suffix must be `unit`. Errors: -131 (suffix), -104 (no
-/// number), -222 (range).
+/// Parses a number in [min, max], or MINimum/MAXimum; an optional suffix must be `unit`. Errors: -131 (suffix), -104
+/// (no number), -222 (range).
 [[nodiscard]] tl::expected<double, ScpiError> scpi_number(std::string_view text, double min, double max,
                                                           std::string_view unit);
-/// -109 or -108 unless there are exactly `count` parameters.
+/// Error -109 or -108 unless there are exactly `count` parameters.
 [[nodiscard]] tl::expected<void, ScpiError> scpi_count(std::span<const std::string> parameters, std::size_t count);
 [[nodiscard]] std::string scpi_decimal(double value, int decimals);
-/// A text as string response data: in double quotes, quotes inside doubled.
+/// Text as string response data: in double quotes, inner quotes doubled.
 [[nodiscard]] std::string scpi_string(std::string_view text);
 
-/// What an instrument understands; immutable, shared by its sessions.
+/// Commands of an instrument. Immutable, shared by its sessions.
 class ScpiLanguage {
  public:
-  /// `identity` is the answer to *IDN?. *IDN?, *CLS, *OPC?, SYSTem:ERRor[:NEXT]? and SYSTem:VERSion? need no entry in
-  /// `commands`.
+  /// `identity` is the answer to *IDN?. The commands *IDN?, *CLS, *OPC?, SYSTem:ERRor[:NEXT]? and SYSTem:VERSion? are
+  /// built in.
   ScpiLanguage(std::string identity, std::vector<ScpiCommand> commands);
   [[nodiscard]] const std::string& identity() const { return identity_; }
-  /// nullptr when no command has this header.
+  /// Returns nullptr if no command has this header.
   [[nodiscard]] const ScpiCommand* find(std::string_view header) const;
 
  private:
@@ -57,14 +58,14 @@ class ScpiLanguage {
   std::vector<ScpiCommand> commands_;
 };
 
-/// One connection to an instrument: its own error queue (at most 16 entries, the last becomes -350) and nothing else.
-/// One thread at a time.
+/// One connection to an instrument, with its own error queue (at most 16 entries, the last becomes -350). One thread at
+/// a time.
 class ScpiSession {
  public:
-  explicit ScpiSession(const ScpiLanguage& language) : language_(&language) {}  ///< which outlives the session
-  /// Executes one program message without its line end. Answers of several queries are separated by ';'; empty when
-  /// there is none. A command error (-1xx) discards the rest of the message (IEEE 488.2). Headers after ';' continue
-  /// the previous path (SCPI-99 6.2.4).
+  explicit ScpiSession(const ScpiLanguage& language) : language_(&language) {}  ///< `language` outlives the session
+  /// Executes one program message without its line end. Answers of several queries are separated by ';'; the result is
+  /// empty if there is none. A command error (-1xx) discards the rest of the message (IEEE 488.2). Headers after ';'
+  /// continue the previous path (SCPI-99 6.2.4).
   [[nodiscard]] std::string execute(std::string_view message);
   void report(ScpiError error);
 

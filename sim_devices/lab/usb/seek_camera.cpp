@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/usb/seek_camera.h"
 
 #include <algorithm>
@@ -12,9 +13,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint16_t full_scale = 0x3FFF;
-/// What a living pixel has in the calibration frame.
+/// Level of a living pixel in the calibration frame.
 constexpr std::uint16_t calibration_level = 0x2000;
-/// Kind of a calibration frame that clients have no use for.
+/// Kind of a calibration frame that clients do not use.
 constexpr std::uint16_t other_kind = 8;
 
 void put16(UsbBytes& bytes, unsigned value) {
@@ -47,7 +48,7 @@ class Camera final : public SeekCamera {
       : config_(std::move(config)), exposure_(std::move(exposure)), descriptors_(descriptors_of(config_)) {
     const cv::Size size = geometry(config_.model).picture.size();
     shutter_.create(size);
-    // A pattern in which no pixel has the offset of its neighbours.
+    // A pattern in which neighbouring pixels have different offsets.
     for (int y = 0; y < size.height; ++y) {
       for (int x = 0; x < size.width; ++x) {
         const int offset = config_.fixed_pattern_counts == 0 ? 0 : (31 * x + 17 * y) % config_.fixed_pattern_counts;
@@ -86,11 +87,11 @@ class Camera final : public SeekCamera {
   const UsbDescriptors descriptors_;
   cv::Mat1w shutter_;  ///< never written after construction
 
-  mutable std::mutex mutex_;  ///< guards what follows
+  mutable std::mutex mutex_;  ///< guards all members below
   std::condition_variable_any changed_;
   bool awake_ = false;
-  bool asked_ = false;  ///< for a frame
-  UsbBytes sending_;    ///< of the frame that was asked for
+  bool asked_ = false;  ///< a frame was requested
+  UsbBytes sending_;    ///< the requested frame
   std::size_t sent_ = 0;
   bool frame_begun_ = false;
   std::uint64_t since_start_ = 0;  ///< frames since initialisation
@@ -109,7 +110,7 @@ std::optional<UsbBytes> Camera::vendor_request(SeekRequest request, std::size_t 
                                                std::span<const std::uint8_t> data) {
   switch (request) {
     case SeekRequest::target_platform:
-      // A camera that was left streaming refuses until it has been put to sleep.
+      // A camera that was left streaming rejects this until it has been put to sleep.
       return awake_ ? std::nullopt : std::optional(UsbBytes());
     case SeekRequest::set_operation_mode:
       if (data.size() != 2) return std::nullopt;
@@ -164,7 +165,7 @@ UsbBytes Camera::frame(std::uint16_t kind, std::uint64_t index, const cv::Mat1w&
   return bytes;
 }
 
-/// Exposes; the lock is not held meanwhile.
+/// Exposes without holding the lock.
 UsbBytes Camera::next_frame(std::unique_lock<std::mutex>& lock) {
   const std::uint64_t index = exposures_++;
   const std::uint64_t k = since_start_++;
@@ -214,7 +215,7 @@ std::optional<UsbBytes> Camera::bulk_in(std::uint8_t endpoint, std::size_t lengt
   UsbBytes bytes(sending_.begin() + static_cast<std::ptrdiff_t>(sent_),
                  sending_.begin() + static_cast<std::ptrdiff_t>(sent_ + size));
   sent_ += size;
-  // A frame that was cut short ends with an empty packet.
+  // A truncated frame ends with an empty packet.
   if (sent_ == sending_.size() && (size == 0 || sending_.size() == geometry(config_.model).frame_bytes())) {
     asked_ = false;
   }
@@ -227,14 +228,16 @@ Result<std::shared_ptr<SeekCamera>> SeekCamera::create(SeekCameraConfig config, 
   const auto bad = [](const std::string& what) {
     return fail(ErrorCode::invalid_input, "emulated Seek camera: " + what);
   };
-  if (!(config.frame_rate_hz >= 0.1 && config.frame_rate_hz <= 1000)) return bad("frame rate is 0.1 ... 1000 Hz");
-  if (config.shutter_interval_frames < 0) return bad("the shutter interval is not negative");
-  if (config.fixed_pattern_counts < 0 || config.fixed_pattern_counts > 0x4000) return bad("pattern is 0 ... 16384");
+  if (!(config.frame_rate_hz >= 0.1 && config.frame_rate_hz <= 1000))
+    return bad("the frame rate must be 0.1 ... 1000 Hz");
+  if (config.shutter_interval_frames < 0) return bad("the shutter interval must not be negative");
+  if (config.fixed_pattern_counts < 0 || config.fixed_pattern_counts > 0x4000)
+    return bad("the fixed pattern must be 0 ... 16384 counts");
   const cv::Rect inside({}, geometry(config.model).picture.size());
   for (const auto& p : config.dead) {
     if (!inside.contains(p)) return bad("a dead pixel is outside the picture");
   }
-  if (!exposure) return bad("there is nothing to expose");
+  if (!exposure) return bad("the exposure function is missing");
   return std::make_shared<Camera>(std::move(config), std::move(exposure));
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/usb/u3v_camera.h"
 
 #include <algorithm>
@@ -22,9 +23,9 @@ namespace {
 using namespace u3v;
 using Clock = std::chrono::steady_clock;
 
-/// Answers that nobody fetched: a client that only asks does not make the camera grow.
+/// Limit of unread answers, so that a client that does not read them cannot make the camera grow.
 constexpr std::size_t most_answers = 8;
-/// What padding and surplus are made of: as pixels they would be near full scale.
+/// Value of padding and surplus bytes: as pixels they would be near full scale.
 constexpr std::uint8_t surplus_byte = 0x3E;
 
 constexpr std::uint32_t own(std::uint64_t offset) {
@@ -72,7 +73,7 @@ class Camera final : public U3vCamera {
   Camera(U3vCameraConfig config, Exposure exposure);
 
   [[nodiscard]] const UsbDescriptors& descriptors() const override { return descriptors_; }
-  /// Halts of the stream endpoint are cleared after a stop: what was being sent is dropped.
+  /// A host clears halts of the stream endpoint after a stop; the rest of the frame is then dropped.
   [[nodiscard]] std::optional<UsbBytes> control(const UsbSetup&, std::span<const std::uint8_t>) override { return {}; }
   [[nodiscard]] bool bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> data) override;
   [[nodiscard]] std::optional<UsbBytes> bulk_in(std::uint8_t endpoint, std::size_t length,
@@ -130,7 +131,7 @@ class Camera final : public U3vCamera {
   const UsbDescriptors descriptors_;
   UsbBytes description_;
 
-  mutable std::mutex mutex_;  ///< guards what follows
+  mutable std::mutex mutex_;  ///< guards all members below
   std::condition_variable_any changed_;
   Registers bootstrap_{0, bootstrap_size};
   Registers camera_{camera_registers, camera_size};
@@ -142,8 +143,8 @@ class Camera final : public U3vCamera {
   int frozen_frames_ = 0;
   std::optional<std::size_t> truncated_;
   std::size_t surplus_ = 0;                     ///< of the next frame
-  std::optional<std::uint64_t> next_block_id_;  ///< where the numbers begin anew
-  PictureEncoder encoder_;                      ///< of the thread of the stream endpoint
+  std::optional<std::uint64_t> next_block_id_;  ///< restarts the numbers
+  PictureEncoder encoder_;                      ///< used by the thread of the stream endpoint
   UsbBytes picture_;                            ///< the last one, without padding
   UsbBytes payload_;                            ///< as sent last
   std::size_t sent_ = 0;
@@ -214,7 +215,7 @@ bool Camera::bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> data)
   return true;
 }
 
-/// Empty for what is no command.
+/// Returns empty bytes for data that are not a command.
 UsbBytes Camera::answer(std::span<const std::uint8_t> command) {
   if (command.size() < header_size || get<std::uint32_t>(command, 0) != command_magic) return {};
   const auto code = get<std::uint16_t>(command, 6);
@@ -278,7 +279,7 @@ std::uint16_t Camera::write(std::uint64_t address, std::span<const std::uint8_t>
     frozen_frames_ = config_.nuc_freeze_frames;
   }
   if (was_streaming != streaming()) {
-    // A frame that is being sent is sent to its end, unless the stream itself was switched off.
+    // A frame in transmission is completed, unless the stream itself was switched off.
     ++stream_number_;
     if (stream_register) phase_ = Phase::idle;
     if (streaming()) block_id_ = 0;
@@ -306,7 +307,7 @@ UsbBytes Camera::next_picture(std::unique_lock<std::mutex>& lock, std::uint64_t 
   return bytes;
 }
 
-/// Waits for the time of the next exposure and exposes. False: stopped.
+/// Waits for the time of the next exposure and exposes. Returns false if stopped.
 bool Camera::begin_frame(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
   for (;;) {
     if (!changed_.wait(lock, stop, [this] { return streaming(); })) return false;
@@ -323,7 +324,7 @@ bool Camera::begin_frame(std::unique_lock<std::mutex>& lock, const std::stop_tok
     const std::uint64_t index = exposures_++;
     clock_ns_ += static_cast<std::uint64_t>(std::chrono::nanoseconds(period()).count());
     auto picture = next_picture(lock, index);
-    if (stream_number_ != number) continue;  // stopped meanwhile: the exposure is lost
+    if (stream_number_ != number) continue;  // stopped during the exposure, which is lost
     payload_ = padded(std::move(picture));
     payload_.resize(payload_.size() + std::exchange(surplus_, 0), surplus_byte);
     if (next_block_id_) block_id_ = *std::exchange(next_block_id_, std::nullopt);
@@ -387,7 +388,7 @@ std::optional<UsbBytes> Camera::stream(std::unique_lock<std::mutex>& lock, std::
     case Phase::payload: {
       const std::size_t wanted = std::min(length, payload_.size() - sent_);
       std::size_t size = wanted;
-      // A frame that lost its end: transfers come short, down to none.
+      // A truncated frame: transfers are short, down to zero bytes.
       if (truncated_) size = std::min(size, *truncated_ - std::min(*truncated_, sent_));
       const auto from = payload_.begin() + static_cast<std::ptrdiff_t>(sent_);
       bytes.assign(from, from + static_cast<std::ptrdiff_t>(size));
@@ -425,7 +426,7 @@ Result<std::shared_ptr<U3vCamera>> U3vCamera::create(U3vCameraConfig config, Exp
     return tl::unexpected(valid.error());
   }
   if (config.vendor.empty()) return bad("a vendor is needed");
-  if (!exposure) return bad("there is nothing to expose");
+  if (!exposure) return bad("the exposure function is missing");
   return std::make_shared<Camera>(std::move(config), std::move(exposure));
 }
 

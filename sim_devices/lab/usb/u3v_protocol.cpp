@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/usb/u3v_protocol.h"
 
 #include <zlib.h>
@@ -6,7 +7,7 @@ namespace todbench::u3v {
 
 UsbBytes zipped(std::string_view name, std::string_view content) {
   const std::span data(reinterpret_cast<const std::uint8_t*>(content.data()), content.size());
-  // Fields that local header and directory entry share: version, flags, method 0, time, date, crc, sizes, name.
+  // Fields common to local header and directory entry: version, flags, method 0, time, date, crc, sizes, name.
   UsbBytes common;
   for (const unsigned word : {20U, 0U, 0U, 0U, 0x21U}) put(common, static_cast<std::uint16_t>(word));
   put(common, static_cast<std::uint32_t>(::crc32(0, data.data(), static_cast<uInt>(data.size()))));

@@ -1,4 +1,5 @@
-// USB3 Vision and GenCP as the emulated camera speaks them: addresses, codes, little-endian fields, descriptors.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// USB3 Vision and GenCP of the emulated camera: addresses, codes, little-endian fields, descriptors.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace todbench::u3v {
 
 inline constexpr std::uint8_t control_in = 0x81, control_out = 0x01, stream_in = 0x82;
 
-// GenCP 1.1, sections 4.3 and 4.4: bootstrap registers of every device, and where this one keeps its tables.
+// GenCP 1.1, sections 4.3 and 4.4: bootstrap registers of every device, and the addresses of this device's tables.
 inline constexpr std::uint64_t abrm_vendor = 0x4, abrm_model = 0x44, abrm_family = 0x84, abrm_version = 0xC4,
                                abrm_serial = 0x144, abrm_capability = 0x1C4, abrm_response_time = 0x1CC,
                                abrm_manifest = 0x1D0, abrm_sbrm = 0x1D8, abrm_tick = 0x1FC;
@@ -25,7 +26,7 @@ inline constexpr std::size_t bootstrap_size = 0x3000, camera_size = 0x100;
 inline constexpr std::uint64_t si_info = 0x0, si_control = 0x4, si_payload = 0x8, si_leader = 0x10, si_trailer = 0x14;
 inline constexpr std::size_t leader_size = 52, trailer_size = 32;
 
-// The camera's own registers. A client may write from the pixel format to the first that is a matter of the sensor.
+// The camera's own registers. A client may write those from the pixel format up to the sensor's own (reg_scale).
 inline constexpr std::uint64_t reg_width = 0x00, reg_height = 0x04, reg_offset_x = 0x08, reg_offset_y = 0x0C,
                                reg_pixel_format = 0x10, reg_largest_count = 0x14, reg_acquisition_mode = 0x18,
                                reg_acquisition = 0x1C, reg_period_us = 0x20, reg_ir_format = 0x24, reg_nuc_mode = 0x28,
@@ -81,10 +82,10 @@ class Registers {
   UsbBytes bytes_;
 };
 
-/// A ZIP archive with one stored file: how a camera holds its GenICam description.
+/// ZIP archive with one stored file, as some cameras hold their GenICam description.
 [[nodiscard]] UsbBytes zipped(std::string_view name, std::string_view content);
 
-/// One configuration with a control and a stream interface, at high speed.
+/// Descriptors of one high-speed configuration with a control and a stream interface.
 [[nodiscard]] UsbDescriptors descriptors_of(const U3vCameraConfig& config);
 
 }  // namespace todbench::u3v

@@ -1,4 +1,5 @@
-// The calls of clients on the node of an emulated USB device: one function per ioctl.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Calls of clients on the node of an emulated USB device: one function per ioctl.
 #include <sys/ioctl.h>
 #include <umockdev.h>
 // after sys/ioctl.h
@@ -16,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// No camera needs more; what a client asks for is not to be trusted.
+/// Limit for the untrusted length of a client's transfer. No camera needs more.
 constexpr int longest_transfer = 64 << 20;
 constexpr std::uint32_t capabilities =
     USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
@@ -28,7 +29,7 @@ int PluggedUsbDevice::State::submit(UMockdevIoctlClient* client) {
   transfer->client = client;
   transfer->urb = client_memory(umockdev_ioctl_client_get_arg(client), 0, sizeof(usbdevfs_urb));
   if (transfer->urb == nullptr) return EFAULT;
-  usbdevfs_urb wanted;  // its array of packets has no length to initialise
+  usbdevfs_urb wanted;  // its flexible array of packets cannot be initialised
   std::memcpy(&wanted, transfer->urb->data, sizeof wanted);
   transfer->type = wanted.type;
   transfer->endpoint = wanted.endpoint;
@@ -79,8 +80,8 @@ int PluggedUsbDevice::State::discard(UMockdevIoctlClient* client) {
 }
 
 std::pair<int, int> PluggedUsbDevice::State::transfer_now(UMockdevIoctlClient* client, unsigned long request) {
-  // USBDEVFS_CONTROL and USBDEVFS_BULK block the caller; only the control endpoint is worth serving so: the device
-  // answers it at once.
+  // USBDEVFS_CONTROL and USBDEVFS_BULK block the caller. Only control transfers are served, because the device answers
+  // them at once.
   if (request != USBDEVFS_CONTROL) return {-1, ENOTTY};
   UMockdevIoctlData* data = client_memory(umockdev_ioctl_client_get_arg(client), 0, sizeof(usbdevfs_ctrltransfer));
   if (data == nullptr) return {-1, EFAULT};
@@ -104,7 +105,7 @@ std::pair<int, int> PluggedUsbDevice::State::transfer_now(UMockdevIoctlClient* c
 int PluggedUsbDevice::State::claim(UMockdevIoctlClient* client, std::size_t size, unsigned long request) {
   UMockdevIoctlData* data = client_memory(umockdev_ioctl_client_get_arg(client), 0, size);
   if (data == nullptr) return EFAULT;
-  unsigned interface = 0;  // the first member of all that name an interface
+  unsigned interface = 0;  // first member of all structures that name an interface
   std::memcpy(&interface, data->data, sizeof interface);
   g_object_unref(data);
   const auto owner = claims.find(interface);
@@ -118,14 +119,14 @@ int PluggedUsbDevice::State::claim(UMockdevIoctlClient* client, std::size_t size
   return 0;
 }
 
-/// Result and errno of a call; nothing when it is answered later.
+/// Result and errno of a call; empty if it is answered later.
 std::optional<std::pair<int, int>> PluggedUsbDevice::State::serve(UMockdevIoctlClient* client) {
   const auto result = [](int error) { return std::pair(error != 0 ? -1 : 0, error); };
   const unsigned long request = umockdev_ioctl_client_get_request(client) & 0xFFFFFFFFU;
   if (request == USBDEVFS_REAPURB || request == USBDEVFS_REAPURBNDELAY) {
-    // What ended before the cable was pulled can still be reaped.
+    // Transfers that ended before unplugging can still be reaped.
     const bool blocks = request == USBDEVFS_REAPURB && !unplugged;
-    g_object_ref(client);  // nobody else holds it until it is answered
+    g_object_ref(client);  // the only reference until the call is answered
     reapers.push_back(
         {client, blocks ? std::nullopt : std::optional<Clock::time_point>(Clock::now() + usbfs_reap_patience)});
     changed.notify_all();
@@ -155,7 +156,7 @@ std::optional<std::pair<int, int>> PluggedUsbDevice::State::serve(UMockdevIoctlC
     }
     case USBDEVFS_GETDRIVER:
       return result(ENODATA);
-    case USBDEVFS_IOCTL:  // (dis)connecting a driver: there is none
+    case USBDEVFS_IOCTL:  // (dis)connects a driver: there is none
       return result(ENODATA);
     case USBDEVFS_GET_SPEED:
       return std::pair(static_cast<int>(device->descriptors().speed), 0);

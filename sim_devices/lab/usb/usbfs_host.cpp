@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/usb/usbfs_host.h"
 
 #include <umockdev.h>
@@ -15,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// First of the devices of this bus; video cameras of the emulated system use the ports below.
+/// Number of the first device of this bus. Video cameras of the emulated system use the lower ports.
 constexpr int first_number = 51;
 std::atomic<int> next_number{first_number};
 
@@ -43,7 +44,7 @@ void PluggedUsbDevice::State::perform(const std::stop_token& stop, std::uint8_t 
     exchange(*device, *transfer);
     lock.lock();
     performing[endpoint] = nullptr;
-    if (transfer->client == nullptr) continue;  // its program has gone
+    if (transfer->client == nullptr) continue;  // its program has ended
     if (unplugged) transfer->status = -ESHUTDOWN;
     done.push_back(std::move(transfer));
     changed.notify_all();
@@ -87,7 +88,7 @@ void PluggedUsbDevice::State::answer_reapers(const std::stop_token& stop) {
   }
 }
 
-/// Ends what a program has under way: it has gone (null status given to nobody), or the cable was pulled.
+/// Ends the transfers of a program that has ended, or of all programs (null) after unplugging.
 void PluggedUsbDevice::State::cancel(UMockdevIoctlClient* client, int status) {
   const auto concerns = [&](const UsbfsTransfer& t) { return client == nullptr || t.client == client; };
   for (auto& [endpoint, transfer] : performing) {
@@ -136,18 +137,18 @@ PluggedUsbDevice::~PluggedUsbDevice() {
 Result<std::unique_ptr<PluggedUsbDevice>> PluggedUsbDevice::plug(std::shared_ptr<MockSystem> system,
                                                                  std::shared_ptr<UsbDevice> device) {
   if (device->descriptors().device.size() != 18) {
-    return fail(ErrorCode::internal, "emulated USB device: no device descriptor");
+    return fail(ErrorCode::internal, "emulated USB device: the device descriptor is missing");
   }
   auto state = std::make_shared<State>();
   state->number = next_number++;
   const std::string sysfs = usbfs_description(device->descriptors(), state->number);
   state->device = std::move(device);
   const std::string node = usbfs_node(state->number);
-  // Attached first: a hot-plug listener opens the node as soon as it is announced.
+  // Attached first, because a hot-plug listener opens the node as soon as it is announced.
   UMockdevIoctlBase* handler = State::handler(state);
   GError* error = nullptr;
   const bool attached = umockdev_testbed_attach_ioctl(system->testbed(), node.c_str(), handler, &error) != 0;
-  g_object_unref(handler);  // the emulated system has it
+  g_object_unref(handler);  // owned by the emulated system from here on
   if (!attached) {
     const std::string message = error != nullptr ? error->message : "unknown error";
     g_clear_error(&error);
@@ -168,7 +169,7 @@ void PluggedUsbDevice::unplug() {
     if (state_->unplugged) return;
     state_->unplugged = true;
     state_->cancel(nullptr, -ESHUTDOWN);
-    // A call that waits for ever is answered now.
+    // Answers calls that wait without limit.
     for (auto& reaper : state_->reapers) {
       if (!reaper.patience_ends) reaper.patience_ends = Clock::now() + usbfs_reap_patience;
     }

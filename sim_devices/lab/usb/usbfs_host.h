@@ -1,11 +1,12 @@
-// Plugs a model of a USB device into an emulated usbfs: clients under umockdev's preload library (libusb, Aravis)
-// open its node, claim interfaces, and submit and reap transfers as with the kernel.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plugs a model of a USB device into an emulated usbfs. Clients under umockdev's preload library (libusb, Aravis) open
+// its node, claim interfaces, and submit and reap transfers as with the kernel.
 #pragma once
 
 #include <memory>
 #include <string>
 
-#include "acquisition/core/result.h"
+#include "acquisition/base/result.h"
 #include "sim_devices/lab/device_nodes/mock_system.h"
 #include "sim_devices/lab/usb/usb_device.h"
 
@@ -13,11 +14,11 @@ namespace todbench {
 
 /// A device in a port, from creation to unplug() or destruction. Methods may be called from any thread.
 ///
-/// As with the kernel: transfers of an endpoint are performed in the order of submission, endpoints go on at the same
-/// time, a discarded transfer ends as ENOENT, a claimed interface is EBUSY to the next program, and pulling the cable
-/// ends every transfer as ESHUTDOWN and every call as ENODEV, while udev announces the removal. Not as with the kernel:
-/// poll() on the node is always ready, so that a REAPURBNDELAY with nothing to reap waits for up to 0.3 ms before it
-/// says EAGAIN; a client that polls does not spin. Isochronous and interrupt transfers are refused.
+/// As with the kernel: transfers of an endpoint are performed in the order of submission, endpoints run in parallel, a
+/// discarded transfer ends with ENOENT, and a claimed interface is EBUSY for the next program. Unplugging ends every
+/// transfer with ESHUTDOWN and every call with ENODEV, and udev announces the removal. Different from the kernel:
+/// poll() on the node is always ready. A REAPURBNDELAY without a finished transfer therefore waits for up to 0.3 ms
+/// before it returns EAGAIN, so that a polling client does not spin. Isochronous and interrupt transfers are rejected.
 class PluggedUsbDevice {
  public:
   /// Errors: `internal` (the emulated file system refuses).
@@ -28,7 +29,7 @@ class PluggedUsbDevice {
   PluggedUsbDevice(const PluggedUsbDevice&) = delete;
   PluggedUsbDevice& operator=(const PluggedUsbDevice&) = delete;
 
-  /// "/dev/bus/usb/001/051" as clients under the preload library see it.
+  /// "/dev/bus/usb/001/051", the path for clients under the preload library.
   [[nodiscard]] std::string node() const;
   /// Pulls the cable.
   void unplug();
@@ -37,7 +38,7 @@ class PluggedUsbDevice {
   struct State;
   PluggedUsbDevice(std::shared_ptr<MockSystem> system, std::shared_ptr<State> state);
   std::shared_ptr<MockSystem> system_;
-  std::shared_ptr<State> state_;  ///< shared with the emulated system, whose clients ask on when the device has gone
+  std::shared_ptr<State> state_;  ///< shared with the emulated system, whose clients still call after unplugging
 };
 
 }  // namespace todbench

@@ -1,4 +1,5 @@
-// The inside of a plugged USB device: what its threads and the calls of its clients share. Private to them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// State of a plugged USB device, shared by its threads and the calls of its clients. Private to them.
 #pragma once
 
 #include <chrono>
@@ -17,24 +18,24 @@
 #include "sim_devices/lab/usb/usbfs_host.h"
 #include "sim_devices/lab/usb/usbfs_transfer.h"
 
-// As umockdev.h declares it.
+// As declared in umockdev.h.
 struct _UMockdevIoctlBase;
 using UMockdevIoctlBase = _UMockdevIoctlBase;
 
 namespace todbench {
 
-/// How long a REAPURBNDELAY waits for something to reap. The client holds its lock on the node meanwhile: a submission
-/// by another of its threads waits as long.
+/// Longest wait of a REAPURBNDELAY for a finished transfer. The client holds its lock on the node during the wait, so
+/// submissions from its other threads wait, too.
 inline constexpr std::chrono::microseconds usbfs_reap_patience{300};
 
-/// Each endpoint has a thread that performs its transfers; calls that reap are answered by one more. The calls
-/// themselves come on the thread of the emulated system. Methods but the destructor, end_workers() and the bodies of
-/// the threads are called with the mutex held.
+/// One thread per endpoint performs its transfers, one more answers the calls that reap. The calls themselves arrive on
+/// the thread of the emulated system. All methods are called with the mutex held, except the destructor, end_workers()
+/// and the bodies of the threads.
 struct PluggedUsbDevice::State {
-  std::shared_ptr<UsbDevice> device;  ///< null when it was unplugged and its port has gone
+  std::shared_ptr<UsbDevice> device;  ///< null after unplugging, when the port is gone
   int number = 0;
 
-  std::mutex mutex;  ///< guards what follows
+  std::mutex mutex;  ///< guards all members below
   std::condition_variable_any changed;
   bool unplugged = false;
   std::map<std::uint8_t, std::deque<UsbfsTransferPtr>> waiting;  ///< by endpoint
@@ -43,15 +44,15 @@ struct PluggedUsbDevice::State {
   std::map<unsigned, UMockdevIoctlClient*> claims;
   struct Reaper {
     UMockdevIoctlClient* client;
-    std::optional<std::chrono::steady_clock::time_point> patience_ends;  ///< nothing: waits for ever
+    std::optional<std::chrono::steady_clock::time_point> patience_ends;  ///< empty: waits without limit
   };
-  std::list<Reaper> reapers;  ///< calls that wait for something to reap
+  std::list<Reaper> reapers;  ///< calls that wait for a finished transfer
 
   std::map<std::uint8_t, std::jthread> workers;  ///< one per endpoint, control first
   std::jthread answers;                          ///< completes the calls of reapers
 
   ~State();
-  /// After unplugging: nothing is submitted any more.
+  /// Called after unplugging, when no transfer is submitted any more.
   void end_workers();
   void perform(const std::stop_token& stop, std::uint8_t endpoint);
   void answer_reapers(const std::stop_token& stop);
@@ -63,7 +64,7 @@ struct PluggedUsbDevice::State {
   [[nodiscard]] int claim(UMockdevIoctlClient* client, std::size_t size, unsigned long request);
   void cancel(UMockdevIoctlClient* client, int status);
 
-  /// The handler owns what its signals are given.
+  /// Creates the handler of ioctl calls. It owns the data of its signals.
   static UMockdevIoctlBase* handler(const std::shared_ptr<State>& state);
   static int on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* data);
   static void on_vanished(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* data);

@@ -1,4 +1,5 @@
-// A transfer of the emulated usbfs, from its submission by a client until it is reaped.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A transfer of the emulated usbfs, from submission by a client until it is reaped.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,7 @@
 
 #include "sim_devices/lab/usb/usb_device.h"
 
-// As umockdev.h declares them.
+// As declared in umockdev.h.
 struct _UMockdevIoctlClient;
 struct _UMockdevIoctlData;
 using UMockdevIoctlClient = _UMockdevIoctlClient;
@@ -16,11 +17,10 @@ using UMockdevIoctlData = _UMockdevIoctlData;
 
 namespace todbench {
 
-/// Of a setup packet, which comes before the data of a control transfer.
+/// Size of a setup packet, which precedes the data of a control transfer.
 inline constexpr std::size_t usb_setup_size = 8;
 
-/// A transfer between submission and reaping. What belongs to the client's memory is touched only while one of its
-/// calls is being served.
+/// A transfer between submission and reaping. Memory of the client is accessed only while one of its calls is served.
 struct UsbfsTransfer {
   UMockdevIoctlClient* client = nullptr;
   UMockdevIoctlData* urb = nullptr;
@@ -28,9 +28,9 @@ struct UsbfsTransfer {
   unsigned type = 0;                    ///< USBDEVFS_URB_TYPE_...
   std::uint8_t endpoint = 0;
   int buffer_length = 0;
-  UsbBytes sent;  ///< what the client sent; of a control transfer the setup packet first
+  UsbBytes sent;  ///< data from the client; for a control transfer the setup packet comes first
   std::stop_source cancelled;
-  // The outcome:
+  // Result:
   int status = 0;
   UsbBytes received;
   std::size_t actual = 0;
@@ -40,7 +40,7 @@ struct UsbfsTransfer {
   UsbfsTransfer& operator=(const UsbfsTransfer&) = delete;
   ~UsbfsTransfer();
   [[nodiscard]] bool is_control() const;
-  /// From the device to the host.
+  /// True if the direction is from device to host.
   [[nodiscard]] bool is_in() const;
 };
 using UsbfsTransferPtr = std::unique_ptr<UsbfsTransfer>;
@@ -48,13 +48,13 @@ using UsbfsTransferPtr = std::unique_ptr<UsbfsTransfer>;
 /// Precondition: at least usb_setup_size bytes.
 [[nodiscard]] UsbSetup usb_setup_of(const UsbBytes& bytes);
 
-/// Memory of the client behind a pointer; null when it cannot be read. To be unreferenced by the caller.
+/// Memory of the client behind a pointer; null if it cannot be read. The caller releases the reference.
 [[nodiscard]] UMockdevIoctlData* client_memory(UMockdevIoctlData* data, std::size_t offset, std::size_t size);
 
-/// Performs a transfer with the device; blocks as long as the device does, or until the transfer is cancelled.
+/// Performs a transfer with the device. Blocks until the device is done or the transfer is cancelled.
 void exchange(UsbDevice& device, UsbfsTransfer& transfer);
 
-/// Writes the outcome into the client's memory and gives it the address of its URB. 0, or an errno.
+/// Writes the result into the client's memory and returns its URB address to it. Returns 0 or an errno.
 [[nodiscard]] int hand_over(UMockdevIoctlClient* client, UsbfsTransfer& transfer);
 
 }  // namespace todbench

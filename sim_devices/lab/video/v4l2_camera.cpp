@@ -1,4 +1,5 @@
-// The camera itself: its device node, its clock, its exposures. The ioctls are in v4l2_driver.cpp.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The camera: device node, clock and exposures. The ioctls are in v4l2_driver.cpp.
 #include "sim_devices/lab/video/v4l2_camera.h"
 
 #include <fcntl.h>
@@ -20,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// Nodes of a process, so that no two emulated cameras share one.
+/// Counts the nodes of a process, so that every emulated camera has its own.
 std::atomic<int> next_node_number{0};
 
 std::string usb_path(int number) {
@@ -34,7 +35,7 @@ std::string hexadecimal(unsigned value) {
   return fmt::format("{:04x}", value);
 }
 
-/// The USB device and its video node, as sysfs shows them. "=00" makes the node a regular file.
+/// USB device and its video node in sysfs. "=00" makes the node a regular file.
 std::string description(const VideoCameraConfig& config, int number) {
   const UsbIdentity usb = usb_identity(config.kind);
   const std::string node = "video" + std::to_string(number);
@@ -48,7 +49,7 @@ std::string description(const VideoCameraConfig& config, int number) {
          "\nA: index=0\\n\nA: name=" + config.model + "\\n\n";
 }
 
-/// Rows with something behind each that would be near full scale if it were pixels.
+/// Adds padding after each row that would be near full scale as pixels.
 std::vector<std::uint8_t> padded(std::vector<std::uint8_t> frame, std::size_t rows, std::size_t padding) {
   if (padding == 0) return frame;
   const auto row_bytes = static_cast<std::ptrdiff_t>(frame.size() / rows);
@@ -76,7 +77,7 @@ cv::Mat1w EmulatedV4l2Camera::State::picture(std::uint64_t index) {
   try {
     counts = exposure(index);
   } catch (...) {
-    // Nothing may end the camera's thread; the owner sees the count.
+    // No exception may end the camera's thread; the owner reads the count.
     counts = {};
   }
   if (counts.cols == config.width && counts.rows == config.height) return counts;
@@ -138,7 +139,7 @@ void EmulatedV4l2Camera::State::expose(const std::stop_token& stop) {
       index = exposures++;
       frozen = frozen_frames > 0 && !last.empty();
     }
-    // The scene is looked at without the lock: a client must not wait for it.
+    // The scene is rendered without the lock: a client must not wait for it.
     const cv::Mat1w counts = frozen ? last : picture(index);
     {
       const std::lock_guard lock(mutex);
@@ -166,7 +167,7 @@ Result<std::unique_ptr<EmulatedV4l2Camera>> EmulatedV4l2Camera::start(std::share
                                                                       VideoCameraConfig config, Exposure exposure,
                                                                       VideoDriverQuirks quirks) {
   if (const auto valid = validate(config); !valid) return tl::unexpected(valid.error());
-  if (!exposure) return fail(ErrorCode::invalid_input, "emulated video camera: there is nothing to expose");
+  if (!exposure) return fail(ErrorCode::invalid_input, "emulated video camera: the exposure function is missing");
   auto state = std::make_unique<State>();
   state->config = std::move(config);
   state->exposure = std::move(exposure);

@@ -1,4 +1,5 @@
-// The inside of an emulated V4L2 camera: what camera thread and driver share. Private to them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// State of an emulated V4L2 camera, shared by camera thread and driver. Private to them.
 #pragma once
 
 #include <sys/ioctl.h>
@@ -16,7 +17,7 @@
 
 #include "sim_devices/lab/video/v4l2_camera.h"
 
-// As umockdev.h declares them.
+// As declared in umockdev.h.
 struct _UMockdevIoctlBase;
 struct _UMockdevIoctlClient;
 using UMockdevIoctlBase = _UMockdevIoctlBase;
@@ -24,7 +25,7 @@ using UMockdevIoctlClient = _UMockdevIoctlClient;
 
 namespace todbench {
 
-/// A driver in user space: `mutex` guards everything below it.
+/// A driver in user space. `mutex` guards all members below it.
 struct EmulatedV4l2Camera::State {
   VideoCameraConfig config;
   Exposure exposure;
@@ -38,7 +39,7 @@ struct EmulatedV4l2Camera::State {
   std::mutex mutex;
   std::condition_variable_any changed;
   bool unplugged = false;
-  UMockdevIoctlClient* owner = nullptr;  ///< who has buffers; never dereferenced
+  UMockdevIoctlClient* owner = nullptr;  ///< client that has buffers; never dereferenced
   cv::Size size;
   double frame_rate_hz = 50;
   std::uint32_t buffers = 0;

@@ -1,4 +1,5 @@
-// The driver of an emulated V4L2 camera: one method per ioctl, as uvcvideo answers them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Driver of an emulated V4L2 camera: one method per ioctl, with the answers of uvcvideo.
 #include <umockdev.h>
 #include <unistd.h>
 
@@ -15,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t most_buffers = 32;
-/// poll() on the node is always ready: a DQBUF waits a little instead, so that a client does not spin.
+/// poll() on the node is always ready, so a DQBUF waits a little, and a client does not spin.
 constexpr auto dequeue_patience = 10ms;
 constexpr std::uint32_t nuc_button = V4L2_CID_PRIVATE_BASE;
 constexpr std::size_t page = 4096;
@@ -84,7 +85,7 @@ int EmulatedV4l2Camera::State::get_format(v4l2_format& out) const {
 
 int EmulatedV4l2Camera::State::try_format(v4l2_format& out, cv::Size& chosen) const {
   if (out.type != V4L2_BUF_TYPE_VIDEO_CAPTURE) return EINVAL;
-  // As uvcvideo: a size that does not exist becomes one that does.
+  // As uvcvideo: an unknown size is replaced by an offered one.
   chosen =
       out.fmt.pix.width > static_cast<__u32>(format.sizes.back().width) ? format.sizes.back() : format.sizes.front();
   for (const auto& s : format.sizes) {
@@ -208,7 +209,7 @@ int EmulatedV4l2Camera::State::set_control(const v4l2_control& in) {
 
 namespace {
 
-/// The client's structure, read, served and written back. The result of `serve`, or EFAULT.
+/// Reads the client's structure, serves it and writes it back. Returns the result of `serve`, or EFAULT.
 template <typename T, typename Serve>
 int with(UMockdevIoctlClient* client, Serve serve) {
   GError* error = nullptr;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/video/video_frames.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ PixelFormat format_of_counts(VideoCameraKind kind) {
   }
 }
 
-/// Counts that do not fit are cut off.
+/// Counts above the range are clipped.
 void append(std::vector<std::uint8_t>& bytes, const cv::Mat1w& counts, PixelFormat format) {
   const cv::Mat1w cut = cv::min(counts, (1 << significant_bits(format)) - 1);
   const auto encoded = encode_pixels(cut, {.format = format, .width = counts.cols, .height = counts.rows});
@@ -32,7 +33,7 @@ void append(std::vector<std::uint8_t>& bytes, const cv::Mat1w& counts, PixelForm
   bytes.insert(bytes.end(), encoded->begin(), encoded->end());
 }
 
-/// The upper half of a Tiny1 frame: the picture for people, stretched between its extremes.
+/// Upper half of a Tiny1 frame: the picture for people, stretched between its extremes.
 cv::Mat1w picture_for_people(const cv::Mat1w& counts) {
   const auto [low, high] = std::minmax_element(counts.begin(), counts.end());
   const unsigned span = std::max(1U, static_cast<unsigned>(*high) - *low);
@@ -70,16 +71,17 @@ Result<void> validate(const VideoCameraConfig& config) {
   }
   if (config.width < 8 || config.height < 8 || config.width > 4096 || config.height > 4096 || config.width % 2 != 0 ||
       config.height % 2 != 0) {
-    return fail(ErrorCode::invalid_input, "emulated video camera: width and height are even, 8 ... 4096");
+    return fail(ErrorCode::invalid_input, "emulated video camera: width and height must be even, 8 ... 4096");
   }
   if (config.kind == VideoCameraKind::temperature_rows && 2 * config.height <= config.width) {
-    return fail(ErrorCode::invalid_input, "emulated video camera: temperature rows need a frame higher than wide");
+    return fail(ErrorCode::invalid_input,
+                "emulated video camera: with temperature rows, twice the height must exceed the width");
   }
   if (!(config.frame_rate_hz >= 0.1 && config.frame_rate_hz <= 1000)) {
-    return fail(ErrorCode::invalid_input, "emulated video camera: frame rate is 0.1 ... 1000 Hz");
+    return fail(ErrorCode::invalid_input, "emulated video camera: the frame rate must be 0.1 ... 1000 Hz");
   }
   if (config.nuc_freeze_frames < 0) {
-    return fail(ErrorCode::invalid_input, "emulated video camera: a correction cannot freeze less than 0 frames");
+    return fail(ErrorCode::invalid_input, "emulated video camera: nuc_freeze_frames must not be negative");
   }
   return {};
 }
@@ -110,6 +112,8 @@ UsbIdentity usb_identity(VideoCameraKind kind) {
       return {0x1e4e, 0x0100};
     case VideoCameraKind::temperature_rows:
       return {0x0bda, 0x5830};
+    case VideoCameraKind::boson:
+      return {0x09cb, 0x4007};
     default:
       return {0x1209, 0x0001};
   }
@@ -120,6 +124,8 @@ VideoWireFormat wire_format(const VideoCameraConfig& config) {
   switch (config.kind) {
     case VideoCameraKind::lepton:
       return {PixelFormat::mono16, {size, {config.width, config.height + lepton_telemetry_rows(config.width)}}};
+    case VideoCameraKind::boson:
+      return {PixelFormat::mono16, {{config.width, config.height + 2}, size}};
     case VideoCameraKind::temperature_rows:
       return {PixelFormat::yuyv, {size, {config.width, 2 * config.height}}};
     default:
@@ -132,11 +138,20 @@ std::vector<std::uint8_t> wire_frame(const VideoCameraConfig& config, const cv::
   CV_Assert(counts.cols == config.width && counts.rows == config.height);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(2 * static_cast<std::size_t>(size.area()));
+  if (state.exposure < static_cast<std::uint64_t>(std::max(0, config.empty_first_frames))) {
+    bytes.resize(static_cast<std::size_t>(size.area()) *
+                 static_cast<std::size_t>(wire_format(config).bytes_per_pixel()));
+    return bytes;
+  }
   if (config.kind == VideoCameraKind::temperature_rows) {
     append(bytes, picture_for_people(counts), PixelFormat::yuyv);
-    if (size.height == config.height) return bytes;  // the picture alone
+    if (size.height == config.height) return bytes;  // only the picture
   }
   append(bytes, counts, format_of_counts(config.kind));
+  if (config.kind == VideoCameraKind::boson && size.height > config.height) {
+    put_word(bytes, static_cast<unsigned>(state.exposure));
+    bytes.resize(2 * static_cast<std::size_t>(size.area()), 0);
+  }
   if (config.kind == VideoCameraKind::lepton && size.height > config.height) {
     for (const auto word : encode_lepton_telemetry(telemetry_of(config, state))) put_word(bytes, word);
     bytes.resize(2 * static_cast<std::size_t>(size.area()), 0);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is known of camera families, the test ramp, and the limits on what a camera may state: pure functions.
 #include <gmock/gmock.h>
 
@@ -8,9 +9,9 @@
 namespace todbench {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 bool no_features(const std::string&) {
   return false;
@@ -72,7 +73,7 @@ TEST(ObjectParameters, ThatAreNotNeutralAreTold) {
   EXPECT_EQ(notes({{"ObjectEmissivity", "0.9999999"}, {"WindowTransmission", "1"}, {"WindowTemperature", "350"}}), "");
   EXPECT_EQ(notes({{"EstimatedTransmission", "1"}, {"ObjectDistance", "100"}}), "");
   EXPECT_THAT(notes({{"ObjectEmissivity", "0.95"}, {"WindowTransmission", "0.8"}}),
-              HasSubstr("ObjectEmissivity = 0.95, WindowTransmission = 0.8:"));
+              HasSubstr("ObjectEmissivity = 0.95, WindowTransmission = 0.8."));
   EXPECT_THAT(notes({{"WindowReflection", "0.1"}}), HasSubstr("WindowReflection"));
   EXPECT_THAT(notes({{"EstimatedTransmission", "0"}, {"ObjectDistance", "2"}}), HasSubstr("ObjectDistance = 2"));
   EXPECT_THAT(notes({{"EstimatedTransmission", "0.9"}}), HasSubstr("EstimatedTransmission = 0.9"));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The Aravis back end and the emulated camera, over the real protocol on loopback.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What happens when packets, frames or the whole camera are lost, over the real protocol on loopback.
 #include <gmock/gmock.h>
 

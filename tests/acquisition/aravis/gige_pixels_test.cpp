@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pixels over the wire: every format, whole streams byte for byte, real recordings.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The Aravis back end and the GigE Vision camera on plain sockets: discovery, exposures, chunks, addresses.
 #include <arv.h>
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Set-up of real families behind the GigE Vision camera on plain sockets.
 #include <gmock/gmock.h>
 
@@ -31,7 +32,7 @@ TEST(Ax5, IsSetUpForMeasuring) {
   EXPECT_EQ(info.settings.at("TemperatureLinearMode"), "On");
   EXPECT_EQ(info.settings.at("TemperatureLinearResolution"), "High");
   EXPECT_EQ(info.settings.at("SensorDDEMode"), "Off");
-  EXPECT_THAT(info.warnings, testing::Not(testing::Contains(HasSubstr("order of bytes"))));
+  EXPECT_THAT(info.warnings, testing::Not(testing::Contains(HasSubstr("byte order"))));
   EXPECT_EQ(*source->get("IRTestPattern"), "Off");
 }
 
@@ -55,7 +56,7 @@ TEST(Ax5, TellsWhatItTakesTheSceneFor) {
   // Steps of 1/8192.
   EXPECT_NEAR(std::stod(source->info().settings.at("WindowTransmission")), 0.8, 1.3e-4);
   EXPECT_NEAR(std::stod(source->info().settings.at("WindowTemperature")), 300, 0.01);
-  EXPECT_THAT(source->info().warnings, testing::Contains(HasSubstr("for WindowTransmission = 0.79")));
+  EXPECT_THAT(source->info().warnings, testing::Contains(HasSubstr("with WindowTransmission = 0.79")));
   ASSERT_TRUE(source->set("WindowTransmission", "1"));
   EXPECT_THAT(source->info().warnings, testing::Not(testing::Contains(HasSubstr("computes its temperatures"))));
 }
@@ -68,7 +69,7 @@ TEST(Ax5, WhoseBytesArriveSwappedIsFoundOutByItsTestRampAndReadRight) {
   const auto source = open_started();
 
   ASSERT_TRUE(source);
-  EXPECT_THAT(source->info().warnings, testing::Contains(HasSubstr("bytes swapped")));
+  EXPECT_THAT(source->info().warnings, testing::Contains(HasSubstr("arrive swapped")));
   EXPECT_EQ(receive(*source, config, 10).false_pixels, 0);
 }
 
@@ -185,6 +186,61 @@ TEST(Families, ACameraNobodyKnowsTakesAScaleThatWasMeasuredOnTheBench) {
   EXPECT_DOUBLE_EQ(*source->info().scale.kelvin(5000), 300);
   EXPECT_EQ(source->set("TemperatureLinearScale", "0").error().code, ErrorCode::invalid_input);
   EXPECT_EQ(source->set("TemperatureLinearOffset", "warm").error().code, ErrorCode::invalid_input);
+}
+
+TEST(GvspSize, ThatIsNotTheOneStatedIsNamedAndTakenWhereThePlanStatesIt) {
+  GvspCameraConfig config = quick(CameraModel::a_series);
+  config.rows_not_sent = 6;  // an A325 counts 246 rows and sends 240
+  const auto camera = start_gvsp_camera(config);
+  {
+    const auto source = open_started();
+    ASSERT_TRUE(source);
+    Result<Frame> frame;
+    for (int k = 0; k < 40 && (frame = source->next(patience)); ++k) EXPECT_EQ(frame->status, FrameStatus::wrong_size);
+    ASSERT_FALSE(frame);
+    EXPECT_EQ(frame.error().code, ErrorCode::integrity);
+    EXPECT_THAT(frame.error().message, HasSubstr("frames of 160x134 but sends frames of 160x128"));
+    EXPECT_THAT(frame.error().message, HasSubstr("frame_size = \"160x128\""));
+  }
+  const auto source = open_camera();
+  ASSERT_TRUE(source);
+  EXPECT_FALSE(source->set("FrameSize", "160 x 128"));
+
+  ASSERT_TRUE(source->set("FrameSize", "160x128") && source->start());
+
+  EXPECT_EQ(source->info().height, 128);
+  const Received got = receive(*source, config, 20);
+  EXPECT_EQ(got.complete, 20);
+  EXPECT_EQ(got.false_pixels, 0);
+}
+
+TEST(GvspChunks, OfGigEVision1AreSwitchedOffWhenTheCameraIsOpened) {
+  GvspCameraConfig config = quick();
+  config.chunks_at_power_up = true;
+  config.chunk_payload_type = 4;
+  const auto camera = start_gvsp_camera(config);
+
+  const auto source = open_started();
+
+  ASSERT_TRUE(source);
+  EXPECT_EQ(*source->get("ChunkModeActive"), "Off");
+  const Received got = receive(*source, config, 20);
+  EXPECT_EQ(got.complete, 20);
+  EXPECT_EQ(got.false_pixels, 0);
+}
+
+TEST(GvspCorrection, IsTheCommandThatThePlanNames) {
+  const auto camera = start_gvsp_camera(quick(CameraModel::unlisted));
+  const auto source = open_camera();
+  ASSERT_TRUE(source);
+
+  const auto refused = source->set("NonuniformityCommand", "Calibrate");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("FlagCalibrate"));
+  ASSERT_TRUE(source->set("NonuniformityCommand", "FlagCalibrate"));
+  ASSERT_TRUE(source->correct_nonuniformity());
+
+  EXPECT_EQ(camera->counts().corrections, 1u);
 }
 
 }  // namespace

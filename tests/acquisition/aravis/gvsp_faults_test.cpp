@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Packets lost, repeated, late, padded; ids that begin anew; control that is lost: no frame is taken for another.
 #include <gmock/gmock.h>
 
@@ -218,7 +219,7 @@ TEST_P(FrameIds, ThatBeginAnewHideNoLossAndInventNone) {
   // Frames are on their way while the last one is read, and where only the host's clock knows, it knows by its jitter.
   EXPECT_NEAR(accounted, exposed, 6 + 0.1 * exposed);
   EXPECT_EQ(gate.numbering().restarts + gate.numbering().silent_gaps, 1U);
-  EXPECT_THAT(describe(gate.numbering()), HasSubstr("estimated from time"));
+  EXPECT_THAT(describe(gate.numbering()), HasSubstr("estimated from the time"));
 }
 
 INSTANTIATE_TEST_SUITE_P(

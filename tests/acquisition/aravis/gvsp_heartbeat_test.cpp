@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Who controls the emulated camera while it is slow to listen.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>

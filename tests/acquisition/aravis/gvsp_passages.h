@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tests of the camera on plain sockets do again and again: a quick camera, opened and started, frames compared.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // GigE Vision cameras whose description would end, fill or stop the program: the real back end refuses each with a
 // sentence.
 #include <fmt/format.h>
@@ -66,7 +67,7 @@ TEST_P(HostileCamera, IsRefusedWithASentence) {
 
   EXPECT_EQ(error.code, ErrorCode::not_found);
   EXPECT_THAT(error.message, HasSubstr(GetParam().says));
-  EXPECT_THAT(error.message, HasSubstr("the camera's description is not used"));
+  EXPECT_THAT(error.message, HasSubstr("the camera's description is rejected"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Descriptions, HostileCamera, testing::ValuesIn(hostile_descriptions()),
@@ -76,14 +77,14 @@ TEST(HostileUrl, OfADeviceOfTheHostIsRefused) {
   const Error error = refusal(with_url("File:///dev/zero"));
 
   EXPECT_EQ(error.code, ErrorCode::not_found);
-  EXPECT_THAT(error.message, HasSubstr("no regular file"));
+  EXPECT_THAT(error.message, HasSubstr("not a regular file"));
 }
 
 TEST(HostileUrl, OfAnotherHostIsRefused) {
   const Error error = refusal(with_url("http://127.0.0.1/camera.xml"));
 
   EXPECT_EQ(error.code, ErrorCode::not_found);
-  EXPECT_THAT(error.message, HasSubstr("only descriptions in the camera or in a file"));
+  EXPECT_THAT(error.message, HasSubstr("only descriptions stored in the camera or in a file"));
 }
 
 TEST(HostileArchive, ThatUnpacksToMoreThanItStatesIsRefused) {
@@ -91,7 +92,7 @@ TEST(HostileArchive, ThatUnpacksToMoreThanItStatesIsRefused) {
 
   EXPECT_THAT(refusal(with_archive(zip_archive(zeros))).message, HasSubstr("at most"));
   EXPECT_THAT(refusal(with_archive(zip_archive(zeros, 4000000000U))).message, HasSubstr("at most"));
-  EXPECT_THAT(refusal(with_archive(zip_archive(zeros, 1U << 20U))).message, HasSubstr("another size"));
+  EXPECT_THAT(refusal(with_archive(zip_archive(zeros, 1U << 20U))).message, HasSubstr("differs from the size"));
   EXPECT_THAT(refusal(with_archive("PK\5\6" + std::string(40, '\xFF'))).message, HasSubstr("zipped description"));
 }
 
@@ -163,7 +164,7 @@ TEST(UnreadableFeature, OfAGoodCameraIsLeftAlone) {
   ASSERT_TRUE(source);
   EXPECT_THAT(source->get("Dangling").error().message, HasSubstr("Nowhere, which does not exist"));
   EXPECT_THAT(source->get("LongText").error().message, HasSubstr("its length is 4000000000 bytes"));
-  EXPECT_THAT(source->get("Trapping").error().message, HasSubstr("divide the smallest number"));
+  EXPECT_THAT(source->get("Trapping").error().message, HasSubstr("divide the smallest integer"));
   EXPECT_EQ(source->get("Text").value_or(""), "FLIR");
 }
 

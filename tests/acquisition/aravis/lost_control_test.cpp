@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The end of a camera whose control is lost, while Aravis still says so.
 #include <arv.h>
 #include <gmock/gmock.h>

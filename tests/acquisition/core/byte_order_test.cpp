@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The detector of swapped bytes, its error rate on simulated and real pictures.
 #include "acquisition/core/byte_order.h"
 
@@ -8,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/raw_recording.h"
 #include "tests/support/source_file.h"

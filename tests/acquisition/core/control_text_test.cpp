@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/core/control_text.h"
 
 #include <gtest/gtest.h>
 
-#include "acquisition/core/host_clock.h"
+#include "acquisition/base/host_clock.h"
 
 namespace todbench {
 namespace {

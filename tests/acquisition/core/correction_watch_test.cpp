@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Corrections that a camera does not announce, seen in its pictures: what is seen, and how often it is seen wrongly.
 #include "acquisition/core/correction_watch.h"
 
@@ -5,7 +6,7 @@
 
 #include <cmath>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "acquisition/recording/raw_recording.h"
 #include "tests/support/source_file.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What of descriptions is refused before anybody evaluates them, and what is not.
 #include "acquisition/description/description.h"
 
@@ -67,7 +68,7 @@ TEST(Description, TellsTheWayOfACycle) {
   ASSERT_EQ(description.faults().size(), 1U);
   EXPECT_EQ(description.faults().front().kind, DescriptionFaultKind::cycle);
   EXPECT_EQ(description.faults().front().node, "A");
-  EXPECT_EQ(description.faults().front().sentence, "its value depends on itself, by way of B, C");
+  EXPECT_EQ(description.faults().front().sentence, "its value has a circular reference through B, C");
 }
 
 TEST(Description, MayHaveCyclesThatNobodyEvaluates) {
@@ -215,7 +216,8 @@ TEST(DescriptionUrl, OfAReasonableSizeIsAccepted) {
 }
 
 TEST(DescriptionUrl, ThatWouldReserveMemoryWithoutBoundIsRefused) {
-  EXPECT_THAT(parse_description_url("Local:camera.xml;1000;FFFFFFFF").error().message, HasSubstr("out of reason"));
+  EXPECT_THAT(parse_description_url("Local:camera.xml;1000;FFFFFFFF").error().message,
+              HasSubstr("its size is not 1 ... "));
   for (const auto* url : {"Local:camera.xml;1000;FFFFFFFFFFFFFFFFFF", "Local:camera.xml;1000;0", "Local:camera.xml",
                           "http://example.org/camera.xml", "", "camera.xml", "Local:a;1;2;3", "Local:a;FFFFFFFF;10"}) {
     EXPECT_FALSE(parse_description_url(url)) << url;

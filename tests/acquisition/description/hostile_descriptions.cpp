@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/acquisition/description/hostile_descriptions.h"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ void append(std::string& out, std::uint64_t value, int bytes) {
 }  // namespace
 
 std::vector<HostileDescription> hostile_descriptions() {
-  const std::string self = "depends on itself";
+  const std::string self = "circular reference";
   return {
       {"ValueOfItself", integer("Bad", "<pValue>Bad</pValue>"), self},
       {"ValueOfAnother", integer("Bad", "<pValue>BadB</pValue>") + integer("BadB", "<pValue>Bad</pValue>"), self},
@@ -75,7 +76,7 @@ std::vector<HostileDescription> hostile_descriptions() {
       {"InAGroup", "<Group Comment=\"g\">" + integer("Bad", "<pValue>Bad</pValue>") + "</Group>", self},
       {"LongChain",
        chain(20000, [](const auto& name, const auto& next) { return integer(name, "<pValue>" + next + "</pValue>"); }),
-       "a chain of more than"},
+       "chain of references"},
       {"Doubling",
        chain(60,
              [](const auto& name, const auto& next) {
@@ -87,18 +88,18 @@ std::vector<HostileDescription> hostile_descriptions() {
       {"ImmenseLength", reg("Bad", "<Address>0xD300</Address><Length>4000000000</Length>"),
        "its length is 4000000000 bytes"},
       {"LengthInTheCamera", reg("Bad", "<Address>0xD300</Address><pLength>Height</pLength>"), "only the camera knows"},
-      {"Division", knife("Bad", {}, "(1 &lt;&lt; 63) / (0 - 1)"), "divide the smallest number"},
+      {"Division", knife("Bad", {}, "(1 &lt;&lt; 63) / (0 - 1)"), "divide the smallest integer"},
       {"DivisionByARegister",
        reg("Wide", "<Address>0xD300</Address><Length>8</Length>") + knife("Bad", {"Wide"}, "(1 &lt;&lt; 63) % Wide"),
-       "divide the smallest number"},
-      {"LongFormula", knife("Bad", {}, std::string(40000, '(') + "1" + std::string(40000, ')')), "formula is longer"},
+       "divide the smallest integer"},
+      {"LongFormula", knife("Bad", {}, std::string(40000, '(') + "1" + std::string(40000, ')')), "formula is too long"},
       {"ManyElements",
        [] {
          std::string out = integer("Bad", "<Value>1</Value>");
          for (int i = 0; i < 450'000; ++i) out += "<Group/>";
          return out;
        }(),
-       "more elements"},
+       "too many elements"},
       {"DeepElements",
        [] {
          std::string out;
@@ -108,7 +109,7 @@ std::vector<HostileDescription> hostile_descriptions() {
        }(),
        "not well-formed"},
       {"OpenElement", "<Group>", "not well-formed"},
-      {"Description", "<RegisterDescription/>", "description inside"},
+      {"Description", "<RegisterDescription/>", "second RegisterDescription"},
       {"TwoOfOneName", integer("Bad", "<Value>1</Value>") + integer("Bad", "<Value>2</Value>"), "two nodes"},
       {"Nowhere", integer("Bad", "<pValue>Nowhere</pValue>"), "does not exist"}};
 }

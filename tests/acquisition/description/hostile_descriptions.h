@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // GenICam descriptions that no camera should have, made from that of an emulated one.
 #pragma once
 

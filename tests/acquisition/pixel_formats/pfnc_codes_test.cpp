@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The codes of the table against those that Aravis defines.
 #include <arv.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/pixel_formats/pixel_formats.h"
 
 #include <gmock/gmock.h>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/support/parameter_names.h"
 
 namespace todbench {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Recordings of the bench: what comes back, and what is left after a crash.
 #include "acquisition/recording/frame_stream.h"
 
@@ -10,7 +11,7 @@
 #include <functional>
 #include <limits>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "acquisition/recording/recording_backend.h"
 #include "acquisition/recording/recording_camera.h"
 #include "acquisition/recording/tiff_stack.h"
@@ -478,7 +479,8 @@ TEST_F(Recordings, RefuseTiffPagesOfDifferentSizeAndBrokenFiles) {
   EXPECT_FALSE(tiff->verified_pages().has_value());
   overwrite(file("broken.tif"), "II*");
 
-  EXPECT_THAT(open_recording(file("mixed.tif"), "").error().message, HasSubstr("page 2 is 3 x 4, the first one 4 x 3"));
+  EXPECT_THAT(open_recording(file("mixed.tif"), "").error().message,
+              HasSubstr("page 2 is 3 x 4, but the first page is 4 x 3"));
   EXPECT_EQ(open_recording(file("broken.tif"), "").error().code, ErrorCode::invalid_input);
 }
 

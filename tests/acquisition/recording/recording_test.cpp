@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -108,7 +109,7 @@ TEST(RecordingBackend, NamesWhatIsWrongWithAnId) {
       {file + "?width=160&height=119", "whole number"},
       {file + "?width=160&height=120&colour=1", "unknown key colour"},
       {file + "?width=wide&height=120", "'width=wide' is not KEY=NUMBER"},
-      {file + "?width=160&width=160&height=120", "given twice"}};
+      {file + "?width=160&width=160&height=120", "stated twice"}};
 
   for (const auto& [id, reason] : wrong) {
     const auto source = backend->open(id);
@@ -241,6 +242,14 @@ TEST(FlirSeq, ServesItsFramesAtPlausibleTemperatures) {
     EXPECT_LT(high, 315);
   }
   EXPECT_EQ((*source)->next(1s).error().code, ErrorCode::disconnected);
+}
+
+TEST(FlirSeq, RefusesAGeometryStatedBesideTheOneInTheFile) {
+  const auto source = recording_backend()->open("file:" + (golden / "flir_sc660.seq").string() + "?widht=640");
+
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().code, ErrorCode::invalid_input);
+  EXPECT_NE(source.error().message.find("remove '?widht=640'"), std::string::npos) << source.error().message;
 }
 
 TEST(FlirSeq, RefusesAFileCutOffAnywhereInsideARecord) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cameras on USB that misbehave at any step of their conversation, or are unplugged there: every call comes to an end,
 // and no picture that was not exposed is called complete.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The USB back end against an emulated Seek camera: real libusb calls of this process, on an emulated bus.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Seek's protocol as pure functions: what bytes mean, which pixels are dead, how a picture is corrected.
 #include "acquisition/usb/seek_protocol.h"
 
@@ -153,6 +154,28 @@ TEST(SeekDeadPixelsAre, LeftAloneWhenNoPixelLives) {
 
   EXPECT_EQ(dead.count(), 4U);
   EXPECT_EQ(cv::countNonZero(picture != 7), 0);
+}
+
+TEST(SeekDeadPixelsAre, FilledUpToATenthOfThePictureAndTwoPixelsDeep) {
+  const cv::Size size(207, 154);
+  cv::Mat1w by_design(size, std::uint16_t{8000});
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      if ((x + 4 * y) % 15 == 0) by_design(y, x) = 0;
+    }
+  }
+  EXPECT_TRUE(SeekDeadPixels(by_design).check());
+  EXPECT_TRUE(SeekDeadPixels(cv::Mat1w(size, std::uint16_t{8000})).check());
+  EXPECT_TRUE(SeekDeadPixels().check());
+
+  cv::Mat1w fifth(size, std::uint16_t{8000}), deep = fifth.clone();
+  for (int x = 2; x < size.width; x += 5) fifth.col(x).setTo(0);
+  deep(cv::Rect(50, 50, 5, 5)).setTo(0);
+  for (const cv::Mat1w& calibration : {fifth, deep, cv::Mat1w(cv::Mat1w::zeros(size))}) {
+    const auto checked = SeekDeadPixels(calibration).check();
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().code, ErrorCode::calibration);
+  }
 }
 
 TEST(SeekCorrection, TakesTheOffsetsOfTheShutterAway) {

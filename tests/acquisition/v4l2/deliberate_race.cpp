@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A race on purpose. The thread sanitizer has to see it in a program that runs as the tests with emulated cameras do:
 // behind umockdev's preload library. A sanitizer that is blind there would make every one of those tests pass.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the telemetry rows of a Lepton say.
 #include "acquisition/v4l2/lepton_telemetry.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The V4L2 back end against an emulated camera: real open, ioctl, mmap and udev calls of this process.
 #include <gmock/gmock.h>
 
@@ -7,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "acquisition/core/host_clock.h"
+#include "acquisition/base/host_clock.h"
 #include "tests/support/parameter_names.h"
 #include "tests/support/video_test_support.h"
 
@@ -40,7 +41,7 @@ TEST_P(V4l2Pixels, AHundredFramesEqualTheirExposures) {
     ASSERT_TRUE(frame) << frame.error().message;
     ASSERT_EQ(frame->status, FrameStatus::complete);
     ASSERT_TRUE(
-        same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 160, 120, significant_bits(config.kind))));
+        same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 160, 120, picture_bits(config.kind))));
   }
 }
 
@@ -50,7 +51,8 @@ std::string name_of(const testing::TestParamInfo<VideoCameraKind>& kind) {
 
 INSTANTIATE_TEST_SUITE_P(Every, V4l2Pixels,
                          testing::Values(VideoCameraKind::y16, VideoCameraKind::y14, VideoCameraKind::grey,
-                                         VideoCameraKind::lepton, VideoCameraKind::temperature_rows),
+                                         VideoCameraKind::lepton, VideoCameraKind::boson,
+                                         VideoCameraKind::temperature_rows),
                          name_of);
 
 TEST(V4l2Cameras, AreListedByVendorModelAndSerial) {
@@ -125,6 +127,50 @@ TEST(V4l2Scale, OfALeptonIsWhatItsTelemetrySays) {
   EXPECT_EQ(source->info().height, 120);
 }
 
+TEST(V4l2Scale, OfALeptonIsLearntBehindFirstFramesThatAreEmpty) {
+  auto config = small(VideoCameraKind::lepton);
+  config.empty_first_frames = 3;
+  const auto bench = start_video(config);
+
+  const auto source = open_video(config);
+
+  ASSERT_TRUE(source);
+  EXPECT_EQ(source->info().scale, RadiometricScale::linear({.kelvin_per_count = 0.01}).value());
+}
+
+TEST(V4l2Boson, IsReadWithoutItsTelemetrySoThatFrozenFramesAreEqual) {
+  auto config = small(VideoCameraKind::boson);
+  config.width = 320;
+  config.height = 256;
+  const auto bench = start_video(config);
+  for (const char* size : {"", "320x258"}) {
+    const auto source = open_video(config);
+    ASSERT_TRUE(source);
+    EXPECT_EQ(*source->get("FrameSize"), "320x256");
+    const bool chosen = *size == 0 || source->set("FrameSize", size).has_value();
+    ASSERT_TRUE(chosen);
+    ASSERT_TRUE(source->start());
+
+    EXPECT_EQ(source->info().height, 256);
+    const auto frame = source->next(patience);
+    ASSERT_TRUE(frame);
+    EXPECT_TRUE(same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 320, 256, 16)));
+    EXPECT_FALSE(source->set("FrameSize", "640x512"));
+  }
+}
+
+TEST(V4l2Serial, ThatManyCamerasShareIsSaid) {
+  auto config = small(VideoCameraKind::y16);
+  config.serial = "200901010001";
+  const auto bench = start_video(config);
+
+  const auto source = open_video(config);
+
+  ASSERT_TRUE(source);
+  EXPECT_THAT(source->info().warnings, testing::Contains(testing::HasSubstr("placeholder")));
+  EXPECT_THAT(only_camera(*v4l2_backend()).note, testing::HasSubstr("placeholder"));
+}
+
 TEST(V4l2Scale, OfTemperatureRowsIsSixtyFourthsOfAKelvin) {
   const auto config = small(VideoCameraKind::temperature_rows);
   const auto bench = start_video(config);
@@ -134,6 +180,9 @@ TEST(V4l2Scale, OfTemperatureRowsIsSixtyFourthsOfAKelvin) {
   ASSERT_TRUE(source);
   EXPECT_EQ(source->info().scale, RadiometricScale::linear({.kelvin_per_count = 1.0 / 64}).value());
   EXPECT_EQ(source->info().pixel_format, "Mono16");
+  EXPECT_THAT(source->info().warnings, testing::Contains(testing::HasSubstr("high-gain mode")));
+  ASSERT_TRUE(source->set("TemperatureLinearScale", "0.0625"));
+  EXPECT_THAT(source->info().warnings, testing::Not(testing::Contains(testing::HasSubstr("high-gain mode"))));
 }
 
 TEST(V4l2Scale, OfAPlainCameraIsWhatTheUserStates) {
@@ -202,7 +251,7 @@ TEST_P(V4l2Quirks, ChangeNoPixel) {
     const auto frame = source->next(patience);
     ASSERT_TRUE(frame) << frame.error().message;
     ASSERT_EQ(frame->status, FrameStatus::complete);
-    ASSERT_TRUE(same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 160, 120, significant_bits(kind))));
+    ASSERT_TRUE(same_pixels(frame->counts, test_picture(exposure_of(*frame, 200), 160, 120, picture_bits(kind))));
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The doctor's checks on made-up systems: files under a folder, facts as values.
 #include "bench/doctor/doctor.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Stages picture to picture: what must not change anything does not, what is known comes out.
 #include "sim_devices/module/picture_stage.h"
 
@@ -6,7 +7,7 @@
 
 #include <cmath>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/enhance/enhancement.h"
 #include "sim_devices/sensor/super_resolution.h"
 

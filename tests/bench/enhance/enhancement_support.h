@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A small plan and packages for what compares chains.
 #pragma once
 

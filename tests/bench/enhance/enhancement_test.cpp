@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Enhancement under test: what must not change anything does not, what is known comes out.
 #include "bench/enhance/enhancement.h"
 

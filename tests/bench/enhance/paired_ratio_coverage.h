@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How often the paired interval of a ratio holds the true ratio, from answers whose functions are known.
 #pragma once
 
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/enhance/enhancement.h"
 
 namespace todbench::testing {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How often the paired interval of `enhance` holds the true ratio, over designs.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Super-resolution by measured shifts beside that by known ones and the direct estimate.
 #include <gtest/gtest.h>
 

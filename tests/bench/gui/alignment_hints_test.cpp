@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every hint of the alignment, provoked with a badly set up emulated laboratory.
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/chain_presenter.h"
 
 #include <gmock/gmock.h>
@@ -24,7 +25,7 @@ double largest_difference(const cv::Mat1d& a, const cv::Mat1d& b) {
 }
 
 TEST(ChainPresenter, ShowsThePicturesOfTheSensorModelItself) {
-  ChainOptions options;
+  ChainSettings options;
   options.size_pitch = 2.5;
   options.delta_t_k = 0.7;
   options.index = 3;
@@ -52,7 +53,7 @@ TEST(ChainPresenter, ShowsThePicturesOfTheSensorModelItself) {
 }
 
 TEST(ChainPresenter, ShowsTheDetectorsPictureOfTheImageChain) {
-  ChainOptions options;
+  ChainSettings options;
   options.size_pitch = 2.5;
   options.delta_t_k = 2;
   auto sensor = load_sensor("sc2000");
@@ -69,7 +70,7 @@ TEST(ChainPresenter, ShowsTheDetectorsPictureOfTheImageChain) {
 }
 
 TEST(ChainPresenter, LeavesOutWhatIsSwitchedOff) {
-  ChainOptions options;
+  ChainSettings options;
   options.skip = {Effect::temporal_noise, Effect::quantisation};
 
   const auto pictures = chain_pictures(options);
@@ -82,7 +83,7 @@ TEST(ChainPresenter, LeavesOutWhatIsSwitchedOff) {
 }
 
 TEST(ChainPresenter, KeepsTheSignalOfASceneThroughOpticsAndDetector) {
-  ChainOptions options;
+  ChainSettings options;
   options.size_pitch = 3;
 
   const auto pictures = chain_pictures(options);
@@ -110,7 +111,7 @@ TEST(ChainPresenter, ComputesInTheBackgroundAndSaysWhenItIsDone) {
 }
 
 TEST(ChainPresenter, ShowsAScenesPicturesAsTheCommandMakesThem) {
-  ChainOptions options;
+  ChainSettings options;
   options.scene = "craft-at-sea";
   options.atmosphere = "us-standard";
   options.range_m = 700;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // main() of the tests of the window: an application without a screen unless QT_QPA_PLATFORM names one, and a network
 // of its own where the system permits it, because the control port of GigE Vision is fixed.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What tests of the window share: waiting on the thing, small plans, a window with the parts found by name.
 #pragma once
 

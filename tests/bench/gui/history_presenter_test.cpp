@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The history of units in the window: its charts are those of the history.
 #include "bench/gui/presenters/history_presenter.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A person at the window, by synthetic keys.
 #include <QComboBox>
 #include <QLabel>

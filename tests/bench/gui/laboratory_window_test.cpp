@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The real window with the emulated laboratory: a GigE camera at 50 Hz, instruments on the network.
 #include <QLabel>
 #include <QListWidget>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Test pictures on a screen, pixel for pixel, and as the target of the bench.
 #include <QComboBox>
 #include <QDoubleSpinBox>

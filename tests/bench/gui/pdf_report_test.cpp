@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The PDF, read back by other programs.
 #include "bench/gui/presenters/pdf_report.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/plan_presenter.h"
 
 #include <gmock/gmock.h>
@@ -13,15 +14,15 @@ namespace {
 using ::testing::HasSubstr;
 using testing::wait_until;
 
-struct Bench {
+struct PlanBench {
   testing::TemporaryFolder folder;
   Workbench bench{folder.path()};
   PlanPresenter presenter{bench};
-  ~Bench() { bench.shut_down(); }
+  ~PlanBench() { bench.shut_down(); }
 };
 
 TEST(PlanPresenter, RefusesWhatAPlanFileMayNotSayAndKeepsTheOldPlan) {
-  Bench b;
+  PlanBench b;
   Plan plan = b.presenter.plan();
   plan.target.distance_m = -1;
 
@@ -32,7 +33,7 @@ TEST(PlanPresenter, RefusesWhatAPlanFileMayNotSayAndKeepsTheOldPlan) {
 }
 
 TEST(PlanPresenter, ShowsAsTomlWhatTheFormSaysAndTheOtherWayRound) {
-  Bench b;
+  PlanBench b;
   Plan plan = b.presenter.plan();
   plan.operator_name = "P. Example";
 
@@ -44,7 +45,7 @@ TEST(PlanPresenter, ShowsAsTomlWhatTheFormSaysAndTheOtherWayRound) {
 }
 
 TEST(PlanPresenter, TakesChangesBackAndMakesThemAgain) {
-  Bench b;
+  PlanBench b;
   const Plan first = b.presenter.plan();
   Plan second = first;
   second.operator_name = "P. Example";
@@ -73,7 +74,7 @@ TEST(PlanPresenter, TakesChangesBackAndMakesThemAgain) {
 }
 
 TEST(PlanPresenter, CountsTheAnswersOfAPlan) {
-  Bench b;
+  PlanBench b;
 
   // 2 plates of 20 triangles, 4 mountings, 3 contrasts, 6 phases.
   EXPECT_EQ(b.presenter.outlook().presentations, 2u * 4 * 3 * 6);
@@ -81,7 +82,7 @@ TEST(PlanPresenter, CountsTheAnswersOfAPlan) {
 }
 
 TEST(PlanPresenter, NeedsFourTimesTheAnswersForHalfTheUncertainty) {
-  Bench b;
+  PlanBench b;
   ASSERT_TRUE(wait_until([&] { return b.presenter.forecast().has_value(); }));
 
   Plan plan = b.presenter.plan();
@@ -100,7 +101,7 @@ TEST(PlanPresenter, NeedsFourTimesTheAnswersForHalfTheUncertainty) {
 }
 
 TEST(PlanPresenter, ForeseesWhatTheCommandLinePredicts) {
-  Bench b;
+  PlanBench b;
   ASSERT_EQ(b.presenter.set_tolerance_percent(4).toStdString(), "");
   ASSERT_TRUE(wait_until([&] { return b.presenter.forecast_current(); }));
 
@@ -130,7 +131,7 @@ TEST(PlanPresenter, ForeseesWhatTheCommandLinePredicts) {
 }
 
 TEST(PlanPresenter, SkipsMoreEffectsWhereMoreMayBeWrong) {
-  Bench b;
+  PlanBench b;
   const auto simulated = [&] {
     const auto& decisions = b.presenter.forecast()->effects.decisions;
     return std::count_if(decisions.begin(), decisions.end(),
@@ -147,7 +148,7 @@ TEST(PlanPresenter, SkipsMoreEffectsWhereMoreMayBeWrong) {
 }
 
 TEST(PlanPresenter, SetsAsManyPhasesAsTheToleranceNeedsAndNoMore) {
-  Bench b;
+  PlanBench b;
   ASSERT_TRUE(wait_until([&] { return b.presenter.forecast().has_value(); }));
 
   ASSERT_EQ(b.presenter.set_tolerance_percent(5).toStdString(), "");
@@ -161,7 +162,7 @@ TEST(PlanPresenter, SetsAsManyPhasesAsTheToleranceNeedsAndNoMore) {
 }
 
 TEST(PlanPresenter, KnowsThePriceOfEveryAccuracyBeforeItIsPaid) {
-  Bench b;
+  PlanBench b;
 
   ASSERT_TRUE(wait_until([&] { return !b.presenter.prices().empty(); }));
 
@@ -181,7 +182,7 @@ TEST(PlanPresenter, KnowsThePriceOfEveryAccuracyBeforeItIsPaid) {
 }
 
 TEST(PlanPresenter, SkipsAndForcesEffectsByHandInTheSameToml) {
-  Bench b;
+  PlanBench b;
 
   ASSERT_EQ(b.presenter.choose(Effect::temporal_noise, EffectChoice::skip).toStdString(), "");
   ASSERT_EQ(b.presenter.choose(Effect::diffraction, EffectChoice::simulate).toStdString(), "");
@@ -197,7 +198,7 @@ TEST(PlanPresenter, SkipsAndForcesEffectsByHandInTheSameToml) {
 }
 
 TEST(PlanPresenter, SaysThatAPlateDoesNotFitBeforeAnythingIsMeasured) {
-  Bench b;
+  PlanBench b;
   Plan plan = b.presenter.plan();
   plan.target.distance_m = 0.4;
 

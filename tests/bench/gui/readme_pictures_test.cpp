@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The pictures of README.md against what the window shows now.
 #include <gmock/gmock.h>
 

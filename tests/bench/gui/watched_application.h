@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An application that knows how long its thread was kept by one event.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The real window, without a screen, with a simulated camera.
 #include <QAbstractSpinBox>
 #include <QAccessible>

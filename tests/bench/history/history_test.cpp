@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Charts against their references, and the index against the folders that it is made from.
 #include <gmock/gmock.h>
 #include <sqlite3.h>
@@ -9,6 +10,7 @@
 #include "bench/history/fleet_history.h"
 #include "bench/history/history_index.h"
 #include "bench/history/history_series.h"
+#include "bench/session/manifest.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tod/measures/measures_reference.h"
@@ -63,7 +65,7 @@ TEST(ControlChart, IsThatOfTheReference) {
   }
 }
 
-TEST(Crossing, HasTheLineOfTheReference) {
+TEST(LimitCrossing, HasTheLineOfTheReference) {
   for (const auto& reference : test::reference_cases("conformity", "series")) {
     const auto found =
         crossing(values_of(reference), reference["between_sd"].get<double>(), reference["limit"].get<double>());
@@ -79,7 +81,7 @@ TEST(Crossing, HasTheLineOfTheReference) {
   }
 }
 
-TEST(Crossing, IsFoundBetweenTheEndsOfFieller) {
+TEST(LimitCrossing, IsFoundBetweenTheEndsOfFieller) {
   // x = 0.5 - 0.0002 t without scatter of the points: met at day 500.
   std::vector<ChartValue> values;
   for (int i = 0; i < 12; ++i) values.push_back({30.0 * i, 0.5 - 0.0002 * 30 * i, 0.005});
@@ -100,7 +102,7 @@ TEST(Crossing, IsFoundBetweenTheEndsOfFieller) {
   }
 }
 
-TEST(Crossing, IsOpenWhereTheSlopeMayBeNone) {
+TEST(LimitCrossing, IsOpenWhereTheSlopeMayBeNone) {
   const std::vector<ChartValue> level{{0, 0.5, 0.01}, {30, 0.501, 0.01}, {60, 0.4995, 0.01}};
 
   const auto found = crossing(level, 0, 0.4);
@@ -150,6 +152,38 @@ TEST_F(History, KnowsASessionByItsManifestAndFindsItWhereItWasMoved) {
   EXPECT_EQ(acuity.measure, "acuity");
   EXPECT_NEAR(std::exp(acuity.value), 0.49288, 1e-5);
   EXPECT_NEAR(acuity.u, std::log(0.57682673 / 0.42409196) / (2 * 1.96), 1e-5);
+}
+
+/// Makes the session one of a camera with this serial number.
+void give_camera(const std::filesystem::path& folder, const std::string& serial, const std::string& unit) {
+  const auto change = [&](const char* name, const std::string& from, const std::string& to) {
+    std::ifstream in(folder / name, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << name;
+    std::ofstream(folder / name, std::ios::binary) << text.replace(at, from.size(), to);
+  };
+  change("provenance.json", "\"camera\": null",
+         R"("camera": {"vendor": "Topdon", "model": "TC001", "serial": ")" + serial + R"("})");
+  change("fits.json", R"("sensor": "sc2000")", R"("sensor": "v4l2:Topdon-TC001-)" + serial + "\"");
+  change("session.toml", "unit = \"\"", "unit = \"" + unit + "\"");
+  ASSERT_TRUE(write_manifest(folder));
+}
+
+TEST_F(History, TakesNoPlaceholderOfASerialNumberForAUnit) {
+  const auto nameless = session("nameless"), first = session("first"), second = session("second"),
+             told = session("told");
+  give_camera(nameless, "200901010001", "");
+  give_camera(first, "200901010001", "sample 1");
+  give_camera(second, "200901010001", "sample 2");
+  give_camera(told, "48000123", "sample 3");
+
+  const auto refused = read_history_session(nameless);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("200901010001 is a placeholder"));
+  EXPECT_EQ(read_history_session(first)->unit.serial, "unit:sample 1");
+  EXPECT_EQ(read_history_session(second)->unit.serial, "unit:sample 2");
+  EXPECT_EQ(read_history_session(told)->unit.serial, "48000123");
 }
 
 TEST_F(History, IsMadeAgainFromFoldersAndEvents) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The budget of a plan in the intervals of a curve and in the verdict.
 #include "bench/judgement/acuity_uncertainty.h"
 
@@ -6,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/judgement/verdict.h"
 #include "bench/judgement/verdict_record.h"
 
@@ -88,6 +89,26 @@ TEST(CurveUncertainty, CountsContrastByTheSlopeOfTheCurve) {
     const double side_mm = 2 * std::pow(point.set_delta_t_k, -0.5) * 2;
     EXPECT_NEAR(row_of(point, "cut-outs").contribution, 0.02 / side_mm, 1e-12);
   }
+}
+
+TEST(CurveUncertainty, CountsTheScatterOfASeenContrastOnce) {
+  TodPoint point = point_of(2, 2.5, 0.01);
+  point.delta_t_se_k = 0.02;
+  const TodPoint without = point;
+  point.fit.contrast_u = point.fit.joined_u = 0.0114;
+  const double half = z95 * std::hypot(0.01, 0.0114);
+  point.fit.ci95 = {2.5 * std::exp(-half), 2.5 * std::exp(half)};
+  const Plan plan = plan_of({{.name = "distance", .value = 20, .unit = "mm"}});
+
+  const auto joined = applied(plan, {"o", "s", {point}}), plain = applied(plan, {"o", "s", {without}});
+
+  const PointUncertainty& found = joined.points.at(0);
+  ASSERT_TRUE(found.combined && plain.points.at(0).combined);
+  EXPECT_NEAR(row_of(found, seen_contrast_row).contribution, 0.0114, 1e-12);
+  EXPECT_NEAR(row_of(found, finite_trials_row).contribution, 0.01, 1e-12);
+  EXPECT_NEAR(found.combined->u, std::hypot(0.01, 0.0114, 0.01), 1e-12);
+  // An interval of an earlier version does not hold the contrast: the row has the slope of the curve, 1.
+  EXPECT_NEAR(plain.points.at(0).combined->u, std::hypot(0.01, 0.01, 0.01), 1e-12);
 }
 
 TEST(CurveUncertainty, HoldsWhatTargetAndCameraDisagreeBy) {

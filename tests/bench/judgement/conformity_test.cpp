@@ -1,9 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/conformity.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <random>
 
 #include "bench/judgement/uncertainty_budget.h"
 #include "tests/tod/measures/measures_reference.h"
@@ -90,7 +93,7 @@ TEST(GlobalRisks, AreThoseOfTheReference) {
     if (acceptance.at_most) *acceptance.at_most -= band;
 
     const auto found = global_risks({reference["population_mean"], reference["population_sd"]},
-                                    reference["measurement_u"], tolerance, acceptance)
+                                    {reference["measurement_u"]}, tolerance, acceptance)
                            .value();
 
     EXPECT_NEAR(found.p_conforming, reference["probability_conforming"], 1e-8);
@@ -99,6 +102,56 @@ TEST(GlobalRisks, AreThoseOfTheReference) {
     EXPECT_NEAR(found.producer_risk, reference["producer_risk"], 1e-8);
     EXPECT_NEAR(found.p_nonconforming_if_accepted, reference["probability_bad_given_accepted"], 1e-8);
   }
+}
+
+// A sum over a fine grid of true values and an independent form of the distribution for 3 degrees of freedom:
+// F(t) = 1/2 + (atan(t / sqrt 3) + (t / sqrt 3) / (1 + t^2 / 3)) / pi. The grid is good to 1e-9 of a risk.
+TEST(GlobalRisks, OfAnUncertaintyWithFewDegreesOfFreedomFollowStudentsT) {
+  const auto cdf3 = [](double t) {
+    const double x = t / std::sqrt(3.0);
+    return 0.5 + (std::atan(x) + x / (1 + x * x)) / std::numbers::pi;
+  };
+  const double mean = 0.5, sd = 0.03, u = 0.01, limit = 0.44, accepted_from = 0.46;
+  double consumer = 0, producer = 0;
+  constexpr int steps = 400000;
+  const double step = 20 * sd / steps;
+  for (int i = 0; i < steps; ++i) {
+    const double x = mean - 10 * sd + (i + 0.5) * step, z = (x - mean) / sd;
+    const double density = std::exp(-0.5 * z * z) / (sd * std::sqrt(2 * std::numbers::pi)) * step;
+    const double accepted = 1 - cdf3((accepted_from - x) / u);
+    (x < limit ? consumer : producer) += density * (x < limit ? accepted : 1 - accepted);
+  }
+
+  const auto of_t = global_risks({mean, sd}, {u, 3.0}, {.at_least = limit}, {.at_least = accepted_from});
+  const auto normal = global_risks({mean, sd}, {u}, {.at_least = limit}, {.at_least = accepted_from});
+
+  EXPECT_NEAR(of_t->consumer_risk, consumer, 1e-8);
+  EXPECT_NEAR(of_t->producer_risk, producer, 1e-8);
+  EXPECT_GT(of_t->consumer_risk, 4 * normal->consumer_risk);
+  EXPECT_FALSE(global_risks({mean, sd}, {u, 0.0}, {.at_least = limit}, {.at_least = accepted_from}));
+}
+
+// One draw: error over u is a normal number over the root of a chi-squared number over its degrees of freedom.
+TEST(GlobalRisks, OfFewDegreesOfFreedomAreThoseOfDrawnUnits) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal;
+  constexpr int draws = 400000;
+  const double mean = 0, sd = 1, u = 0.5;
+  int consumer = 0, producer = 0;
+  for (int i = 0; i < draws; ++i) {
+    double chi = 0;
+    const double truth = mean + sd * normal(engine), z = normal(engine);
+    for (int k = 0; k < 4; ++k) chi += std::pow(normal(engine), 2);
+    const double measured = truth + u * z / std::sqrt(chi / 4);
+    const bool good = std::abs(truth) <= 2, accepted = std::abs(measured) <= 1.5;
+    consumer += !good && accepted ? 1 : 0, producer += good && !accepted ? 1 : 0;
+  }
+
+  const auto found = global_risks({mean, sd}, {u, 4.0}, {-2.0, 2.0}, {-1.5, 1.5}).value();
+
+  const auto error = [](double p) { return 4 * std::sqrt(p / draws); };
+  EXPECT_NEAR(static_cast<double>(consumer) / draws, found.consumer_risk, error(found.consumer_risk));
+  EXPECT_NEAR(static_cast<double>(producer) / draws, found.producer_risk, error(found.producer_risk));
 }
 
 UncertaintyBudget budget_of(const nlohmann::json& components) {
@@ -160,12 +213,12 @@ TEST(Budget, RefusesNegativeMixedMissingAndDoubledRows) {
   EXPECT_THAT(refusal(""), HasSubstr("no rows"));
   EXPECT_THAT(refusal("[[component]]\nname = 'a'\nvalue = -1\n"), HasSubstr("b.toml:3"));
   EXPECT_THAT(refusal("[[component]]\nname = 'a'\nvalue = nan\n"), HasSubstr("b.toml:3"));
-  EXPECT_THAT(refusal("[[component]]\nname = 'a'\nvalue = 0\n"), HasSubstr("nothing in the budget is uncertain"));
+  EXPECT_THAT(refusal("[[component]]\nname = 'a'\nvalue = 0\n"), HasSubstr("all contributions to the budget are 0"));
   EXPECT_THAT(
       refusal("[[component]]\nname = 'a'\nvalue = 1\nunit = 'mm'\n[[component]]\nname = 'b'\nvalue = 1\nunit = 'K'\n"),
-      HasSubstr("units cannot be mixed"));
+      HasSubstr("rows with different units need a sensitivity"));
   EXPECT_THAT(refusal("[[component]]\nname = 'a'\nvalue = 1\nunit = 'mm'\n[[component]]\nname = 'b'\nvalue = 1\n"),
-              HasSubstr("units cannot be mixed"));
+              HasSubstr("rows with different units need a sensitivity"));
   EXPECT_THAT(refusal("unit = '1'\n[[component]]\nname = 'a'\nvalue = 1\nunit = 'mm'\n"), HasSubstr("sensitivity"));
   EXPECT_THAT(refusal("[[component]]\nname = 'a'\nvalue = 1\n[[component]]\nname = 'a'\nvalue = 1\n"),
               HasSubstr("twice"));

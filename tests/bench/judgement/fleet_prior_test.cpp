@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A prior from earlier units, and the risks with it: against closed forms and counted draws.
 #include "bench/judgement/fleet_prior.h"
 
@@ -6,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/judgement/verdict_record.h"
 
 namespace todbench {
@@ -68,7 +69,7 @@ TEST(FleetRisks, AreTheClosedFormOfAKnownFleet) {
   ASSERT_TRUE(risks);
   const double weight = 0.0009 / 0.001, mean = weight * 0.43 + (1 - weight) * 0.5;
   EXPECT_NEAR(risks->p_conformity, phi((mean - 0.44) / std::sqrt(weight * 0.0001)), 1e-7);
-  const auto known = global_risks({.mean = 0.5, .sd = 0.03}, 0.01, {.at_least = 0.44}, {.at_least = 0.46});
+  const auto known = global_risks({.mean = 0.5, .sd = 0.03}, {0.01}, {.at_least = 0.44}, {.at_least = 0.46});
   EXPECT_NEAR(risks->consumer_risk, known->consumer_risk, 1e-9);
   EXPECT_NEAR(risks->producer_risk, known->producer_risk, 1e-9);
   EXPECT_GE(risks->consumer_risk_most, risks->consumer_risk);
@@ -136,6 +137,47 @@ TEST(FleetRisks, StandWithTheDemandsThatTheFleetIsAbout) {
   EXPECT_NEAR(demands[0].fleet->p_conformity, expected->p_conformity, 1e-9);
   EXPECT_NEAR(demands[0].fleet->producer_risk, expected->producer_risk, 1e-9);
   EXPECT_EQ(demands[0].fleet->units, 20);
+}
+
+/// Student's t as a normal number over the root of a mean of squares.
+double student(const RandomStream& random, std::uint64_t at, int freedom) {
+  double squares = 0;
+  for (int i = 1; i <= freedom; ++i) squares += std::pow(random.normal(at + static_cast<std::uint64_t>(i)), 2);
+  return random.normal(at) / std::sqrt(squares / freedom);
+}
+
+/// Units drawn from the fleet and measured with an error of few degrees of freedom: as in a session.
+TEST(FleetRisks, OfADemandWithFewDegreesOfFreedomAreWhatHappensToDrawnUnits) {
+  constexpr int freedom = 3;
+  constexpr double u = 0.02, t95 = 3.182446305284263;
+  LimitsPlan limits = limits_with_fleet();
+  std::vector<Demand> demands{acuity_demand(0.31, 0.02), acuity_demand(0.31, u)};
+  demands[1].interval = {0.31 * std::exp(-t95 * u), 0.31 * std::exp(t95 * u)};
+  demands[1].degrees_of_freedom = freedom;
+
+  add_fleet_risks(demands, limits);
+
+  ASSERT_TRUE(demands[1].fleet);
+  const double of_fleet = std::sqrt(0.0025 + (0.0025 + 0.0004) / 20), limit = std::log(0.30), value = std::log(0.31);
+  const RandomStream random(11, "drawn units");
+  constexpr std::uint64_t draws = 400000;
+  double near = 0, near_inside = 0, consumer = 0, producer = 0;
+  for (std::uint64_t i = 0; i < draws; ++i) {
+    const double truth = std::log(0.33) + of_fleet * random.normal(8 * i);
+    const double found = truth + u * student(random, 8 * i + 1, freedom);
+    const bool inside = truth >= limit, accepted = found >= limit + t95 * u;
+    consumer += accepted && !inside ? 1 : 0;
+    producer += !accepted && inside ? 1 : 0;
+    if (std::abs(found - value) > 0.002) continue;
+    ++near;
+    near_inside += inside ? 1 : 0;
+  }
+  const auto tolerance = [](double p, double n) { return 4 * std::sqrt(p * (1 - p) / n); };
+  const DemandFleet& stated = *demands[1].fleet;
+  EXPECT_NEAR(consumer / draws, stated.consumer_risk, tolerance(stated.consumer_risk, draws));
+  EXPECT_NEAR(producer / draws, stated.producer_risk, tolerance(stated.producer_risk, draws));
+  EXPECT_NEAR(near_inside / near, stated.p_conformity, tolerance(stated.p_conformity, near) + 0.001);
+  EXPECT_GT(stated.consumer_risk, 2 * demands[0].fleet->consumer_risk) << "the tails of few degrees of freedom";
 }
 
 TEST(FleetRisks, AreStoredWithTheVerdict) {

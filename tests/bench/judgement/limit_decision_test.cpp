@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One limit by every rule, limits on physical measures, and what a plan refuses because nothing could pass.
 #include "bench/judgement/limit_decision.h"
 
@@ -175,6 +176,28 @@ TEST(MeasureLimits, StayOpenWhereNothingWasMeasured) {
   EXPECT_EQ(judged(limits, {}).decision, VerdictKind::inconclusive);
 }
 
+TEST(FleetRisks, OfAnAcuityUseTheDegreesOfFreedomOfItsInterval) {
+  LimitsPlan limits;
+  limits.acuity = {{2, 0.39}};
+  limits.fleets = {{.delta_t_k = 2, .mean = 0.40, .sd = 0.02, .u = 0.01, .units = 20}};
+  CurveUncertainty uncertainty;
+  PointUncertainty point;
+  point.set_delta_t_k = 2;
+  point.expanded_mrad = {2.4, 2.6};
+  const auto demand_at = [&](std::optional<double> freedom) {
+    point.combined.emplace().nu_eff = freedom;
+    uncertainty.points = {point};
+    return judged(limits, {}, &uncertainty).demands.at(0);
+  };
+
+  const Demand few = demand_at(4.0), many = demand_at(std::nullopt);
+
+  ASSERT_TRUE(few.fleet && many.fleet);
+  EXPECT_EQ(few.degrees_of_freedom, 4.0);
+  EXPECT_FALSE(many.degrees_of_freedom);
+  EXPECT_NE(few.fleet->producer_risk, many.fleet->producer_risk);
+}
+
 TEST(Rules, OfThePlanJudgeTheAcuityToo) {
   LimitsPlan limits;
   limits.acuity = {{2, 0.39}};  // S75 of 2.564: the limit lies within 2.4 to 2.6
@@ -205,14 +228,14 @@ TEST(PlanThatNothingCanPass, IsRefused) {
   EXPECT_EQ(refusal(plan), "accepted");
 
   plan.uncertainty.rows = {{.name = "emissivity", .value = 2, .unit = "%"}};
-  EXPECT_THAT(refusal(plan), HasSubstr("nothing can pass"));
+  EXPECT_THAT(refusal(plan), HasSubstr("no unit can pass"));
   plan.limits.rule = ConformityRule::simple;
   EXPECT_EQ(refusal(plan), "accepted");
 
   plan.limits = {};
   plan.limits.equivalence_margin_percent = 5;
   plan.uncertainty.rows = {{.name = "entrance pupil", .value = 100, .unit = "mm"}};
-  EXPECT_THAT(refusal(plan), HasSubstr("nothing can pass"));
+  EXPECT_THAT(refusal(plan), HasSubstr("no unit can pass"));
   plan.uncertainty.rows[0].common = {BudgetCommon::twin};
   EXPECT_EQ(refusal(plan), "accepted");
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/judgement/verdict.h"
 
 #include <gmock/gmock.h>
@@ -130,7 +131,7 @@ TEST(Judge, WithoutLimitsEveryIdentifiedThresholdPasses) {
 
   EXPECT_EQ(verdict.decision, VerdictKind::pass);
   EXPECT_FALSE(limits_asked(verdict));
-  EXPECT_EQ(verdict.reason, "no limits were asked for, every threshold was found");
+  EXPECT_EQ(verdict.reason, "the plan has no limits, and every threshold was identified");
   ASSERT_EQ(verdict.demands.size(), 1u);
   const Demand& demand = verdict.demands[0];
   EXPECT_EQ(demand.kind, DemandKind::identified);
@@ -139,7 +140,7 @@ TEST(Judge, WithoutLimitsEveryIdentifiedThresholdPasses) {
   EXPECT_EQ(demand.limit, std::nullopt);
   EXPECT_DOUBLE_EQ(demand.result.value(), 1 / 3.0);
   EXPECT_EQ(demand.interval.low, 0.25);
-  EXPECT_EQ(in_words(demand), "a threshold at 16.9 K");
+  EXPECT_EQ(in_words(demand), "identified threshold at 16.9 K");
 }
 
 TEST(Judge, AContrastWithALimitOnAcuityDemandsNothingElse) {
@@ -195,6 +196,30 @@ TEST(Judge, DemandedEquivalenceIsWhatTheComparisonSays) {
   EXPECT_EQ(with_comparison(ComparisonVerdict::equivalent, 20),
             VerdictKind::inconclusive);  // shown for a wider margin only
   EXPECT_EQ(judged(limits, curve, std::nullopt).decision, VerdictKind::inconclusive);
+}
+
+// A comparison of an earlier record: it does not say at which contrast a threshold is unfit, and its paired verdict
+// stands as it was made.
+TEST(Judge, EquivalenceOfAnUnfitThresholdIsWithheldUnderEveryRule) {
+  const TodCurve curve{"o", "s", {point_with(FitVerdict::ok, 1.5, 1.8)}};
+  ComparisonPoint point;
+  point.margin_percent = 3;
+  point.ratio = 1.01;
+  point.ratio_ci90 = {1.0, 1.02};
+  point.verdict = ComparisonVerdict::equivalent;
+  Comparison comparison{{point}, ComparisonVerdict::equivalent};
+  comparison.adequacy = Adequacy{{{FindingKind::clipping, 0.79, 0, "pixels are saturated", true}}};
+
+  for (const ConformityRule rule : conformity_rules) {
+    LimitsPlan limits{{}, 3.0};
+    limits.rule = rule;
+    const Verdict verdict = judged(limits, curve, comparison);
+    const Demand& demand = verdict.demands.at(1);
+    EXPECT_EQ(demand.decision, VerdictKind::inconclusive);
+    EXPECT_FALSE(demand.p_conformity);
+    EXPECT_EQ(demand.reason.find("not fit for a decision"), 0u) << demand.reason;
+    EXPECT_EQ(verdict.decision, VerdictKind::inconclusive);
+  }
 }
 
 TEST(Judge, EquivalenceIsThatOfThePairedRatioWhereThereIsOne) {
@@ -402,7 +427,7 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"a_limit_that_is_text", [](Json& j) { j["demands"][0]["limit"] = "0.4"; },
                "'demands[0].limit': expected a number"},
         Damage{"an_interval_of_one_side", [](Json& j) { j["demands"][0]["interval"] = Json::array({1}); },
-               "'demands[0].interval': expected two sides"},
+               "'demands[0].interval': expected two ends, low and high"},
         Damage{"no_list_of_demands", [](Json& j) { j["demands"] = nullptr; }, "'demands': expected a list"},
         Damage{"no_reason", [](Json& j) { j["demands"][2].erase("reason"); }, "missing key 'demands[2].reason'"}),
     [](const auto& damage) { return std::string(damage.param.name); });

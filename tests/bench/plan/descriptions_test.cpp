@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/descriptions.h"
 
 #include <gmock/gmock.h>
@@ -152,7 +153,7 @@ TEST(Sensor, EveryKeyIsReadIsRequiredOrHasItsDefaultAndKeepsItsRange) {
 }
 
 TEST(Sensor, EveryKeyIsInTheDocument) {
-  const std::string document = testing::content_of(source_file("docs/sensor-model.md"));
+  const std::string document = testing::content_of(source_file("docs/method/sensor-model.md"));
 
   for (const SensorKey& key : sensor_keys()) EXPECT_THAT(document, HasSubstr("`" + std::string(key.name) + "`"));
   for (const Effect effect : all_effects)
@@ -201,9 +202,9 @@ TEST(PlateFile, MistakesAreNamedWithTheirLine) {
             "p.toml:8: key 'apex' in [row]: expected one of 'up', 'right', 'down', 'left', found \"lfet\", did you "
             "mean 'left'?");
   EXPECT_EQ(with("[\"up\", \"left\"]", "[\"up\"]"),
-            "p.toml:8: key 'apex' in [row]: expected as many as in x_mm, 2, found 1");
+            "p.toml:8: key 'apex' in [row]: expected 2 values as in x_mm, found 1");
   EXPECT_EQ(with("size_mm = 5", "size_mm = 0"),
-            "p.toml:10: key 'size_mm' in [row]: expected a number above 0, found 0");
+            "p.toml:10: key 'size_mm' in [row]: expected a number from 0.001 to 100000, found 0");
   EXPECT_THAT(with("x_mm = [-25, 25]", "x_mm = [-25, 47]"),
               HasSubstr("p.toml: "));  // base 4.4 mm right of the centroid: leaves the plate
 }

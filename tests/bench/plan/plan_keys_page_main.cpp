@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // plan_keys_page FILE: writes the page of the plan's keys.
 #include <cstdio>
 

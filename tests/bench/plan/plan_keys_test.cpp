@@ -1,11 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/plan_keys.h"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "bench/plan/plan_options.h"
+#include "bench/text/unit_hint.h"
+#include "sim_devices/sensor/sensor_key.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -77,8 +81,8 @@ TEST(PlanKeys, AreNamedOnceAndSayWhatTheyAre) {
 }
 
 TEST(PlanKeys, ThePageInTheDocumentsIsWhatTheTableSays) {
-  EXPECT_EQ(testing::content_of(source_file("docs/plan-keys.md")), plan_keys_page())
-      << "write it again: plan_keys_page docs/plan-keys.md";
+  EXPECT_EQ(testing::content_of(source_file("docs/reference/plan-keys.md")), plan_keys_page())
+      << "write it again: plan_keys_page docs/reference/plan-keys.md";
 }
 
 TEST(PlanKeys, TextsOfFormsAndCommandLinesReadBackEqual) {
@@ -149,7 +153,7 @@ TEST(ValidPlan, IsRefusedWithTheSentenceOfAFileThatSaysTheSame) {
        [](Plan& p) {
          p.target.delta_t_k = {1, 0};
        },
-       "delta_t_k = [1, 0]\n", "a contrast of 0 K shows nothing"},
+       "delta_t_k = [1, 0]\n", "a contrast of 0 K makes the triangles invisible"},
       {"target.plates", [](Plan& p) { p.target.plates = {}; }, "plates = []\n", "expected at least one plate"},
       {"target.mountings", [](Plan& p) { p.target.mountings = {}; }, "mountings = []\n",
        "expected at least one mounting"},
@@ -163,7 +167,7 @@ TEST(ValidPlan, IsRefusedWithTheSentenceOfAFileThatSaysTheSame) {
        "[camera]\nid = \"A-1\"\nifov_mrad = 1\n",
        "expected SCHEME:NAME as listed by 'todbench devices', found \"A-1\""},
       {"camera.ifov_mrad", [](Plan& p) { p.camera.id = "gige:A-1"; }, "[camera]\nid = \"gige:A-1\"\nifov_mrad = 0\n",
-       "expected a number above 0, found 0"},
+       "expected a number from 0.0001 to 1000, found 0"},
       {"limits.acuity.delta_t_k",
        [](Plan& p) {
          p.limits.acuity = {{5, 1}};
@@ -189,6 +193,42 @@ TEST(ValidPlan, IsRefusedWithTheSentenceOfAFileThatSaysTheSame) {
     EXPECT_EQ(read.error().key, valid.error().key);
     EXPECT_THAT(read.error().message, HasSubstr(valid.error().message));
   }
+}
+
+// A number beyond every physical value ends as infinity or NaN somewhere. Nothing is measured beyond 1e13 of any unit.
+TEST(PlanKeys, EveryNumberHasAPhysicalRange) {
+  const auto range_of = [](const KeyType& type) -> std::optional<NumberRange> {
+    if (const auto* number = std::get_if<NumberKey>(&type)) return number->range;
+    if (const auto* number = std::get_if<OptionalNumberKey>(&type)) return number->range;
+    if (const auto* number = std::get_if<NumberOrWordKey>(&type)) return number->range;
+    if (const auto* numbers = std::get_if<NumbersKey>(&type)) return numbers->range;
+    return std::nullopt;
+  };
+  int numbers = 0;
+  for (const PlanSection& section : plan_sections()) {
+    for (const PlanKey& key : section.keys) {
+      const auto range = range_of(key.type);
+      if (!range) continue;
+      ++numbers;
+      EXPECT_LT(std::max(std::abs(range->low), range->high), 1e13) << section.name << "." << key.name;
+      for (const double wrong : {1e308, -1e308, 1e-320, std::nan(""), HUGE_VAL})
+        EXPECT_FALSE(range->contains(wrong)) << section.name << "." << key.name << " = " << wrong;
+    }
+  }
+  EXPECT_GT(numbers, 40);
+  for (const SensorKey& key : sensor_keys()) {
+    if (std::holds_alternative<DisplayReconstruction SensorSpec::*>(key.member)) continue;
+    EXPECT_LT(std::max(std::abs(key.range.low), key.range.high), 1e13) << key.name;
+  }
+}
+
+TEST(UnitHint, NamesTheUnitThatWouldBeInRange) {
+  EXPECT_EQ(unit_hint("wavelength_min_um", 0.0075, NumberRange::between(0.1, 100)), "; is the value in mm?");
+  EXPECT_EQ(unit_hint("wavelength_min_um", 7500, NumberRange::between(0.1, 100)), "; is the value in nm?");
+  EXPECT_EQ(unit_hint("--distance-m", 2e6, NumberRange::between(0.1, 1e4)), "; is the value in mm?");
+  EXPECT_EQ(unit_hint("mean", 1e20, NumberRange::between(0, 1e12)), "");
+  EXPECT_EQ(unit_hint("netd_k", 1e-320, NumberRange::between(0, 100)), "; is 0 meant?");
+  EXPECT_EQ(unit_hint("pitch_um", 12, NumberRange::between(0.1, 100)), "");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/plan.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +29,9 @@ Plan unusual_plan() {
   plan.unit = "unit 17";
   plan.notes = "\x01";
   plan.seed = 9223372036854775807u;
-  plan.camera = {"gige:FLIR-48000123", 1.0 / 3, 120, 1.5, {{"IRFormat", "TemperatureLinear10mK"}, {"Odd Key.x", "1"}}};
+  plan.camera = {
+      "gige:FLIR-48000123", 1.0 / 3,   120,        1.5, {{"IRFormat", "TemperatureLinear10mK"}, {"Odd Key.x", "1"}}, 60,
+      ContrastUnit::kelvin, "640x512", "Calibrate"};
   plan.target.kind = TargetKind::scpi;
   plan.target.black_body = "10.0.0.7:5025";
   plan.target.stage = "[::1]:5026";
@@ -144,14 +147,15 @@ TEST(Plan, RefusesABudgetThatIsWrong) {
   };
   const std::string row = "[[uncertainty.component]]\nname = 'distance'\n";
 
-  EXPECT_THAT(refusal(row + "value = -1\n"), HasSubstr("a number of 0 or more"));
+  EXPECT_THAT(refusal(row + "value = -1\n"), HasSubstr("a number from 0 to 1e+12"));
   EXPECT_THAT(refusal(row + "value = 1\nunit = 'K'\n"), HasSubstr("found \"K\""));
   EXPECT_THAT(refusal("[[uncertainty.component]]\nname = 'focus'\nvalue = 1\nunit = 'mm'\n"),
               HasSubstr("enters acuity"));
-  EXPECT_THAT(refusal(row + "value = 1\nunit = 'mm'\n" + row + "value = 1\nunit = '%'\n"), HasSubstr("is there twice"));
+  EXPECT_THAT(refusal(row + "value = 1\nunit = 'mm'\n" + row + "value = 1\nunit = '%'\n"),
+              HasSubstr("is listed twice"));
   EXPECT_THAT(refusal("[[uncertainty.component]]\nname = 'finite trials'\nvalue = 1\n"), HasSubstr("the run itself"));
   EXPECT_THAT(refusal(row + "value = 1\ndistribution = 'rectangular'\ncoverage_factor = 2\n"),
-              HasSubstr("only a normal value"));
+              HasSubstr("only a normal distribution"));
 }
 
 TEST(Plan, ThatRequiresABudgetHasACompleteOne) {
@@ -317,7 +321,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "plan.toml:3: unknown key 'phasse' in [target], did you mean 'phases'?"},
         Mistake{"no_distance", "\n[target]\nphases = 3\n", "plan.toml:2: missing key 'distance_m' in [target]"},
         Mistake{"negative_distance", "[target]\ndistance_m = -1\n",
-                "plan.toml:2: key 'distance_m' in [target]: expected a number above 0"},
+                "plan.toml:2: key 'distance_m' in [target]: expected a number from 0.001 to 100000"},
         Mistake{"zero_contrast", "[target]\ndistance_m = 2\ndelta_t_k = [1,\n0]\n",
                 "plan.toml:4: key 'delta_t_k' in [target]: a contrast of 0 K"},
         Mistake{"contrast_twice", "[target]\ndistance_m = 2\ndelta_t_k = [16.9, 16.95]\n",

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/strict_toml.h"
 
 #include <gmock/gmock.h>
@@ -27,17 +28,17 @@ std::string complaint(std::string_view text) {
   return read ? "" : read.error().message;
 }
 
-struct Mistake {
+struct TomlMistake {
   const char* name;
   const char* toml;
   const char* message;
 };
 
-void PrintTo(const Mistake& mistake, std::ostream* out) {
+void PrintTo(const TomlMistake& mistake, std::ostream* out) {
   *out << mistake.name;
 }
 
-class StrictToml : public ::testing::TestWithParam<Mistake> {};
+class StrictToml : public ::testing::TestWithParam<TomlMistake> {};
 
 TEST_P(StrictToml, NamesFileLineKeyAndWhatWasExpected) {
   EXPECT_EQ(complaint(GetParam().toml), GetParam().message);
@@ -46,39 +47,40 @@ TEST_P(StrictToml, NamesFileLineKeyAndWhatWasExpected) {
 INSTANTIATE_TEST_SUITE_P(
     Mistakes, StrictToml,
     ::testing::Values(
-        Mistake{"unknown_key", "name = \"x\"\n[target]\nphasse = 4\n",
-                "plan.toml:3: unknown key 'phasse' in [target], did you mean 'phases'?"},
-        Mistake{"unknown_key_far_from_all", "\n\nzzzzzz = 1\n", "plan.toml:3: unknown key 'zzzzzz'"},
-        Mistake{"unknown_table", "[tarjet]\ndistance_m = 1\n",
-                "plan.toml:1: unknown key 'tarjet', did you mean 'target'?"},
-        Mistake{"unknown_before_missing", "[[limit]]\n\nleats = 1\n",
-                "plan.toml:3: unknown key 'leats' in [limit], did you mean 'least'?"},
-        Mistake{"missing_key", "\n[[limit]]\n",
-                "plan.toml:2: missing key 'least' in [limit], expected a finite number"},
-        Mistake{"wrong_type", "[target]\ndistance_m = \"2\"\n",
-                "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found \"2\""},
-        Mistake{"out_of_range", "[target]\ndistance_m = -2\n",
-                "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found -2"},
-        Mistake{"not_a_number", "[target]\ndistance_m = nan\n",
-                "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found nan"},
-        Mistake{"infinite", "[target]\ndistance_m = inf\n",
-                "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found inf"},
-        Mistake{"fraction_for_whole", "[target]\nphases = 2.5\n",
-                "plan.toml:2: key 'phases' in [target]: expected a whole number from 1 to 100, found 2.5"},
-        Mistake{"element_on_its_line", "[target]\ndelta_t_k = [\n  1,\n  true\n]\n",
-                "plan.toml:4: key 'delta_t_k' in [target]: expected a finite number, found true"},
-        Mistake{"choice", "[target]\nkind = \"scen\"\n",
-                "plan.toml:2: key 'kind' in [target]: expected one of 'scpi', 'prompt', 'scene', found \"scen\", did "
-                "you mean "
-                "'scene'?"},
-        Mistake{"choices", "[target]\nkinds = [\"scene\",\n \"?\"]\n",
-                "plan.toml:3: key 'kinds' in [target]: expected one of 'scpi', 'prompt', 'scene', found \"?\""},
-        Mistake{"number_or_word", "[target]\nlapse = \"fre\"\n",
-                "plan.toml:2: key 'lapse' in [target]: expected a number from 0 to 0.1 or \"free\", found \"fre\""},
-        Mistake{"table_for_value", "[name]\n", "plan.toml:1: key 'name': expected a text in quotes, found a table"},
-        Mistake{"value_for_table", "target = 3\n", "plan.toml:1: key 'target': expected a table [target], found 3"},
-        Mistake{"first_line_first", "[target]\nphases = 0\ndistance_m = 0\n",
-                "plan.toml:2: key 'phases' in [target]: expected a whole number from 1 to 100, found 0"}),
+        TomlMistake{"unknown_key", "name = \"x\"\n[target]\nphasse = 4\n",
+                    "plan.toml:3: unknown key 'phasse' in [target], did you mean 'phases'?"},
+        TomlMistake{"unknown_key_far_from_all", "\n\nzzzzzz = 1\n", "plan.toml:3: unknown key 'zzzzzz'"},
+        TomlMistake{"unknown_table", "[tarjet]\ndistance_m = 1\n",
+                    "plan.toml:1: unknown key 'tarjet', did you mean 'target'?"},
+        TomlMistake{"unknown_before_missing", "[[limit]]\n\nleats = 1\n",
+                    "plan.toml:3: unknown key 'leats' in [limit], did you mean 'least'?"},
+        TomlMistake{"missing_key", "\n[[limit]]\n",
+                    "plan.toml:2: missing key 'least' in [limit], expected a finite number"},
+        TomlMistake{"wrong_type", "[target]\ndistance_m = \"2\"\n",
+                    "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found \"2\""},
+        TomlMistake{"out_of_range", "[target]\ndistance_m = -2\n",
+                    "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found -2"},
+        TomlMistake{"not_a_number", "[target]\ndistance_m = nan\n",
+                    "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found nan"},
+        TomlMistake{"infinite", "[target]\ndistance_m = inf\n",
+                    "plan.toml:2: key 'distance_m' in [target]: expected a number above 0, found inf"},
+        TomlMistake{"fraction_for_whole", "[target]\nphases = 2.5\n",
+                    "plan.toml:2: key 'phases' in [target]: expected a whole number from 1 to 100, found 2.5"},
+        TomlMistake{"element_on_its_line", "[target]\ndelta_t_k = [\n  1,\n  true\n]\n",
+                    "plan.toml:4: key 'delta_t_k' in [target]: expected a finite number, found true"},
+        TomlMistake{
+            "choice", "[target]\nkind = \"scen\"\n",
+            "plan.toml:2: key 'kind' in [target]: expected one of 'scpi', 'prompt', 'scene', found \"scen\", did "
+            "you mean "
+            "'scene'?"},
+        TomlMistake{"choices", "[target]\nkinds = [\"scene\",\n \"?\"]\n",
+                    "plan.toml:3: key 'kinds' in [target]: expected one of 'scpi', 'prompt', 'scene', found \"?\""},
+        TomlMistake{"number_or_word", "[target]\nlapse = \"fre\"\n",
+                    "plan.toml:2: key 'lapse' in [target]: expected a number from 0 to 0.1 or \"free\", found \"fre\""},
+        TomlMistake{"table_for_value", "[name]\n", "plan.toml:1: key 'name': expected a text in quotes, found a table"},
+        TomlMistake{"value_for_table", "target = 3\n", "plan.toml:1: key 'target': expected a table [target], found 3"},
+        TomlMistake{"first_line_first", "[target]\nphases = 0\ndistance_m = 0\n",
+                    "plan.toml:2: key 'phases' in [target]: expected a whole number from 1 to 100, found 0"}),
     [](const auto& row) { return std::string(row.param.name); });
 
 TEST(TomlReader, WhatIsNotTomlIsRefusedWithItsLine) {

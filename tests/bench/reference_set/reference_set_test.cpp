@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/reference_set/reference_set.h"
 
 #include <gmock/gmock.h>
@@ -51,9 +52,9 @@ TEST(ReferenceResult, OffByMoreThanTheToleranceFails) {
 }
 
 TEST(ReferenceResult, IsRefusedWithItsRow) {
-  EXPECT_THAT(refusal("case,s75_mrad\ncase-1,2\n"), HasSubstr("no row of case 'case-2'"));
+  EXPECT_THAT(refusal("case,s75_mrad\ncase-1,2\n"), HasSubstr("missing row of case 'case-2'"));
   EXPECT_THAT(refusal("case,s75_mrad\ncase-1,2\ncase-2,4\ncase-1,2\n"),
-              HasSubstr("r.csv:4: case 'case-1' is there twice"));
+              HasSubstr("r.csv:4: case 'case-1' occurs twice"));
   EXPECT_THAT(refusal("case,s75_mrad\ncase-1,nan\ncase-2,4\n"),
               HasSubstr("r.csv:2: column s75_mrad: expected a number above 0"));
   EXPECT_THAT(refusal("case,s75_mrad\ncase-1,2\ncase-2,-4\n"), HasSubstr("r.csv:3: column s75_mrad"));
@@ -62,7 +63,7 @@ TEST(ReferenceResult, IsRefusedWithItsRow) {
   EXPECT_THAT(refusal("case,s75_mrad\ncase-1,2\ncase-3,4\n"), HasSubstr("r.csv:3: unknown case 'case-3'"));
   EXPECT_THAT(refusal("case,s75\ncase-1,2\n"), HasSubstr("unknown column 's75'"));
   EXPECT_THAT(refusal("case\ncase-1\n"), HasSubstr("missing column 's75_mrad'"));
-  EXPECT_THAT(refusal("case,case,s75_mrad\na,a,2\n"), HasSubstr("there twice"));
+  EXPECT_THAT(refusal("case,case,s75_mrad\na,a,2\n"), HasSubstr("occurs twice"));
   EXPECT_THAT(refusal("case,s75_mrad,s75_ci95_low_mrad\ncase-1,2,1\n"), HasSubstr("needs both columns"));
   EXPECT_THAT(refusal("case,s75_mrad,s75_ci95_low_mrad,s75_ci95_high_mrad\ncase-1,2,2.1,3\n"),
               HasSubstr("r.csv:2: column s75_ci95_low_mrad"));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The TOD curve as lines of text.
 #include "bench/report/curve_lines.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Documents to pages, drawings to SVG.
 #include "bench/report/document.h"
 

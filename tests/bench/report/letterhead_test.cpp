@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The letterhead of a laboratory on reports.
 #include "bench/plan/letterhead.h"
 

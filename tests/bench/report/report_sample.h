@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A made-up acceptance test with every part of a report filled in.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/report.h"
 
 #include <gtest/gtest.h>
@@ -191,7 +192,7 @@ TEST(Report, ShowsGeometryEffectsFramesAndProvenance) {
        {"3.000 m", "1.309 mrad", "3.927 mm", "6.00", "mirrored left to right", "0.041", "serial 7711"})
     EXPECT_TRUE(contains(page, part)) << part;
   for (const char* part :
-       {"Diffraction", "The footprint is 0.89 of the pitch.", "skipped", "no criterion promises a value"})
+       {"Diffraction", "The footprint is 0.89 of the pitch.", "skipped", "no criterion predicts a value"})
     EXPECT_TRUE(contains(page, part)) << part;
   // 44 of 1580 received frames: 2.78 %.
   for (const char* part :
@@ -298,7 +299,7 @@ TEST(Report, WithoutAnythingSaysWhatIsMissingAndWhy) {
 
   EXPECT_EQ(malformed(page), "");
   for (const char* part : {"NO VERDICT", "simulation only, no camera was measured", "not stated in the plan",
-                           "no results", "needs a measured and a simulated curve", "nothing was simulated"})
+                           "no results", "needs a measured and a simulated curve", "no sensor was simulated"})
     EXPECT_TRUE(contains(page, part)) << part;
 }
 
@@ -345,7 +346,7 @@ TEST(Report, AOneSidedLimitIsShownAsOneInTableAndFigure) {
 
   EXPECT_TRUE(contains(page, "≤ 1.27"));
   EXPECT_TRUE(contains(page, "≥ 0.787"));
-  EXPECT_TRUE(contains(page, "answers right at every size: only an upper limit of the size"));
+  EXPECT_TRUE(contains(page, "answers correct at every size: only an upper limit of the threshold"));
   EXPECT_TRUE(contains(page, "(not identified)"));
 }
 
@@ -359,7 +360,7 @@ TEST(Report, SaysOnceWhatTheAnswersAreAndWhereTheyDiffer) {
   const auto set = [&](std::size_t i) { return stated(data.measured->points[i].set_delta_t_k) + " K"; };
   for (TodCurve* curve : {&*data.measured, &*data.simulated})
     give(*curve, AnswerKind::graded, AnswersReason::twin, {1, 2, 10});
-  const std::string graded = "graded: the observer's probability of the right answer (" +
+  const std::string graded = "graded: the observer's probability of a correct answer (" +
                              std::string(in_words(AnswersReason::twin)) + "), averaged over ";
 
   EXPECT_EQ(answers_in_words(data), " Answers are " + graded + "1 frame of a presentation at " + set(0) +
@@ -368,9 +369,10 @@ TEST(Report, SaysOnceWhatTheAnswersAreAndWhereTheyDiffer) {
   give(*data.simulated, AnswerKind::graded, AnswersReason::twin, {4});
   EXPECT_EQ(answers_in_words(data), " Answers are " + graded + "4 frames of a presentation.");
   give(*data.simulated, AnswerKind::binary, AnswersReason::plan, {1});
-  const std::string binary = "right or wrong, each to one frame (" + std::string(in_words(AnswersReason::plan)) + ")";
+  const std::string binary =
+      "right or wrong, one answer for each frame (" + std::string(in_words(AnswersReason::plan)) + ")";
   EXPECT_EQ(answers_in_words(data),
-            " Answers are " + graded + "4 frames of a presentation. Those of the twin are " + binary + ".");
+            " Answers are " + graded + "4 frames of a presentation. The answers of the twin are " + binary + ".");
   data.simulated.reset();
   data.measured->points[1].answers = AnswersTaken{AnswerKind::binary, 1, AnswersReason::plan};
   EXPECT_EQ(answers_in_words(data), " Answers are " + graded + "4 frames of a presentation at " + set(0) + ", " +
@@ -431,10 +433,10 @@ TEST(Report, ADemandThatIsNoNumberIsShownWithItsReason) {
 
   const std::string page = render_report(data);
 
-  EXPECT_TRUE(contains(page, "A threshold at 2 K"));
-  EXPECT_TRUE(contains(page, "(no number)"));
+  EXPECT_TRUE(contains(page, "Identified threshold at 2 K"));
+  EXPECT_TRUE(contains(page, "(no limit value)"));
   EXPECT_TRUE(contains(page, "The threshold cannot be found."));
-  EXPECT_FALSE(contains(page, "limit (least acuity)"));
+  EXPECT_FALSE(contains(page, "limit (minimum acuity)"));
 }
 
 TEST(Report, AnIntervalOfAnotherConfidenceSaysSo) {
@@ -460,11 +462,11 @@ TEST(Report, AVerdictThatWasMadeAfterTheRunSaysSo) {
   const std::string afterwards = render_report(data);
 
   EXPECT_FALSE(contains(at_once, "stored no verdict"));
-  EXPECT_TRUE(contains(afterwards, "The run of this session stored no verdict; it was judged afterwards"));
+  EXPECT_TRUE(contains(afterwards, "The run of this session stored no verdict. The session was judged afterwards"));
 }
 
 TEST(Report, ShowsSetReadBackAndSeenContrastWherePresentationsAreKnown) {
-  const std::string caption = "Contrast as it was set";
+  const std::string caption = "Set contrast, read-back of the target";
   ReportData data = sample_report();
   const std::string without = render_report(data);
   Presentation told;

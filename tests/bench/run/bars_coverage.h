@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How often the CTF of the shipped bars holds that of the sensor model: for the test and the study.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A camera of eight bits that looks at a monitor: the program of the window draws, an emulated GigE camera sees what is
 // on its screen.
 #include <gmock/gmock.h>

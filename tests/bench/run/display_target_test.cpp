@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A monitor before the camera.
 #include "bench/run/display_target.h"
 
@@ -133,8 +134,8 @@ TEST(DisplayTarget, DrawsLightByAreaOnAMonitorWithAMeasuredTable) {
   for (const double light : {0.0, 0.01, 0.3, 0.77, 1.0}) EXPECT_NEAR(tone.light_of(tone.level_of(light)), light, 1e-14);
 }
 
-// What docs/instruments.md says of a gamma that nobody stated: at gamma 2 the contrast c stays, and the edges of the
-// bright side go back by c / 6 of a pixel.
+// What docs/reference/instruments.md says of a gamma that nobody stated: at gamma 2 the contrast c stays, and the edges
+// of the bright side go back by c / 6 of a pixel.
 TEST(DisplayTarget, WithoutItsGammaIsOffByAPartOfAPixelAtTheEdges) {
   cv::Mat1f last;
   const double pixel_mm = 0.1;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Measures of an emulated laboratory, without trials.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // IFOV and distortion, and drift, that a plan asks for: of cameras where they are known, and in a session.
 #include "bench/run/physical_measures.h"
 

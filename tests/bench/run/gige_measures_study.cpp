@@ -1,4 +1,5 @@
-// Drift of the emulated GigE camera over several seeds: the figures of docs/physical-measures.md.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Drift of the emulated GigE camera over several seeds: the figures of docs/validation/physical-measures.md.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Response time and drift of the emulated GigE camera, which has them as it is told, through the GigE path.
 #include <gmock/gmock.h>
 

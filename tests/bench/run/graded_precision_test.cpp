@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a plan says of graded answers before it is measured.
 #include "bench/run/graded_precision.h"
 
@@ -48,6 +49,25 @@ TEST(GradedPrecision, KeepsAFixedPatternWhateverTheFrames) {
   };
   EXPECT_GT(gain({.sensor_share = 1}), 7);
   EXPECT_LT(gain({.sensor_share = 1, .pattern_share = 0.5}), 1.2);
+}
+
+TEST(GradedPrecision, FramesOfNoiseThatIsCorrelatedInTimeTellLess) {
+  const GradedDesignFigures white{.sensor_share = 1, .frames = 8};
+  GradedDesignFigures constant = white;
+  constant.noise_correlation = 1;
+  // Without decay the frames and the 12 presentations of a set-up all see one noise: 2/3 of an answer, as a pattern.
+  const double alike = std::exp(-std::pow(1.9 / 4, 2));
+  EXPECT_NEAR(graded_variance_ratio(constant), 2.0 / 3 * (1 + 11 * alike) + (1 - 2.0 / 3) / 256 + 0.004, 1e-9);
+  GradedDesignFigures apart = constant;
+  apart.noise_correlation = 0.8;
+  apart.frames_between = 1000;
+  EXPECT_GT(graded_variance_ratio(apart), 2 * graded_variance_ratio(white));
+  EXPECT_LT(graded_variance_ratio(apart), graded_variance_ratio({.sensor_share = 1, .frames = 1}));
+  GradedDesignFigures close = apart;
+  close.frames_between = 0;
+  EXPECT_GT(graded_variance_ratio(close), graded_variance_ratio(apart));
+  EXPECT_GT(pattern_inflation(close), 1.1);
+  EXPECT_NEAR(pattern_inflation(apart), 1, 1e-9);
 }
 
 TEST(GradedPrecision, IsWiderForFewSetUps) {

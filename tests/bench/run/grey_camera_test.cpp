@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A camera of eight bits with gain control through the GigE path, beside the same camera with its temperatures.
 #include <gmock/gmock.h>
 
@@ -5,10 +6,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "bench/enhance/scene_dependence.h"
 #include "bench/plan/descriptions.h"
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
+#include "bench/scene_dependence/scene_dependence.h"
 #include "bench/session/open_session.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/text.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A measurement over the wire that loses its camera 24 times, in each way eight times.
 #include "tests/bench/run/lost_in_mid_run.h"
 

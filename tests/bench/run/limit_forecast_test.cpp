@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a plan says of its limits before anything is measured, against counted draws.
 #include "bench/run/limit_forecast.h"
 
@@ -5,7 +6,7 @@
 
 #include <cmath>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/plan/descriptions.h"
 
 namespace todbench {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A whole run that loses its camera: what the session and the report say, what a replay makes of it, and how it ends on
 // request while the camera is away.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A measurement over the wire that loses its camera in mid-run: camera reset, power cut, cable pulled.
 #pragma once
 

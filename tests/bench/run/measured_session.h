@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A session with emulated instruments and a simulated camera, measured once more for each test.
 #pragma once
 

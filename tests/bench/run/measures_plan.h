@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A short plan with physical measures, and a look at what it found.
 #pragma once
 

@@ -1,5 +1,10 @@
-// Coverage of the measures of a session over many seeds: the figures of docs/physical-measures.md.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Coverage of the measures of a session over many seeds: the figures of docs/validation/physical-measures.md.
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "tests/bench/run/bars_coverage.h"
 #include "tests/bench/run/edge_coverage.h"
@@ -8,16 +13,25 @@
 namespace todbench {
 namespace {
 
+// TODBENCH_STUDY_RUNS: seeds of ten edges each (40 without it).
 TEST(PlateEdgesStudy, HoldTheMtfOfTheSensorModel) {
-  for (const double aberration_pitch : {0.0, 0.35, 0.7}) {
-    const auto coverage = testing::edge_coverage(aberration_pitch, 200);
+  const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
+  const int seeds = asked != nullptr ? std::atoi(asked) : 40;
+  struct Design {
+    double aberration_pitch, f_number;
+    testing::EdgeHalo halo{};
+  };
+  for (const Design& design :
+       {Design{0, 1}, {0.35, 1}, {0.7, 1}, {0, 2}, {0.35, 4}, {0, 1, {0.05, 10}}, {0, 2, {0.02, 4}}}) {
+    const auto coverage = testing::edge_coverage(design.aberration_pitch, seeds, design.f_number, design.halo);
     ASSERT_TRUE(coverage) << coverage.error().message;
     for (std::size_t k = 0; k < coverage->within.size(); ++k) {
-      fmt::print("aberration {} pitch, f {}: within {:.4f} of {} edges, mean error {:+.4f}\n", aberration_pitch,
-                 testing::EdgeCoverage::frequencies[k], coverage->within[k], coverage->edges, coverage->mean_error[k]);
-      // 2000 edges: standard error 0.005.
-      EXPECT_GT(coverage->within[k], 0.95 - 4 * 0.005);
+      fmt::print("f/{} aberration {} pitch, halo {}, f {}: within {:.4f} of {} edges, mean error {:+.4f}\n",
+                 design.f_number, design.aberration_pitch, design.halo.share, testing::EdgeCoverage::frequencies[k],
+                 coverage->within[k], coverage->edges, coverage->mean_error[k]);
+      EXPECT_GT(coverage->within[k], 0.95 - 4 * std::sqrt(0.05 * 0.95 / coverage->edges));
     }
+    std::fflush(stdout);
     EXPECT_EQ(coverage->single_sided, 0);
   }
 }

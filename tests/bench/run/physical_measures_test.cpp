@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Physical measures that a plan asks for: of the simulated sensor, whose noise and scale are known, and in a session.
 #include "bench/run/physical_measures.h"
 
@@ -278,7 +279,7 @@ TEST(PhysicalMeasures, ArePlannedWithThreeStepsOrMore) {
   const auto loaded = LoadedPlan::load(plan);
   ASSERT_FALSE(loaded);
   EXPECT_THAT(loaded.error().message, HasSubstr("transfer_steps_k"));
-  EXPECT_THAT(loaded.error().message, HasSubstr("three steps or more"));
+  EXPECT_THAT(loaded.error().message, HasSubstr("at least three different steps"));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Defects of a simulated sensor, which are known, against what the measure finds in its frames.
 #pragma once
 

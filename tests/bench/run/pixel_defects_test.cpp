@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Defects of single pixels: found where they are, and nowhere else.
 #include "tod/measures/pixel_defects.h"
 

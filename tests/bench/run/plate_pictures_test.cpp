@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The picture of the plate beside that of its model, and pictures in the record of a session.
 #include "bench/run/plate_picture.h"
 

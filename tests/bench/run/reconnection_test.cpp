@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A camera that is lost and comes back: the states, and what acts on them, with a camera that does as it is told.
 #include <gmock/gmock.h>
 

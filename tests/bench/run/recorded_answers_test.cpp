@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Answers of then to the questions of now.
 #include "bench/run/recorded_answers.h"
 
@@ -81,7 +82,7 @@ TEST(RecordedAnswers, ATargetThatWasSetOtherwiseIsAnotherQuestion) {
 TEST(RecordedAnswers, AnAnswerThatWasDamagedIsRefused) {
   RecordedAnswers damaged("r", {Reading{}}), odd("r", {Reading{"calls", "many"}}), torn("r", {Reading{"target", "{"}});
 
-  EXPECT_THAT(damaged.rest().error().message, HasSubstr("expected 'rest', found a damaged one"));
+  EXPECT_THAT(damaged.rest().error().message, HasSubstr("expected 'rest', found a damaged answer"));
   EXPECT_THAT(odd.calls().error().message, HasSubstr("expected a whole number for 'calls', found 'many'"));
   EXPECT_EQ(torn.target(state).error().code, ErrorCode::invalid_input);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A replay of graded answers with the function of the twin, which takes a sanitizer minutes.
 #include <gmock/gmock.h>
 
@@ -35,7 +36,8 @@ TEST_F(GradedSession, ReplaysWithTheSameProbabilitiesAndTheFunctionOfTheTwin) {
     EXPECT_EQ(point.fit.interval, IntervalKind::two_way) << "one set-up";
     EXPECT_TRUE(point.fit.usable());
   }
-  EXPECT_THAT(content_of(at("r") / "report.html"), HasSubstr("The function is that of the simulated twin"));
+  EXPECT_THAT(content_of(at("r") / "report.html"),
+              HasSubstr("The psychometric function is that of the simulated twin"));
 }
 
 }  // namespace

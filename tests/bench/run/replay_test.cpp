@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A session with instruments that say what they show: what is kept of it, and what a replay makes of it.
 #include "bench/run/replay.h"
 
@@ -50,13 +51,13 @@ TEST_F(MeasuredSession, KeepsWhatTheInstrumentsSaidOfEveryPresentation) {
   }
   EXPECT_GT(largest_k, 1e-6) << "the black body was still on its way within its window";
   EXPECT_GT(session->presentations.front().said.settling_s, 1) << "nothing settles at once";
-  EXPECT_THAT(session->provenance.run->notes, Contains(HasSubstr("the target says it shows")));
+  EXPECT_THAT(session->provenance.run->notes, Contains(HasSubstr("the target reports")));
   EXPECT_EQ(session->twin_presentations.size(), 2u * 2u);
   for (const auto& shown : session->twin_presentations) EXPECT_FALSE(shown.host_time_ns);
-  for (const auto& note : session->provenance.twin_run->notes) EXPECT_THAT(note, Not(HasSubstr("the target says")));
+  for (const auto& note : session->provenance.twin_run->notes) EXPECT_THAT(note, Not(HasSubstr("the target reports")));
   EXPECT_THAT(verify_manifest(at("m")).value(), ::testing::IsEmpty());
   const std::string report = content_of(at("m") / "report.html");
-  for (const char* column : {"Read back (K)", "Seen (K)", "Seen − read back (K)", "Longest settling (s)"})
+  for (const char* column : {"Read back (K)", "Observed (K)", "Observed − read back (K)", "Longest settling (s)"})
     EXPECT_THAT(report, HasSubstr(column));
 }
 
@@ -70,10 +71,10 @@ TEST_F(MeasuredSession, WithinTheToleranceOfThePlanHasNoNoteOfItsReadBackAndStat
   ASSERT_TRUE(session) << session.error().message;
   const double air = bench_transmittance({.temperature_c = 20, .humidity_percent = 60}, 2, {7.5, 13}).value();
   for (const Presentation& shown : session->presentations) EXPECT_EQ(shown.air_transmittance, air);
-  EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("Read back behind the air (K)"));
+  EXPECT_THAT(content_of(at("m") / "report.html"), HasSubstr("Read back × transmittance (K)"));
   // Neither its twin nor a simulation has air.
   for (const Presentation& shown : session->twin_presentations) EXPECT_FALSE(shown.air_transmittance);
-  EXPECT_THAT(content_of(at("m") / "log.txt"), Not(HasSubstr("the target says it shows")));
+  EXPECT_THAT(content_of(at("m") / "log.txt"), Not(HasSubstr("the target reports")));
 }
 
 TEST_F(MeasuredSession, ReplaysWithTheSameTrialsAndTheSameReadings) {
@@ -87,6 +88,18 @@ TEST_F(MeasuredSession, ReplaysWithTheSameTrialsAndTheSameReadings) {
   EXPECT_EQ(replay->same_fits, true);
   for (const char* file : {"targets.csv", "targets_simulated.csv", "trials.csv", "trials_simulated.csv"})
     EXPECT_EQ(content_of(at("r") / file), content_of(at("m") / file)) << file;
+}
+
+TEST_F(MeasuredSession, WithLimitsOnPhysicalMeasuresReplaysWithoutThem) {
+  plan_.measures.geometry = true;
+  plan_.limits.measures.push_back({.measure = LimitedMeasure::ifov_x, .at_least = 1.0, .at_most = 2.0});
+  ASSERT_TRUE(measure("m"));
+
+  const auto replay = replay_session(at("m"), options("r"), {}, {});
+
+  ASSERT_TRUE(replay) << replay.error().message;
+  EXPECT_TRUE(replay->same_trials);
+  EXPECT_THAT(content_of(at("r") / "log.txt"), HasSubstr("limits on physical measures are left out"));
 }
 
 TEST_F(MeasuredSession, OfAVersionThatKeptLessOfATrialReplaysAsFarAsItIsKnown) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/report_data.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +49,7 @@ TEST(ReportData, JudgesAnOldSessionByItsPlanAndSaysSo) {
   EXPECT_EQ(report_verdict(*data), ReportVerdict::pass);
   const std::string page = render_report(*data);
   EXPECT_NE(page.find("Acuity at 16.9 K at least 0.4 1/mrad"), std::string::npos);
-  EXPECT_NE(page.find("stored no verdict; it was judged afterwards"), std::string::npos);
+  EXPECT_NE(page.find("stored no verdict. The session was judged afterwards"), std::string::npos);
 }
 
 TEST(ReportData, SaysWhyARunEndedEarlyAsItsVerdictHasIt) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Response time that a plan asks for: of sensors whose time constant is known, and in a session.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A measurement whose USB camera is unplugged in mid-run and plugged in again, into another port: as it was after
 // power-up, with the same serial number.
 #include <gmock/gmock.h>

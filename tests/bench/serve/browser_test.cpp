@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Report and live page in a browser: nothing on its console, nothing from elsewhere, nothing wider than the window.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The live page with a client, a browser that is dead, and a run that leaves its values.
 #include "bench/serve/live_server.h"
 
@@ -8,6 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
@@ -144,6 +146,39 @@ TEST(LiveServer, IsNotStoppedByBrowsersThatAreDead) {
   s.server->wait_until_seen(std::chrono::milliseconds(1));
 
   EXPECT_EQ(s.get(s.path + "state.json").body, "999") << "and who is alive gets his answer";
+}
+
+/// Sockets that this process has open.
+std::size_t open_sockets() {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    const std::string target = std::filesystem::read_symlink(entry.path(), gone);
+    if (!gone && target.starts_with("socket:")) ++count;
+  }
+  return count;
+}
+
+TEST(LiveServer, HoldsAFewOfManyIdleConnectionsAndAnswersBesideThem) {
+  Served s;
+  s.server->show(std::make_shared<const LivePages>(LivePages{"{}", "", ""}));
+  constexpr std::size_t idle = 60, held = 24;
+  const std::size_t before = open_sockets();
+  std::vector<std::unique_ptr<DeadBrowser>> browsers;
+  for (std::size_t i = 0; i < idle; ++i) browsers.push_back(std::make_unique<DeadBrowser>(s.port, "G"));
+
+  // Both ends of a connection are of this process. What was not taken from the backlog yet is no descriptor.
+  EXPECT_LE(open_sockets(), before + idle + held);
+
+  // A connection that is one too many is closed, as a browser sees and asks again.
+  const auto deadline = std::chrono::steady_clock::now() + testing_support::patience(std::chrono::milliseconds(60'000));
+  bool answered = false;
+  while (!answered && std::chrono::steady_clock::now() < deadline) {
+    const auto result = s.client->Get(s.path + "state.json");
+    answered = result && result->body == "{}";
+    EXPECT_LE(open_sockets(), before + idle + held);
+  }
+  EXPECT_TRUE(answered);
 }
 
 TEST(LiveCurve, IsTheCurveOfTheAnswersThatWereAdded) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/json_output.h"
 
 #include <gmock/gmock.h>
@@ -59,6 +60,7 @@ TEST(FitJson, WhatDoesNotExistIsNull) {
 TEST(CurveJson, HasExactlyThePublishedKeys) {
   TodPoint point;
   point.set_delta_t_k = 16.9;
+  point.delta_t_k = 16.75;
   point.fit = testing::full_fit(2);
   point.fit.ci95 = {1.5, 2.5};
   point.estimator_reason = EstimatorReason::twin;
@@ -71,7 +73,7 @@ TEST(CurveJson, HasExactlyThePublishedKeys) {
 
   EXPECT_EQ(
       to_line(curve_json(curve, plan, {2.5, 100, {{"incomplete", 3}}})),
-      R"({"observer":"hvs-1","sensor":"sc2000","points":[{"delta_t_k":16.9,"s75_mrad":2.0,"s75_ci95_mrad":[1.5,2.5],)"
+      R"({"observer":"hvs-1","sensor":"sc2000","points":[{"delta_t_k":16.9,"set_delta_t_k":16.9,"seen_delta_t_k":16.75,"s75_mrad":2.0,"s75_ci95_mrad":[1.5,2.5],)"
       R"("s75_direct_mrad":2.125,"s75_direct_se_mrad":0.25,"acuity_per_mrad":0.5,"trials":640,"verdict":"ok",)"
       R"("estimator":"twin-shape","estimator_reason":"twin","answers":"graded","frames_per_presentation":4,"answers_reason":"twin",)"
       R"("interval":"set_ups","dispersion":0.375,"clusters":32.0,)"
@@ -93,10 +95,11 @@ TEST(CurveJson, AMeasuredCurveHasNoDirectEstimateAndRejectedIsAnObject) {
 }
 
 TEST(ComparisonJson, HasExactlyThePublishedKeys) {
-  EXPECT_EQ(
-      to_line(comparison_json(full_comparison())),
-      R"({"points":[{"delta_t_k":16.9,"ratio":1.5,"ratio_ci95":[1.25,1.75],"p_difference":0.5,"p_equivalence":0.25,)"
-      R"("margin_percent":10.0,"verdict":"different"}],"verdict":"different"})");
+  EXPECT_EQ(to_line(comparison_json(full_comparison())),
+            R"({"points":[{"delta_t_k":16.9,"set_delta_t_k":16.9,"seen_delta_t_k":)" +
+                to_line(json_number(full_comparison().points[0].delta_t_a_k)) +
+                R"(,"ratio":1.5,"ratio_ci95":[1.25,1.75],"p_difference":0.5,"p_equivalence":0.25,)"
+                R"("margin_percent":10.0,"verdict":"different"}],"verdict":"different"})");
 }
 
 TEST(PlanJson, HasExactlyThePublishedKeys) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions whose files were changed after they had ended: told by every reader, whatever was changed.
 #include "bench/session/open_session.h"
 
@@ -5,6 +6,7 @@
 
 #include <random>
 
+#include "bench/session/foreign_files.h"
 #include "bench/session/human_record.h"
 #include "bench/text/files.h"
 #include "bench/text/json.h"
@@ -100,8 +102,8 @@ TEST_F(ChangedSession, IsRefusedForEveryDigitOfEveryFile) {
 TEST_F(ChangedSession, IsRefusedInOneSentenceThatNamesTheFile) {
   put("fits.json", content("fits.json") + " ");
   EXPECT_EQ(refusal(), session_.string() +
-                           ": the session was changed: fits.json was changed after the session ended (--accept-changed "
-                           "reads it nevertheless)");
+                           ": the session was changed: fits.json was changed after the session ended (use "
+                           "--accept-changed to read it anyway)");
 
   std::filesystem::remove(at("trials.csv"));
   put("inputs/other.toml", "x");
@@ -172,7 +174,7 @@ TEST_F(ChangedSession, WithoutAManifestIsOnlyACutOffRunWhereItSaysSo) {
   std::string provenance = content("provenance.json");
   provenance.replace(provenance.find("\"complete\""), 10, "\"running\"");
   put("provenance.json", provenance);
-  EXPECT_THAT(refusal(), HasSubstr("the run goes on or was cut off"));
+  EXPECT_THAT(refusal(), HasSubstr("the run is not finished or was cut off"));
   const auto session = open_session(session_, {.accept_cut_off = true});
   ASSERT_TRUE(session) << session.error().message;
   EXPECT_TRUE(session->cut_off);
@@ -189,6 +191,36 @@ TEST_F(ChangedSession, TakesNoAnswersOfAPerson) {
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error().message, HasSubstr("trials.csv was changed after the session ended"));
   EXPECT_EQ(content("trials_human.csv"), answers);
+}
+
+TEST_F(ChangedSession, NothingIsWrittenWhereALinkOrAForeignFileIs) {
+  EXPECT_TRUE(require_no_foreign_file(session_));
+  put("notes.txt", "mine");
+  EXPECT_THAT(require_no_foreign_file(session_).error().message, HasSubstr("notes.txt"));
+  EXPECT_FALSE(require_intact(session_));
+  EXPECT_EQ(refusal(), "") << "it may still be read";
+  std::filesystem::remove(at("notes.txt"));
+
+  std::filesystem::create_symlink("/nowhere", at(".report.csv.part"));
+  EXPECT_THAT(require_no_foreign_file(session_).error().message, HasSubstr("symbolic link"));
+  EXPECT_THAT(require_no_links(session_).error().message, HasSubstr(".report.csv.part"));
+}
+
+TEST_F(ChangedSession, ALinkedFolderIsNotEmptiedByANewRun) {
+  const testing::TemporaryFolder elsewhere;
+  const auto file = elsewhere.write("precious.toml", "mine");
+  std::filesystem::remove_all(at("inputs"));
+  std::filesystem::create_directory_symlink(elsewhere.path(), at("inputs"));
+
+  EXPECT_FALSE(SessionFolder::create(session_, ExistingFolder::overwrite));
+  EXPECT_EQ(testing::content_of(file), "mine");
+}
+
+TEST_F(ChangedSession, PartsThatAKilledProgramLeftGoWithTheNextRun) {
+  put(".trials.csv.0123456789abcdef.part", "half");
+
+  ASSERT_TRUE(SessionFolder::create(session_, ExistingFolder::overwrite));
+  EXPECT_FALSE(std::filesystem::exists(at(".trials.csv.0123456789abcdef.part")));
 }
 
 TEST_F(ChangedSession, AManifestOfAnEarlierVersionIsTakenWithoutItsOwnDigest) {

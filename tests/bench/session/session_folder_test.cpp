@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/session_folder.h"
 
 #include <gmock/gmock.h>
@@ -64,6 +65,22 @@ Provenance full_provenance(const Plan& plan) {
   provenance.effects.decisions = {{Effect::quantisation, Decision::skip, "tiny", 0.01}};
   provenance.run = full_run();
   provenance.twin_run = full_run();
+  provenance.camera_optics = CameraOpticsRecord{.aberration_sigma_pitch = 0.5,
+                                                .aberration_se_pitch = 0.001,
+                                                .f_number_ratio = 1.01,
+                                                .f_number_ratio_se = 0.02,
+                                                .samples_per_pitch = 2,
+                                                .chi2 = 1.5,
+                                                .chi2_limit = 1.1,
+                                                .degrees_of_freedom = 3500,
+                                                .netd_k = 0.07,
+                                                .row_noise_k = 0.01,
+                                                .column_noise_k = 0.02,
+                                                .fixed_pattern_k = 0.03,
+                                                .noise_correlation = 0.6,
+                                                .refused = true,
+                                                .surrogate_taken = true,
+                                                .contrast_response = {{"tcat-a", 0.98}}};
   return provenance;
 }
 
@@ -230,6 +247,7 @@ TEST(SessionFolder, ProvenanceComesBackWithEveryField) {
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(to_line(provenance_json(*back)), to_line(provenance_json(provenance)));
   EXPECT_EQ(back->camera, provenance.camera);
+  EXPECT_EQ(back->camera_optics, provenance.camera_optics);
   EXPECT_EQ(back->seeds.at("plan"), 42u);
   EXPECT_EQ(back->instruments, plan.instruments);
   EXPECT_EQ(back->run->set_ups.at(0).registration.plate_to_pixel, full_run().set_ups[0].registration.plate_to_pixel);

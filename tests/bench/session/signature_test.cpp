@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Signing and checking with the real programs.
 #include "bench/session/signature.h"
 
@@ -5,16 +6,20 @@
 
 #include <fstream>
 
+#include "acquisition/base/process.h"
 #include "bench/session/manifest.h"
 #include "bench/session/open_session.h"
 #include "bench/session/session_folder.h"
-#include "bench/text/program.h"
+#include "bench/text/files.h"
+#include "bench/text/json.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
 namespace {
 
+using testing::content_of;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 
@@ -101,7 +106,7 @@ TEST_F(SignedSession, HasRevisionsWithNumbersThatAreChecked) {
     std::filesystem::create_directories(session_ / "revisions");
     const std::string page = revision_page(*revision, "html");
     std::ofstream(session_ / page) << "page " << number;
-    ASSERT_TRUE(keep_revision(session_, *revision, {page}));
+    ASSERT_TRUE(keep_revision(session_, *revision, {page}, key("mine.pem")));
   }
 
   EXPECT_TRUE((*check_signature(session_, std::nullopt))->valid);
@@ -110,6 +115,82 @@ TEST_F(SignedSession, HasRevisionsWithNumbersThatAreChecked) {
   const auto check = check_signature(session_, std::nullopt);
   EXPECT_FALSE((*check)->valid);
   EXPECT_THAT((*check)->sentence, HasSubstr("revisions/report-2.html"));
+}
+
+TEST_F(SignedSession, AForgedRevisionIsSeenThoughItsDigestIsListed) {
+  ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
+  const auto revision = next_revision(session_, "a reason", utc);
+  ASSERT_TRUE(revision);
+  std::filesystem::create_directories(session_ / "revisions");
+  const std::string page = revision_page(*revision, "html");
+  const std::string pass = "<p>PASS</p>", failed = "<p>FAIL</p>";
+  std::ofstream(session_ / page) << pass;
+  ASSERT_TRUE(keep_revision(session_, *revision, {page}, key("mine.pem")));
+  ASSERT_TRUE((*check_signature(session_, std::nullopt))->valid);
+  EXPECT_THAT((*check_signature(session_, std::nullopt))->covers,
+              ElementsAre("manifest.json", "signed_utc", "revisions"));
+
+  std::ofstream(session_ / page) << failed;
+  std::string list = content_of(session_ / "revisions/revisions.json");
+  list.replace(list.find(sha256_of(pass)), 64, sha256_of(failed));
+  std::ofstream(session_ / "revisions/revisions.json") << list;
+
+  EXPECT_FALSE((*check_signature(session_, std::nullopt))->valid);
+  EXPECT_FALSE(next_revision(session_, "another reason", utc)) << "it would sign the forged one";
+}
+
+TEST_F(SignedSession, ItsTimeIsSigned) {
+  ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
+  std::string record = content_of(session_ / "signature.json");
+  record.replace(record.find(utc), 4, "2020");
+  std::ofstream(session_ / "signature.json") << record;
+
+  const auto check = check_signature(session_, key("mine.pub"));
+  ASSERT_TRUE(check && *check);
+  EXPECT_FALSE((*check)->valid);
+  EXPECT_THAT((*check)->sentence, HasSubstr("time of signing"));
+}
+
+TEST_F(SignedSession, ASignatureOfAnEarlierVersionHoldsForItsManifestOnly) {
+  ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
+  Json record = Json::parse(content_of(session_ / "signature.json"));
+  record["schema"] = "todbench-signature-1";
+  record.erase("manifest_file_sha256");
+  std::ofstream(session_ / "signature.json") << to_page(record);
+  std::filesystem::remove(session_ / "signature.json.sig");
+
+  const auto check = check_signature(session_, key("mine.pub"));
+  ASSERT_TRUE(check && *check);
+  EXPECT_TRUE((*check)->valid) << (*check)->sentence;
+  EXPECT_THAT((*check)->covers, ElementsAre("manifest.json"));
+  EXPECT_TRUE(check_session(session_)->files.intact());
+}
+
+TEST_F(SignedSession, WhatNoSignatureListsIsForeign) {
+  ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
+  std::filesystem::create_directories(session_ / "revisions");
+  std::ofstream(session_ / "revisions/report-2.html") << "FAIL";
+  std::ofstream(session_ / "revisions/revisions.json")
+      << R"({"schema": "todbench-revisions-1", "revisions": [{"number": 2, "utc": "", "reason": "", "pages": [{"path":)"
+      << R"( "revisions/report-2.html", "sha256": ")" << sha256_of("FAIL") << R"("}]}]})";
+
+  EXPECT_THAT(check_session(session_)->files.foreign,
+              ElementsAre("revisions/report-2.html", "revisions/revisions.json"));
+}
+
+TEST_F(Signature, RevisionsOfASessionThatIsNotSignedAreForeign) {
+  std::filesystem::create_directories(session_ / "revisions");
+  std::ofstream(session_ / "revisions/report-2.html") << "FAIL";
+
+  EXPECT_THAT(check_session(session_)->files.foreign, ElementsAre("revisions/report-2.html"));
+}
+
+TEST_F(SignedSession, IsSignedAgainByItsOwnKeyOnly) {
+  make_key("other");
+  ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
+
+  EXPECT_TRUE(require_key_of_session(session_, key("mine.pem")));
+  EXPECT_FALSE(require_key_of_session(session_, key("other.pem")));
 }
 
 TEST_F(SignedSession, IsRefusedWithOneSentence) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/targets_csv.h"
 
 #include <gmock/gmock.h>
@@ -41,6 +42,9 @@ TEST_F(TargetsCsv, EveryValueComesBackExactly) {
   silent.air_transmittance = 0.98765432109876543;
   silent.delta_t_se_k = 0.0012345678901234567;
   silent.reference_triangles = 4;
+  silent.asked_px = cv::Point2d(159.80000000000001, 127.25);
+  silent.seen_px = cv::Point2d(160.10000000000002, 127.5);
+  silent.seen_error_px = 0.012345678901234567;
   const std::vector<Presentation> presentations{testing::full_presentation(), silent};
 
   write(presentations);
@@ -57,7 +61,7 @@ TEST_F(TargetsCsv, TheHeaderStatesTheUnits) {
             "presentation,plate,mounting,set_delta_t_k,reached_delta_t_k,delta_t_k,plate_temperature_k,"
             "black_body_temperature_k,settling_s,host_time_ns,set_shift_x_mm,set_shift_y_mm,reached_plate,"
             "reached_mounting,reached_shift_x_mm,reached_shift_y_mm,air_transmittance,delta_t_se_k,"
-            "reference_triangles\n");
+            "reference_triangles,asked_x_px,asked_y_px,seen_x_px,seen_y_px,seen_error_px\n");
 }
 
 TEST_F(TargetsCsv, OfAnEarlierVersionHasNoErrorOfTheContrastAndOfAYetEarlierNoAir) {
@@ -73,9 +77,12 @@ TEST_F(TargetsCsv, OfAnEarlierVersionHasNoErrorOfTheContrastAndOfAYetEarlierNoAi
     return read_targets(file_);
   };
 
+  const auto without_place = without({",asked_x_px,asked_y_px,seen_x_px,seen_y_px,seen_error_px", ",,,,,"});
   const auto with_air = without({",delta_t_se_k,reference_triangles", ",0.0071,5"});
   const auto with_neither = without({",air_transmittance", ",0.994"});
 
+  ASSERT_TRUE(without_place) << without_place.error().message;
+  EXPECT_EQ(*without_place, std::vector{shown});
   ASSERT_TRUE(with_air) << with_air.error().message;
   shown.delta_t_se_k.reset();
   shown.reference_triangles = 0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Trials and curves made of awkward numbers, for round trips.
 #pragma once
 
@@ -5,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tod/presentation/presentation.h"
 #include "tod/presentation/trial.h"
 #include "tod/psychometric/tod_curve.h"

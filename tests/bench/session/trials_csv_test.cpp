@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/trials_csv.h"
 
 #include <gmock/gmock.h>
@@ -5,7 +6,7 @@
 
 #include <csignal>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/bench/session/trial_values.h"
 #include "tests/support/temporary_folder.h"
 
@@ -243,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(
         Counts{"empty_file", "", "t.csv:1: the file is empty"},
         Counts{"missing_column", "size,correct\n1,2\n", "t.csv:1: missing column 'total'"},
         Counts{"unknown_column", "size,corect,total\n", "t.csv:1: unknown column 'corect', did you mean 'correct'?"},
-        Counts{"column_twice", "size,size,correct,total\n", "t.csv:1: column 'size' is there twice"},
+        Counts{"column_twice", "size,size,correct,total\n", "t.csv:1: column 'size' occurs twice"},
         Counts{"no_header", "1,2,3\n", "t.csv:1: unknown column '1'"},
         Counts{"short_row", "size,correct,total\n1,2\n", "t.csv:2: expected 3 fields as in the header, found 2"},
         Counts{"long_row", "size,correct,total\n1,2,3\n\n1,2,3,4\n",

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs of whole plans over seeds: what was asked or predicted, and what came out.
 #pragma once
 
@@ -43,9 +44,11 @@ inline Plan plan_to_study(ScheduleKind kind, double half_width_percent,
   return plan;
 }
 
-inline StudiedRun run_of(Plan plan, std::uint64_t seed) {
+inline StudiedRun run_of(Plan plan, std::uint64_t seed, double noise_correlation = 0) {
   plan.seed = seed;
-  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+  PlanParts parts = LoadedPlan::load(plan).value().parts();
+  parts.sensor.noise_correlation = noise_correlation;
+  const LoadedPlan loaded = LoadedPlan::of(plan, parts).value();
   EffectPlanner planner;
   const auto prediction = predict_plan(plan, experiment_inputs(loaded, planner).value());
   const TemporaryFolder folder;

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // 200 seeds, or TODBENCH_STUDY_RUNS: what a plan asks or predicts against what its runs achieve. Prints the table of
-// docs/uncertainty.md.
+// docs/validation/coverage.md.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -22,6 +23,7 @@ struct AskedDesign {
   double asked_percent = 0;  ///< 0: what the plan predicted
   AnswersChoice answers = AnswersChoice::binary;
   EstimatorChoice estimator = EstimatorChoice::automatic;
+  double noise_correlation = 0;  ///< of successive frames
 };
 
 /// Asked 0: what the plan predicted.
@@ -114,6 +116,9 @@ TEST(AskedUncertainty, IsNotExceededInNineteenOfTwentyRuns) {
        .asked_percent = 2.5,
        .answers = AnswersChoice::graded},
       {.name = "graded, against the prediction", .answers = AnswersChoice::automatic},
+      {.name = "graded, noise that remembers, against the prediction",
+       .answers = AnswersChoice::automatic,
+       .noise_correlation = 0.6},
       {.name = "right and wrong, twin, against the prediction"}};
   for (const AskedDesign& design : designs) {
     if (only != nullptr && std::string(design.name) != only) continue;
@@ -122,12 +127,12 @@ TEST(AskedUncertainty, IsNotExceededInNineteenOfTwentyRuns) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
       Plan plan = plan_to_study(design.kind, design.asked_percent > 0 ? design.asked_percent : 8, design.estimator);
       plan.schedule.answers = design.answers;
-      auto found = run_of(plan, seed);
+      auto found = run_of(plan, seed, design.noise_correlation);
       runs.insert(runs.end(), found.contrasts.begin(), found.contrasts.end());
       curves.push_back(std::move(found.curve));
     }
     for (const double delta_t_k : {1.93, 0.23}) print_and_expect(design.name, delta_t_k, runs, design.asked_percent);
-    print_coverage(design.name, curves);
+    if (design.noise_correlation == 0) print_coverage(design.name, curves);
     if (design.kind == ScheduleKind::constant && design.estimator == EstimatorChoice::weibull)
       expect_power(curves, runs);
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Short form of asked_uncertainty_study.
 #include "tests/bench/studies/asked_uncertainty.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Published figures beside ours: gains from acuities, and the page.
 #include "bench/studies/eo_vista_figures.h"
 

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coverage of the true S75 over whole simulated runs, graded answers beside right and wrong ones of the same runs.
 // TODBENCH_STUDY_FOLDER: where runs are kept; what is there is not made again. TODBENCH_STUDY_RUNS: how many of each
 // design (600 and 200 without it). TODBENCH_STUDY_DESIGN: this one alone. TODBENCH_STUDY_SHARE: "1/2", every second
-// run, for two processes at once. Prints the tables of docs/uncertainty.md.
+// run, for two processes at once. Prints the tables of docs/validation/coverage.md.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Short form of graded_coverage_study.
 #include "tests/bench/studies/graded_runs.h"
 #include "tests/support/temporary_folder.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whole simulated runs with graded answers, and what every estimator makes of the same run.
 #pragma once
 
@@ -17,7 +18,7 @@
 #include <vector>
 
 #include "bench/plan/plan_options.h"
-#include "bench/run/functions_meanwhile.h"
+#include "bench/run/background_twin_functions.h"
 #include "bench/run/paired_comparison.h"
 #include "bench/run/prediction.h"
 #include "bench/run/simulated_set_up.h"

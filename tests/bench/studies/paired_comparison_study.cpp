@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Camera against twin by common phases over whole simulated runs: standard error, power, false verdicts.
 // TODBENCH_STUDY_FOLDER: where runs are kept; what is there is not made again. TODBENCH_STUDY_RUNS: how many of each
-// design (400 and 40 without it). Prints the tables of docs/uncertainty.md.
+// design (400 and 40 without it). Prints the tables of docs/validation/coverage.md.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Short form of paired_comparison_study, and what must not be shared.
 #include "tests/bench/studies/paired_summary.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A person in place of the observer: what is asked, what the answers say, what is kept.
 #include "bench/studies/person_experiment.h"
 
@@ -68,10 +69,10 @@ TEST(PersonExperiment, AsksOfEveryTargetAtEveryRangeAsOften) {
 }
 
 /// Someone who is always right at the first condition and right every other time at the second.
-std::vector<PersonAnswer> answers_of(const PersonExperiment& experiment,
-                                     const std::function<bool(const PersonTrial&)>& sees) {
+std::vector<ExperimentAnswer> answers_of(const PersonExperiment& experiment,
+                                         const std::function<bool(const PersonTrial&)>& sees) {
   std::map<std::size_t, int> asked;
-  std::vector<PersonAnswer> answers;
+  std::vector<ExperimentAnswer> answers;
   for (const PersonTrial& trial : experiment.trials()) {
     const bool right = sees(trial) || asked[trial.condition]++ % 2 == 0;
     const std::size_t other = (trial.truth + 1) % experiment.alternatives().size();
@@ -146,7 +147,7 @@ TEST(PersonExperiment, OfResolvedBarsAsksWhetherThereAreAnyAndCountsFalseAlarms)
     else
       EXPECT_LT(strength(trial), 3 * task.sensor.netd_k);
   }
-  std::vector<PersonAnswer> honest, always;
+  std::vector<ExperimentAnswer> honest, always;
   for (const PersonTrial& trial : experiment->trials()) {
     const bool sees = trial.truth == 0 && trial.condition % 6 >= 2;
     honest.push_back({.answer = sees ? 0U : 1U});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Range models side by side, and the air by name.
 #include "bench/studies/range_models.h"
 
@@ -163,6 +164,23 @@ TEST(GridFigure, HasALineForEachSizeAndEndsWhereNothingIsKnown) {
   GridFigure none = grid;
   for (auto& r75 : none.r75_m) r75.reset();
   EXPECT_FALSE(grid_plot(none));
+}
+
+// A target of three times the display's contrast behind air that leaves a third of it looks as one of contrast 1 in
+// clear air, not as one of a third.
+TEST(RangeModels, TheTtpCutsTheContrastBehindTheAir) {
+  RangeQuestion bright = question("clear"), dim = bright;
+  bright.target_contrast = 3;
+  dim.target_contrast = 1;
+  const auto clear = range_models(std::array{RangeModel::ttp}, sources(), dim);
+  ASSERT_TRUE(clear && clear->front().r75_m);
+  const double range_km = *clear->front().r75_m / 1000;
+  bright.air.air = Transmittance::beer_lambert(std::log(3.0) / range_km);
+
+  const auto hazy = range_models(std::array{RangeModel::ttp}, sources(), bright);
+
+  ASSERT_TRUE(hazy && hazy->front().r75_m);
+  EXPECT_NEAR(*hazy->front().r75_m / *clear->front().r75_m, 1, 1e-6);
 }
 
 TEST(RangeModels, TheFormOfPChangesTheTtpRange) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Acuity under recorded noise, on recordings whose answer is known.
 #include "bench/studies/real_noise_study.h"
 
@@ -5,7 +6,7 @@
 
 #include <cmath>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/sim_devices/reference.h"
 #include "tod/plate/test_pattern.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Virtual laboratories one by one, kept in a file, and what they say of a budget.
 #pragma once
 
@@ -17,14 +18,15 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "bench/judgement/limit_decision.h"
-#include "bench/studies/virtual_laboratory.h"
 #include "tests/bench/studies/graded_runs.h"
+#include "tests/bench/studies/virtual_laboratory.h"
 
 namespace todbench::testing {
 
-/// Rows as of an ordinary laboratory. The function of the twin leaves 0.1 to 0.2 % of form (docs/uncertainty.md).
+/// Rows as of an ordinary laboratory. The function of the twin leaves 0.1 to 0.2 % of form
+/// (docs/validation/coverage.md).
 inline std::vector<BudgetRow> rows_of_a_laboratory() {
   using enum BudgetDistribution;
   const auto row = [](const char* name, double value, BudgetDistribution distribution, const char* unit) {

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Laboratories that err as their budget says: do expanded intervals hold the truth, are the stated risks those that
 // happen, do laboratories agree? TODBENCH_STUDY_FOLDER: where laboratories are kept; what is there is not made again.
-// TODBENCH_STUDY_RUNS: how many (300 without it). Prints the tables of docs/uncertainty.md.
+// TODBENCH_STUDY_RUNS: how many (300 without it). Prints the tables of docs/validation/coverage.md.
 #include <cstdio>
 #include <cstdlib>
 

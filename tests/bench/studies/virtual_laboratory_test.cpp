@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Short form of virtual_laboratory_study, and that laboratories err as they should.
-#include "bench/studies/virtual_laboratory.h"
+#include "tests/bench/studies/virtual_laboratory.h"
 
 #include "tests/bench/studies/virtual_laboratories.h"
 #include "tests/support/temporary_folder.h"

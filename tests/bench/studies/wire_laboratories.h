@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Virtual laboratories over the wire beside those of the same numbers on simulated frames.
 #pragma once
 
@@ -7,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "bench/studies/wire_laboratory.h"
 #include "tests/bench/studies/virtual_laboratories.h"
+#include "tests/bench/studies/wire_laboratory.h"
 
 namespace todbench::testing {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Virtual laboratories over the wire: camera on GigE Vision, black body and stage on SCPI. Do their intervals hold the
 // truth, and are they the laboratories of the same numbers on simulated frames? TODBENCH_STUDY_FOLDER: where both are
 // kept, in files of their own; what is there is not made again. TODBENCH_STUDY_WIRE_RUNS: how many (30 without it).

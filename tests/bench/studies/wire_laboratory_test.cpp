@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Short form of wire_laboratory_study, and that a laboratory over the wire really is what it does not know.
-#include "bench/studies/wire_laboratory.h"
+#include "tests/bench/studies/wire_laboratory.h"
 
-#include "acquisition/core/distributions.h"
+#include "acquisition/base/distributions.h"
 #include "tests/bench/studies/wire_laboratories.h"
 
 namespace todbench::testing {
@@ -83,8 +84,8 @@ TEST(WireLaboratory, SeesWhatIsThereAndAgreesWithItselfOnSimulatedFrames) {
   ASSERT_TRUE(simulated) << simulated.error().message;
   ASSERT_EQ(wire->size(), 1u);
   ASSERT_EQ(simulated->size(), 1u);
-  // Eight set-ups: a standard error of 0.9 % at 0.23 K and a bias of up to 0.3 % (docs/uncertainty.md); the noise of
-  // the camera is the same at every contrast.
+  // Eight set-ups: a standard error of 0.9 % at 0.23 K and a bias of up to 0.3 % (docs/validation/coverage.md); the
+  // noise of the camera is the same at every contrast.
   constexpr double tolerance = 0.003 + 4 * 0.009 * 0.23 / 1.93;
   const RealSetUp real = real_set_up(plan, inputs, drawn_errors(plan, plan.seed, laboratory));
   EXPECT_NEAR(wire->front().seen_delta_t_k / (real.camera_scale * real.shown_k.at(1.93)), 1, tolerance);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a sweep says of its parameters: main effects, Sobol indices, their intervals.
 #include "bench/sweep/sweep_effects.h"
 
@@ -7,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/bench/sweep/sweep_support.h"
 
 namespace todbench {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Figures and page of a sweep.
 #include "bench/sweep/sweep_figures.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tasks of sweeps as they run: where results go, what comes back, processes.
 #include "bench/sweep/task_plan.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sweeps that tests expand, and tables as `collect` makes them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Sweeps: what tasks there are, what files are refused, what schedulers are told.
 #include "bench/sweep/sweep.h"
 
@@ -124,13 +125,13 @@ TEST(SweepFile, IsRefusedInASentenceWithTheLine) {
   EXPECT_THAT(refusal("[grid]\na = 3\n"), HasSubstr("a.toml:2: expected a list of values"));
   EXPECT_THAT(refusal("[grid]\na = [1, 1.0]\n"), HasSubstr("twice"));
   EXPECT_THAT(refusal("[grid]\na = [1]\n[base]\na = 2\n"), HasSubstr("stated twice"));
-  EXPECT_THAT(refusal("[zip]\na = [1, 2]\nb = [1]\n"), HasSubstr("one length"));
+  EXPECT_THAT(refusal("[zip]\na = [1, 2]\nb = [1]\n"), HasSubstr("the same length"));
   EXPECT_THAT(refusal("[gird]\na = [1]\n"), HasSubstr("did you mean 'grid'"));
   EXPECT_THAT(refusal("[repeat]\nseeds = 0\n"), HasSubstr("expected a whole number from 1"));
   EXPECT_THAT(refusal("[sample]\nn = 3\nranges = { a = [2, 1] }\n"), HasSubstr("low below high"));
   EXPECT_THAT(refusal("where = \"a <\"\n[grid]\na = [1]\n"), HasSubstr("expected a name or a number"));
-  EXPECT_THAT(refusal("where = \"c < 1\"\n[grid]\na = [1]\n"), HasSubstr("'c' is no number"));
-  EXPECT_THAT(refusal("where = \"a > 1\"\n[grid]\na = [1]\n"), HasSubstr("every combination is refused"));
+  EXPECT_THAT(refusal("where = \"c < 1\"\n[grid]\na = [1]\n"), HasSubstr("'c' is not a known number"));
+  EXPECT_THAT(refusal("where = \"a > 1\"\n[grid]\na = [1]\n"), HasSubstr("the conditions reject every combination"));
   EXPECT_THAT(refusal("[grid]\na = { from = 0, to = 1, steps = 1 }\n"), HasSubstr("steps"));
   EXPECT_THAT(refusal("[grid\n"), HasSubstr("a.toml:1"));
   std::string deep(10000, '(');

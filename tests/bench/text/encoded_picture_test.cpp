@@ -1,4 +1,5 @@
-#include "bench/text/encoded_picture.h"
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/picture_files/encoded_picture.h"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +8,7 @@
 #include <limits>
 #include <span>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "acquisition/recording/picture_file.h"
 #include "tests/support/read_png.h"
 #include "tests/support/temporary_folder.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/text/manual_page.h"
 
 #include <gmock/gmock.h>

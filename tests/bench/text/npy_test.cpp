@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The bytes of .npy files.
-#include "bench/text/npy.h"
+#include "bench/picture_files/npy.h"
 
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tables and sentences for terminals of any width.
 #include "bench/text/terminal_lines.h"
 

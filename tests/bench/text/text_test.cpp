@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/text/text.h"
 
 #include <gmock/gmock.h>
@@ -6,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {

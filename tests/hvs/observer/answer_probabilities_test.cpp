@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/answer_probabilities.h"
 
 #include <gmock/gmock.h>
@@ -5,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "hvs/observer/ideal_observer.h"
 #include "hvs/observer/template_observer.h"
 #include "hvs/shape/polygon_image.h"
+#include "tests/support/ideal_observer.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {

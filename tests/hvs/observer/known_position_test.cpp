@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/known_position.h"
 
 #include <gmock/gmock.h>
@@ -7,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 
 namespace todbench {
 namespace {

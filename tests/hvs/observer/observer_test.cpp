@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "hvs/observer/ideal_observer.h"
 #include "hvs/observer/known_position.h"
 #include "hvs/observer/template_observer.h"
 #include "hvs/shape/polygon_image.h"
+#include "tests/support/ideal_observer.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/observer/template_bank.h"
 
 #include <gmock/gmock.h>
@@ -7,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "hvs/observer/template_observer.h"
 #include "tod/plate/test_pattern.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "hvs/shape/polygon_image.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Radiance, spectra, tape7 and turbulence against the reference numbers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

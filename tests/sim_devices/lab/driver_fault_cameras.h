@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cameras of the fault matrix on USB: behind a kernel driver (V4L2), USB3 Vision, Seek.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every fault of the way from a camera on USB, in a measurement: the answers are those of the simulated camera over the
 // exposures that arrived whole, bit for bit, and every other frame is counted by its reason.
 #pragma once
@@ -13,8 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/base/rng.h"
 #include "acquisition/core/byte_order.h"
-#include "acquisition/core/rng.h"
 #include "tests/support/swapped_bytes.h"
 #include "tests/tod/measurement/free_running_camera.h"
 #include "tests/tod/measurement/measurement_bench.h"

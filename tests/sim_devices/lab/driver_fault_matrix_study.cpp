@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Each fault of the way from a camera on USB at three rates, in a long measurement.
 #include "tests/sim_devices/lab/driver_fault_cameras.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Each fault of the way from a camera on USB at 5 %, and all of them at three rates, in a short measurement.
 #include "tests/sim_devices/lab/driver_fault_cameras.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A measurement through an emulated camera, and that of the simulated camera over the exposures that came through it.
 #pragma once
 

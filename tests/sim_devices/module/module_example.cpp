@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A module: picture in, picture out, or patch in, scores out, or scene in, frame out. The first argument says what it
 // does with it, or how it breaks the contract; the second after how many answers; "hvs" is the observer hvs-1, "sensor"
 // a detector of the size of a pitch with a noise of 70 mK.
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,6 +33,9 @@ cv::Mat1f processed(const std::string& mode, const todbench::NpyMessage& message
   for (std::size_t i = 0; i < message.values.size(); ++i)
     picture.begin()[static_cast<int>(i)] = static_cast<float>(message.values[i]);
   if (mode == "double") picture *= 2;
+  if (double gain = 1, offset = 0; std::sscanf(mode.c_str(), "affine=%lf,%lf", &gain, &offset) == 2)
+    picture = gain * picture + offset;
+  if (double most = 0; std::sscanf(mode.c_str(), "ceiling=%lf", &most) == 1) picture = cv::min(picture, most);
   if (mode == "square") picture = picture.mul(picture);
   if (mode == "nan") picture(0, 0) = std::numeric_limits<float>::quiet_NaN();
   if (mode == "shape") picture = cv::Mat1f::zeros(2, 3);
@@ -69,6 +74,17 @@ todbench::NpyMessage frame_of(const todbench::NpyMessage& scene, double index) {
   return frame;
 }
 
+/// Whether a socket of this path answers.
+bool reaches_path(const char* path) {
+  const int end = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::snprintf(address.sun_path, sizeof address.sun_path, "%s", path);
+  const bool reached = ::connect(end, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(end);
+  return reached;
+}
+
 /// Whether this computer answers at the port.
 bool reaches(int port) {
   const int end = ::socket(AF_INET, SOCK_STREAM, 0);
@@ -88,9 +104,14 @@ int main(int argc, char** argv) {
   const bool senses = argc > 1 && std::string(argv[1]) == "sensor";
   if (observes || senses) --argc, ++argv;
   const std::string planned = argc > 1 ? argv[1] : "identity";
-  const int healthy = argc > 2 && planned != "connect" && planned != "ends" ? std::atoi(argv[2]) : 0;
+  const int healthy =
+      argc > 2 && planned != "connect" && planned != "connect-path" && planned != "ends" ? std::atoi(argv[2]) : 0;
   std::string mode = healthy > 0 ? "identity" : planned;
   todbench::NpyMessage conditions;
+  if (mode == "says-path") {
+    std::puts(reaches_path(argv[2]) ? "reached" : "not reached");
+    return 0;
+  }
   if (mode == "crash") {
     std::fprintf(stderr, "the licence has expired\n");
     return 3;
@@ -134,6 +155,7 @@ int main(int argc, char** argv) {
       if (much[much.size() / 2] != 'm') return 1;
     }
     if (mode == "connect" && !reaches(std::atoi(argv[2]))) return 4;
+    if (mode == "connect-path" && !reaches_path(argv[2])) return 4;
     if (mode == "text") write_all("thank you\n");
     if (observes) {
       auto answer = scores(conditions, message);

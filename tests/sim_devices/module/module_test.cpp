@@ -1,14 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Modules as programs: what keeps the contract, and every way to break it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <signal.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "sim_devices/module/module_check.h"
 #include "sim_devices/module/module_observer_check.h"
 #include "sim_devices/module/npy_message.h"
+#include "tests/support/temporary_folder.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
@@ -82,12 +85,12 @@ TEST(ModuleCheck, NamesEveryWayToBreakTheContract) {
     return report ? Error{} : report.error();
   };
 
-  EXPECT_THAT(refused("crash").message, HasSubstr("it said: the licence has expired"));
+  EXPECT_THAT(refused("crash").message, HasSubstr("its last output: the licence has expired"));
   EXPECT_EQ(refused("crash").code, ErrorCode::disconnected);
   EXPECT_EQ(refused("hang").code, ErrorCode::timeout);
   EXPECT_THAT(refused("nan").message, HasSubstr("not finite"));
   EXPECT_THAT(refused("shape").message, HasSubstr("shape (2, 3)"));
-  EXPECT_THAT(refused("text").message, HasSubstr("no .npy array"));
+  EXPECT_THAT(refused("text").message, HasSubstr("not a .npy array"));
   EXPECT_THAT(refused("random").message, HasSubstr("differently"));
   EXPECT_EQ(refused("twice").code, ErrorCode::integrity);
   EXPECT_EQ(refused("endless").code, ErrorCode::integrity);
@@ -130,7 +133,7 @@ TEST(ObserverModuleCheck, NamesEveryWayToBreakTheContract) {
   EXPECT_THAT(refused("crash").message, HasSubstr("the licence has expired"));
   EXPECT_THAT(refused("nan").message, HasSubstr("not finite"));
   EXPECT_THAT(refused("shape").message, HasSubstr("shape"));
-  EXPECT_THAT(refused("text").message, HasSubstr("no .npy array"));
+  EXPECT_THAT(refused("text").message, HasSubstr("not a .npy array"));
   EXPECT_THAT(refused("random").message, HasSubstr("differently"));
 }
 
@@ -174,6 +177,34 @@ TEST(ModuleProcess, HasNoNetworkUnlessItIsLeftIt) {
   ASSERT_FALSE(without);
   EXPECT_EQ(without.error().code, ErrorCode::disconnected);
   EXPECT_TRUE(with) << with.error().message;
+}
+
+TEST(ModuleProcess, AndItsVersionCommandReachNoSocketOfAPath) {
+  if (!can_cut_network()) GTEST_SKIP() << "bubblewrap is not installed or cannot work here";
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.path() / "socket";
+  const int listener = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::snprintf(address.sun_path, sizeof address.sun_path, "%s", path.c_str());
+  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(::listen(listener, 4), 0);
+  const auto with_network = [](ModuleOptions options, ModuleNetwork network) {
+    options.network = network;
+    return options;
+  };
+  const ModuleOptions picture = example("connect-path " + path), version = example("says-path " + path);
+
+  const auto cut = ModuleProcess::start(picture)->exchange(cv::Mat1f::zeros(2, 3));
+  const auto ours = ModuleProcess::start(with_network(picture, ModuleNetwork::ours))->exchange(cv::Mat1f::zeros(2, 3));
+  const std::string version_cut = first_line_of_module(version);
+  const std::string version_ours = first_line_of_module(with_network(version, ModuleNetwork::ours));
+  ::close(listener);
+
+  EXPECT_FALSE(cut);
+  EXPECT_TRUE(ours) << ours.error().message;
+  EXPECT_EQ(version_cut, "not reached");
+  EXPECT_EQ(version_ours, "reached");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The 75 % size by trials on frames of the simulated camera, for comparison with the estimate without frames.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The observer before an emulated camera, single pictures and super-resolved ones.
 #include "sim_devices/prediction/camera_trials.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/cost_frontier.h"
 
 #include <gmock/gmock.h>
@@ -105,7 +106,7 @@ TEST(CostFrontier, IsEmptyWithAReasonWhereNoContrastHasAThreshold) {
   EXPECT_TRUE(frontier->reference.empty());
   EXPECT_TRUE(frontier->points.empty());
   ASSERT_EQ(frontier->notes.size(), 1u);
-  EXPECT_THAT(frontier->notes.front(), ::testing::StartsWith("0.001 K is left out: "));
+  EXPECT_THAT(frontier->notes.front(), ::testing::StartsWith("0.001 K is omitted: "));
 }
 
 TEST(CostFrontier, StopsOnRequest) {

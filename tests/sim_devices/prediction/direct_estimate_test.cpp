@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/direct_estimate.h"
 
 #include <gmock/gmock.h>
@@ -95,7 +96,7 @@ TEST(DirectEstimate, SaysWhatIsReachableWhenAToleranceIsNot) {
   EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
   EXPECT_THAT(refused.error().message,
               ::testing::HasSubstr("a tolerance of 0.05 % cannot be met at a contrast of 0.23 K"));
-  EXPECT_THAT(refused.error().message, ::testing::HasSubstr("the best that is reachable is"));
+  EXPECT_THAT(refused.error().message, ::testing::HasSubstr("The best reachable tolerance is"));
 }
 
 TEST(DirectEstimate, RefusesAContrastWithoutThreshold) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How much direct estimates scatter over seeds, and what they say of it.
 #pragma once
 

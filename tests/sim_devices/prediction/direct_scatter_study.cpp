@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scatter of direct estimates over seeds against the standard errors that they state. TODBENCH_STUDY_RUNS: seeds of
-// each level (200 without it). Prints the table of docs/uncertainty.md.
+// each level (200 without it). Prints the table of docs/validation/coverage.md.
 #include <cstdio>
 #include <cstdlib>
 #include <string>

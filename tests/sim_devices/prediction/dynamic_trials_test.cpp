@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A target that moves: what must equal a target that rests, what known transfer says, what summing gains.
 #include "sim_devices/prediction/dynamic_trials.h"
 

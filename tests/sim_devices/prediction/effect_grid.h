@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes on which the planner of effects is held against brute force.
 #pragma once
 

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The planner of effects against brute force: on the grid that its bounds were set with, and on scenes of which nothing
-// was used for that. Prints every result, and per set what docs/effect-planning.md states.
+// was used for that. Prints every result, and per set what docs/validation/sensor-model.md states.
 #include <gmock/gmock.h>
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/effect_planner.h"
 
 #include <gmock/gmock.h>
@@ -107,7 +108,7 @@ TEST(EffectPlanner, WarnsWhereWhatIsSkippedOnRequestBreaksTheTolerance) {
   const auto kept = plan_of(test::sc2000(), {0.23}, keeps);
 
   ASSERT_TRUE(broken && kept);
-  EXPECT_THAT(broken->warnings, ::testing::ElementsAre(::testing::HasSubstr("the tolerance of 1 % is not kept")));
+  EXPECT_THAT(broken->warnings, ::testing::ElementsAre(::testing::HasSubstr("the tolerance of 1 % is not guaranteed")));
   EXPECT_THAT(kept->warnings, ::testing::IsEmpty());
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Formula curves of a simulated sensor.
 #include "sim_devices/prediction/formula_curves.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An observer that tells shapes apart: against the template observer of triangles, and the closed form of two.
 #include "sim_devices/prediction/identification.h"
 
@@ -7,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "hvs/observer/identification_bank.h"
 #include "hvs/shape/step_image.h"
 #include "sim_devices/sensor/image_chain.h"

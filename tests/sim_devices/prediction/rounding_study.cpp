@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The estimate without frames over noise from a hundredth of a count to thirty.
 #include <gtest/gtest.h>
 

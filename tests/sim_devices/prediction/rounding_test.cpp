@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The estimate without frames where counts are coarse or end: against trials on frames of the camera.
 #include <gmock/gmock.h>
 
@@ -50,7 +51,7 @@ TEST(CoarseRounding, ThatHidesTheContrastIsSaid) {
   const auto points = direct_estimate(spec, full_plan(spec, {}, {}), observer, {0.03}, {.accuracy = Accuracy::draft()});
 
   ASSERT_FALSE(points);
-  EXPECT_THAT(points.error().message, HasSubstr("disappears in counts of 0.1 K"));
+  EXPECT_THAT(points.error().message, HasSubstr("disappears in the rounding to counts of 0.1 K"));
 }
 
 TEST(CoarseRounding, SaysWhereTheCountsEndBeforeTheScene) {
@@ -62,7 +63,7 @@ TEST(CoarseRounding, SaysWhereTheCountsEndBeforeTheScene) {
   const auto points = direct_estimate(spec, full_plan(spec, {}, {}), observer, {2}, {.accuracy = Accuracy::draft()});
 
   ASSERT_FALSE(points);
-  EXPECT_THAT(points.error().message, HasSubstr("beyond what the counts hold"));
+  EXPECT_THAT(points.error().message, HasSubstr("outside the range of the counts"));
 }
 
 TEST(CoarseRounding, KnowsTheReadingOfACountsMiddleAndEdge) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Four bars: the ideal observer against exact answers, the template observer against the closed form of known
 // positions.
 #include "sim_devices/prediction/virtual_mrtd.h"

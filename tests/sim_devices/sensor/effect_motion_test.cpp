@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Motion, exposure, readout by rows and displaced exposures against brute force.
 #include "sim_devices/sensor/effect_motion.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Noise of the simulated sensor: what it remembers, what averaging leaves, dead detectors.
 #include "sim_devices/sensor/effect_dead_pixels.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Distortion, display and turbulence of the simulated sensor against closed forms and second ways.
 #include "sim_devices/sensor/effect_turbulence.h"
 

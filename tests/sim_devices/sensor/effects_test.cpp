@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The stages behind optics, detector and temporal noise; and the same stages in the estimate without frames.
 #include "sim_devices/sensor/effect_row.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Short frames behind turbulent air: sharper, displaced, and in the mean the long exposure.
 #include "sim_devices/sensor/effect_image_dance.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Frames of scenes against the images of single polygons, which the references hold.
 #include "sim_devices/sensor/scene_image.h"
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/super_resolution.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tests/sim_devices/reference.h"
 #include "tod/plate/test_pattern.h"

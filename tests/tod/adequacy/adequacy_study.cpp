@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // False alarms and power of every statistical finding, with enough replicates to see half a per cent. Long form of
 // adequacy_test.
 #include <gtest/gtest.h>

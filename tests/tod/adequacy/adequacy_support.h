@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Simulated observers for the tests of adequacy: right models and wrong ones.
 #pragma once
 

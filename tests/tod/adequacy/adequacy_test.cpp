@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What speaks against a threshold: found where a model is wrong, not found where it is right.
 #include "tod/adequacy/adequacy.h"
 
@@ -8,6 +9,7 @@
 
 #include "tests/tod/adequacy/adequacy_support.h"
 #include "tod/adequacy/dispersion.h"
+#include "tod/adequacy/guessing.h"
 
 namespace todbench {
 namespace {
@@ -159,6 +161,33 @@ TEST(Adequacy, WhatFramesSayIsFoundEvenWithoutAThreshold) {
   EXPECT_THAT(found.findings, of_kind(FindingKind::rounding));
   EXPECT_THAT(found.findings, of_kind(FindingKind::temporal_correlation));
   EXPECT_EQ(found.findings.size(), 3u);
+}
+
+TEST(Adequacy, AStepThatSomebodyWhoGuessesMayGiveIsUnfit) {
+  const auto step = [](double each) {
+    return std::vector<Level>{{1, 0, each, -1}, {1.5, each, each, -1}, {2.25, each, each, -1}};
+  };
+  ASSERT_TRUE(fit_psychometric(step(1), {})->threshold);
+  ASSERT_TRUE(fit_psychometric(step(2), {})->threshold);
+
+  // Every answer at the two largest of three sizes is right: (1/4)^2 or (1/4)^4, times three choices.
+  EXPECT_NEAR(p_guessed(step(1)), 3.0 / 16, 1e-12);
+  EXPECT_NEAR(p_guessed(step(2)), 3.0 / 256, 1e-12);
+  EXPECT_THAT(adequacy_of(step(1), {}).findings, unfit_of_kind(FindingKind::slope));
+  EXPECT_THAT(adequacy_of(step(2), {}).findings, Not(unfit_of_kind(FindingKind::slope)));
+}
+
+TEST(Adequacy, CorrelatedFramesWithholdAnIntervalOfIndependentAnswersOnly) {
+  TodPoint point;
+  point.levels = expected_counts(PsychometricForm::size, 4, 0, 9, 100);
+  point.fit = fit_psychometric(point.levels, {}).value();
+  point.lag1_correlation = 0.5;
+  ASSERT_EQ(point.fit.interval, IntervalKind::independent);
+  EXPECT_THAT(adequacy(point, {}).findings, unfit_of_kind(FindingKind::temporal_correlation));
+
+  point.fit.interval = IntervalKind::clusters;
+  EXPECT_THAT(adequacy(point, {}).findings, of_kind(FindingKind::temporal_correlation));
+  EXPECT_TRUE(adequacy(point, {}).adequate());
 }
 
 TEST(Adequacy, GivesTheSameFindingsWhateverTheUnitAndOrderOfTheRows) {

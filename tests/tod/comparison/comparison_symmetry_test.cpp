@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A comparison says the same of two curves in either order, and nothing of numbers that are not fit for it.
 #include <gtest/gtest.h>
 
@@ -97,6 +98,9 @@ TEST(ComparisonAdequacy, AThresholdThatIsUnfitLeavesItsContrastInconclusiveInEit
        {compare(good, bad, {.margin_percent = 50, .fit = {}}), compare(bad, good, {.margin_percent = 50, .fit = {}})}) {
     EXPECT_EQ(compared->verdict, ComparisonVerdict::inconclusive);
     EXPECT_NE(reasons_unfit(*compared->adequacy).find("pixels are saturated"), std::string::npos);
+    Comparison paired = *compared;
+    add_paired(paired, 0, {.ratio = 1, .verdict = ComparisonVerdict::equivalent});
+    EXPECT_EQ(paired.verdict, ComparisonVerdict::inconclusive);
   }
 }
 

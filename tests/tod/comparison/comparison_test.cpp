@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Comparison of thresholds against a plain search, and the verdicts on whole curves.
 #include "tod/comparison/comparison.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A camera against its twin by common phases.
 #include "tod/comparison/paired_ratio.h"
 
@@ -110,6 +111,22 @@ TEST(PairedRatio, StatesTheTwinsShareOfTheVariance) {
   EXPECT_EQ(found->se_ln_ratio, without->se_ln_ratio) << "it is in the scatter already";
 }
 
+TEST(PairedRatio, OfTwoFunctionsHasBothThresholdsAndTheErrorsOfBoth) {
+  const auto pairs = pairs_of(1, 7);
+  ProportionTable other = table();
+  for (double& size : other.size_mrad) size *= 1.05;
+  const auto one = paired_ratio(pairs, table(), false, 24, 3);
+
+  const auto two = paired_ratio(pairs, table(), false, 24, 3, {}, OwnFunctions{table(), 0.003 * 0.003});
+  const auto stretched = paired_ratio(pairs, table(), false, 24, 3, {}, OwnFunctions{other, 0});
+
+  ASSERT_TRUE(one && two && stretched);
+  EXPECT_EQ(two->ratio, one->ratio);
+  EXPECT_NEAR(two->se_ln_ratio, std::hypot(one->se_ln_ratio, 0.003), 1e-12);
+  // A stretched function is the same one: the size is fitted.
+  EXPECT_NEAR(stretched->ratio, one->ratio, 1e-6);
+}
+
 TEST(PairedRatio, HoldsTheScatterOfTheContrastOnceWhateverTheClusters) {
   constexpr ContrastScatter contrast{.se_ln_acuity = 0.02, .degrees_of_freedom = 2.0};
   const auto of_one_set_up = pairs_of(1, 3, 0.1, 3), of_many = pairs_of(1, 3);
@@ -160,6 +177,18 @@ TEST(PairedRatio, OfTwoCamerasIsTheRatioOfBothToTheSameTwin) {
   EXPECT_NEAR(*ab.ci95.low * *ba.ci95.high, 1, 1e-12);
   EXPECT_EQ(ab.draws, 16);
   EXPECT_GT(ab.degrees_of_freedom, a->degrees_of_freedom);
+}
+
+TEST(PairedRatio, DecidesNothingWhereAThresholdIsUnfitForADecision) {
+  Comparison comparison{.points = {{.set_delta_t_k = 16.9, .withheld = true}, {.set_delta_t_k = 0.23}},
+                        .adequacy = Adequacy{{{FindingKind::clipping, 0.79, 0, "pixels are saturated", true}}}};
+  add_paired(comparison, 0, {.ratio = 1.001, .verdict = ComparisonVerdict::equivalent});
+  add_paired(comparison, 1, {.ratio = 1.001, .verdict = ComparisonVerdict::equivalent});
+
+  EXPECT_EQ(comparison.points[0].paired->verdict, ComparisonVerdict::inconclusive);
+  EXPECT_EQ(comparison.points[1].paired->verdict, ComparisonVerdict::equivalent);
+  EXPECT_EQ(comparison.verdict, ComparisonVerdict::inconclusive);
+  EXPECT_EQ(as_decided(comparison).points[0].verdict, ComparisonVerdict::inconclusive);
 }
 
 TEST(PairedRatio, DecidesTheComparison) {

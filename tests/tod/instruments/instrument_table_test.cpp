@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Instruments as data: their words, their ways (TCP, serial port, VXI-11), and hostile ones.
 #include "tod/instruments/instrument_table.h"
 
@@ -14,8 +15,8 @@
 #include "bench/plan/instrument_description.h"
 #include "sim_devices/lab/instruments/black_body.h"
 #include "sim_devices/lab/instruments/plate_stage.h"
-#include "sim_devices/lab/instruments/scpi_lines.h"
 #include "tests/support/source_file.h"
+#include "tests/tod/instruments/scpi_lines.h"
 #include "tests/tod/measurement/fake_clock.h"
 #include "tod/instruments/instrument_check.h"
 #include "tod/instruments/onc_rpc.h"
@@ -362,7 +363,7 @@ TEST(InstrumentCheckTest, EmulatedInstrumentsPassWithTheirCommands) {
     for (const auto& step : check->steps) EXPECT_EQ(step.outcome, StepOutcome::answered) << step.name << step.said;
   }
   EXPECT_EQ(step_of(*place, "plates").said, "a, b");
-  EXPECT_EQ(step_of(*heat, "command of a difference").sent, "SOUR:TEMP:DIFF 0.0000");
+  EXPECT_EQ(step_of(*heat, "difference command").sent, "SOUR:TEMP:DIFF 0.0000");
 }
 
 TEST(InstrumentCheckTest, SaysEachStepThatIsAnsweredWrongly) {
@@ -385,7 +386,7 @@ TEST(InstrumentCheckTest, SaysEachStepThatIsAnsweredWrongly) {
     EXPECT_EQ(step_of(*check, "limits").outcome, StepOutcome::failed) << "lowest and highest are the same";
     EXPECT_EQ(step_of(*check, "set-point").outcome, StepOutcome::answered);
     EXPECT_EQ(step_of(*check, "measured difference").outcome, StepOutcome::failed) << temperature;
-    EXPECT_EQ(step_of(*check, "temperature of the plate").outcome, StepOutcome::answered) << "after a new connection";
+    EXPECT_EQ(step_of(*check, "plate temperature").outcome, StepOutcome::answered) << "after a new connection";
     EXPECT_EQ(step_of(*check, "settled").outcome, StepOutcome::failed);
   }
 }
@@ -443,8 +444,8 @@ TEST(InstrumentCheckTest, TwoAxesWithCommandsOfTheirOwn) {
 
   ASSERT_TRUE(check) << check.error().message;
   EXPECT_TRUE(check->passed());
-  EXPECT_EQ(step_of(*check, "place measured").said, "1.500, -0.251 mm");
-  EXPECT_EQ(step_of(*check, "command of a place").sent, "1PA1500.0; 2PA-251.0");
+  EXPECT_EQ(step_of(*check, "measured position").said, "1.500, -0.251 mm");
+  EXPECT_EQ(step_of(*check, "position command").sent, "1PA1500.0; 2PA-251.0");
 }
 
 }  // namespace

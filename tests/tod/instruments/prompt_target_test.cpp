@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/prompt_target.h"
 
 #include <gmock/gmock.h>
@@ -9,8 +10,8 @@
 #include <sstream>
 #include <thread>
 
+#include "acquisition/base/descriptor.h"
 #include "tests/tod/measurement/fake_clock.h"
-#include "tod/instruments/descriptor.h"
 #include "tod/instruments/operator_terminal.h"
 
 namespace todbench {
@@ -63,9 +64,9 @@ TEST_F(PromptTargetTest, TheFirstPromptStatesEverything) {
   EXPECT_FALSE(hand->capabilities().sets_shift);
   EXPECT_EQ(said(),
             "Please:\n"
-            "  - put in plate 'coarse', as drawn, front to the camera\n"
-            "  - set the black body to +2.000 K against the plate and wait until it is stable\n"
-            "Enter when done, q to stop: ");
+            "  - insert plate 'coarse', as drawn, front to the camera\n"
+            "  - set the black body to +2.000 K relative to the plate and wait until it is stable\n"
+            "Press Enter when done, or type q to stop: ");
 }
 
 TEST_F(PromptTargetTest, LaterPromptsAskOnlyForWhatChanged) {
@@ -76,7 +77,7 @@ TEST_F(PromptTargetTest, LaterPromptsAskOnlyForWhatChanged) {
 
   state.delta_t_k = -0.5;
   ASSERT_TRUE(hand->present(state, {}));
-  EXPECT_THAT(said(), AllOf(HasSubstr("-0.500 K"), Not(HasSubstr("put in")), Not(HasSubstr("remount"))));
+  EXPECT_THAT(said(), AllOf(HasSubstr("-0.500 K"), Not(HasSubstr("insert")), Not(HasSubstr("remount"))));
 
   state.mounting = Mounting::mirrored_horizontally;
   ASSERT_TRUE(hand->present(state, {}));
@@ -84,7 +85,7 @@ TEST_F(PromptTargetTest, LaterPromptsAskOnlyForWhatChanged) {
 
   state.shift_mm = {0.5, -0.25};
   ASSERT_TRUE(hand->present(state, {}));
-  EXPECT_THAT(said(), AllOf(HasSubstr("slightly, about 0.5 mm right and 0.2 mm up"), Not(HasSubstr("remount"))));
+  EXPECT_THAT(said(), AllOf(HasSubstr("slightly, by about 0.5 mm right and 0.2 mm up"), Not(HasSubstr("remount"))));
 }
 
 TEST_F(PromptTargetTest, TheSameStateAgainAsksNothing) {
@@ -109,7 +110,7 @@ TEST_F(PromptTargetTest, QStopsAndTheNextPromptStatesEverythingAgain) {
   EXPECT_EQ(stopped.error().code, ErrorCode::interrupted);
   said();
   ASSERT_TRUE(hand->present(hotter, {}));
-  EXPECT_THAT(said(), HasSubstr("put in plate 'coarse'"));
+  EXPECT_THAT(said(), HasSubstr("insert plate 'coarse'"));
 }
 
 TEST_F(PromptTargetTest, AnyOtherAnswerIsAskedAgainAndTheEndOfInputIsAnError) {

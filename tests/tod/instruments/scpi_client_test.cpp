@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/instruments/scpi_client.h"
 
 #include <arpa/inet.h>
@@ -93,7 +94,8 @@ TEST(ScpiClientTest, QueriesAndCommandsReportWhatTheInstrumentRefuses) {
   ASSERT_FALSE(refused_command);
   ASSERT_FALSE(refused_query);
   EXPECT_EQ(refused_command.error().code, ErrorCode::invalid_input);
-  EXPECT_THAT(refused_query.error().message, HasSubstr("STOP?: the instrument refuses: '-113,\"Undefined header\"'"));
+  EXPECT_THAT(refused_query.error().message,
+              HasSubstr("STOP?: rejected by the instrument: '-113,\"Undefined header\"'"));
   EXPECT_THAT(client.query_numbers("VAL?", 2, {}).value(), ElementsAre(1.5, -2000)) << "still in step";
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The target of a real bench against the emulated instruments, over loopback, with a time base that tests move.
 #include "tod/instruments/scpi_target.h"
 
@@ -236,7 +237,7 @@ TEST_F(ScpiTargetTest, AnInstrumentThatComesBackIsUsedAgainAndAnotherInItsPlaceI
 
   restart_as("BB-0002");
   EXPECT_EQ(bench->present(state, {}).error().code, ErrorCode::disconnected);
-  EXPECT_THAT(bench->present(state, {}).error().message, HasSubstr("serial BB-0001, is now todbench"));
+  EXPECT_THAT(bench->present(state, {}).error().message, HasSubstr("serial BB-0001 and is now todbench"));
 }
 
 TEST_F(ScpiTargetTest, ARefusalInMidRunIsTheInstrumentsAndNoMistakeOfThePlan) {
@@ -256,7 +257,7 @@ TEST_F(ScpiTargetTest, ARefusalInMidRunIsTheInstrumentsAndNoMistakeOfThePlan) {
 
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::disconnected);
-  EXPECT_THAT(refused.error().message, HasSubstr("SOUR:TEMP:DIFF 2.0000: the instrument refuses: '-222"));
+  EXPECT_THAT(refused.error().message, HasSubstr("SOUR:TEMP:DIFF 2.0000: rejected by the instrument: '-222"));
 }
 
 TEST_F(ScpiTargetTest, ATemperatureThatNothingCanHaveIsRefused) {
@@ -274,7 +275,7 @@ TEST_F(ScpiTargetTest, ATemperatureThatNothingCanHaveIsRefused) {
     ASSERT_FALSE(presented) << plate_k;
     EXPECT_EQ(presented.error().code, ErrorCode::disconnected);
     EXPECT_THAT(presented.error().message, HasSubstr("MEAS:TEMP:PLAT? answered"));
-    EXPECT_THAT(presented.error().message, HasSubstr("K, which no plate can have"));
+    EXPECT_THAT(presented.error().message, HasSubstr("K, which is not a possible temperature"));
   }
 }
 

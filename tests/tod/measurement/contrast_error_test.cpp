@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contrasts measured in several set-ups before the same detectors.
 #include "tod/measurement/contrast_error.h"
 
@@ -6,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "acquisition/core/distributions.h"
-#include "acquisition/core/rng.h"
+#include "acquisition/base/distributions.h"
+#include "acquisition/base/rng.h"
 #include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a TOD measurement can tell apart: a twin, twice the noise, a tenth more blur.
 #include <gmock/gmock.h>
 

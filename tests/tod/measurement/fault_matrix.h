@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every reason of the integrity gate, injected at 0.1, 1 and 5 % into a measurement: the answers are those of an
 // undisturbed run over the same exposures, bit for bit, the counts are right and no trial is missing.
 #pragma once

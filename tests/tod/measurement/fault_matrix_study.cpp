@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Each reason of the integrity gate alone, at three rates: 27 measurements and as many undisturbed ones.
 #include "tests/tod/measurement/fault_matrix.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // All reasons of the integrity gate mixed, at three rates.
 #include "tests/tod/measurement/fault_matrix.h"
 

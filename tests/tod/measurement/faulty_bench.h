@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A small bench on a simulated camera whose frames pass through a fault.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An emulated camera runs freely, so which exposures a measurement sees differs from run to run: these classes take
 // note of them and let the simulated camera expose the same.
 #pragma once
@@ -12,7 +13,7 @@
 #include <mutex>
 #include <vector>
 
-#include "acquisition/core/host_clock.h"
+#include "acquisition/base/host_clock.h"
 #include "sim_devices/sensor/simulated_camera.h"
 #include "tod/presentation/trial.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measurement/geometry.h"
 
 #include <gmock/gmock.h>
@@ -60,8 +61,8 @@ TEST(Geometry, SaysAFewMisfitsAndHowManyMoreThereAre) {
   const Misfit misfit = PlateBeyondPicture{"p", {400, 300}, {800, 600}, 2, {640, 480}};
 
   EXPECT_EQ(sentences({misfit}, 3),
-            "plate p: its 400 x 300 mm are 800 x 600 pixels at 2.00 m, the picture has 640 x 480");
-  EXPECT_THAT(sentences({misfit, misfit, misfit}, 1), ::testing::EndsWith("640 x 480; and 2 more"));
+            "plate p: its 400 x 300 mm cover 800 x 600 pixels at 2.00 m, but the picture has 640 x 480 pixels");
+  EXPECT_THAT(sentences({misfit, misfit, misfit}, 1), ::testing::EndsWith("640 x 480 pixels; and 2 more"));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Frames of a simulated camera behind a gain control of eight bits, and how often the contrast that their large
 // triangles show holds the truth.
 #pragma once
@@ -5,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "sim_devices/prediction/contrast_response.h"
 #include "tests/tod/measurement/faulty_bench.h"
 #include "tod/measurement/grey_levels.h"

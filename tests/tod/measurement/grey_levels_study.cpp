@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How often the contrast of the large triangles of a frame in grey levels holds the truth.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cameras with gain control: contrasts in grey levels from the large triangles of the frame that is judged.
 #include "tod/measurement/grey_levels.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A camera whose frames are damaged on the way: faults at chosen exposures, and a book of what was done.
 #pragma once
 
@@ -7,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/base/rng.h"
 #include "acquisition/core/byte_order.h"
 #include "acquisition/core/frame_source.h"
 #include "acquisition/core/integrity_gate.h"
-#include "acquisition/core/rng.h"
 #include "tests/support/swapped_bytes.h"
 
 namespace todbench::test {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A known answer: a sensor that has nothing but noise, an ideal observer, and a threshold in closed form. The 95 %
 // interval of the whole chain (frames, registration, contrast, trials, fit, clusters) must contain it as often as it
 // says.
@@ -8,8 +9,8 @@
 #include <cmath>
 #include <thread>
 
-#include "hvs/observer/ideal_observer.h"
 #include "hvs/observer/known_position.h"
+#include "tests/support/ideal_observer.h"
 #include "tests/tod/measurement/measurement_bench.h"
 #include "tod/psychometric/tod_curve.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The measurement on a bench with a hand only.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The measurement when something goes wrong.
 #include <gmock/gmock.h>
 
@@ -200,6 +201,22 @@ TEST(MeasurementFaults, TheWrongPolarityIsRefused) {
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, ErrorCode::calibration);
   EXPECT_THAT(result.error().message, testing::HasSubstr("polarity"));
+}
+
+TEST(MeasurementFaults, ACameraThatSendsEachExposureTwiceIsMeasuredByItsExposures) {
+  const SmallBench bench;
+  cv::Mat1w last;
+  DisturbedSource source(bench.camera(), [&](std::uint64_t index, Frame frame) -> Result<Frame> {
+    if (index % 2 == 1) frame.counts = last;
+    last = frame.counts;
+    return frame;
+  });
+
+  const auto result = bench.run(source, test::options_of(bench));
+
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_FALSE(result->ended_by.has_value());
+  EXPECT_THAT(result->notes, testing::Contains(testing::HasSubstr("sends each exposure 2 times")));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Corrections of the non-uniformity in a measurement: commanded, left to the camera, refused.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What becomes of the camera while the target settles: a second thread takes its frames.
 #include <gmock/gmock.h>
 
@@ -46,7 +47,7 @@ TEST(MeasurementFaults, NoFrameIsLeftToAQueueWhileTheTargetSettles) {
   });
   SlowTarget target(scene_target(bench.holder, bench.plates), frames);
   const MeasurementOptions options = test::options_of(bench);
-  bench.host->meanwhile = FramesMeanwhile::take;
+  bench.host->meanwhile = FramesWhilePresenting::take;
   std::vector<std::int64_t> asked;
   bench.host->asked = [&](std::int64_t calls) {
     asked.push_back(calls);
@@ -75,7 +76,7 @@ TEST(MeasurementFaults, ACameraThatIsLostWhileTheTargetSettlesIsALostCamera) {
   });
   SlowTarget target(scene_target(bench.holder, bench.plates), frames, last);
   const MeasurementOptions options = test::options_of(bench);
-  bench.host->meanwhile = FramesMeanwhile::take;
+  bench.host->meanwhile = FramesWhilePresenting::take;
   int losses = 0;
   bench.host->bring_back = [&](std::stop_token) -> Result<void> {
     ++losses;
@@ -122,7 +123,7 @@ TEST(MeasurementFaults, ACameraThatIsLostWhileTheTargetSettlesEndsTheWaitForTheT
     return frame;
   });
   const MeasurementOptions options = test::options_of(bench);
-  bench.host->meanwhile = FramesMeanwhile::take;
+  bench.host->meanwhile = FramesWhilePresenting::take;
   MeasurementListener listener;
   std::vector<std::string> losses;
   listener.on_lost = [&](const Error& why) { losses.push_back(why.message); };
@@ -147,7 +148,7 @@ TEST(MeasurementFaults, AStopRequestWhileTheTargetSettlesIsNoLossOfTheCamera) {
     return frame;
   });
   const MeasurementOptions options = test::options_of(bench);
-  bench.host->meanwhile = FramesMeanwhile::take;
+  bench.host->meanwhile = FramesWhilePresenting::take;
 
   const auto result = bench.run(source, target, options, {}, stop.get_token());
 

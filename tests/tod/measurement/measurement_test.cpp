@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The measurement on simulated cameras: agreement with the direct estimate, contrast, phases, repetition.
 #include "tod/measurement/measurement.h"
 

@@ -1,7 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Targets that the camera's counts cannot show, and pixels that always read full scale.
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "tests/tod/measurement/faulty_bench.h"
 #include "tod/psychometric/tod_curve.h"
@@ -144,6 +148,29 @@ TEST(TimeCorrelation, OfMeasuredFramesIsThatOfTheSensor) {
 
   EXPECT_NEAR(correlation_at(0), 0, 0.01);
   EXPECT_NEAR(correlation_at(0.8), 0.8, 0.02);
+}
+
+TEST(SetUpPicture, IsShownOncePerContrastWithItsNoiseAndItsAnswerDividesContrasts) {
+  test::SmallBench bench;
+  bench.spec.column_noise_k = 0.07;
+  bench.spec.row_noise_k = 0.03;
+  bench.model = std::make_shared<const SensorModel>(bench.spec, full_plan(bench.spec, {}, {}), Accuracy::draft(), 1);
+  MeasurementOptions options = test::options_of(bench);
+  std::vector<cv::Vec2d> variances;
+  options.learn_response = [&](const SetUpPicture& found) -> std::map<std::string, double> {
+    variances.emplace_back(found.picture.row_variance_k2.value_or(-1), found.picture.column_variance_k2.value_or(-1));
+    return {{found.state.plate, 0.5}};
+  };
+
+  const auto result = bench.run(*bench.camera(), options);
+
+  ASSERT_TRUE(result) << result.error().message;
+  ASSERT_EQ(variances.size(), 2u);
+  // 15 differences of 240 rows and 320 columns that share frames: sqrt(3 / 3600) and sqrt(3 / 4800) of the variance.
+  EXPECT_NEAR(variances[0][0], 0.0009, 5 * 0.0009 * 0.029);
+  EXPECT_NEAR(variances[0][1], 0.0049, 5 * 0.0049 * 0.025);
+  ASSERT_FALSE(result->contrasts.empty());
+  EXPECT_NEAR(result->contrasts.front().delta_t_k / 16.9, 2, 0.1);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Groups of frames of a camera whose drift is known, and how often the intervals of the law hold it.
 #pragma once
 
@@ -6,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tod/measures/drift_law.h"
 
 namespace todbench::testing {

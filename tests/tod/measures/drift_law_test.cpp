@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The law of a camera's drift after a correction, against drifts that are known.
 #include "tod/measures/drift_law.h"
 

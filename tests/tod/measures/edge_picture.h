@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of slanted edges whose MTF is known exactly.
 #pragma once
 
@@ -5,7 +6,7 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 
 namespace todbench::test {
 

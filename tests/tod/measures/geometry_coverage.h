@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Plates in pictures of a lens whose scale, tilt and distortion are known, and how often their intervals hold them.
 #pragma once
 

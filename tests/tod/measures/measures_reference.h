@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The reference numbers of physical measures, by case.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Signal transfer, noise of pixels, bad pixels, rounding and bars against the reference numbers.
 #include <gmock/gmock.h>
 
@@ -5,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
+#include "tests/tod/measures/bar_modulation.h"
 #include "tests/tod/measures/measures_reference.h"
 #include "tod/measures/bad_pixels.h"
-#include "tod/measures/bar_modulation.h"
 #include "tod/measures/pixel_noise.h"
 #include "tod/measures/signal_transfer.h"
 

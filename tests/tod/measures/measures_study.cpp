@@ -1,11 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coverage of the intervals of single measures over 200 seeds.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 
 #include "tests/tod/measures/edge_picture.h"
 #include "tests/tod/measures/simulated_cube.h"
+#include "tests/tod/measures/tail_coverage.h"
 #include "tod/measures/slanted_edge.h"
 
 namespace todbench {
@@ -76,6 +81,24 @@ TEST(MeasuresStudy, IntervalsOfTheEdgeHoldTheTruth) {
       }
       std::printf("\n");
     }
+  }
+}
+
+// TODBENCH_STUDY_RUNS: pictures (512 without it).
+TEST(MeasuresStudy, IntervalsOfEdgesWithTailsHoldTheTruth) {
+  const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
+  const std::uint64_t pictures = asked != nullptr ? std::strtoull(asked, nullptr, 10) : test::tailed_pictures;
+
+  const test::TailCoverage found = test::tail_coverage(0, pictures - 1);
+
+  std::printf("%d pictures, %d refused\n", found.edges, found.refused);
+  EXPECT_EQ(found.refused, 0);
+  for (std::size_t k = 0; k < test::TailCoverage::frequencies.size(); ++k) {
+    const auto mean = [&](const test::TailCoverage::Each& sum) { return sum[k] / found.edges; };
+    std::printf("f %.2f: within %.3f, error %+.4f, interval -%.4f +%.4f, without a low end %.3f\n",
+                test::TailCoverage::frequencies[k], mean(found.inside), mean(found.error), mean(found.below),
+                mean(found.above), mean(found.open));
+    EXPECT_GE(mean(found.inside), 0.95 - 4 * std::sqrt(0.05 * 0.95 / found.edges)) << k;
   }
 }
 

@@ -1,4 +1,5 @@
-// Coverage of IFOV and distortion over 200 seeds: the figures of docs/physical-measures.md.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Coverage of IFOV and distortion over 200 seeds: the figures of docs/validation/physical-measures.md.
 #include <fmt/format.h>
 
 #include "tests/tod/measures/geometry_coverage.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // IFOV and distortion from the triangles of a plate, against lenses whose truth is known.
 #include "tod/camera_measures/plate_geometry.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Cubes of frames with known noise components.
 #pragma once
 
@@ -5,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tod/measures/three_d_noise.h"
 
 namespace todbench::test {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/slanted_edge.h"
 
 #include <gmock/gmock.h>
@@ -148,12 +149,12 @@ TEST(SlantedEdge, RefusesAnEdgeThatIsOutOfRange) {
 }
 
 TEST(SlantedEdge, RefusesAPictureWithoutAnEdge) {
-  EXPECT_THAT(refused(cv::Mat1d(80, 41, 7.0)), HasSubstr("every pixel is the same"));
+  EXPECT_THAT(refused(cv::Mat1d(80, 41, 7.0)), HasSubstr("all pixels have the same value"));
   EXPECT_THAT(refused(EdgePicture().noisy(0.6, 1)), HasSubstr("edge"));
   EXPECT_THAT(refused(cv::Mat1d(9, 41, 7.0)), HasSubstr("smaller"));
   cv::Mat1d broken = EdgePicture().picture();
   broken(3, 3) = std::nan("");
-  EXPECT_THAT(refused(broken), HasSubstr("no number"));
+  EXPECT_THAT(refused(broken), HasSubstr("not finite"));
 }
 
 TEST(SlantedEdge, RefusesABentEdge) {

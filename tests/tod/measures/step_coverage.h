@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Steps before a camera whose time constant is known: how often its interval is right.
 #pragma once
 

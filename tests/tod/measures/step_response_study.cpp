@@ -1,4 +1,5 @@
-// Coverage of the time constant of steps over 200 seeds: the figures of docs/physical-measures.md.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Coverage of the time constant of steps over 200 seeds: the figures of docs/validation/physical-measures.md.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

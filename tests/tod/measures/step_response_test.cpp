@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The time constant of steps, against time constants that are known.
 #include "tod/measures/step_response.h"
 

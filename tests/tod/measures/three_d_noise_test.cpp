@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/measures/three_d_noise.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // 100 simulated people of known parameters, and people of another kind.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // An observer fitted to people, short form of observer_fit_study.cpp.
 #include <gmock/gmock.h>
 

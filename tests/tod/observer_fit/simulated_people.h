@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // People who are template observers of known parameters, and the patches that they answer.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Test pictures: areas are exact and the truth is what was drawn.
 #include "tod/pattern/test_picture.h"
 

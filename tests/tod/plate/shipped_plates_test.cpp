@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The plates that come with the program: what they promise in their comments.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/plate/target_plate.h"
 
 #include <gmock/gmock.h>
@@ -129,7 +130,7 @@ TEST(TargetPlate, ARepeatedNameIsRefused) {
   TargetPlate plate = small_plate();
   plate.triangles[2].name = plate.triangles[0].name;
 
-  EXPECT_THAT(refusal(plate), HasSubstr("two cut-outs are named \"a\""));
+  EXPECT_THAT(refusal(plate), HasSubstr("two cut-outs have the name \"a\""));
 }
 
 TEST(TargetPlate, ATriangleMayReachTheEdgeOfThePlateButNotLeaveIt) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/clustered_variance.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 
 namespace todbench {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What an error of a contrast does to the acuity, and what its scatter does to a ratio.
 #include "tod/psychometric/contrast_slope.h"
 
@@ -7,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tod/comparison/comparison.h"
 
 namespace todbench {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How often the interval of a simulated experiment contains the truth.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Graded answers: the same function, with intervals from two kinds of clusters.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Graded answers of a bench whose true function is no Weibull, and the table of its twin.
 #pragma once
 
@@ -6,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/tod/psychometric/psychometric_support.h"
 #include "tod/psychometric/psychometric_fit.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Coverage of every shipped design with enough replicates to see one per cent. Long form of psychometric_coverage_test.
 #include <gtest/gtest.h>
 

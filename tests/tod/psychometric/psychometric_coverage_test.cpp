@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A 95 % interval must contain the truth in 95 % of experiments: short form of the coverage study.
 #include <gtest/gtest.h>
 

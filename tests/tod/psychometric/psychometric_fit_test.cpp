@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Fits against reference cases computed by two other methods, against a second implementation of the likelihood, and
 // every verdict.
 #include "tod/psychometric/psychometric_fit.h"
@@ -184,6 +185,7 @@ TEST(PsychometricFit, SaysFlatOrDecreasingWhereTheSlopeIsAtItsLowerBound) {
   EXPECT_EQ(fit->verdict, FitVerdict::flat_or_decreasing);
   EXPECT_FALSE(fit->usable());
   EXPECT_FALSE(fit->se_ln_threshold);
+  EXPECT_FALSE(fit->threshold);
   EXPECT_NEAR(fit->slope.value(), 0.1, 1e-9);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Data on which a search, an interval or double precision itself comes to its end.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The arithmetic of the fit: reference values of the logarithms, derivatives, and data that describe the same thing in
 // another way.
 #include <gtest/gtest.h>

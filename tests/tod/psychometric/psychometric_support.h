@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shared by the tests of the statistics: reference cases, simulated observers, and a likelihood written a second time.
 #pragma once
 
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/support/source_file.h"
 #include "tod/psychometric/psychometric_fit.h"
 

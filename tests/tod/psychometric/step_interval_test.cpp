@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The interval of a step whose gap is narrower than the steepest function of the domain, in clustered data.
 #include <gtest/gtest.h>
 

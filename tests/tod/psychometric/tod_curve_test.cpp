@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Trials in, TOD curve out.
 #include "tod/psychometric/tod_curve.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Range models, MRTD formula and sampled bars against closed forms and the reference numbers.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Identification range against closed forms.
 #include "tod/range/range_prediction.h"
 #include "tod/psychometric/acuity.h"
@@ -67,7 +68,7 @@ TEST(RangePrediction, ATargetLineThatNeverMeetsTheCurveHasNoRangeButABoundAndARe
 
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_FALSE(found->r75_m.has_value());
-  EXPECT_NE(found->reason.find("does not meet the TOD curve"), std::string::npos) << found->reason;
+  EXPECT_NE(found->reason.find("does not cross the TOD curve"), std::string::npos) << found->reason;
   EXPECT_NEAR(found->r75_ci95_m.low.value(), 1000 * std::log(10.0), 1e-6);
   EXPECT_FALSE(found->r75_ci95_m.high.has_value());
   for (const auto& point : found->curve) {

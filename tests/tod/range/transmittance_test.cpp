@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tables of transmittance, and the range of a TOD curve behind them.
 #include "tod/range/transmittance.h"
 
@@ -109,7 +110,7 @@ TEST(RangeBehindAir, ATableThatEndsBeforeTheRangeGivesALowerLimit) {
 
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_FALSE(found->r75_m);
-  EXPECT_NE(found->reason.find("ends at 50 m"), std::string::npos) << found->reason;
+  EXPECT_NE(found->reason.find("at 50 m, the end of the table"), std::string::npos) << found->reason;
   EXPECT_DOUBLE_EQ(found->r75_ci95_m.low.value(), 50);
 }
 

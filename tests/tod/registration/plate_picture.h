@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of plates with known truth, made without any code of the registration: area coverage by counting points on a
 // fine grid, then a Gaussian for the optics and a box for the detector.
 #pragma once
@@ -11,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/core/rng.h"
+#include "acquisition/base/rng.h"
 #include "tests/support/source_file.h"
 #include "tod/plate/target_plate.h"
 

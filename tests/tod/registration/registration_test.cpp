@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/registration/registration.h"
 
 #include <gmock/gmock.h>
@@ -272,7 +273,7 @@ TEST(Registration, RefusesAPlateWhoseTrianglesPointElsewhere) {
 
   const auto found = register_plate(plate_picture(other, spec), plate, planned_plate());
 
-  EXPECT_THAT(refusal(found), HasSubstr("only 0 of 8 point as they should"));
+  EXPECT_THAT(refusal(found), HasSubstr("only 0 of 8 point as stated"));
 }
 
 TEST(Registration, ReportsBothScalesWhenTheyContradictEachOther) {
@@ -284,7 +285,7 @@ TEST(Registration, ReportsBothScalesWhenTheyContradictEachOther) {
 
     const std::string message = refusal(register_plate(plate_picture(plate, spec), plate, planned_plate()));
 
-    EXPECT_THAT(message, AllOf(HasSubstr("another scale than planned"), HasSubstr("give 0.3821 px/mm"))) << factor;
+    EXPECT_THAT(message, AllOf(HasSubstr("does not have the planned scale"), HasSubstr("give 0.3821 px/mm"))) << factor;
     ASSERT_THAT(message, AllOf(HasSubstr("shows "), HasSubstr("a deviation of ")));
     const auto number_after = [&](const std::string& words) {
       return std::stod(message.substr(message.find(words) + words.size()));
@@ -303,7 +304,7 @@ TEST(Registration, RefusesARotationBeyondItsLimitWithTheAngle) {
 
   const auto found = register_plate(plate_picture(plate, spec), plate, planned_plate());
 
-  EXPECT_THAT(refusal(found), HasSubstr("is rotated by 14.0 degrees where 10.0 are allowed"));
+  EXPECT_THAT(refusal(found), HasSubstr("is rotated by 14.0 degrees; at most 10.0 degrees are allowed"));
 }
 
 TEST(Registration, FindsNoPlateInAnEmptyPictureOrInNoise) {
@@ -326,7 +327,7 @@ TEST(Registration, RefusesAPlateThatIsPartlyOutOfThePicture) {
 
     const std::string message = refusal(register_plate(plate_picture(plate, spec), plate, planned_plate()));
 
-    EXPECT_THAT(message, AllOf(HasSubstr("is partly out of the picture of 160 x 140 pixels: 5 of 20 triangles"),
+    EXPECT_THAT(message, AllOf(HasSubstr("is partly outside the picture of 160 x 140 pixels: 5 of 20 triangles"),
                                HasSubstr("would be at (")));
   }
 }

@@ -1,4 +1,6 @@
-// Placement by the Psi method over many runs: efficiency and coverage, printed as the table of docs/uncertainty.md.
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Placement by the Psi method over many runs: efficiency and coverage, printed as the table of
+// docs/validation/coverage.md.
 #include <cstdio>
 
 #include "tests/tod/schedule/psi_support.h"

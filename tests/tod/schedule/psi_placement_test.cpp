@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/schedule/psi_placement.h"
 
 #include "tests/tod/schedule/psi_support.h"

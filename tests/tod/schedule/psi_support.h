@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Runs of the Psi method on a simulated observer: how good its placement is, and whether the intervals hold.
 #pragma once
 

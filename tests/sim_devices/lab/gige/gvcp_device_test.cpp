@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The emulated GigE Vision camera without its sockets: control messages, packets, faults, pictures.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every fault of the way from a camera, in a measurement over the wire: what is measured is the same as without the
 // fault.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Each fault of the way from a camera at 5 %, in a measurement over the wire.
 #include "tests/sim_devices/lab/gige/gvsp_fault_matrix.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A measurement over the wire whose every frame is known: what was exposed, what arrived, what was used.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The emulated instruments over loopback, seen through a plain socket.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>

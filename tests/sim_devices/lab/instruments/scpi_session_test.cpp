@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/instruments/scpi_session.h"
 
 #include <gmock/gmock.h>

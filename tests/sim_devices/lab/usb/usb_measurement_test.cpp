@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A measurement through an emulated USB camera makes the decisions of the simulated camera for the same exposures.
 #include <gmock/gmock.h>
 

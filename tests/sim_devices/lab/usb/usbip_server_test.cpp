@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The device's side of USB/IP, driven by the commands that the kernel's vhci-hcd sends.
 #include "tests/support/usbip_server.h"
 

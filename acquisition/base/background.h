@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Work in the background that ends before the program does.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+namespace todbench {
+
+/// Runs `work` on a thread of its own. Only the end of the program waits for it, after main and before static objects
+/// are destroyed; so the work must end by itself within seconds. Any thread.
+void start_in_background(std::function<void()> work);
+
+/// The same for work that can be moved but not copied; it is destroyed on its thread after it has run.
+template <typename Work>
+void finish_in_background(Work work) {
+  start_in_background([held = std::make_shared<Work>(std::move(work))]() mutable {
+    (*held)();
+    held.reset();
+  });
+}
+
+}  // namespace todbench

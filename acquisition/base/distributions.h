@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Statistical distributions: the functions of Boost.Math, compiled in one place because their templates take seconds to
+// compile.
+#pragma once
+
+#include <optional>
+
+namespace todbench::distribution {
+
+struct Normal {
+  explicit Normal(double m = 0, double s = 1) : mean(m), sd(s) {}
+  double mean, sd;
+};
+
+/// Student's t.
+struct StudentsT {
+  explicit StudentsT(double freedom) : degrees_of_freedom(freedom) {}
+  double degrees_of_freedom;
+};
+
+struct ChiSquared {
+  explicit ChiSquared(double freedom) : degrees_of_freedom(freedom) {}
+  double degrees_of_freedom;
+};
+
+/// Fisher's F: the ratio of two mean squares.
+struct FisherF {
+  FisherF(double above, double below) : numerator_freedom(above), denominator_freedom(below) {}
+  double numerator_freedom, denominator_freedom;
+};
+
+/// Selects the upper tail, without the cancellation of 1 - p.
+template <class Law>
+struct Complement {
+  Law law;
+  double value;  ///< of the variable in cdf(), a probability in quantile()
+};
+template <class Law>
+[[nodiscard]] Complement<Law> complement(const Law& law, double value) {
+  return {law, value};
+}
+
+/// For the four distributions above. They throw std::domain_error as Boost.Math does: for degrees of freedom that are
+/// not positive or a probability outside 0..1.
+template <class Law>
+[[nodiscard]] double cdf(const Law& law, double x);
+template <class Law>
+[[nodiscard]] double cdf(const Complement<Law>& above);
+template <class Law>
+[[nodiscard]] double quantile(const Law& law, double probability);
+template <class Law>
+[[nodiscard]] double quantile(const Complement<Law>& above);
+[[nodiscard]] double pdf(const Normal& law, double x);
+
+/// Probability above `x` of Student's t; of the standard normal if the degrees of freedom are absent or infinite.
+[[nodiscard]] double tail_above(double x, const std::optional<double>& degrees_of_freedom);
+/// Inverse of tail_above(): the value with `probability` above it.
+[[nodiscard]] double quantile_above(double probability, const std::optional<double>& degrees_of_freedom);
+
+}  // namespace todbench::distribution

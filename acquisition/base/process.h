@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Other programs as child processes, started without a shell. The only place that creates processes.
+#pragma once
+
+#include <sys/types.h>
+
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/base/descriptor.h"
+#include "acquisition/base/result.h"
+
+namespace todbench {
+
+/// Descriptors that become the child's; -1: the child has ours (`at_three`: none). The caller closes its own.
+struct ChildStreams {
+  int input = -1, output = -1, error = -1;
+  int at_three = -1;  ///< becomes descriptor 3
+};
+
+/// Process group of a child: `ours` gets the Ctrl-C of our terminal; `own` can be ended with all its children.
+enum class ChildGroup { ours, own };
+
+/// Starts a program by name or path, with all signals unblocked and SIGPIPE not ignored. Errors: `not_found` with the
+/// name (no such program), `internal`.
+[[nodiscard]] Result<pid_t> start_program(std::vector<std::string> words, const ChildStreams& streams = {},
+                                          ChildGroup group = ChildGroup::ours);
+
+/// Waits for a child. Returns its exit code, or 128 + the number of the signal that ended it. Errors: `internal` (not a
+/// child).
+[[nodiscard]] Result<int> wait_for_program(pid_t process);
+
+struct ProgramRun {
+  int exit_code = 0;   ///< 128 + signal number if a signal ended it
+  std::string output;  ///< at most 1 MiB; empty if it was shown
+};
+
+enum class ProgramOutput {
+  kept,             ///< standard output and standard error
+  kept_but_errors,  ///< standard output; standard error is discarded
+  shown,            ///< on our own output: the program may ask a question
+};
+
+/// Runs a program with our standard input and waits for it. A stop request ends it with SIGTERM. Errors as
+/// start_program().
+[[nodiscard]] Result<ProgramRun> run_program(std::vector<std::string> words, ProgramOutput output,
+                                             const std::stop_token& stop = {});
+
+/// Path of this program.
+[[nodiscard]] std::string own_program();
+
+/// Both ends of a new pipe. A child has an end only if its ChildStreams name it.
+struct Pipe {
+  Descriptor read, write;
+};
+/// Errors: `internal`.
+[[nodiscard]] Result<Pipe> make_pipe();
+
+/// /dev/null, to discard output or to give an empty input.
+[[nodiscard]] Descriptor null_device();
+
+}  // namespace todbench

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Integrity check before a command computes from the frames of a file.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "acquisition/core/integrity_gate.h"
+#include "acquisition/core/moved_picture.h"
+#include "acquisition/core/repeat_cadence.h"
+
+namespace todbench {
+
+/// Judges every frame of a recording of a static scene in order. Repeated frames, gaps and pixels at an end of the
+/// counts are left to the command, which knows their effect on its number.
+class InputGate {
+ public:
+  /// Whether the frame is a valid exposure, new or a repetition of the one before.
+  [[nodiscard]] bool takes(const Frame& frame);
+  /// Call after the last frame. `integrity` if more than 1 % of the frames are damaged. A valid recording has none:
+  /// less than one frame in 10^6 looks byte-swapped, rearranged or equal to an older one by chance.
+  [[nodiscard]] Result<void> verdict() const;
+  /// A sentence about the frames left out of a recording that passes; empty if there are none.
+  [[nodiscard]] std::string note() const;
+  /// A sentence if the camera sends each exposure several times; otherwise empty.
+  [[nodiscard]] std::string cadence() const { return cadence_.sentence(); }
+
+ private:
+  IntegrityGate gate_{IntegrityOptions{}};
+  MovedPicture moved_;
+  std::string how_moved_;
+  std::uint64_t frames_ = 0;
+  std::map<Rejection, std::uint64_t> damaged_;
+  std::uint64_t moved_frames_ = 0;
+  RepeatCadence cadence_;
+};
+
+}  // namespace todbench

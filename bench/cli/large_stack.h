@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A stack that is independent of the limit of the shell.
+#pragma once
+
+#include <functional>
+
+namespace todbench {
+
+/// Calls `main` and returns its result. If the stack limit (`ulimit -s`) is below 1 MiB, `main` runs on a thread with
+/// 8 MiB, and so do later threads. Call it first in main().
+[[nodiscard]] int on_a_large_stack(const std::function<int()>& main);
+
+}  // namespace todbench

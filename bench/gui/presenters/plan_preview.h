@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Predicted cost and uncertainty of a plan.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/plan/loaded_plan.h"
+#include "bench/report/plot.h"
+#include "bench/run/prediction.h"
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+
+/// Expected S75 of the simulated sensor of a plan at a contrast.
+struct ExpectedThreshold {
+  double delta_t_k = 0;
+  std::optional<double> s75_mrad;  ///< empty: no size has a threshold at this contrast
+};
+
+/// Computes the direct estimate at draft accuracy, in about a second. Errors: `interrupted`.
+[[nodiscard]] Result<std::vector<ExpectedThreshold>> expected_thresholds(const LoadedPlan& loaded,
+                                                                         std::stop_token stop);
+/// The same as a curve without intervals.
+[[nodiscard]] TodCurve as_curve(const std::vector<ExpectedThreshold>& expected);
+
+/// Results of predict_plan() and predict_times(), which take some tenths of a second.
+struct PlanForecast {
+  Plan plan;                               ///< the predicted plan
+  std::vector<int> frames;                 ///< per presentation, if the plan leaves them open: with_frames()
+  SensorPlan effects;                      ///< the planner's decisions and reasons
+  std::vector<std::string> warnings;       ///< one sentence each
+  std::vector<ContrastPrediction> twin;    ///< with the phases of the simulation; empty: see `problem`
+  std::vector<ContrastPrediction> camera;  ///< the same with the phases of the target
+  /// Largest half-width of the camera with 1, 2, 4 and 8 frames per presentation; empty for binary answers.
+  std::vector<std::pair<int, double>> by_frames;
+  std::optional<double> twin_s;  ///< to simulate, on one core
+  std::string problem;           ///< why the tolerance cannot be met; empty: it can
+};
+
+/// Errors: `interrupted`. `planner` caches decisions that changes of tolerance and trials do not affect.
+[[nodiscard]] Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner,
+                                            std::stop_token stop = {});
+
+struct PlannedContrast {
+  double delta_t_k = 0;
+  std::optional<double> s75_mrad;                                              ///< of the first tier
+  std::optional<double> camera_uncertainty_percent, twin_uncertainty_percent;  ///< half the 95 % interval of S75
+};
+
+struct PlanPreview {
+  std::uint64_t presentations = 0, trials = 0;  ///< of the camera; expected numbers for an adaptive schedule
+  double bench_s = 0;                           ///< as bench_time() (bench/run/bench_time.h)
+  std::optional<double> twin_s;
+  std::vector<PlannedContrast> contrasts;
+  std::vector<std::pair<double, double>> by_frames;  ///< bench time and uncertainty of PlanForecast::by_frames
+  /// Of the camera, the largest of the contrasts; empty if one has no threshold.
+  [[nodiscard]] std::optional<double> uncertainty_percent() const;
+};
+
+/// Computes the outlook, fast enough to follow a slider. If the number of phases differs from that of the forecast,
+/// ln(1 + uncertainty) is scaled with the root of their ratio and the time of the simulation with the ratio. `seen` may
+/// be null: only counts and bench time.
+[[nodiscard]] PlanPreview outlook(const Plan& plan, const std::vector<TargetPlate>& plates, const PlanForecast* seen,
+                                  double frame_rate_hz);
+
+/// Returns the plan with another tolerance: the fewest phases, 2 to 256, for camera and twin that reach it at every
+/// contrast with a threshold; for an adaptive schedule its requested half-width. `seen` may be null: phases stay.
+[[nodiscard]] Plan with_tolerance(Plan plan, const PlanForecast* seen, double tolerance_percent);
+
+/// One point of the frontier: the cost of an accuracy.
+struct AccuracyPrice {
+  double tolerance_percent = 0;
+  int phases = 0;
+  double bench_s = 0;
+  std::optional<double> twin_s;  ///< empty: the simulation cannot reach it
+};
+
+/// Runs predict_plan() and predict_times() for tolerances from 0.5 to 20 %, without those that 256 phases do not reach.
+/// Returns the points so far if stop is requested. Does not depend on tolerance and phases of the plan.
+[[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanForecast& seen,
+                                                         double frame_rate_hz, EffectPlanner& planner,
+                                                         const std::stop_token& stop);
+
+/// Plots uncertainty against bench time and time of the simulation, also for the same presentations with 1, 2, 4 and 8
+/// frames; the square marks the plan itself.
+[[nodiscard]] Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanPreview& now);
+
+}  // namespace todbench

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Predicted cost and uncertainty of a plan, and its simulated effects.
+#pragma once
+
+#include <QWidget>
+#include <vector>
+
+class QComboBox;
+class QLabel;
+class QSlider;
+class QTableWidget;
+
+namespace todbench {
+
+class PlanPresenter;
+class PlotView;
+
+class PlanPreviewView final : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit PlanPreviewView(PlanPresenter& presenter, QWidget* parent = nullptr);
+
+ signals:
+  /// Reason why a change was rejected; empty: it was accepted.
+  void problem(const QString& sentence);
+
+ private:
+  [[nodiscard]] QWidget* effects_table();
+  void show_outlook();
+  void show_effects();
+
+  PlanPresenter& presenter_;
+  QLabel *tolerance_text_, *cost_, *misfit_;
+  QSlider* tolerance_;
+  QTableWidget *contrasts_, *effects_;
+  PlotView* prices_;
+  std::vector<QComboBox*> choices_;  ///< in the order of the effects
+};
+
+}  // namespace todbench

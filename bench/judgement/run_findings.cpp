@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/judgement/run_findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "bench/plan/joined_uncertainty.h"
+#include "tod/psychometric/contrast_slope.h"
+
+namespace todbench {
+namespace {
+
+/// Returns the relative standard uncertainty of a contrast row; empty for other rows.
+std::optional<double> relative_u(const BudgetRow& row, double contrast_k) {
+  if (kind_of(input_of(row)) != InputKind::contrast || row.sensitivity) return std::nullopt;
+  const BudgetUnit unit = budget_unit(InputKind::contrast, row.unit).value_or(BudgetUnit{});
+  return standard_of(row) * unit.factor / (unit.relative ? 1 : contrast_k);
+}
+
+void add(TodPoint& point, const AdequacyFinding& finding) {
+  if (!point.adequacy) point.adequacy.emplace();
+  point.adequacy->findings.push_back(finding);
+}
+
+AdequacyFinding unfit(FindingKind kind, const ConstancyFigure& figure, std::string sentence) {
+  return {.kind = kind, .value = figure.value, .limit = figure.limit, .sentence = std::move(sentence), .unfit = true};
+}
+
+double percent_of_ln(double ln_ratio) {
+  return 100 * std::expm1(ln_ratio);
+}
+
+std::vector<AdequacyFinding> changes(const RunFacts& run) {
+  std::vector<AdequacyFinding> out;
+  if (const auto change = transfer_change(run.contrasts); change && change->beyond()) {
+    const ConstancyFigure percent{100 * change->value, 100 * change->limit};
+    out.push_back(unfit(FindingKind::transfer_change, percent,
+                        fmt::format("the observed contrast changed by {:+.1f} % from earlier to later set-ups, {:.1f} "
+                                    "% are allowed: the response of the camera or the target changed during the run",
+                                    percent.value, percent.limit)));
+  }
+  if (const auto change = noise_change(run.constancy.noise); change && change->beyond()) {
+    const ConstancyFigure percent{percent_of_ln(change->value), percent_of_ln(change->limit)};
+    out.push_back(unfit(FindingKind::noise_change, percent,
+                        fmt::format("the noise of a pixel changed by {:+.0f} % during the run, {:.0f} % are allowed: "
+                                    "the answers belong to two states of the camera",
+                                    percent.value, percent.limit)));
+  }
+  if (const auto change = correlation_change(run.constancy.noise); change && change->beyond()) {
+    out.push_back(unfit(FindingKind::correlation_change, *change,
+                        fmt::format("the correlation of successive frames changed by {:+.2f} during the run, {:.2f} is "
+                                    "allowed: a temporal filter was switched on or off",
+                                    change->value, change->limit)));
+  }
+  if (const auto& residue = run.constancy.residue; residue && residue->share > residue->limit) {
+    const ConstancyFigure percent{100 * residue->share, 100 * residue->limit};
+    out.push_back(
+        unfit(FindingKind::picture_residue, percent,
+              fmt::format("the first frame after a change of the target still contained {:.1f} % of the difference "
+                          "from the previous picture, {:.1f} % are allowed: increase frames_after_change",
+                          percent.value, percent.limit)));
+  }
+  return out;
+}
+
+}  // namespace
+
+double allowed_contrast_deviation(const Plan& plan, const TodPoint& point, std::size_t contrasts) {
+  if (plan.target.max_contrast_deviation_percent) return *plan.target.max_contrast_deviation_percent / 100;
+  const double contrast_k = std::abs(point.set_delta_t_k);
+  JoinedUncertainty sum;
+  bool stated = false;
+  for (const BudgetRow& row : plan.uncertainty.rows) {
+    const auto u = relative_u(row, contrast_k);
+    if (!u) continue;
+    stated = true;
+    sum.add(*u, row.degrees_of_freedom);
+  }
+  if (!stated) sum.add(assumed_relative_u, std::nullopt);
+  sum.add(reading_relative_u, std::nullopt);
+  if (point.delta_t_se_k > 0 && std::isfinite(point.delta_t_se_k))
+    sum.add(point.delta_t_se_k / contrast_k, freedom_of_contrast(point));
+  return sum.half_width(contrast_false_alarm / 2 / static_cast<double>(std::max<std::size_t>(1, contrasts)));
+}
+
+std::map<double, double> gross_contrast_deviations(const Plan& plan) {
+  std::map<double, double> allowed;
+  if (plan.camera.contrast != ContrastUnit::kelvin) return allowed;
+  for (const double contrast_k : plan.target.delta_t_k) {
+    TodPoint point;
+    point.set_delta_t_k = contrast_k;
+    allowed[contrast_k] =
+        std::max(gross_contrast_deviation, allowed_contrast_deviation(plan, point, plan.target.delta_t_k.size()));
+  }
+  return allowed;
+}
+
+std::optional<double> contrast_deviation(const Plan& plan, const TodPoint& point,
+                                         std::span<const Presentation> presentations) {
+  if (plan.camera.contrast != ContrastUnit::kelvin || !(std::abs(point.set_delta_t_k) > 0)) return std::nullopt;
+  const double air = presentations.empty() ? 1 : presentations.front().air_transmittance.value_or(1);
+  const double deviation = point.delta_t_k / (air * point.set_delta_t_k) - 1;
+  return std::isfinite(deviation) ? std::optional(deviation) : std::nullopt;
+}
+
+std::vector<std::string> add_run_findings(TodCurve& curve, const Plan& plan, const RunFacts& run) {
+  std::vector<AdequacyFinding> of_all = changes(run);
+  of_all.insert(of_all.end(), run.others.begin(), run.others.end());
+  std::vector<std::string> sentences;
+  for (const AdequacyFinding& finding : of_all) sentences.push_back(finding.sentence);
+  for (TodPoint& point : curve.points) {
+    const auto deviation = contrast_deviation(plan, point, run.presentations);
+    const double allowed = allowed_contrast_deviation(plan, point, curve.points.size());
+    if (deviation && std::abs(*deviation) > allowed) {
+      const ConstancyFigure percent{100 * *deviation, 100 * allowed};
+      add(point, unfit(FindingKind::contrast_deviation, percent,
+                       fmt::format("the camera observed {:.3f} K, but {:.3f} K were set ({:+.1f} %, {:.1f} % are "
+                                   "allowed): the target or the temperature scale of the camera is wrong",
+                                   point.delta_t_k, point.set_delta_t_k, percent.value, percent.limit)));
+      sentences.push_back(point.adequacy->findings.back().sentence);
+    }
+    for (const AdequacyFinding& finding : of_all) add(point, finding);
+  }
+  return sentences;
+}
+
+}  // namespace todbench

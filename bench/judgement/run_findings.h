@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Findings about a run: effective contrast against set contrast, and changes of the camera.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/plan/plan.h"
+#include "tod/measurement/contrast_error.h"
+#include "tod/measurement/run_constancy.h"
+#include "tod/presentation/presentation.h"
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+
+/// Relative standard uncertainty of the contrast estimate itself. Estimates are corrected for the blur of the simulated
+/// camera, which differs from that of the real one (up to 2.6 % observed, half-width of a rectangular distribution).
+inline constexpr double reading_relative_u = 0.015;
+/// Relative standard uncertainty of black body and camera scale if the plan has no budget for either: 2 % for each and
+/// 1 % for the emissivity.
+inline constexpr double assumed_relative_u = 0.03;
+/// Probability of a false alarm over all contrasts of a run.
+inline constexpr double contrast_false_alarm = 0.005;
+
+/// Returns the largest relative deviation of the effective contrast from the set contrast without a finding:
+/// max_contrast_deviation of the plan. If absent: Student's t times the combined standard uncertainty of the contrast
+/// rows of the budget, the estimate, and the effective contrast itself. `contrasts`: number of tested contrasts.
+[[nodiscard]] double allowed_contrast_deviation(const Plan& plan, const TodPoint& point, std::size_t contrasts);
+
+/// Relative deviation from which all numbers of a run are meaningless, so the run ends.
+inline constexpr double gross_contrast_deviation = 1.0 / 3;
+/// Returns MeasurementOptions::max_contrast_error: the larger of gross_contrast_deviation and
+/// allowed_contrast_deviation(). Empty for contrasts in grey levels.
+[[nodiscard]] std::map<double, double> gross_contrast_deviations(const Plan& plan);
+
+/// Returns the relative deviation of the effective contrast at this point from the set contrast behind the stated air;
+/// empty without a camera contrast in kelvin.
+[[nodiscard]] std::optional<double> contrast_deviation(const Plan& plan, const TodPoint& point,
+                                                       std::span<const Presentation> presentations);
+
+/// Observations of the run for the points of its curve.
+struct RunFacts {
+  std::span<const Presentation> presentations{};
+  std::span<const ContrastMeasurement> contrasts{};
+  RunConstancy constancy{};
+  std::span<const AdequacyFinding> others{};  ///< about the whole run
+};
+
+/// Adds the findings to the adequacy of the points; each makes its point unfit for a decision. Changes of the camera
+/// apply to all points. Returns the sentences without duplicates.
+std::vector<std::string> add_run_findings(TodCurve& curve, const Plan& plan, const RunFacts& run);
+
+}  // namespace todbench

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compares two models (sensors, observers or packages of stages) with the same scenes and seeds.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/enhance/enhancement.h"
+#include "bench/plan/descriptions.h"
+
+namespace todbench {
+
+/// Kind of the compared models; both sides have the same kind.
+enum class ModelKind { sensor, observer, package };
+[[nodiscard]] std::string_view to_string(ModelKind kind);
+
+/// One side. Only the members of its kind are set.
+struct ComparedModel {
+  ModelKind kind = ModelKind::sensor;
+  std::string name, reference, sha256;
+  SensorSpec sensor{};           ///< with its modules
+  DescribedObserver observer{};  ///< with its module
+  EnhancementPackage package{};  ///< without stages: no package
+  std::vector<std::string> provenance{};
+};
+/// Reads a model by name or file. A file with [[stage]] is a package, one with blur_sigma_samples an observer, any
+/// other a sensor; "none" is a package without stages. Errors: `invalid_input` as the readers of each kind.
+[[nodiscard]] Result<ComparedModel> read_compared_model(const std::string& reference);
+
+/// A key of the two descriptions with different values, as text.
+struct KeyDifference {
+  std::string key, a, b;
+};
+/// B minus A over the whole picture, or the reason of its absence.
+struct PixelDifference {
+  std::string what;
+  std::optional<double> mean_k, rms_k, largest_k;  ///< largest by magnitude, with its sign
+  cv::Point largest_at{};
+  std::string reason;
+};
+/// Modulus of the transfer functions along x. For observers it is that of their blur; absent if either is a program.
+struct TransferPoint {
+  double frequency_per_mrad = 0;
+  double a = 0, b = 0;
+};
+struct ModelComparison {
+  ComparedModel a, b;
+  std::vector<KeyDifference> keys;
+  std::vector<PixelDifference> pixels;
+  std::vector<TransferPoint> transfer;
+  std::optional<double> parts_at_per_mrad;  ///< lowest frequency at which the moduli differ by more than 0.01
+  PackageResult result_a, result_b;
+  std::vector<PairedRatio> ratios;  ///< acuity of B over that of A
+  std::vector<std::string> notes;
+};
+
+/// Simulates the plan with both models: every effect, the seed of the plan, the same presentations. Errors:
+/// `invalid_input` for two kinds, for a plan with modules or an adaptive schedule; those of the simulation of A or B.
+/// The error of a module is in its result instead.
+[[nodiscard]] Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, ComparedModel b,
+                                                     const EnhancementOptions& options, std::stop_token stop);
+
+/// Whether the paired interval excludes 1; empty if there is no interval.
+[[nodiscard]] std::optional<bool> parts(const PairedRatio& ratio);
+
+}  // namespace todbench

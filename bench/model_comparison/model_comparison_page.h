@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The comparison of two models as a page.
+#pragma once
+
+#include "bench/model_comparison/model_comparison.h"
+#include "bench/report/document.h"
+
+namespace todbench {
+
+/// Returns a page with the deviations, curves, transfer functions, differences of pixels and keys, and sources of the
+/// models. Contains no times of day and no hosts.
+[[nodiscard]] Document model_comparison_page(const LoadedPlan& plan, const ModelComparison& comparison);
+
+}  // namespace todbench

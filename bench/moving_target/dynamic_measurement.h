@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures the dynamic TOD: a camera in front of a plate that its stage moves, or the simulated sensor of a plan in
+// front of its scene.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "bench/moving_target/dynamic_acuity.h"
+#include "bench/run/devices.h"
+#include "tod/measurement/moving_measurement.h"
+
+namespace todbench {
+
+/// Acuities at one contrast, by speed; the first is that of the plate at rest.
+struct DynamicContrast {
+  double set_delta_t_k = 0;
+  double delta_t_k = 0;  ///< as the camera observed it, mean over the passes
+  std::vector<DynamicAcuity> speeds;
+};
+
+/// Time constant from the lag of the plate in the pictures, to the right and to the left: lag = tau + exposure / 2.
+struct MeasuredTimeConstant {
+  double time_constant_ms = 0;
+  Interval ci95_ms;
+  double exposure_ms = 0;  ///< stated by the plan's sensor; half of it is subtracted from the lag
+  double offset_px = 0;    ///< error of the registration at rest, eliminated by reversed motion
+  int passes = 0;
+};
+/// Least-squares fit of v lag = v (tau + T / 2) + direction x offset over the moving passes with a known start of the
+/// run; interval by Student's t. Empty: fewer than four of these passes, or only one direction.
+[[nodiscard]] std::optional<MeasuredTimeConstant> time_constant_of(const std::vector<MovingPassRecord>& passes,
+                                                                   double exposure_ms);
+
+struct DynamicMeasurement {
+  MovingMeasurement measured;
+  std::vector<DynamicContrast> contrasts;
+  std::optional<MeasuredTimeConstant> time_constant;
+  std::string camera;
+  double residual_px = 0;  ///< rms deviation of the places in moving passes from the stage's line
+};
+
+/// Callbacks of a measurement, including those of measure_moving().
+struct DynamicListener {
+  MovingListener moving{};
+  std::function<Result<void>(const OpenedBench&)> on_open{};  ///< before the first measurement
+  /// All passes, or those before an early end.
+  std::function<Result<void>(const MovingMeasurement&)> on_measured{};
+};
+
+/// Measures with the camera of the plan, or with its simulated sensor if it has none. Errors: those of open_bench() and
+/// measure_moving(), including early ends; `invalid_input` for plans with modules or contrasts in grey levels.
+[[nodiscard]] Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const DynamicListener& listener,
+                                                         std::stop_token stop);
+
+}  // namespace todbench

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Dynamic TOD of a plan as a session: the folder of a measurement, with the curve of the plate at rest.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+
+#include "bench/moving_target/dynamic_measurement.h"
+#include "bench/run/experiment.h"
+
+namespace todbench {
+
+struct DynamicSession {
+  DynamicMeasurement found;
+  ExperimentOutcome outcome;  ///< of the plate at rest, by its first frames; the limits of the plan apply to it
+};
+
+/// Rejects requests of a plan that do not apply to a moving target: `invalid_input` in one sentence.
+[[nodiscard]] Result<void> check_dynamic_plan(const Plan& plan, const SensorSpec& sensor);
+
+/// Runs measure_dynamic() into a session folder. trials.csv, fits, verdict and report are those of the plate at rest,
+/// `single-frame`; dynamic.json contains all results, moving-trials.csv the answers of all speeds and observers.
+/// Errors: those of measure_dynamic() and check_dynamic_plan(). They leave no folder before the devices are open, later
+/// one marked interrupted with the trials so far.
+[[nodiscard]] Result<DynamicSession> measure_dynamic_session(
+    const LoadedPlan& loaded, const ExperimentOptions& options, const ExperimentListener& listener,
+    const std::function<void(const MovingPassRecord&)>& on_pass, std::stop_token stop);
+
+}  // namespace todbench

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Start and end of a run in its folder, after success and failure.
+#pragma once
+
+#include <string>
+
+#include "bench/run/experiment.h"
+
+namespace todbench {
+
+/// The folder of a run and its listener. Borrows both.
+struct OpenSession {
+  SessionFolder& folder;
+  const ExperimentListener& listener;
+};
+
+/// Reports a phase or a sentence to the log and the listener.
+void phase(SessionFolder& folder, const ExperimentListener& listener, const std::string& text);
+void note(SessionFolder& folder, const ExperimentListener& listener, const std::string& sentence);
+
+/// Creates the folder, reserves disk space for the end, and writes all that is known before the first frame. Sets the
+/// start time in `provenance`. Errors: those of SessionFolder::create(); `io` if the disk has too little space.
+[[nodiscard]] Result<SessionFolder> begin_session(const LoadedPlan& loaded, const ExperimentOptions& options,
+                                                  Provenance& provenance);
+
+/// Ends a session without a curve: leaves a valid folder and returns the reason.
+[[nodiscard]] tl::unexpected<Error> abandon(const OpenSession& open, const Plan& plan, const Provenance& provenance,
+                                            Error error);
+
+/// Writes state, verdict, report and manifest. Returns the first error; later files are still written if there is
+/// space.
+[[nodiscard]] Result<void> close_session(const OpenSession& open, const Provenance& provenance, const Verdict& verdict,
+                                         const std::optional<Error>& ended_by);
+
+/// Last step of every run with a curve: judges it and writes results, state, report and manifest. If the disk refuses,
+/// the session ends early: files that do not fit are left out, and the caller still gets the results.
+[[nodiscard]] ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const OpenSession& open,
+                                          const Provenance& provenance);
+
+}  // namespace todbench

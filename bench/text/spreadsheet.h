@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables for spreadsheets.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace todbench {
+
+/// Returns csv_field() of a text. A text that a spreadsheet would treat as a formula gets a leading apostrophe: it
+/// begins with = + - @ or a control character (after optional blanks) and is not a number.
+[[nodiscard]] std::string spreadsheet_field(std::string_view text);
+
+}  // namespace todbench

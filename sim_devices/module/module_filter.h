@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Filter for the system calls of a module in its own network. Private to the modules.
+#pragma once
+
+namespace todbench {
+
+/// File with a seccomp filter for `bwrap --seccomp`. It forbids UNIX sockets, because their paths lead out of the
+/// module's own network; pairs of sockets are allowed. The caller closes it. -1 if system or processor has no filter.
+[[nodiscard]] int module_filter();
+
+}  // namespace todbench

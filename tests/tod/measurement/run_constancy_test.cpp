@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs whose camera stays as it is, and runs whose camera changes half-way.
+#include "tod/measurement/run_constancy.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <vector>
+
+#include "acquisition/base/rng.h"
+
+namespace todbench {
+namespace {
+
+struct Camera {
+  double place_k = 0.03;    ///< fixed pattern of a triangle's detectors
+  double row_k = 0;         ///< pattern that the triangles of a set-up share
+  double noise_k = 0.01;    ///< of a triangle in an average
+  double second_plate = 1;  ///< what the second plate reads of a contrast: blur of another size
+  double later_gain = 1;    ///< from the second half on
+  std::vector<double> contrasts{16.9, 1.93, 0.23};
+};
+
+/// Two plates in four mountings, four large triangles each.
+std::vector<ContrastMeasurement> run_of(const Camera& camera, std::uint64_t seed) {
+  const RandomStream stream(seed, "constancy");
+  std::uint64_t draw = 0;
+  std::vector<ContrastMeasurement> out;
+  for (int set_up = 0; set_up < 8; ++set_up) {
+    const double shared_k = camera.row_k * stream.normal(draw++);
+    const double gain = (set_up >= 4 ? camera.second_plate : 1) * (set_up >= 4 ? camera.later_gain : 1);
+    std::vector<double> pattern_k;
+    for (int i = 0; i < 4; ++i) pattern_k.push_back(camera.place_k * stream.normal(draw++));
+    for (const double set_k : camera.contrasts) {
+      ContrastMeasurement one{.set_delta_t_k = set_k, .references = {}};
+      for (int i = 0; i < 4; ++i) {
+        const double seen_k =
+            gain * set_k + shared_k + pattern_k[static_cast<std::size_t>(i)] + camera.noise_k * stream.normal(draw++);
+        one.references.push_back(
+            {.value = seen_k, .place_px = {100.0 + 20 * i, set_up % 2 == 0 ? 120.0 : 205.0}, .size_px = 5});
+        one.delta_t_k += seen_k / 4;
+      }
+      out.push_back(one);
+    }
+  }
+  return out;
+}
+
+double share_found(const Camera& camera, int runs) {
+  int found = 0;
+  for (int k = 0; k < runs; ++k) {
+    const auto change = transfer_change(run_of(camera, static_cast<std::uint64_t>(k)));
+    found += change && change->beyond() ? 1 : 0;
+  }
+  return static_cast<double>(found) / runs;
+}
+
+TEST(TransferChange, HasFewFalseAlarmsOfCamerasThatStayAsTheyAre) {
+  constexpr int runs = 2000;
+  EXPECT_LE(share_found({}, runs), 0.01);
+  EXPECT_LE(share_found({.row_k = 0.06}, runs), 0.01);
+  EXPECT_LE(share_found({.second_plate = 1.01}, runs), 0.01);
+  EXPECT_LE(share_found({.contrasts = {16.9}}, runs), 0.01);
+  EXPECT_LE(share_found({.contrasts = {0.23}}, runs), 0.01);
+  EXPECT_LE(share_found({.row_k = 0.03, .contrasts = {0.5}}, runs), 0.01);
+}
+
+TEST(TransferChange, FindsAGainOfATenthMore) {
+  EXPECT_GE(share_found({.later_gain = 1.1}, 200), 0.99);
+  EXPECT_GE(share_found({.row_k = 0.06, .later_gain = 0.9}, 200), 0.99);
+  EXPECT_GE(share_found({.later_gain = 1.1, .contrasts = {16.9}}, 200), 0.99);
+}
+
+TEST(TransferChange, SaysByHowMuch) {
+  const auto change = transfer_change(run_of({.later_gain = 1.1}, 7));
+  ASSERT_TRUE(change);
+  // Pattern cancels; 0.01 K of noise over 16.67 K in 16 triangles on each side: 0.03 %.
+  EXPECT_NEAR(change->value, 0.1, 0.002);
+}
+
+TEST(TransferChange, LeavesOutSetUpsThatSawSmallContrastsAlone) {
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    auto run = run_of({.row_k = 0.06}, seed);
+    // The last set-up saw 0.23 K only, as where a camera was lost or a schedule adapts.
+    run.erase(run.end() - 3, run.end() - 1);
+    const auto change = transfer_change(run);
+    found += change && change->beyond() ? 1 : 0;
+  }
+  EXPECT_LE(found, 20);
+}
+
+TEST(TransferChange, OfOneSetUpIsNotKnown) {
+  const auto run = run_of({}, 1);
+  EXPECT_FALSE(transfer_change(std::span(run).first(3)));
+}
+
+TEST(NoiseChange, ComparesPicturesOfTheSameContrast) {
+  const std::vector<PictureNoise> more_signal{{16.9, 0.080, 0.0}, {0.23, 0.060, 0.0}, {16.9, 0.081, 0.01}};
+  EXPECT_FALSE(noise_change(more_signal)->beyond());
+  EXPECT_FALSE(correlation_change(more_signal)->beyond());
+  const std::vector<PictureNoise> added{{16.9, 0.071, 0.0}, {0.23, 0.071, 0.0}, {16.9, 0.071, 0.0}, {0.23, 0.8, 0.0}};
+  ASSERT_TRUE(noise_change(added)->beyond());
+  EXPECT_NEAR(noise_change(added)->value, std::log(0.8 / 0.071), 1e-9);
+  const std::vector<PictureNoise> filtered{{16.9, 0.071, 0.0}, {16.9, 0.041, 0.5}};
+  EXPECT_TRUE(noise_change(filtered)->beyond());
+  EXPECT_TRUE(correlation_change(filtered)->beyond());
+}
+
+TEST(NoiseChange, OfOnePictureOfEachContrastIsNotKnown) {
+  EXPECT_FALSE(noise_change(std::vector<PictureNoise>{{16.9, 0.07, 0.0}, {0.23, 0.8, 0.0}}));
+}
+
+/// The first frame of an average has `share` of the picture before.
+struct Change {
+  double share = 0, noise_k = 0.07, step_k = 15;
+};
+
+std::optional<PictureResidue> residue_of(const Change& change, std::uint64_t seed) {
+  constexpr int frames = 16, side = 32;
+  const RandomStream stream(seed, "residue");
+  std::uint64_t draw = 0;
+  cv::Mat1d before(side, side, 0.0), first, last, mean(side, side, 0.0);
+  before(cv::Rect(20, 20, 12, 12)) = change.step_k;
+  for (int k = 0; k < frames; ++k) {
+    cv::Mat1d frame(side, side);
+    for (double& pixel : frame) pixel = change.noise_k * stream.normal(draw++);
+    if (k == 0) frame += change.share * before;
+    if (k == 0) first = frame.clone();
+    last = frame;
+    mean += frame / frames;
+  }
+  return picture_residue(before, first, last, mean, change.noise_k);
+}
+
+TEST(PictureResidue, IsTheShareOfTheOldPictureInTheFirstFrame) {
+  const auto residue = residue_of({.share = 0.5}, 1);
+  ASSERT_TRUE(residue);
+  // The mean of 16 frames has a sixteenth of it: 0.5 / (1 - 0.5 / 16). Noise: 0.07 sqrt(2) / (15 * 12) = 0.0006.
+  EXPECT_NEAR(residue->share, 0.5 / (1 - 0.5 / 16), 0.003);
+  EXPECT_GT(residue->share, residue->limit);
+}
+
+TEST(PictureResidue, HasFewFalseAlarmsOfAPictureThatRests) {
+  int found = 0, judged = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    // A small contrast: the error of a share is 0.026.
+    const auto residue = residue_of({.share = 0, .noise_k = 0.07, .step_k = 0.35}, seed);
+    judged += residue ? 1 : 0;
+    found += residue && residue->share > residue->limit ? 1 : 0;
+  }
+  EXPECT_EQ(judged, 2000);
+  EXPECT_LE(found, 20);
+}
+
+TEST(PictureResidue, OfPicturesThatDoNotDifferIsNotKnown) {
+  EXPECT_FALSE(residue_of({.share = 0, .noise_k = 0.07, .step_k = 0.01}, 1));
+}
+
+}  // namespace
+}  // namespace todbench

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opens the transport that an address names.
+#pragma once
+
+#include <memory>
+#include <stop_token>
+
+#include "acquisition/base/result.h"
+#include "tod/instruments/instrument_line.h"
+#include "tod/instruments/instrument_table.h"
+
+namespace todbench {
+
+/// Opens the connection. Errors: `not_found` (no instrument, no access, no serial port, or timeout), `interrupted`.
+[[nodiscard]] Result<std::unique_ptr<InstrumentLine>> open_line(const InstrumentAddress& address,
+                                                                const SerialSettings& serial,
+                                                                InstrumentLine::TimePoint deadline,
+                                                                const std::stop_token& stop);
+
+}  // namespace todbench

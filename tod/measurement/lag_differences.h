@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Noise of a pixel from differences of frames of one scene at several lags.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+namespace todbench {
+
+/// Differences of pictures at three lags: 1, 3/8 and 3/4 of the planned number of frames, without offsets of whole
+/// frames. Keeps a quarter of the frames. One thread at a time.
+class LagDifferences {
+ public:
+  /// `frames`: planned number, at least 2.
+  explicit LagDifferences(int frames);
+  /// `sequence`: number of the exposure, increasing.
+  void add(std::uint64_t sequence, const cv::Mat1d& picture);
+
+  /// Half of the mean squared difference of successive frames; 0 if there are none.
+  [[nodiscard]] double successive_variance() const { return successive_.mean(); }
+  /// Variance of a pixel in one frame. Exact for white noise, for noise of first order, and for moving means over at
+  /// most 3/8 of the frames; the successive variance if there are too few frames.
+  [[nodiscard]] double variance() const;
+  /// variance() over successive_variance(): above 1 for noise with memory; 1 without noise.
+  [[nodiscard]] double memory() const;
+
+ private:
+  struct AtLag {
+    double squares = 0;
+    int pairs = 0;
+    void add(const cv::Mat1d& difference);
+    [[nodiscard]] double mean() const { return pairs > 0 ? squares / pairs : 0; }
+  };
+  struct Kept {
+    std::uint64_t sequence = 0;
+    cv::Mat1d picture;
+  };
+
+  std::size_t references_;
+  std::uint64_t lag_;
+  std::vector<Kept> kept_;  ///< the first frames
+  std::optional<Kept> last_;
+  AtLag successive_, at_lag_, at_twice_;
+};
+
+}  // namespace todbench

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tod/measurement/run_constancy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "acquisition/base/distributions.h"
+#include "acquisition/base/mean.h"
+
+namespace todbench {
+namespace {
+
+/// The triangles of one set-up relative to the set contrast: 1 if the camera shows that contrast.
+struct SetUpTransfer {
+  std::vector<double> triangles;
+  double span_k = 0;  ///< between the contrasts; of a single one: that contrast
+  bool of_one_contrast = false;
+};
+
+bool same_places(const ContrastMeasurement& a, const ContrastMeasurement& b) {
+  return std::ranges::equal(a.references, b.references, [](const ReferenceTriangle& one, const ReferenceTriangle& two) {
+    return cv::norm(one.place_px - two.place_px) < 0.5 * std::min(one.size_px, two.size_px);
+  });
+}
+
+SetUpTransfer transfer_of(std::span<const ContrastMeasurement> set_up) {
+  const auto size = [](const ContrastMeasurement& one) { return std::abs(one.set_delta_t_k); };
+  const ContrastMeasurement& largest = *std::ranges::max_element(set_up, {}, size);
+  const ContrastMeasurement& other = *std::ranges::max_element(
+      set_up, {}, [&](const ContrastMeasurement& one) { return std::abs(one.set_delta_t_k - largest.set_delta_t_k); });
+  const bool of_one = other.set_delta_t_k == largest.set_delta_t_k;
+  const double set_k = largest.set_delta_t_k - (of_one ? 0 : other.set_delta_t_k);
+  SetUpTransfer out{.triangles = {}, .span_k = std::abs(set_k), .of_one_contrast = of_one};
+  for (std::size_t i = 0; i < largest.references.size(); ++i) {
+    const double seen_k = largest.references[i].value - (of_one ? 0 : other.references[i].value);
+    out.triangles.push_back(seen_k / set_k);
+  }
+  return out;
+}
+
+/// A set-up ends when the places of its triangles change or one of its contrasts recurs.
+std::vector<SetUpTransfer> transfers(std::span<const ContrastMeasurement> all) {
+  std::vector<SetUpTransfer> out;
+  for (std::size_t begin = 0; begin < all.size();) {
+    std::size_t end = begin + 1;
+    const auto seen = [&](double set_k) {
+      return std::ranges::any_of(all.subspan(begin, end - begin),
+                                 [&](const ContrastMeasurement& one) { return one.set_delta_t_k == set_k; });
+    };
+    while (end < all.size() && same_places(all[begin], all[end]) && !seen(all[end].set_delta_t_k)) ++end;
+    if (!all[begin].references.empty()) out.push_back(transfer_of(all.subspan(begin, end - begin)));
+    begin = end;
+  }
+  // Set-ups with small contrasts only hardly determine the gain, and their pattern is relatively large.
+  double largest_k = 0;
+  for (const SetUpTransfer& one : out) largest_k = std::max(largest_k, one.span_k);
+  std::erase_if(out, [&](const SetUpTransfer& one) { return one.span_k < 0.5 * largest_k; });
+  return out;
+}
+
+/// Mean of the set-ups' means, and the variance factor of each part of the error.
+struct Group {
+  double mean = 0;
+  double of_triangles = 0;  ///< sum of 1/n over the set-ups, over their number squared
+  double of_shared = 0;     ///< the same for the part common to the triangles of a set-up
+};
+
+Group group_of(std::span<const SetUpTransfer> set_ups) {
+  Group out;
+  const auto count = static_cast<double>(set_ups.size());
+  for (const SetUpTransfer& one : set_ups) {
+    out.mean += arithmetic_mean(one.triangles) / count;
+    out.of_triangles += 1 / static_cast<double>(one.triangles.size()) / (count * count);
+    out.of_shared += one.of_one_contrast ? 1 / (count * count) : 0;
+  }
+  return out;
+}
+
+template <typename Difference>
+std::optional<ConstancyFigure> largest_change(std::span<const PictureNoise> noise, double limit,
+                                              Difference difference) {
+  std::optional<ConstancyFigure> found;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    const auto same = [&](const PictureNoise& one) { return one.set_delta_t_k == noise[i].set_delta_t_k; };
+    if (std::any_of(noise.begin(), noise.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;
+    for (std::size_t later = i + 1; later < noise.size(); ++later) {
+      if (!same(noise[later])) continue;
+      const std::optional<double> change = difference(noise[i], noise[later]);
+      if (change && (!found || std::abs(*change) > std::abs(found->value))) found = ConstancyFigure{*change, limit};
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasurement> measurements) {
+  const std::vector<SetUpTransfer> set_ups = transfers(measurements);
+  double squares = 0, freedom = 0;
+  for (const SetUpTransfer& one : set_ups) {
+    const double mean = arithmetic_mean(one.triangles);
+    for (const double value : one.triangles) squares += (value - mean) * (value - mean);
+    freedom += static_cast<double>(one.triangles.size()) - 1;
+  }
+  if (set_ups.size() < 2 || freedom < 1) return std::nullopt;
+  const double variance = squares / freedom;
+  const double tail = transfer_false_alarm / 2 / static_cast<double>(set_ups.size() - 1);
+  const double quantile = distribution::quantile_above(tail, freedom);
+  std::optional<ConstancyFigure> worst;
+  for (std::size_t first = 1; first < set_ups.size(); ++first) {
+    const Group before = group_of(std::span(set_ups).first(first)), after = group_of(std::span(set_ups).subspan(first));
+    if (!(std::abs(before.mean) > 0)) continue;
+    const double of_scatter =
+        std::sqrt(variance * (before.of_triangles + after.of_triangles + before.of_shared + after.of_shared));
+    const ConstancyFigure figure{after.mean / before.mean - 1,
+                                 quantile * std::hypot(of_scatter / before.mean, transfer_systematic_u)};
+    if (!worst || std::abs(figure.value) * worst->limit > std::abs(worst->value) * figure.limit) worst = figure;
+  }
+  return worst;
+}
+
+std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise) {
+  return largest_change(noise, most_noise_change, [](const PictureNoise& first, const PictureNoise& later) {
+    return first.noise_k > 0 && later.noise_k > 0 ? std::optional(std::log(later.noise_k / first.noise_k))
+                                                  : std::nullopt;
+  });
+}
+
+std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> noise) {
+  return largest_change(noise, most_correlation_change,
+                        [](const PictureNoise& first, const PictureNoise& later) -> std::optional<double> {
+                          if (!first.lag1_correlation || !later.lag1_correlation) return std::nullopt;
+                          return *later.lag1_correlation - *first.lag1_correlation;
+                        });
+}
+
+std::optional<PictureResidue> picture_residue(const cv::Mat1d& before, const cv::Mat1d& first, const cv::Mat1d& last,
+                                              const cv::Mat1d& mean, double noise_k) {
+  if (before.size() != mean.size()) return std::nullopt;
+  // The change of a whole frame is an offset of the camera.
+  const cv::Mat1d old = before - mean, both = first - last;
+  const cv::Mat1d change = both - cv::mean(both)[0];
+  cv::Mat1d direction = old - cv::mean(old)[0];
+  // Noise with memory is in both the previous picture and the first frame: over all unchanged pixels it would look like
+  // a residue.
+  constexpr double changed = 4;
+  direction.setTo(0, cv::abs(direction) < changed * noise_k);
+  const double squares = direction.dot(direction);
+  const double error = squares > 0 ? noise_k * std::sqrt(2 / squares) : INFINITY;
+  constexpr double errors = 5, most_error = 0.05;
+  if (!(error < most_error)) return std::nullopt;
+  return PictureResidue{direction.dot(change) / squares, std::max(least_residue_share, errors * error)};
+}
+
+}  // namespace todbench

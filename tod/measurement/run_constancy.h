@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tests whether the camera stayed the same during a run and whether a picture shows the present target: figures with
+// limits from the averages that measure the contrasts. Pure functions of the run's records.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tod/measurement/contrast_error.h"
+
+namespace todbench {
+
+/// Noise of a pixel in the average of one set-up and contrast.
+struct PictureNoise {
+  double set_delta_t_k = 0;
+  double noise_k = 0;                        ///< from differences of successive frames; above 0
+  std::optional<double> lag1_correlation{};  ///< empty: too few frames
+};
+
+/// Residue of the previous picture in the first frame of an average.
+struct PictureResidue {
+  double share = 0;  ///< of the difference between the previous picture and this one; 0: no residue
+  double limit = 0;  ///< above it, the picture was still changing
+};
+
+/// Further results of the averages of a run.
+struct RunConstancy {
+  std::vector<PictureNoise> noise;          ///< in the order of the run
+  std::optional<PictureResidue> residue{};  ///< largest share relative to its limit; empty: no picture differed enough
+};
+
+/// A figure and the limit beyond which it is a finding.
+struct ConstancyFigure {
+  double value = 0;
+  double limit = 0;
+  [[nodiscard]] bool beyond() const { return value > limit || value < -limit; }
+};
+
+/// Standard uncertainty of the ratio of the observed contrasts of two groups of set-ups: if the simulated camera is not
+/// as sharp as the real one, the estimator's response differs by up to 2 % between plates of different sizes.
+inline constexpr double transfer_systematic_u = 0.01;
+/// Probability of a false alarm of transfer_change() over a whole run.
+inline constexpr double transfer_false_alarm = 0.005;
+
+/// Relative change of the signal transfer between the first set-ups and the later ones, at the division of the run at
+/// which it is largest in units of its error. A set-up with several contrasts contributes the difference of its extreme
+/// ones, triangle by triangle: fixed pattern, row and column noise cancel. A set-up with one contrast may have a
+/// pattern common to its triangles, as large as the scatter of one. A set-up whose contrasts span less than half of the
+/// widest span is left out. The error contains the pooled scatter of the triangles within the set-ups (Student's t) and
+/// transfer_systematic_u; the divisions share the probability of a false alarm. Empty with fewer than two set-ups, or
+/// if no set-up has two triangles.
+[[nodiscard]] std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasurement> measurements);
+
+/// ln of the noise of the last average over that of the first one of the same contrast, for the contrast with the
+/// largest change. The limit is ln 1.15: one standard error of the noise of 1000 pixels and 16 frames is 0.7 %; 15 %
+/// are eight times the error of a ratio of two of these pictures at a correlation of 0.5.
+[[nodiscard]] std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise);
+inline constexpr double most_noise_change = 0.1397619;  ///< ln 1.15
+
+/// Difference of the lag-1 correlation in the same two averages. The limit is most_correlation_change: five standard
+/// errors of the difference for 16 frames of 120 rows if half of the noise variance is that of whole rows.
+[[nodiscard]] std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> noise);
+inline constexpr double most_correlation_change = 0.2;
+
+/// Share of `before - mean` in `first - last`, by least squares over the pixels that changed by more than four times
+/// the noise. `first`, `last`, `mean`: frames and mean of an average; `before`: the previous average. In a picture that
+/// lags, the first frame contains a part of the old one that the last does not. The limit is five standard errors by
+/// the noise of a pixel, at least least_residue_share. Empty if the standard error of the share is not below 0.05.
+[[nodiscard]] std::optional<PictureResidue> picture_residue(const cv::Mat1d& before, const cv::Mat1d& first,
+                                                            const cv::Mat1d& last, const cv::Mat1d& mean,
+                                                            double noise_k);
+/// Above the residue of a fixed pattern that drifts between corrections, and of rounding.
+inline constexpr double least_residue_share = 0.02;
+
+}  // namespace todbench

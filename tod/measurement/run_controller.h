@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Interface of the code that controls a measurement: clock, pauses, recovery of a lost camera. Code that only listens
+// is a MeasurementListener.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <stop_token>
+#include <string_view>
+
+#include "acquisition/base/host_clock.h"
+#include "acquisition/base/result.h"
+
+namespace todbench {
+
+/// Reason for which a measurement reads the clock.
+enum class Moment {
+  correction_due,  ///< whether a non-uniformity correction is due
+  corrected,       ///< the camera has carried out the command to correct
+  scene_changed,   ///< the target is in place; frames from now on show it
+  camera_lost,     ///< the camera failed
+  camera_back,     ///< the presentation in which it failed was repeated
+};
+inline constexpr std::array all_moments{Moment::correction_due, Moment::corrected, Moment::scene_changed,
+                                        Moment::camera_lost, Moment::camera_back};
+[[nodiscard]] std::string_view to_string(Moment moment);
+
+/// Treatment of the frames that a camera sends while the target changes.
+enum class FramesWhilePresenting {
+  leave,  ///< not requested: for a camera that exposes only on request
+  take,   ///< taken on a separate thread: no queue must hold minutes of frames, and no correction is missed
+  repeat  ///< taken as often as RunController::asked_while_presenting() returns: for a replay
+};
+
+/// Everything that a run obeys in addition to its plan. The answers decide which trials are made: a recording keeps
+/// every answer, and a replay returns the same ones. Called from the measuring thread, in the order of the measurement.
+/// An error of any function ends the run with this error. Must outlive the run.
+class RunController {
+ public:
+  virtual ~RunController() = default;
+  /// The clock of Frame::host_time_ns, now.
+  [[nodiscard]] virtual Result<std::int64_t> now_ns(Moment why) = 0;
+  /// Whether the run is paused. Called before every presentation, and again while it returns true. May block for a
+  /// tenth of a second, less if `stop` is requested.
+  [[nodiscard]] virtual Result<bool> rests(std::stop_token stop) = 0;
+  /// Constant during a run.
+  [[nodiscard]] virtual FramesWhilePresenting frames_while_presenting() const = 0;
+  /// Not called for FramesWhilePresenting::leave. Called after the target answered, with the number of frames requested
+  /// meanwhile (0 in a replay); returns that number, in a replay the recorded one.
+  [[nodiscard]] virtual Result<std::int64_t> asked_while_presenting(std::int64_t calls) = 0;
+  /// Whether recover() may succeed. False: a lost camera ends the run, and recover() is not called.
+  [[nodiscard]] virtual bool recovers() const = 0;
+  /// Called when the camera was lost. Success: the same source delivers frames again, started and set as before; the
+  /// plate is then located again and the presentation repeated. Errors: `disconnected` (the camera stays away),
+  /// `interrupted`.
+  [[nodiscard]] virtual Result<void> recover(std::stop_token stop) = 0;
+  /// Called when the plate was found again after a loss and the presentation was repeated.
+  virtual void resumed() = 0;
+};
+
+/// Host of a run without pauses and without recovery of the camera: a simulation.
+class UnattendedHost final : public RunController {
+ public:
+  [[nodiscard]] Result<std::int64_t> now_ns(Moment) override { return monotonic_ns(); }
+  [[nodiscard]] Result<bool> rests(std::stop_token) override { return false; }
+  [[nodiscard]] FramesWhilePresenting frames_while_presenting() const override { return FramesWhilePresenting::leave; }
+  [[nodiscard]] Result<std::int64_t> asked_while_presenting(std::int64_t calls) override { return calls; }
+  [[nodiscard]] bool recovers() const override { return false; }
+  [[nodiscard]] Result<void> recover(std::stop_token) override {
+    return fail(ErrorCode::disconnected, "this run does not wait for a lost camera");
+  }
+  void resumed() override {}
+};
+
+}  // namespace todbench

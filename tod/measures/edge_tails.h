@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tails of an edge: light that optics and electronics spread far, as a bounded mixture of shapes.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "tod/measures/bounded_least_squares.h"
+
+namespace todbench {
+
+/// A picture of cut-outs with level D and step S is modelled as
+///     D + (S - sum beta - alpha / k) G + (alpha / k) C + sum beta_i H_i + shading,
+/// with G the cut-outs blurred by a narrow normal, C blurred with an MTF of exp(-k f), and H_i blurred by a normal of
+/// sigma_i = 2 ... 70 pitches, 23 steps of a constant ratio. alpha / S is the slope of the MTF at frequency 0 by
+/// diffraction, beta_i / S the share of a halo. Any positive mixture of normal halos is in the class, including
+/// exponential and power-law halos. The shapes must be right outside the core only: the core is measured from the
+/// residuals, without a model.
+///
+/// The MTF is relative to a source of the size of the picture. Halos with a sigma above TailBounds::widest_pitch are
+/// fitted, because they bend the picture. They lower the contrast of the whole picture and not the MTF: the contrast of
+/// the MTF is S - sum beta of the wide halos.
+namespace edge_tails {
+constexpr std::size_t halos = 23;
+constexpr std::size_t level = 0, step = 1, slope = 2, first_halo = 3, first_shading = first_halo + halos;
+constexpr double narrow_sigma_pitch = 0.45;
+constexpr double cauchy_pitch = 0.5;  ///< c of C; its MTF is exp(-2 pi c f)
+[[nodiscard]] double halo_sigma_pitch(std::size_t i);
+}  // namespace edge_tails
+
+/// The columns of the model at a place of a picture (x, y in pixels): level, step, slope, halos, then shading.
+using TailColumns = std::function<void(cv::Point2d at, std::vector<double>& columns)>;
+
+/// A cut-out: its middle, and vectors from the middle to two of its sides, in pixels.
+struct TailRectangle {
+  cv::Point2d middle, half_u, half_v;
+};
+/// Sets the first columns for upright or turned rectangles.
+void set_tail_columns(const std::vector<TailRectangle>& cut_outs, cv::Point2d at, std::vector<double>& columns);
+/// Same for a half plane: `t` pitches from its edge, positive inside.
+void set_tail_columns(double t, std::vector<double>& columns);
+
+/// Prior bounds of the tails.
+struct TailBounds {
+  double least_slope_pitch = 0;  ///< of the MTF at frequency 0, by diffraction, per cycle per pitch
+  double most_slope_pitch = 3;
+  /// Largest share of the contrast in the halos that belong to the MTF. If only this limits an interval, its lower end
+  /// is not stated.
+  double most_halo = 0.2;
+  double widest_pitch = 70;  ///< largest sigma of a halo that belongs to the MTF
+};
+/// Bounds for a stated aperture: 0.9 to 1.8 times (4 / pi) wavelength f-number / pitch. Obscured pupils and aberrations
+/// can only make the slope steeper; 0.9 allows for the stated band and f-number.
+[[nodiscard]] TailBounds diffraction_bounds(double f_number, double mean_wavelength_um, double pitch_um);
+
+/// Transfer of each of the first columns at a frequency in cycles per pitch; 0 for the level and for wide halos.
+[[nodiscard]] std::array<double, edge_tails::first_shading> tail_transfer(double frequency_per_pitch,
+                                                                          const TailBounds& bounds);
+/// Contrast to which the MTF refers, as a linear function of the first columns' factors.
+[[nodiscard]] std::array<double, edge_tails::first_shading> tail_contrast(const TailBounds& bounds);
+
+/// Fit of the model to a picture outside the core of every edge.
+class TailFit {
+ public:
+  /// The most likely unknowns.
+  [[nodiscard]] const std::vector<double>& best() const { return problem_->best(); }
+  /// The unknowns with the weakest tails among all with a chi-square of at most 1 above the minimum, so that an edge
+  /// without tails gives none.
+  [[nodiscard]] const std::vector<double>& stated() const { return stated_; }
+  /// The unknowns with the largest direction'x within 95 % (chi-square at most 5.99 above the minimum).
+  [[nodiscard]] std::vector<double> farthest(const std::vector<double>& direction) const;
+  /// Whether the halos reach the upper bound: the picture does not limit their share.
+  [[nodiscard]] bool at_most_halo(const std::vector<double>& x) const;
+  [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
+  /// Largest share of the halos that belong to the MTF within 95 %.
+  [[nodiscard]] double halo_allowance() const;
+  [[nodiscard]] double noise() const { return noise_; }  ///< of a pixel, in the unit of the samples
+  [[nodiscard]] std::size_t unknowns() const { return unknowns_; }
+
+ private:
+  friend class TailSamples;
+  std::size_t unknowns_ = 0;
+  TailBounds bounds_;
+  double noise_ = 0;
+  std::shared_ptr<const BoundedLeastSquares> problem_;  ///< unknowns, then slacks
+  std::vector<double> stated_;
+};
+
+/// Samples of a picture outside the core, in units in which the step is near 1.
+class TailSamples {
+ public:
+  explicit TailSamples(std::size_t shading_columns);
+  /// Adds the mean of `pixels` pixels near one place. Samples of one `block` (from 0) are close together.
+  void add(const std::vector<double>& columns, double value, int pixels, std::size_t block);
+  /// Empty with fewer than two samples for each unknown, or if one side of the edge has no samples.
+  [[nodiscard]] std::optional<TailFit> fit(const TailBounds& bounds) const;
+
+ private:
+  [[nodiscard]] TailFit fit_with(const TailBounds& bounds, double variance) const;
+  /// Variance of a pixel from the residuals of a fit; larger if the residuals of neighbours are correlated.
+  [[nodiscard]] double variance_about(const std::vector<double>& x) const;
+  std::size_t unknowns_;
+  struct Sample {
+    double value = 0;
+    int pixels = 1;
+    std::size_t block = 0;
+  };
+  std::vector<Sample> samples_;
+  std::vector<double> rows_;
+  std::vector<double> gram_, right_;
+};
+
+}  // namespace todbench
