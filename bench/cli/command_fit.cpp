@@ -45,7 +45,7 @@ void print(const Console& console, const PsychometricFit& fit) {
       {"slope", fixed(fit.slope, 4), ""},
       {"lapse", fixed(fit.lapse, 4), ""},
       {"log likelihood", fixed(fit.log_likelihood, 4), ""},
-      {"deviance", fixed(fit.deviance, 4), std::to_string(fit.degrees_of_freedom) + " degrees of freedom"}};
+      {"deviance", fixed(fit.deviance, 4), "degrees of freedom: " + std::to_string(fit.degrees_of_freedom)}};
   if (fit.posterior) {
     rows.push_back({"posterior median", fixed(fit.posterior->median, 6),
                     "95 %: " + range({fit.posterior->low, fit.posterior->high}, 6) +

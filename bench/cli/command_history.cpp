@@ -409,12 +409,14 @@ void add_history_command(CLI::App& app, Program& program) {
   }
   {
     const auto [command, a] = begun("show", "lists the units, or the values and charts of one unit");
-    command->add_option("SERIAL", a->serial, "serial number; default: list of all units");
-    command->add_option("--measure", a->measure, "measure, for example acuity or netd; default: all");
+    auto* serial = command->add_option("SERIAL", a->serial, "serial number; default: list of all units");
+    command->add_option("--measure", a->measure, "measure, for example acuity or netd; default: all")->needs(serial);
     command->add_option("--at-least", a->at_least, "lower limit; predicts when the measure crosses it")
-        ->check(number_in(-1e12, 1e12));
+        ->check(number_in(-1e12, 1e12))
+        ->needs(serial);
     command->add_option("--at-most", a->at_most, "upper limit; predicts when the measure crosses it")
         ->check(number_in(-1e12, 1e12))
+        ->needs(serial)
         ->excludes("--at-least");
     finish_command(*command, program, [a = a](Console& console) { return run_show(console, *a); });
   }

@@ -19,7 +19,8 @@ struct IdentifyArguments {
   std::string set;
   ChainOptions chain;
   std::vector<double> ranges_m;
-  double m75 = 5.1, cn2 = 0;
+  double m75 = 5.1;
+  std::optional<double> cn2{};
   int decisions = 2000;
   bool plan = false;
   std::string templates = "camera", cues = "all";
@@ -33,9 +34,10 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
   if (!chain) return tl::unexpected(chain.error());
   task.set = *std::move(set);
   task.sensor = std::move(chain->sensor);
-  if (a.cn2 > 0) {
+  if (a.cn2) task.sensor.turbulence_cn2_m_minus_2_3 = 0;  // the turbulence of the paths replaces it
+  if (a.cn2 > 0.0) {
     SensorSpec behind = task.sensor;
-    behind.turbulence_cn2_m_minus_2_3 = task.cn2_m_minus_2_3 = a.cn2;
+    behind.turbulence_cn2_m_minus_2_3 = task.cn2_m_minus_2_3 = *a.cn2;
     behind.turbulence_path_m = a.ranges_m.back();
     if (auto valid = validate(behind); !valid) return fail("--cn2", valid.error());
   }

@@ -254,7 +254,7 @@ int run_sitf(Console& console, const std::string& file) {
        {"  from the stated uncertainties", fixed(line->slope_u_stated, 5), unit},
        {"  from the scatter", fixed(line->slope_u_scatter, 5), unit},
        {"offset", fixed(line->offset, 3), steps->unit},
-       {"chi squared", fixed(line->chi2, 3), std::to_string(line->degrees_of_freedom) + " degrees of freedom"},
+       {"chi squared", fixed(line->chi2, 3), "degrees of freedom: " + std::to_string(line->degrees_of_freedom)},
        {"p", fixed(line->p, 4), ""},
        {"nonlinearity", fixed(line->nonlinearity_percent, 3), "% of the span"}});
   return 0;

@@ -21,7 +21,8 @@ namespace {
 struct PictureArguments {
   std::string scene, out;
   ChainOptions chain;
-  double range_m = 0, rotation_deg = 0, x_pitch = 0, y_pitch = 0, tolerance_percent = 1, cn2 = 0;
+  double range_m = 0, rotation_deg = 0, x_pitch = 0, y_pitch = 0, tolerance_percent = 1;
+  std::optional<double> cn2{};
   int field_pitch = 0;
   bool overwrite = false;
 };
@@ -34,8 +35,8 @@ Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t 
   if (!chain) return tl::unexpected(chain.error());
   task.scene = *std::move(scene);
   task.sensor = std::move(chain->sensor);
-  if (a.cn2 > 0) {
-    task.sensor.turbulence_cn2_m_minus_2_3 = a.cn2;
+  if (a.cn2) {
+    task.sensor.turbulence_cn2_m_minus_2_3 = *a.cn2;
     task.sensor.turbulence_path_m = a.range_m;
     if (auto valid = validate(task.sensor); !valid) return fail("--cn2", valid.error());
   }

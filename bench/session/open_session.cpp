@@ -22,12 +22,15 @@ bool says_running(const std::filesystem::path& folder) {
   return json.is_object() && json.contains("state") && json["state"] == to_string(SessionState::running);
 }
 
-/// Returns "a, b and 3 more".
-std::string listed(const std::vector<std::string>& files) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(files.size(), files_in_a_sentence); ++i) text += (i == 0 ? "" : ", ") + files[i];
-  if (files.size() > files_in_a_sentence)
-    text += " and " + std::to_string(files.size() - files_in_a_sentence) + " more";
+/// Returns "a", "a and b" or "a, b, c, d and 3 more".
+std::string listed(std::vector<std::string> files) {
+  if (files.size() > files_in_a_sentence) {
+    const std::size_t more = files.size() - files_in_a_sentence;
+    files.resize(files_in_a_sentence);
+    files.push_back(std::to_string(more) + " more");
+  }
+  std::string text = files.front();
+  for (std::size_t i = 1; i < files.size(); ++i) text += (i + 1 < files.size() ? ", " : " and ") + files[i];
   return text;
 }
 

@@ -57,6 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"control_characters", {"simulate", "--x\n\033[31m"}, "simulate: unknown option --x"},
         Misuse{"missing_argument", {"fit"}, "fit: TRIALS.csv is required"},
         Misuse{"missing_option", {"mtf", "--sensor", "sc2000"}, "mtf: --frequency-per-pitch is required"},
+        Misuse{"measure_of_no_unit", {"history", "show", "--measure", "netd"}, "--measure requires SERIAL"},
         Misuse{"unknown_plan", {"simulate", "dmeo"}, "unknown plan 'dmeo', did you mean 'demo'?"},
         Misuse{"empty_plan_name", {"measure", ""}, "unknown plan ''"},
         Misuse{"no_such_plan", {"measure", "none/plan.toml"}, "none/plan.toml: no such file"},

@@ -238,7 +238,7 @@ Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const Compariso
     add_unfit(*comparison.adequacy, point, "first");
     add_unfit(*comparison.adequacy, *other, "second");
     auto compared = compare_points(point, *other, contrasts[i], options);
-    if (!compared) return fail("comparing at " + std::to_string(point.set_delta_t_k) + " K", compared.error());
+    if (!compared) return fail(fmt::format("comparing at {:.6g} K", point.set_delta_t_k), compared.error());
     if (other_functions(point, *other) && compared->ratio) {
       const std::string sentence = fmt::format(
           "at {:.4g} K one curve is fitted with the function of the twin, the other with a Weibull function",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/psychometric/tod_curve.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -253,7 +255,7 @@ Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& opti
   TodCurve curve;
   for (const auto& [contrast, group] : groups) {
     auto point = tod_point(contrast, group, options);
-    if (!point) return fail("fitting contrast " + std::to_string(contrast) + " K", point.error());
+    if (!point) return fail(fmt::format("fitting contrast {:.6g} K", contrast), point.error());
     curve.points.push_back(std::move(*point));
   }
   return curve;

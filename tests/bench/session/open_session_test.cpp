@@ -110,6 +110,16 @@ TEST_F(ChangedSession, IsRefusedInOneSentenceThatNamesTheFile) {
   EXPECT_THAT(refusal(), HasSubstr("fits.json was changed, trials.csv was removed, inputs/other.toml was added after"));
 }
 
+TEST_F(ChangedSession, SeveralFilesAreListedAsInASentence) {
+  const auto added = [&](int files) {
+    for (int i = 0; i < files; ++i) put("inputs/" + std::to_string(i) + ".toml", "x");
+    return refusal();
+  };
+  EXPECT_THAT(added(2), HasSubstr(": inputs/0.toml and inputs/1.toml were added"));
+  EXPECT_THAT(added(3), HasSubstr(": inputs/0.toml, inputs/1.toml and inputs/2.toml were added"));
+  EXPECT_THAT(added(7), HasSubstr("inputs/2.toml, inputs/3.toml and 3 more were added"));
+}
+
 TEST_F(ChangedSession, FilesThatNobodyReadsAreForeignAndDoNotStopAReader) {
   put("notes/mine.txt", "x");
   std::filesystem::remove(at("report.html"));
