@@ -2,45 +2,18 @@
 // Spectra and images of shapes that meet the singular cases of the closed form, against 50-digit arithmetic.
 #include <gtest/gtest.h>
 
-#include <boost/math/constants/constants.hpp>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "hvs/shape/polygon_image.h"
+#include "tests/stability/spectrum_50.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {
 
-using Digits = boost::multiprecision::cpp_bin_float_50;
-
-struct Complex50 {
-  Digits re = 0, im = 0;
-};
-
-/// Integral of exp(-2 pi i (u x + w y)) over the polygon by the divergence theorem with the field k exp(-i k.r):
-/// F = (i / k^2) sum over edges of (k x d) exp(-i k.m) sinc(k.d / 2), m the middle of the edge, d along it. The sum
-/// cancels to k^2 of itself: 50 digits leave 30 down to k = 1e-10.
-Complex50 spectrum_50(const Polygon& polygon, double u, double w) {
-  const Digits two_pi = 2 * boost::math::constants::pi<Digits>();
-  const Digits kx = two_pi * Digits(u), ky = two_pi * Digits(w);
-  Digits twice_area = 0, re = 0, im = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const auto& a = polygon[i];
-    const auto& b = polygon[(i + 1) % polygon.size()];
-    const Digits ax(a.x), ay(a.y), bx(b.x), by(b.y);
-    twice_area += ax * by - bx * ay;
-    const Digits dx = bx - ax, dy = by - ay, half = (kx * dx + ky * dy) / 2;
-    const Digits sinc = half == 0 ? Digits(1) : Digits(sin(half) / half);
-    const Digits angle = kx * (ax + bx) / 2 + ky * (ay + by) / 2, flux = (kx * dy - ky * dx) * sinc;
-    re += flux * sin(angle);  // i exp(-i angle) = sin + i cos
-    im += flux * cos(angle);
-  }
-  const Digits sign = twice_area < 0 ? -1 : 1, square = kx * kx + ky * ky;
-  if (square == 0) return {sign * twice_area / 2, Digits(0)};
-  return {sign * re / square, sign * im / square};
-}
+using testing::Digits;
+using testing::spectrum_50;
 
 double error_of(const Polygon& polygon, double u, double w) {
   const auto found = polygon_spectrum(polygon, u, w);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Self-test of an installed program: numbers of this machine against known answers (ISO/IEC 17025:2017, 7.11.2).
+#pragma once
+
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/base/result.h"
+
+namespace todbench {
+
+/// Number of this machine with its known answer.
+struct SelftestCase {
+  std::string_view group;  ///< origin of the answer, see selftest_groups()
+  std::string name;
+  double value = 0, expected = 0;
+  double tolerance = 0;  ///< permitted difference
+  /// False for a NaN on either side.
+  [[nodiscard]] bool ok() const;
+};
+
+/// Origin of the answers of a group, in words.
+struct SelftestGroup {
+  std::string_view name, answers;
+};
+/// Returns the groups in the order of selftest().
+[[nodiscard]] std::vector<SelftestGroup> selftest_groups();
+
+/// Computes all cases: closed forms, 50-digit references, hard cases, the numbers of every part, the same bits on two
+/// threads, and the first case of the reference set. Takes about 15 s of processor time. Errors: `interrupted`.
+[[nodiscard]] Result<std::vector<SelftestCase>> selftest(std::stop_token stop);
+
+}  // namespace todbench

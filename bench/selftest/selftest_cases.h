@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Groups of the self-test, and the inputs that its tests compute again.
+#pragma once
+
+#include <complex>
+#include <map>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "bench/selftest/selftest.h"
+#include "hvs/shape/polygon.h"
+#include "tod/psychometric/psychometric_fit.h"
+
+namespace todbench {
+
+using SelftestCases = std::vector<SelftestCase>;
+
+/// Counts whose maximum of the likelihood is hard to reach in double precision.
+struct HardFit {
+  std::string name;
+  std::vector<Level> levels;
+  double lapse = 0;
+  double ln_threshold = 0, ln_slope = 0;  ///< of the maximum, computed with 50 digits
+};
+[[nodiscard]] std::vector<HardFit> hard_fits();
+
+/// Shape and wave vector near the singular cases of the closed form.
+struct HardSpectrum {
+  std::string name;
+  Polygon shape;
+  double u = 0, w = 0;            ///< cycles per unit of the shape
+  std::complex<double> spectrum;  ///< computed with 50 digits
+};
+[[nodiscard]] std::vector<HardSpectrum> hard_spectra();
+
+/// Returns numbers of all parts of the computation by name: fits, posteriors, placement, spectra, optics, pixels,
+/// orthant probability, thresholds, a frame.
+[[nodiscard]] std::map<std::string, double> numbers_of_every_part();
+/// Returns the same as GCC 12 computed them.
+[[nodiscard]] const std::map<std::string, double>& golden_numbers();
+
+void add_closed_forms(SelftestCases& cases);
+void add_fifty_digits(SelftestCases& cases);
+void add_hard_cases(SelftestCases& cases);
+void add_every_part(SelftestCases& cases);
+void add_same_bits(SelftestCases& cases);
+/// Errors: `interrupted`.
+[[nodiscard]] Result<void> add_reference_case(SelftestCases& cases, std::stop_token stop);
+
+}  // namespace todbench
