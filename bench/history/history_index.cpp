@@ -21,8 +21,6 @@ namespace todbench {
 namespace {
 
 constexpr int version = 1;
-/// Adding a session takes some milliseconds; on a busy disk a dozen programs wait for each other.
-constexpr int busy_ms = 20000;
 constexpr const char* schema = R"(
 CREATE TABLE unit(id INTEGER PRIMARY KEY, vendor TEXT NOT NULL, model TEXT NOT NULL, serial TEXT NOT NULL,
   lens TEXT NOT NULL, UNIQUE(vendor, model, serial, lens)) STRICT;
@@ -161,12 +159,12 @@ class Transaction {
 
 /// Switches to a write-ahead log. SQLite does not wait if two programs switch a new file at once, because they could
 /// deadlock.
-bool keeps_a_log(sqlite3* database) {
+bool keeps_a_log(sqlite3* database, std::chrono::milliseconds wait) {
   constexpr int pause_ms = 20;
   for (int waited_ms = 0;; waited_ms += pause_ms) {
     if (run(database, "PRAGMA journal_mode = WAL")) return true;
     const int code = sqlite3_errcode(database) & 0xFF;
-    if ((code != SQLITE_BUSY && code != SQLITE_LOCKED) || waited_ms >= busy_ms) return false;
+    if ((code != SQLITE_BUSY && code != SQLITE_LOCKED) || waited_ms >= wait.count()) return false;
     sqlite3_sleep(pause_ms);
   }
 }
@@ -184,11 +182,11 @@ Result<IndexState> state_of(sqlite3* database, const std::filesystem::path& file
   return fail(ErrorCode::invalid_input, file.string() + ": is not a history of this version of todbench");
 }
 
-Result<void> prepare(sqlite3* database, const std::filesystem::path& file) {
-  sqlite3_busy_timeout(database, busy_ms);
+Result<void> prepare(sqlite3* database, const std::filesystem::path& file, std::chrono::milliseconds wait) {
+  sqlite3_busy_timeout(database, static_cast<int>(wait.count()));
   const auto before = state_of(database, file);
   if (!before) return tl::unexpected(before.error());
-  if (!keeps_a_log(database) || !run(database, "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL;"))
+  if (!keeps_a_log(database, wait) || !run(database, "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL;"))
     return refused(database, file);
   if (*before == IndexState::made) return {};
   const auto events = kept_events(file);
@@ -219,7 +217,7 @@ HistoryIndex::HistoryIndex(HistoryIndex&&) noexcept = default;
 HistoryIndex& HistoryIndex::operator=(HistoryIndex&&) noexcept = default;
 HistoryIndex::~HistoryIndex() = default;
 
-Result<HistoryIndex> HistoryIndex::open(const std::filesystem::path& file) {
+Result<HistoryIndex> HistoryIndex::open(const std::filesystem::path& file, std::chrono::milliseconds wait) {
   if (std::error_code problem; std::filesystem::is_directory(file, problem))
     return fail(ErrorCode::invalid_input, file.string() + ": is a folder, expected a history file");
   if (is_there(file) && ::access(file.c_str(), W_OK) != 0) return open_read_only(file);
@@ -235,7 +233,7 @@ Result<HistoryIndex> HistoryIndex::open(const std::filesystem::path& file) {
   const int code = sqlite3_open_v2(file.c_str(), &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   std::unique_ptr<sqlite3, Close> database(opened);
   if (code != SQLITE_OK) return refused(opened, file);
-  if (auto prepared = prepare(opened, file); !prepared) return tl::unexpected(prepared.error());
+  if (auto prepared = prepare(opened, file, wait); !prepared) return tl::unexpected(prepared.error());
   return HistoryIndex(file, std::move(database));
 }
 

@@ -2,6 +2,7 @@
 // SQLite index of sessions by unit. The session folders are the master; the index can be rebuilt from them.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,8 +33,10 @@ class HistoryIndex {
  public:
   /// Opens the index, or creates it and its folder. A write-protected index is opened for reading. Errors:
   /// `invalid_input` (not an index, later version, damaged, or on a network disk, where locks are unreliable), `io`
-  /// (locked by another program, or refused by the disk).
-  [[nodiscard]] static Result<HistoryIndex> open(const std::filesystem::path& file);
+  /// (locked by another program for longer than `wait`, or refused by the disk). Adding a session takes some
+  /// milliseconds; on a busy disk a dozen programs wait for each other.
+  [[nodiscard]] static Result<HistoryIndex> open(const std::filesystem::path& file,
+                                                 std::chrono::milliseconds wait = std::chrono::seconds(20));
   HistoryIndex(HistoryIndex&&) noexcept;
   HistoryIndex& operator=(HistoryIndex&&) noexcept;
   ~HistoryIndex();

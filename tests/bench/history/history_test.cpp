@@ -247,7 +247,7 @@ TEST_F(History, RefusesAnIndexThatIsNone) {
 
 TEST_F(History, SaysWhoIsInTheWay) {
   const auto folder = session("a");
-  auto index = HistoryIndex::open(file());
+  auto index = HistoryIndex::open(file(), std::chrono::milliseconds(50));
   ASSERT_TRUE(index) << index.error().message;
   sqlite3* other = nullptr;
   ASSERT_EQ(sqlite3_open(file().c_str(), &other), SQLITE_OK);
