@@ -16,6 +16,7 @@
 #include "bench/judgement/demand_kinds.h"
 #include "bench/judgement/verdict_record.h"
 #include "bench/plan/resources.h"
+#include "bench/report/accuracy_bill.h"
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
@@ -100,11 +101,17 @@ void print_comparison(const Console& console, const ExperimentOutcome& outcome) 
 
 void print_effects(const Console& console, const SensorPlan& effects) {
   std::vector<TableRow> rows;
+  std::string neutral;
   for (const auto& d : effects.decisions) {
+    if (d.changes_nothing()) {
+      neutral += (neutral.empty() ? "" : ", ") + std::string(to_string(d.effect));
+      continue;
+    }
     rows.push_back(
         {std::string(to_string(d.effect)), d.decision == Decision::simulate ? "simulated" : "skipped", d.reason});
   }
   console.table({"effect", "decision", "reason"}, rows);
+  if (!neutral.empty()) console.text("neutral in this sensor, so skipped: " + neutral);
 }
 
 /// Prints the verdict, unless the run ended early. Thresholds without a limit are in the table of the curve.
@@ -168,6 +175,26 @@ void print_uncertainty(const Console& console, const ExperimentOutcome& outcome)
   std::string missing;
   for (const std::string& name : outcome.uncertainty->not_stated) missing += (missing.empty() ? "" : ", ") + name;
   if (!missing.empty()) console.text("not stated in the budget: " + missing);
+}
+
+AccuracyBill bill_of(const ExperimentOutcome& outcome) {
+  return accuracy_bill({.presentations = outcome.presentations,
+                        .curve = outcome.curve,
+                        .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
+                        .verdict = &outcome.verdict,
+                        .effects = outcome.effects,
+                        .wall_s = outcome.figures.wall_s});
+}
+
+/// Prints what the time of the run bought.
+void print_bill(const Console& console, const ExperimentOutcome& outcome) {
+  const AccuracyBill bill = bill_of(outcome);
+  std::vector<TableRow> rows;
+  for (const BillRow& row : bill.rows) rows.push_back({row.part, fixed(row.seconds, 1), row.bought});
+  rows.push_back({"total", fixed(bill.total_s, 1), ""});
+  console.text("");
+  console.table({"part of the run", "time [s]", "result"}, rows);
+  for (const std::string& sentence : bill.sentences) console.text(sentence);
 }
 
 /// Adds the verdict to the JSON of every run.
@@ -254,6 +281,7 @@ int run_measure(Console& console, const MeasureArguments& asked, const Program& 
     Json json = curve_json(outcome->curve, outcome->effects, outcome->figures);
     if (outcome->uncertainty) add_uncertainty(json, *outcome->uncertainty);
     add_verdict(json, outcome->verdict);
+    json["bill"] = bill_json(bill_of(*outcome));
     add_measures(json, *outcome);
     console.object(json);
   } else {
@@ -264,6 +292,7 @@ int run_measure(Console& console, const MeasureArguments& asked, const Program& 
     }
     print_uncertainty(console, *outcome);
     print_measures(console, *outcome);
+    print_bill(console, *outcome);
     print_verdict(console, *outcome);
   }
   return finish(console, *outcome);
@@ -282,6 +311,7 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
     Json json = curve_json(outcome->curve, outcome->effects, outcome->figures);
     if (outcome->uncertainty) add_uncertainty(json, *outcome->uncertainty);
     add_verdict(json, outcome->verdict);
+    json["bill"] = bill_json(bill_of(*outcome));
     add_measures(json, *outcome);
     console.object(json);
   } else {
@@ -290,6 +320,7 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
     print_effects(console, outcome->effects);
     print_uncertainty(console, *outcome);
     print_measures(console, *outcome);
+    print_bill(console, *outcome);
     print_verdict(console, *outcome);
   }
   return finish(console, *outcome);
@@ -337,12 +368,14 @@ int run_demo(Console& console, const DemoArguments& asked, const Program& progra
               {"comparison", outcome->comparison ? comparison_json(*outcome->comparison) : Json()}};
     if (outcome->uncertainty) add_uncertainty(json["measured"], *outcome->uncertainty);
     add_verdict(json, outcome->verdict);
+    json["bill"] = bill_json(bill_of(*outcome));
     json["session"] = outcome->folder.string();
     console.object(json);
   } else {
     if (outcome->comparison) print_comparison(console, *outcome);
     print_uncertainty(console, *outcome);
     print_measures(console, *outcome);
+    print_bill(console, *outcome);
     print_verdict(console, *outcome);
     console.text("report: " + (outcome->folder / "report.html").string());
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "bench/report/accuracy_bill.h"
 #include "bench/report/cost_figure.h"
 #include "bench/report/html.h"
 #include "bench/report/measures_section.h"
@@ -48,6 +49,13 @@ std::optional<Section> closing_section(const ReportData& data) {
   return section;
 }
 
+/// Returns the curve whose presentations took the time of the run; null if no time is stated.
+const TodCurve* timed_curve(const ReportData& data) {
+  if (!(data.wall_s > 0)) return nullptr;
+  if (data.measured) return &*data.measured;
+  return data.simulated && !data.camera ? &*data.simulated : nullptr;
+}
+
 }  // namespace
 
 ReportVerdict report_verdict(const ReportData& data) {
@@ -80,6 +88,14 @@ Document report_document(const ReportData& data) {
   add(measures_section(data));
   add(set_up_section(data));
   add(effects_section(data));
+  if (const TodCurve* timed = timed_curve(data)) {
+    add(bill_section(accuracy_bill({.presentations = data.presentations,
+                                    .curve = *timed,
+                                    .uncertainty = data.uncertainty ? &*data.uncertainty : nullptr,
+                                    .verdict = data.verdict ? &*data.verdict : nullptr,
+                                    .effects = data.plan,
+                                    .wall_s = data.wall_s})));
+  }
   if (data.cost) add(cost_section(*data.cost));
   add(frames_section(data));
   add(provenance_section(data));

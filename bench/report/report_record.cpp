@@ -125,7 +125,12 @@ Section effects_section(const ReportData& data) {
   }
   Table rows;
   rows.header = {"Effect, in the order of the signal chain", "Decision", "Reason", "Change of acuity if skipped (%)"};
+  std::string neutral;
   for (const EffectDecision& decision : data.plan.decisions) {
+    if (decision.changes_nothing()) {
+      neutral += (neutral.empty() ? "" : ", ") + words(to_string(decision.effect));
+      continue;
+    }
     rows.rows.push_back({plain(in_words(decision.effect)),
                          plain(decision.decision == Decision::simulate ? "simulated" : "skipped"),
                          text_or_missing(decision.reason, "none given"),
@@ -135,6 +140,9 @@ Section effects_section(const ReportData& data) {
   }
   if (data.simulated_sensor) section.blocks.emplace_back(sensor_paragraph(*data.simulated_sensor));
   section.blocks.emplace_back(std::move(rows));
+  if (!neutral.empty())
+    section.blocks.emplace_back(Paragraph{strong("Neutral in this sensor, so skipped without a change:") +
+                                          plain(" " + neutral + ". provenance.json states each reason.")});
   return section;
 }
 

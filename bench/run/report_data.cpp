@@ -99,6 +99,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   data.verdict = verdict_of(session);
   if (provenance.run) {
     data.set_ups = provenance.run->set_ups;
+    data.wall_s = provenance.run->wall_s;
     data.frames_used = provenance.run->frames_used;
     data.frames_rejected = provenance.run->frames_rejected;
     data.frames_lost = provenance.run->frames_lost;

@@ -20,6 +20,8 @@ struct EffectDecision {
   std::string reason;  ///< a sentence
   /// Change of the 75 % acuity if the effect is skipped; empty if no criterion bounds it.
   std::optional<double> predicted_change_percent;
+  /// Skipped, and the sensor is the same with and without it.
+  [[nodiscard]] bool changes_nothing() const { return decision == Decision::skip && predicted_change_percent == 0.0; }
 };
 
 /// One decision per effect, in chain order. Part of the configuration, the session folder and the report.

@@ -19,8 +19,8 @@ using ::testing::IsSupersetOf;
 using ::testing::Not;
 using ::testing::UnorderedElementsAre;
 
-const std::set<std::string> curve_keys{"observer", "sensor", "points",  "plan",
-                                       "wall_s",   "frames", "verdict", "judgement"};
+const std::set<std::string> curve_keys{"observer", "sensor",  "points",    "plan", "wall_s",
+                                       "frames",   "verdict", "judgement", "bill"};
 const std::set<std::string> point_keys{"delta_t_k",
                                        "set_delta_t_k",
                                        "seen_delta_t_k",
@@ -64,6 +64,7 @@ TEST_F(Sessions, SimulateWritesEveryFileAndOneJsonObject) {
   ASSERT_EQ(ended.code, 0) << ended.err;
   const Json json = one_object(ended);
   EXPECT_EQ(keys_of(json), curve_keys);
+  EXPECT_EQ(json["bill"]["total_s"], json["wall_s"]);
   ASSERT_EQ(json["points"].size(), 1u);
   const Json& point = json["points"][0];
   EXPECT_EQ(keys_of(point), point_keys);

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/report/accuracy_bill.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "acquisition/base/normal.h"
+#include "bench/report/number_format.h"
+#include "bench/report/report_pieces.h"
+#include "sim_devices/sensor/effect_list.h"
+
+namespace todbench {
+namespace {
+
+using SetUp = std::pair<std::string, Mounting>;
+
+/// Times of the presentations of one contrast, in seconds.
+struct ContrastTime {
+  std::vector<double> plain, opening;  ///< opening: the first of a set-up or a contrast
+};
+
+struct RunTimes {
+  double changes_s = 0, looking_s = 0;
+  std::map<double, double> presentations_s;  ///< by set contrast
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Empty for a scene that has no times.
+std::optional<RunTimes> times_of(std::span<const Presentation> presentations) {
+  RunTimes times;
+  std::map<double, ContrastTime> by_contrast;
+  for (std::size_t i = 0; i < presentations.size(); ++i) {
+    const Presentation& shown = presentations[i];
+    if (!shown.host_time_ns) return std::nullopt;
+    times.changes_s += shown.said.settling_s;
+    const TargetState& set = shown.set;
+    const TargetState* before = i > 0 ? &presentations[i - 1].set : nullptr;
+    const bool opens = before == nullptr || before->plate != set.plate || before->mounting != set.mounting ||
+                       before->delta_t_k != set.delta_t_k;
+    ContrastTime& contrast = by_contrast[set.delta_t_k];
+    if (i + 1 == presentations.size()) {  // its end is not recorded: counted as the others
+      if (!contrast.plain.empty()) contrast.plain.push_back(median(contrast.plain));
+      continue;
+    }
+    const Presentation& next = presentations[i + 1];
+    if (!next.host_time_ns) return std::nullopt;
+    const double lasted_s = static_cast<double>(*next.host_time_ns - *shown.host_time_ns) * 1e-9 - next.said.settling_s;
+    (opens ? contrast.opening : contrast.plain).push_back(std::max(0.0, lasted_s));
+  }
+  for (const auto& [delta_t_k, contrast] : by_contrast) {
+    double& sum = times.presentations_s[delta_t_k];
+    for (const double s : contrast.plain) sum += s;
+    const double usual = contrast.plain.empty() ? 0 : median(contrast.plain);
+    for (const double s : contrast.opening) {
+      const double looking = contrast.plain.empty() ? 0 : std::max(0.0, s - usual);
+      times.looking_s += looking;
+      sum += s - looking;
+    }
+  }
+  return times;
+}
+
+std::optional<double> half_width_percent(const Interval& s75) {
+  if (!s75.low || !s75.high || !(*s75.low > 0)) return std::nullopt;
+  return 50 * std::log(*s75.high / *s75.low);
+}
+
+const TodPoint* point_of(const TodCurve& curve, double set_delta_t_k) {
+  const auto found = std::ranges::find(curve.points, set_delta_t_k, &TodPoint::set_delta_t_k);
+  return found == curve.points.end() ? nullptr : &*found;
+}
+
+std::size_t count_at(const BillInput& input, double set_delta_t_k) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      input.presentations, [&](const Presentation& shown) { return shown.set.delta_t_k == set_delta_t_k; }));
+}
+
+std::size_t set_ups_at(const BillInput& input, double set_delta_t_k) {
+  std::set<SetUp> set_ups;
+  for (const Presentation& shown : input.presentations) {
+    if (shown.set.delta_t_k == set_delta_t_k) set_ups.emplace(shown.set.plate, shown.set.mounting);
+  }
+  return set_ups.size();
+}
+
+std::string presentations_bought(const BillInput& input, const TodPoint& point) {
+  const std::string count = std::to_string(count_at(input, point.set_delta_t_k)) + " presentations";
+  const auto half = half_width_percent(deciding_interval(point));
+  return half ? fmt::format("S75 to ± {} % (95 %), {}", significant(*half, 2), count) : count + ", no interval of S75";
+}
+
+/// Largest relative standard error of the contrasts.
+std::string contrast_bought(const TodCurve& curve) {
+  double largest = 0;
+  for (const TodPoint& point : curve.points) {
+    if (point.delta_t_k != 0) largest = std::max(largest, std::abs(point.delta_t_se_k / point.delta_t_k));
+  }
+  return largest > 0 ? fmt::format("place of the plate; effective contrasts to {} % or better (standard error)",
+                                   significant(100 * largest, 2))
+                     : "place of the plate and effective contrasts";
+}
+
+std::string changes_bought(const BillInput& input) {
+  std::set<SetUp> set_ups;
+  std::set<double> contrasts;
+  for (const Presentation& shown : input.presentations) {
+    set_ups.emplace(shown.set.plate, shown.set.mounting);
+    contrasts.insert(shown.set.delta_t_k);
+  }
+  return fmt::format("{} set-ups, {} contrasts, {} places of the plate in the picture", set_ups.size(),
+                     contrasts.size(), input.presentations.size());
+}
+
+void add_rows(AccuracyBill& bill, const BillInput& input) {
+  const auto times = times_of(input.presentations);
+  double known_s = 0;
+  if (times) {
+    bill.rows.push_back({"Changes of the target", times->changes_s, changes_bought(input)});
+    bill.rows.push_back({"Location of the plate, contrasts", times->looking_s, contrast_bought(input.curve)});
+    known_s = times->changes_s + times->looking_s;
+  }
+  for (const TodPoint& point : input.curve.points) {
+    std::optional<double> seconds;
+    if (times) {
+      const auto found = times->presentations_s.find(point.set_delta_t_k);
+      if (found != times->presentations_s.end()) seconds = found->second;
+    }
+    known_s += seconds.value_or(0);
+    bill.rows.push_back(
+        {"Presentations at " + stated(point.set_delta_t_k) + " K", seconds, presentations_bought(input, point)});
+  }
+  bill.rows.push_back(
+      times ? BillRow{"Rest of the run", std::max(0.0, input.wall_s - known_s), "start, physical measures, fits"}
+            : BillRow{"Computing", input.wall_s, "all of the rows above: the scene is simulated"});
+}
+
+/// Half-width of the rows that are stated in the budget, in percent: no time reduces them.
+double floor_percent(const PointUncertainty& point) {
+  double sum = 0;
+  for (const AppliedRow& row : point.rows) {
+    if (!row.from_run) sum += row.contribution * row.contribution;
+  }
+  return 100 * normal_z95 * std::sqrt(sum);
+}
+
+void add_floor(AccuracyBill& bill, const BillInput& input) {
+  if (input.uncertainty == nullptr) return;
+  for (const PointUncertainty& point : input.uncertainty->points) {
+    const auto half = half_width_percent(point.statistical_mrad);
+    const double floor = floor_percent(point);
+    if (!half || !(floor > 0)) continue;
+    bill.sentences.push_back(fmt::format(
+        "At {} K the stated rows of the budget make ± {} %, which no presentation reduces; the trials make ± {} %.",
+        stated(point.set_delta_t_k), significant(floor, 2), significant(*half, 2)));
+  }
+}
+
+/// Share of the presentations at the contrast of a demand that its decision needs; empty: not known.
+std::optional<double> needed_share(const Demand& demand, const BillInput& input) {
+  if (demand.kind != DemandKind::acuity || !demand.delta_t_k || !demand.limit || !demand.result) return std::nullopt;
+  if (demand.decision == VerdictKind::inconclusive || !(*demand.limit > 0) || !(*demand.result > 0))
+    return std::nullopt;
+  const TodPoint* point = point_of(input.curve, *demand.delta_t_k);
+  const auto half = point == nullptr ? std::nullopt : half_width_percent(deciding_interval(*point));
+  if (!half) return std::nullopt;
+  const PointUncertainty* stated_u =
+      input.uncertainty == nullptr ? nullptr : point_at(*input.uncertainty, *demand.delta_t_k);
+  const double floor = stated_u == nullptr ? 0 : floor_percent(*stated_u);
+  const double margin = 100 * std::abs(std::log(*demand.result / *demand.limit));
+  if (!(margin > floor)) return std::nullopt;
+  const double presentations = static_cast<double>(count_at(input, *demand.delta_t_k));
+  const double least = static_cast<double>(set_ups_at(input, *demand.delta_t_k)) / presentations;
+  return std::clamp(*half * *half / (margin * margin - floor * floor), least, 1.0);
+}
+
+void add_least(AccuracyBill& bill, const BillInput& input) {
+  if (input.verdict == nullptr) return;
+  for (const Demand& demand : input.verdict->demands) {
+    const auto share = needed_share(demand, input);
+    if (!share) continue;
+    const auto all = count_at(input, *demand.delta_t_k);
+    const auto needed = static_cast<std::size_t>(std::ceil(*share * static_cast<double>(all) - 1e-9));
+    bill.sentences.push_back(fmt::format("The decision on the acuity at {} K needs about {} of the {} presentations.",
+                                         stated(*demand.delta_t_k), needed, all));
+  }
+}
+
+void add_left_out(AccuracyBill& bill, const SensorPlan& effects) {
+  std::string names;
+  double largest = 0;
+  for (const EffectDecision& decision : effects.decisions) {
+    if (decision.decision != Decision::skip || decision.predicted_change_percent.value_or(0) == 0) continue;
+    names += (names.empty() ? "" : ", ") + words(to_string(decision.effect));
+    largest = std::max(largest, std::abs(*decision.predicted_change_percent));
+  }
+  bill.sentences.push_back(names.empty()
+                               ? std::string("The simulation left out no effect that changes the acuity.")
+                               : fmt::format("The simulation left out: {}. Each changes the acuity by at most {} %.",
+                                             names, significant(largest, 2)));
+}
+
+}  // namespace
+
+AccuracyBill accuracy_bill(const BillInput& input) {
+  AccuracyBill bill{.rows = {}, .total_s = input.wall_s, .sentences = {}};
+  add_rows(bill, input);
+  add_floor(bill, input);
+  add_least(bill, input);
+  add_left_out(bill, input.effects);
+  return bill;
+}
+
+Json bill_json(const AccuracyBill& bill) {
+  Json rows = Json::array();
+  for (const BillRow& row : bill.rows)
+    rows.push_back({{"part", row.part}, {"seconds", json_number(row.seconds)}, {"bought", row.bought}});
+  return {{"total_s", json_number(bill.total_s)}, {"rows", rows}, {"sentences", bill.sentences}};
+}
+
+Section bill_section(const AccuracyBill& bill) {
+  Table table;
+  table.caption = "Time of the run and the accuracy that it bought";
+  table.header = {"Part", "Time (s)", "Result"};
+  for (const BillRow& row : bill.rows) {
+    table.rows.push_back(
+        {plain(row.part), row.seconds ? plain(shown(*row.seconds, 1)) : missing("not separate"), plain(row.bought)});
+  }
+  table.rows.push_back({strong("Total"), strong(shown(bill.total_s, 1)), plain("")});
+  Section section{"Accuracy and time", {std::move(table)}};
+  section.blocks.emplace_back(list_of(bill.sentences));
+  return section;
+}
+
+}  // namespace todbench

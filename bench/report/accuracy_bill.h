@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the time of a run bought, what no time can buy, and what was left out.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/judgement/verdict.h"
+#include "bench/report/document.h"
+#include "bench/text/json.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "tod/presentation/presentation.h"
+
+namespace todbench {
+
+/// Part of the time of a run.
+struct BillRow {
+  std::string part;
+  std::optional<double> seconds{};  ///< empty: cannot be separated from the others
+  std::string bought{};             ///< words with numbers
+};
+
+struct AccuracyBill {
+  std::vector<BillRow> rows;
+  double total_s = 0;
+  std::vector<std::string> sentences;  ///< limits of accuracy, least time for the verdict, effects left out
+};
+
+/// Input of accuracy_bill(). Borrows for the call.
+struct BillInput {
+  std::span<const Presentation> presentations;
+  const TodCurve& curve;
+  const CurveUncertainty* uncertainty = nullptr;  ///< null: the plan has no budget
+  const Verdict* verdict = nullptr;               ///< null: not judged
+  const SensorPlan& effects;
+  double wall_s = 0;  ///< of the run with its physical measures, without the twin
+};
+
+/// Divides the time of a run. A presentation begins when the target is in place and ends when its next change begins.
+/// The first presentation of a set-up or a contrast also locates the plate and measures the contrast: the excess over
+/// the median presentation of the same contrast is that time. A simulated scene has no times of its own: all time is
+/// computing. The least time for the verdict assumes a half-width that falls with the root of the presentations, at
+/// least one presentation of each set-up.
+[[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);
+
+/// Returns {"total_s", "rows": [{"part", "seconds", "bought"}], "sentences": [...]}.
+[[nodiscard]] Json bill_json(const AccuracyBill& bill);
+/// Returns the section of the report.
+[[nodiscard]] Section bill_section(const AccuracyBill& bill);
+
+}  // namespace todbench
