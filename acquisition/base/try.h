@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The value of a Result, or return with its error.
+#pragma once
+
+#include <utility>
+
+#include "acquisition/base/result.h"
+
+#define TODBENCH_TRY_JOIN_(a, b) a##b
+#define TODBENCH_TRY_NAME_(line) TODBENCH_TRY_JOIN_(todbench_try_, line)
+#define TODBENCH_TRY_(result, target, ...)                                            \
+  auto result = (__VA_ARGS__);                                                        \
+  if (!(result)) return tl::unexpected<::todbench::Error>(std::move(result).error()); \
+  target = *std::move(result)
+
+/// Evaluates an expression of type Result<T>. On an error the function returns it; otherwise its value initializes or
+/// is assigned to `target`:
+///   TODBENCH_TRY(const auto text, read_text_file(file));
+///   TODBENCH_TRY(session.plan, load_plan(file));
+/// Three statements: not for the body of an `if` without braces, and one on a line.
+#define TODBENCH_TRY(target, ...) TODBENCH_TRY_(TODBENCH_TRY_NAME_(__LINE__), target, __VA_ARGS__)
