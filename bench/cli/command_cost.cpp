@@ -15,6 +15,7 @@
 #include "bench/session/signature.h"
 #include "bench/studies/cost_study.h"
 #include "bench/text/files.h"
+#include "bench/text/json_fields.h"
 
 namespace todbench {
 namespace {
@@ -77,8 +78,7 @@ Result<void> into_session(const CostFrontier& frontier, const std::filesystem::p
   if (auto own = opening.accept_changed ? require_no_links(folder) : require_no_foreign_file(folder); !own) return own;
   auto session = open_session(folder, opening);
   if (!session) return tl::unexpected(session.error());
-  if (auto written = write_file_atomically(folder / "cost.json", to_page(cost_json(frontier))); !written)
-    return written;
+  if (auto written = write_json_file(folder / "cost.json", cost_json(frontier)); !written) return written;
   if (session->accepted_changes.empty()) {
     if (auto listed = refresh_manifest(folder, {"cost.json"}); !listed) return listed;
     auto digest = manifest_digest(folder);
@@ -123,11 +123,12 @@ int run_cost(Console& console, const CostArguments& arguments, const Program& pr
   const auto precision = precision_of(*plan, program.stop->token());
   if (!precision && precision.error().code == ErrorCode::interrupted) return report_error(console, precision.error());
   if (console.json()) {
-    Json json = cost_json(*frontier);
+    auto json = cost_json(*frontier);
+    if (!json) return report_error(console, json.error());
     // The frontier is printed only, not stored in the session, so it is left out for a session.
-    if (precision && arguments.session.empty()) json["frontier"] = frontier_json(*precision);
-    add_accepted_changes(json, arguments.opening, asked->accepted_changes);
-    console.object(json);
+    if (precision && arguments.session.empty()) (*json)["frontier"] = frontier_json(*precision);
+    add_accepted_changes(*json, arguments.opening, asked->accepted_changes);
+    console.object(*json);
   }
   if (frontier->reference.empty()) {
     for (const auto& note : frontier->notes) console.note(note);
