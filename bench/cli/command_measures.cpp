@@ -33,10 +33,9 @@ Result<cv::Mat1d> cut(const cv::Mat1d& picture, const std::vector<int>& region) 
   return picture(wanted).clone();
 }
 
-Json numbers_json(const std::vector<double>& values, double factor = 1) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(json_number(value * factor));
-  return list;
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
 }
 
 /// Without a statement about halos, the low end is open if only the bound on their share limits it.
@@ -76,9 +75,9 @@ Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
           {"noise_over_step", json_number(edge.noise_over_step)},
           {"shading_percent", json_number(edge.shading_percent)},
           {"window_pitch", json_number(edge.window_pitch)},
-          {"frequency_per_pitch", numbers_json(edge.frequency_per_pitch)},
-          {"frequency_per_mrad", pitch ? numbers_json(edge.frequency_per_pitch, 1 / *pitch) : Json()},
-          {"mtf", numbers_json(edge.mtf)},
+          {"frequency_per_pitch", json_numbers(edge.frequency_per_pitch)},
+          {"frequency_per_mrad", pitch ? json_numbers(scaled(edge.frequency_per_pitch, 1 / *pitch)) : Json()},
+          {"mtf", json_numbers(edge.mtf)},
           {"mtf_ci95", intervals},
           {"widest_halo_pitch", json_number(edge.widest_halo_pitch)},
           {"halo_allowance", json_number(edge.halo_allowance)},
@@ -231,7 +230,7 @@ Json sitf_json(const SignalTransfer& line, const Steps& steps, const std::string
           {"largest_residual", json_number(line.largest_residual)},
           {"nonlinearity_percent", json_number(line.nonlinearity_percent)},
           {"r_squared", json_number(line.r_squared)},
-          {"residuals", numbers_json(line.residuals)}};
+          {"residuals", json_numbers(line.residuals)}};
 }
 
 int run_sitf(Console& console, const std::string& file) {

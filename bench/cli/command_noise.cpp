@@ -229,9 +229,7 @@ Json components_json(const ThreeDNoise& c) {
 }
 
 Json structure_json(const TemporalNoise& noise) {
-  Json values = Json::array();
-  for (const double value : noise.structure) values.push_back(json_number(value));
-  return {{"lags", noise.lags}, {"values", values}};
+  return {{"lags", noise.lags}, {"values", json_numbers(noise.structure)}};
 }
 
 Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, const NoiseArguments& arguments) {

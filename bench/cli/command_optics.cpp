@@ -31,11 +31,8 @@ struct MtfArguments {
 
 Json rows_of(const cv::Mat1d& values) {
   Json rows = Json::array();
-  for (int j = 0; j < values.rows; ++j) {
-    Json row = Json::array();
-    for (int i = 0; i < values.cols; ++i) row.push_back(json_number(values(j, i)));
-    rows.push_back(std::move(row));
-  }
+  for (int j = 0; j < values.rows; ++j)
+    rows.push_back(json_numbers({values[j], static_cast<std::size_t>(values.cols)}));
   return rows;
 }
 

@@ -54,9 +54,9 @@ std::vector<ShippedRow> shipped_rows() {
                    .band = band_from(entry.at("band_um").text()),
                    .air_k = entry.at("air_temperature_k").number(),
                    .points = {}};
-    const auto ranges = entry.at("range_km").elements(), passed = entry.at("transmittance").elements();
+    const auto ranges = entry.at("range_km").numbers(), passed = entry.at("transmittance").numbers();
     for (std::size_t i = 0; i < std::min(ranges.size(), passed.size()); ++i)
-      row.points.push_back({1000 * ranges[i].number(), passed[i].number()});
+      row.points.push_back({1000 * ranges[i], passed[i]});
     rows.push_back(std::move(row));
   }
   return rows;

@@ -15,6 +15,12 @@ Json json_number(const std::optional<double>& value) {
   return value ? json_number(*value) : Json(nullptr);
 }
 
+Json json_numbers(std::span<const double> values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(json_number(value));
+  return list;
+}
+
 Json json_interval(const Interval& interval) {
   return Json::array({json_number(interval.low), json_number(interval.high)});
 }

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "tod/psychometric/psychometric_fit.h"
@@ -16,6 +17,8 @@ using Json = nlohmann::ordered_json;
 /// Returns the number; null if it is absent or not finite.
 [[nodiscard]] Json json_number(double value);
 [[nodiscard]] Json json_number(const std::optional<double>& value);
+/// Returns the list of the numbers, with null in place of those that are not finite.
+[[nodiscard]] Json json_numbers(std::span<const double> values);
 /// Returns [low, high]; an open end is null.
 [[nodiscard]] Json json_interval(const Interval& interval);
 /// Returns one line of text. Invalid UTF-8 is replaced, and terminal control characters (valid_text()) become \u

@@ -81,6 +81,11 @@ class JsonReader {
   [[nodiscard]] bool flag() const {
     return json_->is_boolean() ? json_->get<bool>() : ((void)wrong("true or false"), false);
   }
+  [[nodiscard]] std::vector<double> numbers() const {
+    std::vector<double> values;
+    for (const JsonReader& element : elements()) values.push_back(element.number());
+    return values;
+  }
   [[nodiscard]] std::vector<std::string> texts() const {
     std::vector<std::string> values;
     for (const JsonReader& element : elements()) values.push_back(element.text());
