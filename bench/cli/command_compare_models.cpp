@@ -12,7 +12,7 @@
 #include "bench/judgement/verdict.h"
 #include "bench/model_comparison/model_comparison_page.h"
 #include "bench/report/html.h"
-#include "bench/session/json_output.h"
+#include "bench/session/fit_record.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"

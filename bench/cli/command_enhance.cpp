@@ -17,7 +17,7 @@
 #include "bench/picture_files/encoded_picture.h"
 #include "bench/report/html.h"
 #include "bench/run/experiment.h"
-#include "bench/session/json_output.h"
+#include "bench/session/fit_record.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"

@@ -10,6 +10,7 @@
 #include "bench/judgement/verdict.h"
 #include "bench/report/svg.h"
 #include "bench/report/tod_figures.h"
+#include "bench/session/fit_record.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"

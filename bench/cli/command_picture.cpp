@@ -11,6 +11,7 @@
 #include "bench/picture_files/encoded_picture.h"
 #include "bench/plan/descriptions.h"
 #include "bench/report/picture_page.h"
+#include "bench/session/fit_record.h"
 #include "bench/studies/scene_pictures.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"

@@ -11,6 +11,7 @@
 #include "bench/cli/range_options.h"
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
+#include "bench/session/fit_record.h"
 #include "bench/studies/turbulent_ranges.h"
 #include "bench/text/text.h"
 #include "sim_devices/sensor/effect_turbulence.h"

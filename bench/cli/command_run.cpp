@@ -22,6 +22,8 @@
 #include "bench/run/replay.h"
 #include "bench/run/terminal_operator.h"
 #include "bench/serve/live_run.h"
+#include "bench/session/fit_record.h"
+#include "bench/session/json_output.h"
 #include "bench/session/measure_pictures.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/provenance.h"

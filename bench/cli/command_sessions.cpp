@@ -12,6 +12,7 @@
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/rebuild_report.h"
 #include "bench/run/report_data.h"
+#include "bench/session/fit_record.h"
 #include "bench/session/provenance.h"
 #include "bench/session/session_comparison.h"
 #include "bench/session/signature.h"

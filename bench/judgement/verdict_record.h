@@ -8,8 +8,11 @@
 
 namespace todbench {
 
+/// Returns the key "judgement" of the JSON output.
 [[nodiscard]] Json verdict_json(const Verdict& verdict);
-/// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type, unknown word or unit).
+/// Returns the content of verdict.json, with the same keys. Errors: json_of().
+[[nodiscard]] Result<Json> verdict_record(const Verdict& verdict);
+/// Parses a record. Errors: from_json(); another unit than that of the kind.
 [[nodiscard]] Result<Verdict> verdict_from(const Json& record);
 
 }  // namespace todbench

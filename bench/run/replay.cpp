@@ -52,7 +52,7 @@ Result<bool> same_trials(const std::filesystem::path& session, const std::filesy
 }
 
 /// Returns a curve without findings and reasons, which sessions of earlier versions do not have.
-Json fits_of(TodCurve curve) {
+Result<Json> fits_of(TodCurve curve) {
   for (TodPoint& point : curve.points) {
     point.adequacy.reset();
     point.estimator_reason.reset();
@@ -118,7 +118,10 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   if (!recorded->curve) return outcome;
   const auto comparable = comparable_fits(session, *recorded->curve);
   if (!comparable) return tl::unexpected(comparable.error());
-  if (*comparable) outcome.same_fits = fits_of(*recorded->curve) == fits_of(outcome.run.curve);
+  if (!*comparable) return outcome;
+  const auto then = fits_of(*recorded->curve), now = fits_of(outcome.run.curve);
+  if (!then || !now) return tl::unexpected(then ? now.error() : then.error());
+  outcome.same_fits = *then == *now;
   return outcome;
 }
 

@@ -1,22 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves and comparisons as complete JSON records that read back to equal values.
+// Fits, curves and comparisons as JSON: objects for other programs, and complete records that read back to equal
+// values.
 #pragma once
 
+#include <optional>
+
 #include "acquisition/base/result.h"
-#include "bench/session/json_output.h"
+#include "bench/text/json.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "tod/comparison/comparison.h"
+#include "tod/psychometric/psychometric_fit.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 
-/// Returns every field of a curve, including counts per size.
-[[nodiscard]] Json curve_record(const TodCurve& curve);
-/// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
+class JsonFields;
+
+/// Returns the output of `fit TRIALS.csv --json`.
+[[nodiscard]] Json fit_json(const PsychometricFit& fit);
+/// Returns {"adequate", "findings": [{"kind", "value", "limit", "sentence", "unfit"}]} of a fit, a point or a
+/// comparison; null if it was not tested.
+[[nodiscard]] Json adequacy_json(const std::optional<Adequacy>& adequacy);
+/// Returns the output of `compare A B --json`.
+[[nodiscard]] Json comparison_json(const Comparison& comparison);
+/// Returns the list of effects in the JSON of curve and plan.
+[[nodiscard]] Json effects_json(const SensorPlan& plan);
+
+/// Returns every field of a curve, including counts per size. Errors: json_of().
+[[nodiscard]] Result<Json> curve_record(const TodCurve& curve);
+/// Parses a record. Errors: from_json().
 [[nodiscard]] Result<TodCurve> curve_from(const Json& record);
 
-/// Returns every field of a comparison; the keys include those of comparison_json().
-[[nodiscard]] Json comparison_record(const Comparison& comparison);
+/// Content of fits.json.
+struct StoredCurves {
+  std::optional<TodCurve> main;
+  std::optional<TodCurve> twin;
+};
+[[nodiscard]] Result<Json> curves_record(const StoredCurves& curves);
+[[nodiscard]] Result<StoredCurves> curves_from(const Json& record);
+
+/// Returns every field of a comparison; the keys include those of comparison_json(). Errors: json_of().
+[[nodiscard]] Result<Json> comparison_record(const Comparison& comparison);
+/// Parses a record. Errors: from_json().
 [[nodiscard]] Result<Comparison> comparison_from(const Json& record);
 
-/// Parses a plan of effects with the keys of effects_json().
-[[nodiscard]] Result<SensorPlan> effects_from(const Json& effects);
+/// Describes the key "effects" of a record, with the list of effects_json().
+void effects_fields(JsonFields& json, SensorPlan& plan);
 
 }  // namespace todbench

@@ -14,6 +14,7 @@
 #include "bench/session/trials_csv.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
+#include "bench/text/json_fields.h"
 #include "bench/text/text.h"
 #include "tod/adequacy/adequacy.h"
 
@@ -118,8 +119,7 @@ Result<void> write_human(const std::filesystem::path& session, const HumanRecord
     if (auto written = writer->append(trial); !written) return written;
   }
   if (auto synced = writer->sync(); !synced) return synced;
-  if (auto written = write_file_atomically(session / fits_name, to_page(curve_record(record.curve))); !written)
-    return written;
+  if (auto written = write_json_file(session / fits_name, curve_record(record.curve)); !written) return written;
   if (auto written = write_file_atomically(session / shown_name, shown_text(record)); !written) return written;
   return refresh_manifest(session, {trials_name, shown_name, fits_name});
 }

@@ -9,17 +9,9 @@
 
 #include "bench/text/json.h"
 #include "sim_devices/sensor/sensor_plan.h"
-#include "tod/comparison/comparison.h"
-#include "tod/psychometric/psychometric_fit.h"
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
-
-/// Returns the output of `fit TRIALS.csv --json`.
-[[nodiscard]] Json fit_json(const PsychometricFit& fit);
-/// Returns {"adequate", "findings": [{"kind", "value", "limit", "sentence", "unfit"}]} of a fit, a point or a
-/// comparison; null if it was not tested.
-[[nodiscard]] Json adequacy_json(const std::optional<Adequacy>& adequacy);
 
 /// Figures of a run that `measure` and `simulate` report with the curve.
 struct RunFigures {
@@ -27,13 +19,8 @@ struct RunFigures {
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
 };
-/// Adds "answers", "frames_per_presentation" and "answers_reason" of a point; null if unknown.
-void add_answers(Json& json, const TodPoint& point);
 /// Returns the output of `measure PLAN --json` and `simulate PLAN --json`; the plan of a measured curve has no effects.
 [[nodiscard]] Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures& figures);
-
-/// Returns the output of `compare A B --json`.
-[[nodiscard]] Json comparison_json(const Comparison& comparison);
 
 /// Predictions of the command `plan`.
 struct PlanFigures {
@@ -44,7 +31,5 @@ struct PlanFigures {
 };
 /// Returns the output of `plan PLAN --json`.
 [[nodiscard]] Json plan_json(const SensorPlan& plan, const PlanFigures& figures);
-/// Returns the list of effects in the JSON of curve and plan.
-[[nodiscard]] Json effects_json(const SensorPlan& plan);
 
 }  // namespace todbench

@@ -92,8 +92,9 @@ struct Provenance {
 /// Returns the current time as "2026-01-31T12:34:56Z".
 [[nodiscard]] std::string utc_now();
 
-[[nodiscard]] Json provenance_json(const Provenance& provenance);
-/// Parses a record. Errors: `invalid_input` with the key.
+/// Returns the content of provenance.json. Errors: json_of().
+[[nodiscard]] Result<Json> provenance_json(const Provenance& provenance);
+/// Parses a record. Errors: from_json().
 [[nodiscard]] Result<Provenance> provenance_from(const Json& json);
 
 }  // namespace todbench

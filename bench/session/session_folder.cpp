@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "acquisition/base/safe_file.h"
+#include "acquisition/base/try.h"
 #include "bench/judgement/verdict_record.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/strict_toml.h"
@@ -21,6 +22,7 @@
 #include "bench/session/uncertainty_record.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
+#include "bench/text/json_fields.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 #include "tod/psychometric/contrast_slope.h"
@@ -159,21 +161,6 @@ Result<std::optional<SessionMeasures>> read_measures(const std::filesystem::path
   return *std::move(measures);
 }
 
-Result<void> read_curves(const std::filesystem::path& file, Session& session) {
-  const Result<Json> json = read_json(file);
-  if (!json) return tl::unexpected(json.error());
-  for (const auto& [key, target] : {std::pair("main", &session.curve), std::pair("twin", &session.twin)}) {
-    if (!json->is_object() || !json->contains(key)) {
-      return fail(ErrorCode::invalid_input, file.string() + ": missing key '" + key + "'");
-    }
-    if ((*json)[key].is_null()) continue;
-    Result<TodCurve> curve = curve_from((*json)[key]);
-    if (!curve) return fail(file.string() + ": " + key, curve.error());
-    *target = *std::move(curve);
-  }
-  return {};
-}
-
 Result<void> read_all_trials(const std::filesystem::path& folder, Session& session) {
   for (const auto& [which, target] :
        {std::pair(SessionCurve::main, &session.trials), std::pair(SessionCurve::twin, &session.twin_trials)}) {
@@ -274,7 +261,7 @@ Result<void> SessionFolder::write_plan(const LoadedPlan& loaded) {
 }
 
 Result<void> SessionFolder::write_provenance(const Provenance& provenance) {
-  return write_file_atomically(folder_ / "provenance.json", to_page(provenance_json(provenance)));
+  return write_json_file(folder_ / "provenance.json", provenance_json(provenance));
 }
 
 Result<TrialsWriter> SessionFolder::open_trials(SessionCurve which) {
@@ -287,21 +274,16 @@ Result<TargetsWriter> SessionFolder::open_targets(SessionCurve which) {
 
 Result<void> SessionFolder::write_curves(const TodCurve& main, const std::optional<TodCurve>& twin, Side side,
                                          const std::optional<CurveUncertainty>& uncertainty) {
-  Json json;
-  json["main"] = curve_record(main);
-  json["twin"] = twin ? curve_record(*twin) : Json(nullptr);
-  if (const Result<void> written = write_file_atomically(folder_ / "fits.json", to_page(json)); !written)
-    return written;
+  if (auto written = write_json_file(folder_ / "fits.json", curves_record({main, twin})); !written) return written;
   if (uncertainty) {
-    if (auto written = write_file_atomically(folder_ / "uncertainty.json", to_page(uncertainty_json(*uncertainty)));
-        !written)
+    if (auto written = write_json_file(folder_ / "uncertainty.json", uncertainty_record(*uncertainty)); !written)
       return written;
   }
   return write_file_atomically(folder_ / "curve.csv", curve_csv(main, twin, side, uncertainty));
 }
 
 Result<void> SessionFolder::write_comparison(const Comparison& comparison) {
-  return write_file_atomically(folder_ / "comparison.json", to_page(comparison_record(comparison)));
+  return write_json_file(folder_ / "comparison.json", comparison_record(comparison));
 }
 
 Result<void> SessionFolder::write_grey_levels(const std::vector<GreyFrame>& frames) {
@@ -328,7 +310,7 @@ Result<void> SessionFolder::write_measures(Json record) {
 }
 
 Result<void> SessionFolder::write_verdict(const Verdict& verdict) {
-  return write_file_atomically(folder_ / "verdict.json", to_page(verdict_json(verdict)));
+  return write_json_file(folder_ / "verdict.json", verdict_record(verdict));
 }
 
 Result<void> SessionFolder::write_report(std::string_view html) {
@@ -412,25 +394,16 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   if (auto kept = keep_as_it_was(session.plan, session.trials, folder / "session.toml"); !kept)
     return tl::unexpected(kept.error());
   if (const Result<void> read = read_all_targets(folder, session); !read) return tl::unexpected(read.error());
-  if (is_there(folder / "fits.json")) {
-    if (const Result<void> read = read_curves(folder / "fits.json", session); !read)
-      return tl::unexpected(read.error());
+  TODBENCH_TRY(auto curves, read_record(folder / "fits.json", curves_from));
+  if (curves) {
+    session.curve = std::move(curves->main);
+    session.twin = std::move(curves->twin);
   }
-  auto comparison = read_record(folder / "comparison.json", comparison_from);
-  if (!comparison) return tl::unexpected(comparison.error());
-  session.comparison = *std::move(comparison);
-  auto measures = read_measures(folder);
-  if (!measures) return tl::unexpected(measures.error());
-  session.measures = *std::move(measures);
-  auto uncertainty = read_record(folder / "uncertainty.json", uncertainty_from);
-  if (!uncertainty) return tl::unexpected(uncertainty.error());
-  session.uncertainty = *std::move(uncertainty);
-  auto verdict = read_record(folder / "verdict.json", verdict_from);
-  if (!verdict) return tl::unexpected(verdict.error());
-  session.verdict = *std::move(verdict);
-  auto cost = read_record(folder / "cost.json", cost_from);
-  if (!cost) return tl::unexpected(cost.error());
-  session.cost = *std::move(cost);
+  TODBENCH_TRY(session.comparison, read_record(folder / "comparison.json", comparison_from));
+  TODBENCH_TRY(session.measures, read_measures(folder));
+  TODBENCH_TRY(session.uncertainty, read_record(folder / "uncertainty.json", uncertainty_from));
+  TODBENCH_TRY(session.verdict, read_record(folder / "verdict.json", verdict_from));
+  TODBENCH_TRY(session.cost, read_record(folder / "cost.json", cost_from));
   return session;
 }
 
@@ -456,8 +429,7 @@ Verdict verdict_of(const Session& session) {
 
 Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict) {
   if (!is_there(folder / manifest_name)) return {};
-  if (auto written = write_file_atomically(folder / "verdict.json", to_page(verdict_json(verdict))); !written)
-    return written;
+  if (auto written = write_json_file(folder / "verdict.json", verdict_record(verdict)); !written) return written;
   return refresh_manifest(folder, {"verdict.json"});
 }
 

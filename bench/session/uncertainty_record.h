@@ -8,8 +8,9 @@
 
 namespace todbench {
 
-[[nodiscard]] Json uncertainty_json(const CurveUncertainty& uncertainty);
-/// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
+/// Returns the content of uncertainty.json. Errors: json_of().
+[[nodiscard]] Result<Json> uncertainty_record(const CurveUncertainty& uncertainty);
+/// Parses a record. Errors: from_json().
 [[nodiscard]] Result<CurveUncertainty> uncertainty_from(const Json& record);
 
 /// Adds the expanded intervals to the points of curve_json(), and the complete record as "uncertainty".

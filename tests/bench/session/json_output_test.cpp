@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -128,7 +129,7 @@ TEST(Json, NeverContainsNanOrInfinityWhateverTheValues) {
     const SensorPlan plan{{{Effect::detector, Decision::simulate, "", bad}}};
 
     for (const Json& json : {fit_json(fit), curve_json(curve, plan, {bad, 0, {}}), comparison_json(comparison),
-                             plan_json(plan, {1, bad, bad}), curve_record(curve), comparison_record(comparison)}) {
+                             plan_json(plan, {1, bad, bad})}) {
       const std::string text = to_line(json);
       EXPECT_THAT(text, Not(HasSubstr("nan")));
       EXPECT_THAT(text, Not(HasSubstr("inf\"")));
@@ -136,6 +137,35 @@ TEST(Json, NeverContainsNanOrInfinityWhateverTheValues) {
       EXPECT_FALSE(Json::parse(text, nullptr, false).is_discarded());
     }
   }
+}
+
+TEST(CurveRecord, RefusesANumberThatWouldNotBeReadBack) {
+  for (const double bad : {nan, infinity, -infinity}) {
+    TodCurve curve = testing::full_curve();
+    curve.points[1].fit.variance_inflation = bad;
+    Comparison comparison = full_comparison();
+    comparison.points[0].margin_percent = bad;
+
+    const Result<Json> of_curve = curve_record(curve);
+    const Result<Json> of_comparison = comparison_record(comparison);
+
+    ASSERT_FALSE(of_curve);
+    EXPECT_THAT(of_curve.error().message,
+                StartsWith("'points[1].fit.variance_inflation': expected a finite number, found "));
+    ASSERT_FALSE(of_comparison);
+    EXPECT_THAT(of_comparison.error().message, StartsWith("'points[0].margin_percent': expected a finite number"));
+  }
+}
+
+TEST(CurveRecord, WritesAnUnknownNumberAsNull) {
+  TodCurve curve = testing::full_curve();
+  curve.points[0].fit.threshold = curve.points[0].direct_s75_mrad = nan;
+
+  const Result<TodCurve> back = curve_from(curve_record(curve).value());
+
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->points[0].fit.threshold, std::nullopt);
+  EXPECT_EQ(back->points[0].direct_s75_mrad, std::nullopt);
 }
 
 TEST(Json, TextThatIsNotUtf8DoesNotThrow) {
@@ -158,10 +188,10 @@ TEST(AcuityInterval, TurnsTheSidesRound) {
 TEST(CurveRecord, ComesBackWithEveryField) {
   const TodCurve curve = testing::full_curve();
 
-  const Result<TodCurve> back = curve_from(Json::parse(to_page(curve_record(curve))));
+  const Result<TodCurve> back = curve_from(Json::parse(to_page(curve_record(curve).value())));
 
   ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(to_line(curve_record(*back)), to_line(curve_record(curve)));
+  EXPECT_EQ(to_line(curve_record(*back).value()), to_line(curve_record(curve).value()));
   ASSERT_EQ(back->points.size(), 3u);
   const TodPoint& point = back->points[2];
   EXPECT_EQ(point.set_delta_t_k, 0.23);
@@ -186,12 +216,12 @@ TEST(CurveRecord, KeepsWhatSpeaksAgainstANumberAndReadsRecordsThatKnowNothingOfI
   point.saturated_share = 0.25;
   point.noise_counts = 0.5;
   point.lag1_correlation = -0.125;
-  Json old = curve_record(curve);
+  Json old = curve_record(curve).value();
   for (const char* key : {"adequacy", "saturated_share", "noise_counts", "lag1_correlation"})
     old["points"][0].erase(key);
   old["points"][0]["fit"].erase("slope_at_cap");
 
-  const Result<TodCurve> back = curve_from(Json::parse(to_page(curve_record(curve))));
+  const Result<TodCurve> back = curve_from(Json::parse(to_page(curve_record(curve).value())));
   const Result<TodCurve> from_old = curve_from(old);
 
   ASSERT_TRUE(back) << back.error().message;
@@ -208,7 +238,7 @@ TEST(CurveRecord, KeepsWhatSpeaksAgainstANumberAndReadsRecordsThatKnowNothingOfI
 }
 
 TEST(CurveRecord, AMissingKeyIsNamedWithItsPlace) {
-  Json json = curve_record(testing::full_curve());
+  Json json = curve_record(testing::full_curve()).value();
   json["points"][1]["fit"].erase("slope");
 
   const Result<TodCurve> back = curve_from(json);
@@ -219,7 +249,7 @@ TEST(CurveRecord, AMissingKeyIsNamedWithItsPlace) {
 }
 
 TEST(CurveRecord, AnotherTypeIsNamedWithItsPlace) {
-  Json json = curve_record(testing::full_curve());
+  Json json = curve_record(testing::full_curve()).value();
   json["points"][0]["fit"]["verdict"] = 3;
 
   EXPECT_EQ(curve_from(json).error().message, "'points[0].fit.verdict': expected a text");
@@ -247,7 +277,7 @@ TEST(ComparisonRecord, KeepsThePairedRatioBesideTheUnpairedOne) {
   EXPECT_FALSE(comparison_json(comparison).contains("decided_by"));
   add_paired(comparison, 0, full_pairs());
 
-  const Json record = comparison_record(comparison);
+  const Json record = comparison_record(comparison).value();
   const Result<Comparison> back = comparison_from(record);
 
   ASSERT_TRUE(back) << back.error().message;
@@ -256,16 +286,16 @@ TEST(ComparisonRecord, KeepsThePairedRatioBesideTheUnpairedOne) {
   EXPECT_EQ(back->points[0].ratio, 1.5);
   EXPECT_EQ(back->verdict, ComparisonVerdict::equivalent) << "the paired ratio decides";
   EXPECT_EQ(record["decided_by"], "paired");
-  EXPECT_EQ(to_line(comparison_record(*back)), to_line(record));
+  EXPECT_EQ(to_line(comparison_record(*back).value()), to_line(record));
 }
 
 TEST(ComparisonRecord, ComesBackWithEveryField) {
   const Comparison comparison = full_comparison();
 
-  const Result<Comparison> back = comparison_from(comparison_record(comparison));
+  const Result<Comparison> back = comparison_from(comparison_record(comparison).value());
 
   ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(to_line(comparison_record(*back)), to_line(comparison_record(comparison)));
+  EXPECT_EQ(to_line(comparison_record(*back).value()), to_line(comparison_record(comparison).value()));
   EXPECT_EQ(back->points.at(0).ratio_ci90.low, 1.3);
   EXPECT_EQ(back->points.at(0).delta_t_a_k, 16.8);
   EXPECT_EQ(back->verdict, ComparisonVerdict::different);

@@ -140,7 +140,7 @@ TEST(SessionFolder, ComesBackAsTheValuesThatWereWritten) {
   EXPECT_EQ(session->presentations, std::vector{testing::full_presentation()});
   EXPECT_EQ(session->twin_presentations, std::vector{testing::full_presentation()});
   for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(testing::values_of(session->trials[i]), testing::values_of(trials[i]));
-  EXPECT_EQ(to_line(curve_record(*session->curve)), to_line(curve_record(testing::full_curve())));
+  EXPECT_EQ(to_line(curve_record(*session->curve).value()), to_line(curve_record(testing::full_curve()).value()));
   EXPECT_TRUE(session->twin);
   EXPECT_EQ(session->comparison->verdict, ComparisonVerdict::equivalent);
   ASSERT_TRUE(session->verdict);
@@ -242,10 +242,10 @@ TEST(SessionFolder, ProvenanceComesBackWithEveryField) {
   plan.instruments = {{"black body", "BB-1", "C-77", "2027-02-28"}};
   const Provenance provenance = full_provenance(plan);
 
-  const Result<Provenance> back = provenance_from(Json::parse(to_page(provenance_json(provenance))));
+  const Result<Provenance> back = provenance_from(Json::parse(to_page(provenance_json(provenance).value())));
 
   ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(to_line(provenance_json(*back)), to_line(provenance_json(provenance)));
+  EXPECT_EQ(to_line(provenance_json(*back).value()), to_line(provenance_json(provenance).value()));
   EXPECT_EQ(back->camera, provenance.camera);
   EXPECT_EQ(back->camera_optics, provenance.camera_optics);
   EXPECT_EQ(back->seeds.at("plan"), 42u);
