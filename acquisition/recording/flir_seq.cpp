@@ -10,6 +10,7 @@
 #include <optional>
 #include <tuple>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 
 namespace todbench {
@@ -233,22 +234,21 @@ Result<std::vector<FlirSeqFrame>> read_flir_seq(const std::filesystem::path& pat
 }
 
 Result<Recording> open_flir_seq(const std::filesystem::path& path) {
-  auto frames = read_flir_seq(path);
-  if (!frames) return tl::unexpected(frames.error());
-  const bool uniform = std::all_of(frames->begin(), frames->end(),
-                                   [&](const FlirSeqFrame& frame) { return same_camera(frames->front(), frame); });
+  TODBENCH_TRY(auto frames, read_flir_seq(path));
+  const bool uniform = std::all_of(frames.begin(), frames.end(),
+                                   [&](const FlirSeqFrame& frame) { return same_camera(frames.front(), frame); });
   if (!uniform) {
     return fail(ErrorCode::invalid_input,
                 path.string() + ": the picture size or the calibration changes within the file");
   }
-  const auto scale = planck_scale(frames->front().planck);
+  const auto scale = planck_scale(frames.front().planck);
   if (!scale) return fail(path.string(), scale.error());
   auto file = std::make_shared<std::ifstream>(path, std::ios::binary);
   if (!*file) return fail(ErrorCode::io, path.string() + ": cannot be read");
   Recording recording;
-  recording.info = source_info(path, frames->front(), *scale);
-  recording.frame_count = frames->size();
-  recording.read = [file, all = std::move(*frames)](std::uint64_t index) { return read_pixels(*file, all[index]); };
+  recording.info = source_info(path, frames.front(), *scale);
+  recording.frame_count = frames.size();
+  recording.read = [file, all = std::move(frames)](std::uint64_t index) { return read_pixels(*file, all[index]); };
   return recording;
 }
 

@@ -19,6 +19,7 @@
 #include "acquisition/base/descriptor.h"
 #include "acquisition/base/safe_file.h"
 #include "acquisition/base/system_reason.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/recording/stream_header.h"
 
@@ -186,9 +187,7 @@ class StreamIndex {
       return header_record ? Result<void>(fail(ErrorCode::invalid_input, "the header is damaged")) : Result<void>();
     }
     if (header_record) {
-      auto read = parse_stream_header(payload);
-      if (!read) return tl::unexpected(read.error());
-      header = *std::move(read);
+      TODBENCH_TRY(header, parse_stream_header(payload));
     } else if (failure_record) {
       std::uint32_t code = 0;
       std::memcpy(&code, payload.data(), 4);
@@ -211,9 +210,8 @@ class StreamIndex {
 }  // namespace
 
 Result<FrameStreamWriter> FrameStreamWriter::create(const std::filesystem::path& path, const StreamHeader& header) {
-  auto file = WrittenFile::create(path);
-  if (!file) return tl::unexpected(file.error());
-  FrameStreamWriter writer(*std::move(file));
+  TODBENCH_TRY(auto file, WrittenFile::create(path));
+  FrameStreamWriter writer(std::move(file));
   if (auto written = writer.file_.append(magic, magic_bytes); !written) return tl::unexpected(written.error());
   const std::string text = stream_header_text(header);
   if (auto written = writer.write_record("HEAD", text.data(), text.size(), nullptr, 0); !written)
@@ -306,9 +304,8 @@ bool is_frame_stream(const std::filesystem::path& path) {
 
 Result<FrameStream> open_frame_stream(const std::filesystem::path& path) {
   const std::string name = path.string();
-  const auto opened = open_to_read(path);
-  if (!opened) return tl::unexpected(opened.error());
-  const auto file = std::make_shared<const File>(*opened);
+  TODBENCH_TRY(const auto opened, open_to_read(path));
+  const auto file = std::make_shared<const File>(opened);
   if (!is_frame_stream(path)) return fail(ErrorCode::invalid_input, name + ": not a recording of todbench");
   StreamIndex index(*file, file->size());
   if (auto walked = index.walk(); !walked) return fail(name, walked.error());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "acquisition/base/npy_header.h"
+#include "acquisition/base/try.h"
 #include "acquisition/recording/picture_file.h"
 
 namespace todbench {
@@ -130,31 +131,30 @@ constexpr std::array value_types{type_of<std::uint8_t>("u1"),  type_of<std::uint
 
 Result<PictureFile> parse_npy(std::string_view bytes) {
   if (!bytes.starts_with(npy_magic)) return fail(ErrorCode::invalid_input, "not a .npy file");
-  const auto header = header_of(bytes);
-  if (!header) return tl::unexpected(header.error());
-  const std::string_view descr = header->descr;
+  TODBENCH_TRY(const auto header, header_of(bytes));
+  const std::string_view descr = header.descr;
   const auto type = std::find_if(value_types.begin(), value_types.end(), [&](const ValueType& known) {
     return descr.size() == 3 && std::string_view("<>|=").find(descr[0]) != std::string_view::npos &&
            descr.substr(1) == known.name;
   });
   if (type == value_types.end()) {
-    return fail(ErrorCode::invalid_input, "the .npy file holds values of type '" + header->descr.substr(0, 20) +
+    return fail(ErrorCode::invalid_input, "the .npy file holds values of type '" + header.descr.substr(0, 20) +
                                               "', expected integers or floating point of 32 or 64 bits");
   }
-  if (header->shape.size() != 2) {
-    return fail(ErrorCode::invalid_input, "the .npy file has " + std::to_string(header->shape.size()) +
+  if (header.shape.size() != 2) {
+    return fail(ErrorCode::invalid_input, "the .npy file has " + std::to_string(header.shape.size()) +
                                               " dimensions, expected 2: rows and columns");
   }
-  const std::int64_t rows = header->shape[0], columns = header->shape[1];
+  const std::int64_t rows = header.shape[0], columns = header.shape[1];
   if (rows < 1 || columns < 1 || rows > longest_side || columns > longest_side)
     return fail(ErrorCode::invalid_input, "the picture in the .npy file is empty or too large");
   const std::size_t values = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
-  if (bytes.size() - header->data_at != values * type->size)
+  if (bytes.size() - header.data_at != values * type->size)
     return fail(ErrorCode::invalid_input, "the number of values in the .npy file differs from its header");
   PictureFile file;
   file.picture.create(static_cast<int>(rows), static_cast<int>(columns));
-  const bool swapped = descr[0] == '>', fortran = header->order == "F";
-  const char* at = bytes.data() + header->data_at;
+  const bool swapped = descr[0] == '>', fortran = header.order == "F";
+  const char* at = bytes.data() + header.data_at;
   for (std::size_t i = 0; i < values; ++i, at += type->size) {
     const auto wide = static_cast<std::size_t>(columns), high = static_cast<std::size_t>(rows);
     const std::size_t row = fortran ? i % high : i / wide, column = fortran ? i / high : i % wide;

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/frame_stream.h"
@@ -73,10 +74,9 @@ class RecordingBackend : public CameraBackend {
     if (!name) return fail(ErrorCode::invalid_input, "'" + id + "' does not begin with file:");
     const std::size_t mark = name->find('?');
     const std::filesystem::path path = name->substr(0, mark);
-    auto recording = open_recording(path, mark == std::string::npos ? "" : name->substr(mark + 1));
-    if (!recording) return tl::unexpected(recording.error());
-    recording->info.id = id;
-    return recorded_source(std::move(*recording));
+    TODBENCH_TRY(auto recording, open_recording(path, mark == std::string::npos ? "" : name->substr(mark + 1)));
+    recording.info.id = id;
+    return recorded_source(std::move(recording));
   }
 };
 
@@ -91,9 +91,8 @@ Result<Recording> open_recording(const std::filesystem::path& path, const std::s
   if (!query.empty() && !folder && (is_stream || path.extension() == ".seq"))
     return fail(ErrorCode::invalid_input, path.string() + ": the file contains its format; remove '?" + query + "'");
   if (is_stream) {
-    auto stream = open_frame_stream(path);
-    if (!stream) return tl::unexpected(stream.error());
-    return std::move(stream->recording);
+    TODBENCH_TRY(auto stream, open_frame_stream(path));
+    return std::move(stream.recording);
   }
   if (path.extension() == ".seq") return open_flir_seq(path);
   const auto values = parsed_query(query);

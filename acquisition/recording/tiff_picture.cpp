@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "acquisition/recording/picture_file.h"
 #include "acquisition/recording/tiff_file.h"
 
@@ -70,9 +71,8 @@ Result<PictureFile> read_tiff_picture(const std::filesystem::path& path) {
   if (TIFFScanlineSize(file.get()) != static_cast<tmsize_t>(width * stored->bytes))
     return fail(ErrorCode::invalid_input, file.why("the rows of the picture have an unexpected length"));
   if (TIFFLastDirectory(file.get()) == 0) return fail(ErrorCode::invalid_input, "the file holds more than one picture");
-  const auto stack = image_j_stack(file, 1);
-  if (!stack) return tl::unexpected(stack.error());
-  if (*stack) return fail(ErrorCode::invalid_input, "the file holds more than one picture");
+  TODBENCH_TRY(const auto stack, image_j_stack(file, 1));
+  if (stack) return fail(ErrorCode::invalid_input, "the file holds more than one picture");
   TiffRows rows(file, page, width * stored->bytes);
   const auto unreadable = [](const Error& error) { return fail(ErrorCode::invalid_input, error.message); };
   if (auto holds = rows.may_hold(); !holds) return unreadable(holds.error());

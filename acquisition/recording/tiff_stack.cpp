@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/recording/tiff_file.h"
 
@@ -51,9 +52,8 @@ Result<cv::Mat1w> read_page(const TiffFile& file) {
   if (auto holds = rows.may_hold(); !holds) return tl::unexpected(holds.error());
   cv::Mat1w counts(static_cast<int>(page.height), static_cast<int>(page.width));
   for (int y = 0; y < counts.rows; ++y) {
-    const auto row = rows.next();
-    if (!row) return tl::unexpected(row.error());
-    std::memcpy(counts.ptr(y), (*row)->data(), (*row)->size());
+    TODBENCH_TRY(const auto row, rows.next());
+    std::memcpy(counts.ptr(y), row->data(), row->size());
   }
   return shown(counts, page);
 }
@@ -132,20 +132,18 @@ Result<FilesInOrder> files_of(const std::filesystem::path& path) {
 /// Adds the pages of one file; all must have the size of the first.
 Result<void> add_pages(const TiffFile& file, std::size_t number, std::vector<Page>& pages, cv::Size& size) {
   const std::uint64_t directories = TIFFNumberOfDirectories(file.get());
-  const auto stack = image_j_stack(file, directories);
-  if (!stack) return tl::unexpected(stack.error());
+  TODBENCH_TRY(const auto stack, image_j_stack(file, directories));
   do {
-    const auto page = page_size(file);
-    if (!page) return tl::unexpected(page.error());
-    if (pages.empty()) size = *page;
-    if (*page != size) {
+    TODBENCH_TRY(const auto page, page_size(file));
+    if (pages.empty()) size = page;
+    if (page != size) {
       return fail(ErrorCode::invalid_input, "page " + std::to_string(pages.size() + 1) + " is " +
-                                                std::to_string(page->width) + " x " + std::to_string(page->height) +
+                                                std::to_string(page.width) + " x " + std::to_string(page.height) +
                                                 ", but the first page is " + std::to_string(size.width) + " x " +
                                                 std::to_string(size.height));
     }
-    const std::uint64_t images = *stack ? (*stack)->images : 1;
-    for (std::uint64_t k = 0; k < images; ++k) pages.push_back({number, TIFFCurrentDirOffset(file.get()), *stack, k});
+    const std::uint64_t images = stack ? stack->images : 1;
+    for (std::uint64_t k = 0; k < images; ++k) pages.push_back({number, TIFFCurrentDirOffset(file.get()), stack, k});
     if (TIFFLastDirectory(file.get()) != 0) return {};
   } while (TIFFReadDirectory(file.get()) != 0);
   // The last readable page points to another one.
@@ -193,9 +191,8 @@ bool has_tiff_name(const std::filesystem::path& path) {
 Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffFormat& format) {
   if (format.significant_bits < 1 || format.significant_bits > 16)
     return fail(ErrorCode::invalid_input, path.string() + ": significant bits must be 1 ... 16");
-  auto found = files_of(path);
-  if (!found) return tl::unexpected(found.error());
-  std::vector<std::filesystem::path>& files = found->files;
+  TODBENCH_TRY(auto found, files_of(path));
+  std::vector<std::filesystem::path>& files = found.files;
   std::vector<Page> pages;
   cv::Size size;
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -215,7 +212,7 @@ Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffF
   recording.info.frame_rate_hz = format.frame_rate_hz;
   recording.info.scale = format.scale;
   recording.info.settings = {{"Width", std::to_string(size.width)}, {"Height", std::to_string(size.height)}};
-  if (found->letters_differ) {
+  if (found.letters_differ) {
     recording.info.warnings.push_back(
         "The files are read in the order of the numbers in their names: " + files.front().filename().string() +
         " first, " + files.back().filename().string() + " last. Their alphabetical order differs.");

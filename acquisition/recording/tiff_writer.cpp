@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "acquisition/recording/tiff_stack.h"
 
 namespace todbench {
@@ -62,9 +63,8 @@ std::vector<std::uint8_t> directory_of(const cv::Mat1w& counts, std::uint64_t of
 }  // namespace
 
 Result<TiffWriter> TiffWriter::create(const std::filesystem::path& path) {
-  auto file = WrittenFile::create(path);
-  if (!file) return tl::unexpected(file.error());
-  TiffWriter writer(*std::move(file));
+  TODBENCH_TRY(auto file, WrittenFile::create(path));
+  TiffWriter writer(std::move(file));
   if (auto written = writer.file_.append(file_head.data(), file_head.size()); !written)
     return tl::unexpected(written.error());
   writer.link_offset_ = first_link;

@@ -10,12 +10,12 @@
 
 #include "acquisition/base/safe_file.h"
 #include "acquisition/base/system_reason.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 Result<WrittenFile> WrittenFile::create(const std::filesystem::path& path) {
-  const auto descriptor = make_empty_file(path, 0644);
-  if (!descriptor) return tl::unexpected(descriptor.error());
-  return WrittenFile(path, *descriptor);
+  TODBENCH_TRY(const auto descriptor, make_empty_file(path, 0644));
+  return WrittenFile(path, descriptor);
 }
 
 Result<void> WrittenFile::failed(const std::string& why) const {

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/key_types.h"
 #include "bench/text/text.h"
 
@@ -66,11 +67,10 @@ FleetFound found_of(const std::string& measure, const std::string& condition, co
 }  // namespace
 
 Result<std::vector<FleetFound>> fleets_of(const HistoryIndex& index, const FleetKind& kind) {
-  const auto sessions = index.sessions(std::nullopt);
-  if (!sessions) return tl::unexpected(sessions.error());
+  TODBENCH_TRY(const auto sessions, index.sessions(std::nullopt));
   std::map<std::pair<std::string, std::string>, LastValues> last;
   std::set<std::string> vendors, lenses;
-  for (const HistorySession& session : *sessions) {
+  for (const HistorySession& session : sessions) {
     // Simulated sessions have no serial number and are no units of a fleet.
     if (!is_of(session.unit, kind) || session.state != "complete" || session.unit.serial.empty()) continue;
     vendors.insert(session.unit.vendor);

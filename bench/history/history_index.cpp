@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/session/manifest.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
@@ -125,12 +126,10 @@ bool insert_event(sqlite3* database, const HistoryEvent& event) {
 Result<std::vector<HistoryEvent>> kept_events(const std::filesystem::path& file) {
   std::vector<HistoryEvent> events;
   if (!is_there(events_file(file))) return events;
-  const auto text = read_text_file(events_file(file));
-  if (!text) return tl::unexpected(text.error());
-  const auto table = parse_csv(*text, events_file(file).string());
-  if (!table) return tl::unexpected(table.error());
-  for (const CsvRow& row : table->rows) {
-    if (row.fields.size() != 4) return table->wrong(row.line, "expected serial, utc, kind and text");
+  TODBENCH_TRY(const auto text, read_text_file(events_file(file)));
+  TODBENCH_TRY(const auto table, parse_csv(text, events_file(file).string()));
+  for (const CsvRow& row : table.rows) {
+    if (row.fields.size() != 4) return table.wrong(row.line, "expected serial, utc, kind and text");
     events.push_back({row.fields[0], row.fields[1], row.fields[2], row.fields[3]});
   }
   return events;
@@ -184,21 +183,18 @@ Result<IndexState> state_of(sqlite3* database, const std::filesystem::path& file
 
 Result<void> prepare(sqlite3* database, const std::filesystem::path& file, std::chrono::milliseconds wait) {
   sqlite3_busy_timeout(database, static_cast<int>(wait.count()));
-  const auto before = state_of(database, file);
-  if (!before) return tl::unexpected(before.error());
+  TODBENCH_TRY(const auto before, state_of(database, file));
   if (!keeps_a_log(database, wait) || !run(database, "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL;"))
     return refused(database, file);
-  if (*before == IndexState::made) return {};
-  const auto events = kept_events(file);
-  if (!events) return tl::unexpected(events.error());
+  if (before == IndexState::made) return {};
+  TODBENCH_TRY(const auto events, kept_events(file));
   Transaction transaction(database);
   if (!transaction.open()) return refused(database, file);
   // Another program may have created the tables meanwhile.
-  const auto now = state_of(database, file);
-  if (!now) return tl::unexpected(now.error());
-  if (*now == IndexState::made) return {};
+  TODBENCH_TRY(const auto now, state_of(database, file));
+  if (now == IndexState::made) return {};
   if (!run(database, schema)) return refused(database, file);
-  for (const HistoryEvent& event : *events) {
+  for (const HistoryEvent& event : events) {
     if (!insert_event(database, event)) return refused(database, file);
   }
   if (!transaction.commit()) return refused(database, file);
@@ -256,9 +252,8 @@ Result<HistoryIndex> HistoryIndex::open_read_only(const std::filesystem::path& f
       sqlite3_open_v2((address + "?immutable=1").c_str(), &opened, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   std::unique_ptr<sqlite3, Close> database(opened);
   if (code != SQLITE_OK) return refused(opened, file);
-  const auto state = state_of(opened, file);
-  if (!state) return tl::unexpected(state.error());
-  if (*state == IndexState::empty)
+  TODBENCH_TRY(const auto state, state_of(opened, file));
+  if (state == IndexState::empty)
     return fail(ErrorCode::invalid_input, file.string() + ": is empty, expected a history");
   return HistoryIndex(file, std::move(database));
 }
@@ -333,11 +328,10 @@ Result<void> HistoryIndex::add_event(const HistoryEvent& event) {
   Transaction transaction(database_.get());
   if (!transaction.open()) return refused(database_.get(), file_);
   const bool begun = is_there(file);
-  auto csv = AppendFile::open(file, AppendFile::Start::at_end);
-  if (!csv) return tl::unexpected(csv.error());
+  TODBENCH_TRY(auto csv, AppendFile::open(file, AppendFile::Start::at_end));
   const std::string row = csv_field(event.serial) + "," + csv_field(event.utc) + "," + csv_field(event.kind) + "," +
                           csv_field(one_line(event.text)) + "\n";
-  if (auto written = csv->append((begun ? "" : "serial,utc,kind,text\n") + row); !written) return written;
+  if (auto written = csv.append((begun ? "" : "serial,utc,kind,text\n") + row); !written) return written;
   if (!insert_event(database_.get(), event) || !transaction.commit()) return refused(database_.get(), file_);
   return {};
 }

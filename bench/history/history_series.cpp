@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/history/history_series.h"
 
+#include "acquisition/base/try.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -34,15 +36,14 @@ void end_values(HistorySeries& series, const std::string& by) {
 
 Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, const std::string& serial,
                                                   const std::string& measure, WithoutChart without) {
-  const auto sessions = index.sessions(serial.empty() ? std::nullopt : std::optional(serial));
-  if (!sessions) return tl::unexpected(sessions.error());
+  TODBENCH_TRY(const auto sessions, index.sessions(serial.empty() ? std::nullopt : std::optional(serial)));
   std::vector<HistorySeries> all;
   std::map<std::string, std::vector<Break>> breaks;
   std::string firmware;
   // Sessions are ordered by unit and time: the series of the current unit are the last ones.
   std::optional<HistoryUnit> in_hand;
   std::size_t first = 0, passed = 0;  // breaks of the unit
-  for (const HistorySession& session : *sessions) {
+  for (const HistorySession& session : sessions) {
     const HistoryUnit& unit = session.unit;
     if (in_hand != unit) {
       in_hand = unit;
@@ -54,9 +55,8 @@ Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, con
       std::for_each(begin(), all.end(), [&](HistorySeries& series) { end_values(series, by); });
     };
     if (!breaks.contains(unit.serial)) {
-      const auto events = index.events(unit.serial);
-      if (!events) return tl::unexpected(events.error());
-      breaks[unit.serial] = breaks_of(*events);
+      TODBENCH_TRY(const auto events, index.events(unit.serial));
+      breaks[unit.serial] = breaks_of(events);
     }
     const double days = days_of_utc(session.started_utc).value_or(0);
     for (const std::vector<Break>& of_unit = breaks[unit.serial];

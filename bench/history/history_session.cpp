@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "acquisition/base/normal.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/serial_number.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/session/manifest.h"
@@ -26,17 +27,15 @@ Result<std::string> vouched_text(const std::filesystem::path& folder, const std:
     return fail(ErrorCode::invalid_input,
                 folder.string() + ": has no " + name + "; a run that ended early has no results");
   }
-  const auto listed = is_listed(folder, name);
-  if (!listed) return tl::unexpected(listed.error());
-  if (!*listed)
+  TODBENCH_TRY(const auto listed, is_listed(folder, name));
+  if (!listed)
     return fail(ErrorCode::invalid_input, (folder / name).string() + ": was changed after the session ended");
   return read_text_file(folder / name);
 }
 
 Result<Json> vouched_json(const std::filesystem::path& folder, const std::string& name) {
-  const auto text = vouched_text(folder, name);
-  if (!text) return tl::unexpected(text.error());
-  Json json = Json::parse(*text, nullptr, false);
+  TODBENCH_TRY(const auto text, vouched_text(folder, name));
+  Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return fail(ErrorCode::invalid_input, (folder / name).string() + ": is not valid JSON");
   return json;
 }
@@ -68,10 +67,9 @@ constexpr const char* curveless = "scene-dependence.json";
 Result<std::map<double, double>> stated_uncertainties(const std::filesystem::path& folder) {
   std::map<double, double> stated;
   if (!is_there(folder / "uncertainty.json")) return stated;
-  const auto json = vouched_json(folder, "uncertainty.json");
-  if (!json) return tl::unexpected(json.error());
-  if (!json->contains("points")) return stated;
-  for (const Json& point : (*json)["points"]) {
+  TODBENCH_TRY(const auto json, vouched_json(folder, "uncertainty.json"));
+  if (!json.contains("points")) return stated;
+  for (const Json& point : json["points"]) {
     const auto contrast_k = number_at(point, "delta_t_k"), u = number_at(point, "u_not_common_to_series");
     if (contrast_k && u) stated[*contrast_k] = *u;
   }
@@ -82,10 +80,9 @@ Result<std::map<double, double>> stated_uncertainties(const std::filesystem::pat
 Result<std::vector<double>> unfit_contrasts(const std::filesystem::path& folder) {
   std::vector<double> unfit;
   if (!is_there(folder / "fits.json")) return unfit;
-  const auto fits = vouched_json(folder, "fits.json");
-  if (!fits) return tl::unexpected(fits.error());
-  if (!fits->contains("main") || !(*fits)["main"].contains("points")) return unfit;
-  for (const Json& point : (*fits)["main"]["points"]) {
+  TODBENCH_TRY(const auto fits, vouched_json(folder, "fits.json"));
+  if (!fits.contains("main") || !fits["main"].contains("points")) return unfit;
+  for (const Json& point : fits["main"]["points"]) {
     const auto contrast_k = number_at(point, "set_delta_t_k");
     const bool adequate =
         !point.contains("adequacy") || !point["adequacy"].is_object() || point["adequacy"].value("adequate", true);
@@ -96,28 +93,23 @@ Result<std::vector<double>> unfit_contrasts(const std::filesystem::path& folder)
 
 Result<void> add_acuities(HistorySession& session, const std::filesystem::path& folder, const std::string& side) {
   if (is_there(folder / curveless)) return {};
-  const auto text = vouched_text(folder, "curve.csv");
-  if (!text) return tl::unexpected(text.error());
-  const auto table = parse_csv(*text, (folder / "curve.csv").string());
-  if (!table) return tl::unexpected(table.error());
-  const auto stated = stated_uncertainties(folder);
-  if (!stated) return tl::unexpected(stated.error());
-  const auto unfit = unfit_contrasts(folder);
-  if (!unfit) return tl::unexpected(unfit.error());
+  TODBENCH_TRY(const auto text, vouched_text(folder, "curve.csv"));
+  TODBENCH_TRY(const auto table, parse_csv(text, (folder / "curve.csv").string()));
+  TODBENCH_TRY(const auto stated, stated_uncertainties(folder));
+  TODBENCH_TRY(const auto unfit, unfit_contrasts(folder));
   const auto column = [&](const char* name) {
-    return static_cast<std::size_t>(std::find(table->header.begin(), table->header.end(), name) -
-                                    table->header.begin());
+    return static_cast<std::size_t>(std::find(table.header.begin(), table.header.end(), name) - table.header.begin());
   };
   const std::size_t of_side = column("side"), contrast = column("set_delta_t_k"), acuity = column("acuity_per_mrad"),
                     low = column("acuity_ci95_low_per_mrad"), high = column("acuity_ci95_high_per_mrad"),
                     verdict = column("verdict");
   for (const std::size_t index : {of_side, contrast, acuity, low, high, verdict}) {
-    if (index >= table->header.size())
-      return table->wrong(1,
-                          "a column of curve.csv is missing, expected side, set_delta_t_k, acuity_per_mrad, "
-                          "acuity_ci95_low_per_mrad, acuity_ci95_high_per_mrad and verdict");
+    if (index >= table.header.size())
+      return table.wrong(1,
+                         "a column of curve.csv is missing, expected side, set_delta_t_k, acuity_per_mrad, "
+                         "acuity_ci95_low_per_mrad, acuity_ci95_high_per_mrad and verdict");
   }
-  for (const CsvRow& row : table->rows) {
+  for (const CsvRow& row : table.rows) {
     if (row.fields[of_side] != side) continue;
     // A ridge, or a slope at its bound, gives no value.
     const std::string& found = row.fields[verdict];
@@ -126,21 +118,20 @@ Result<void> add_acuities(HistorySession& session, const std::filesystem::path& 
                from = parse_number(row.fields[low]), to = parse_number(row.fields[high]);
     // Values without uncertainty are not kept.
     if (!contrast_k || !value || !from || !to || !(*value > 0) || !(*from > 0) || !(*to > *from)) continue;
-    if (std::ranges::find(*unfit, *contrast_k) != unfit->end()) continue;
-    const auto more = stated->find(*contrast_k);
+    if (std::ranges::find(unfit, *contrast_k) != unfit.end()) continue;
+    const auto more = stated.find(*contrast_k);
     session.values.push_back(
         {"acuity", "dT=" + number_text(*contrast_k) + "K", "1/mrad", "ln", std::log(*value),
-         std::hypot(std::log(*to / *from) / (2 * normal_z95), more == stated->end() ? 0 : more->second)});
+         std::hypot(std::log(*to / *from) / (2 * normal_z95), more == stated.end() ? 0 : more->second)});
   }
   return {};
 }
 
 Result<void> add_measures(HistorySession& session, const std::filesystem::path& folder) {
   if (!is_there(folder / "measures.json")) return {};
-  const auto json = vouched_json(folder, "measures.json");
-  if (!json) return tl::unexpected(json.error());
-  if (!json->contains("main") || !(*json)["main"].is_object() || !(*json)["main"].contains("quantities")) return {};
-  for (const Json& line : (*json)["main"]["quantities"]) {
+  TODBENCH_TRY(const auto json, vouched_json(folder, "measures.json"));
+  if (!json.contains("main") || !json["main"].is_object() || !json["main"].contains("quantities")) return {};
+  for (const Json& line : json["main"]["quantities"]) {
     const auto value = number_at(line, "value");
     if (!value || !line.contains("ci95") || !line["ci95"].is_array() || line["ci95"].size() != 2) continue;
     // Uncertainties of the bench are new for each measurement, for example the distance of an IFOV.
@@ -158,9 +149,8 @@ Result<void> add_measures(HistorySession& session, const std::filesystem::path& 
 /// its own file.
 Result<std::string> sensor_of(const std::filesystem::path& folder) {
   if (is_there(folder / curveless)) {
-    const auto json = vouched_json(folder, curveless);
-    if (!json) return tl::unexpected(json.error());
-    return text_at(*json, "camera");
+    TODBENCH_TRY(const auto json, vouched_json(folder, curveless));
+    return text_at(json, "camera");
   }
   const auto fits = vouched_text(folder, "fits.json");
   if (!fits) return fits;
@@ -172,11 +162,9 @@ Result<std::string> sensor_of(const std::filesystem::path& folder) {
 
 /// Returns the unit in the words of the plan, if many units share the serial number.
 Result<std::string> unit_without_serial(const std::filesystem::path& folder, const std::string& serial) {
-  const auto text = vouched_text(folder, "session.toml");
-  if (!text) return tl::unexpected(text.error());
-  auto plan = TomlReader::parse(*text, "session.toml");
-  if (!plan) return tl::unexpected(plan.error());
-  const std::string unit = plan->text("unit", "");
+  TODBENCH_TRY(const auto text, vouched_text(folder, "session.toml"));
+  TODBENCH_TRY(auto plan, TomlReader::parse(text, "session.toml"));
+  const std::string unit = plan.text("unit", "");
   if (!unit.empty()) return "unit:" + unit;
   return fail(ErrorCode::invalid_input,
               folder.string() + ": the camera's serial number " + one_line(serial) +
@@ -184,9 +172,8 @@ Result<std::string> unit_without_serial(const std::filesystem::path& folder, con
 }
 
 Result<void> set_unit(HistorySession& session, const std::filesystem::path& folder, const Json& provenance) {
-  const auto named = sensor_of(folder);
-  if (!named) return tl::unexpected(named.error());
-  const std::string& sensor = *named;
+  TODBENCH_TRY(const auto named, sensor_of(folder));
+  const std::string& sensor = named;
   if (!provenance.contains("camera") || !provenance["camera"].is_object()) {
     session.unit = {"simulation", sensor, "", ""};
     return {};
@@ -202,9 +189,7 @@ Result<void> set_unit(HistorySession& session, const std::filesystem::path& fold
                                               one_line(sensor) + "'");
   }
   if (is_placeholder_serial(session.unit.serial)) {
-    auto unit = unit_without_serial(folder, session.unit.serial);
-    if (!unit) return tl::unexpected(unit.error());
-    session.unit.serial = *std::move(unit);
+    TODBENCH_TRY(session.unit.serial, unit_without_serial(folder, session.unit.serial));
   }
   return {};
 }
@@ -212,23 +197,21 @@ Result<void> set_unit(HistorySession& session, const std::filesystem::path& fold
 }  // namespace
 
 Result<HistorySession> read_history_session(const std::filesystem::path& folder) {
-  auto digest = manifest_digest(folder);
-  if (!digest) return tl::unexpected(digest.error());
-  const auto provenance = vouched_json(folder, "provenance.json");
-  if (!provenance) return tl::unexpected(provenance.error());
+  TODBENCH_TRY(auto digest, manifest_digest(folder));
+  TODBENCH_TRY(const auto provenance, vouched_json(folder, "provenance.json"));
   HistorySession session;
-  session.manifest_sha256 = *std::move(digest);
+  session.manifest_sha256 = std::move(digest);
   std::error_code problem;
   const auto absolute = std::filesystem::weakly_canonical(folder, problem);
   session.path = (problem ? folder : absolute).string();
-  session.started_utc = text_at(*provenance, "started_utc");
-  session.program = text_at(*provenance, "program_version");
-  session.state = text_at(*provenance, "state");
+  session.started_utc = text_at(provenance, "started_utc");
+  session.program = text_at(provenance, "program_version");
+  session.state = text_at(provenance, "state");
   if (!days_of_utc(session.started_utc))
     return fail(ErrorCode::invalid_input,
                 (folder / "provenance.json").string() + ": started_utc is missing or is not a time in UTC");
-  if (auto set = set_unit(session, folder, *provenance); !set) return tl::unexpected(set.error());
-  if (auto added = add_acuities(session, folder, text_at(*provenance, "side")); !added)
+  if (auto set = set_unit(session, folder, provenance); !set) return tl::unexpected(set.error());
+  if (auto added = add_acuities(session, folder, text_at(provenance, "side")); !added)
     return tl::unexpected(added.error());
   if (auto added = add_measures(session, folder); !added) return tl::unexpected(added.error());
   return session;

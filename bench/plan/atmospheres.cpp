@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/resources.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/json_reader.h"
@@ -98,14 +99,13 @@ Result<Atmosphere> shipped(std::string_view name, const AtmosphereRequest& reque
                             "or 3-5 if one of them applies, or use a table of your own",
                             band_text(request.band)));
   }
-  auto air = Transmittance::of_table(best->points);
-  if (!air) return tl::unexpected(air.error());
+  TODBENCH_TRY(auto air, Transmittance::of_table(best->points));
   Atmosphere found{
       .name = std::string(name),
       .source = fmt::format("LOWTRAN 7 (revision 4.2, 1992), {}, horizontal at sea level, aerosol {}, band "
                             "{}, weight dB/dT at 300 K",
                             name, best->haze, band_text(best->band)),
-      .air = *std::move(air),
+      .air = std::move(air),
       .air_k = best->air_k,
       .table_band = best->band};
   if (mismatch > 0) {
@@ -160,18 +160,16 @@ Result<Transmittance> air_of_csv(const CsvTable& table, const AtmosphereRequest&
   const auto transmittance = column_of(table, "transmittance"), tau = column_of(table, "tau");
   const auto wavelength = column_of(table, "wavelength_um"), extinction = column_of(table, "extinction_per_km");
   if (const auto range = kilometres ? kilometres : metres; range && (transmittance || tau)) {
-    const auto pairs = pairs_of(table, *range, transmittance ? *transmittance : *tau);
-    if (!pairs) return tl::unexpected(pairs.error());
+    TODBENCH_TRY(const auto pairs, pairs_of(table, *range, transmittance ? *transmittance : *tau));
     std::vector<TransmittancePoint> points;
-    for (const auto& [at, passed] : *pairs) points.push_back({kilometres ? 1000 * at : at, passed});
+    for (const auto& [at, passed] : pairs) points.push_back({kilometres ? 1000 * at : at, passed});
     return Transmittance::of_table(points);
   }
   if (wavelength && extinction) {
-    const auto pairs = pairs_of(table, *wavelength, *extinction);
-    if (!pairs) return tl::unexpected(pairs.error());
+    TODBENCH_TRY(const auto pairs, pairs_of(table, *wavelength, *extinction));
     std::vector<SpectralExtinction> spectrum;
-    for (std::size_t i = 0; i < pairs->size(); ++i) {
-      const auto& [at, per_km] = (*pairs)[i];
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto& [at, per_km] = pairs[i];
       if (at > longest_um)
         return table.wrong(table.rows[i].line, fmt::format("a wavelength of {:g} um is too long; is it in nm?", at));
       spectrum.push_back({at, per_km});
@@ -198,9 +196,8 @@ std::string without_remarks(std::string_view text) {
 }
 
 Result<Atmosphere> from_file(const std::string& file, const AtmosphereRequest& request) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  return parse_atmosphere(*text, file, request);
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  return parse_atmosphere(text, file, request);
 }
 
 }  // namespace
@@ -210,9 +207,8 @@ Result<Atmosphere> parse_atmosphere(std::string_view text, const std::string& fi
   const bool csv = std::filesystem::path(file).extension() == ".csv";
   Result<Transmittance> air = found.air;
   if (csv) {
-    const auto table = parse_csv(without_remarks(text), file);
-    if (!table) return tl::unexpected(table.error());
-    air = air_of_csv(*table, request, found.notes);
+    TODBENCH_TRY(const auto table, parse_csv(without_remarks(text), file));
+    air = air_of_csv(table, request, found.notes);
   } else {
     const auto runs = parse_tape7(text);
     if (!runs) return fail(file, runs.error());

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/atmospheres.h"
 
 namespace todbench {
@@ -44,13 +45,12 @@ Result<double> bench_transmittance(const BenchAir& air, double length_m, const S
     return fail(ErrorCode::invalid_input, "the path of air must be longer than 0 m");
   std::vector<double> depths;
   for (const ModelHumidity& model : model_humidities) {
-    const auto found = load_atmosphere(model.name, {.band = band, .haze = "none"});
-    if (!found) return tl::unexpected(found.error());
-    const auto depth = found->air.optical_depth(length_m);
+    TODBENCH_TRY(const auto found, load_atmosphere(model.name, {.band = band, .haze = "none"}));
+    const auto depth = found.air.optical_depth(length_m);
     if (!depth) {
       return fail(ErrorCode::invalid_input,
                   fmt::format("the tables of transmittance end at {:g} m, but the path of air is {:g} m long",
-                              found->air.end_m(), length_m));
+                              found.air.end_m(), length_m));
     }
     depths.push_back(*depth);
   }

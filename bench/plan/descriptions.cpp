@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/strict_toml.h"
 #include "sim_devices/sensor/sensor_key.h"
 
@@ -127,9 +128,8 @@ void read_fit(TomlReader fit) {
 
 template <typename T>
 Result<T> load(ResourceKind kind, std::string_view reference, Result<T> (*parse)(const Resource&)) {
-  const Result<Resource> resource = find_resource(kind, reference);
-  if (!resource) return tl::unexpected(resource.error());
-  return parse(*resource);
+  TODBENCH_TRY(const Resource resource, find_resource(kind, reference));
+  return parse(resource);
 }
 
 }  // namespace
@@ -153,13 +153,12 @@ ModulePlan read_module(TomlReader& table) {
 }
 
 Result<SensorSpec> parse_sensor(const Resource& resource) {
-  Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
-  if (!reader) return tl::unexpected(reader.error());
+  TODBENCH_TRY(TomlReader reader, TomlReader::parse(resource.text, resource.origin));
   SensorSpec spec;
-  spec.name = reader->text("name", std::nullopt);
-  spec.description = reader->text("description", spec.description);
-  for (const SensorKey& key : sensor_keys()) read_key(*reader, key, spec);
-  auto modules = reader->sections("module");
+  spec.name = reader.text("name", std::nullopt);
+  spec.description = reader.text("description", spec.description);
+  for (const SensorKey& key : sensor_keys()) read_key(reader, key, spec);
+  auto modules = reader.sections("module");
   for (TomlReader& table : modules) {
     // A sensor has no observer.
     const std::vector<std::string> places{std::string(to_string(ModulePlace::picture)),
@@ -170,29 +169,27 @@ Result<SensorSpec> parse_sensor(const Resource& resource) {
     spec.modules.push_back(read_module(table));
     if (sensor) spec.modules.back().place = ModulePlace::sensor;
   }
-  return checked(*reader, resource, std::move(spec));
+  return checked(reader, resource, std::move(spec));
 }
 
 Result<DescribedObserver> parse_observer_with_module(const Resource& resource) {
-  Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
-  if (!reader) return tl::unexpected(reader.error());
+  TODBENCH_TRY(TomlReader reader, TomlReader::parse(resource.text, resource.origin));
   TemplateObserverSpec spec;
-  spec.name = reader->text("name", std::nullopt);
-  spec.blur_sigma_samples = reader->number("blur_sigma_samples", NumberRange::between(0.1, 10), std::nullopt);
-  spec.internal_noise = reader->number("internal_noise", NumberRange::between(0, 10), std::nullopt);
+  spec.name = reader.text("name", std::nullopt);
+  spec.blur_sigma_samples = reader.number("blur_sigma_samples", NumberRange::between(0.1, 10), std::nullopt);
+  spec.internal_noise = reader.number("internal_noise", NumberRange::between(0, 10), std::nullopt);
   spec.sensor_noise_factor =
-      reader->number("sensor_noise_factor", NumberRange::between(1, 100), spec.sensor_noise_factor);
+      reader.number("sensor_noise_factor", NumberRange::between(1, 100), spec.sensor_noise_factor);
   spec.search_range_samples =
-      reader->number("search_range_samples", NumberRange::between(0, 100), spec.search_range_samples);
+      reader.number("search_range_samples", NumberRange::between(0, 100), spec.search_range_samples);
   spec.search_step_samples =
-      reader->number("search_step_samples", NumberRange::between(0.01, 100), spec.search_step_samples);
-  spec.window_size_factor =
-      reader->number("window_size_factor", NumberRange::between(0.9, 10), spec.window_size_factor);
+      reader.number("search_step_samples", NumberRange::between(0.01, 100), spec.search_step_samples);
+  spec.window_size_factor = reader.number("window_size_factor", NumberRange::between(0.9, 10), spec.window_size_factor);
   spec.window_margin_pitch =
-      reader->number("window_margin_pitch", NumberRange::between(0, 100), spec.window_margin_pitch);
-  read_fit(reader->section("fit"));
+      reader.number("window_margin_pitch", NumberRange::between(0, 100), spec.window_margin_pitch);
+  read_fit(reader.section("fit"));
   DescribedObserver described;
-  auto modules = reader->sections("module");
+  auto modules = reader.sections("module");
   for (TomlReader& table : modules) {
     const std::vector<std::string> places{std::string(to_string(ModulePlace::observer))};
     (void)table.choice("place", places, places.front());
@@ -200,38 +197,34 @@ Result<DescribedObserver> parse_observer_with_module(const Resource& resource) {
     described.module = read_module(table);
     described.module->place = ModulePlace::observer;
   }
-  auto possible = checked(*reader, resource, std::move(spec));
-  if (!possible) return tl::unexpected(possible.error());
-  described.spec = *std::move(possible);
+  TODBENCH_TRY(described.spec, checked(reader, resource, std::move(spec)));
   return described;
 }
 
 Result<TemplateObserverSpec> parse_observer(const Resource& resource) {
-  auto described = parse_observer_with_module(resource);
-  if (!described) return tl::unexpected(described.error());
-  if (described->module) {
+  TODBENCH_TRY(auto described, parse_observer_with_module(resource));
+  if (described.module) {
     return fail_at(ErrorCode::invalid_input, resource.origin,
                    "the observer has a [[module]], which only compare-models runs; for a plan, state a [[module]] with "
                    "place = \"observer\" in the plan");
   }
-  return std::move(described->spec);
+  return std::move(described.spec);
 }
 
 Result<TargetPlate> parse_plate(const Resource& resource) {
-  Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
-  if (!reader) return tl::unexpected(reader.error());
+  TODBENCH_TRY(TomlReader reader, TomlReader::parse(resource.text, resource.origin));
   TargetPlate plate;
-  plate.name = reader->text("name", std::nullopt);
-  plate.description = reader->text("description", "");
-  plate.width_mm = reader->number("width_mm", length_range, std::nullopt);
-  plate.height_mm = reader->number("height_mm", length_range, std::nullopt);
+  plate.name = reader.text("name", std::nullopt);
+  plate.description = reader.text("description", "");
+  plate.width_mm = reader.number("width_mm", length_range, std::nullopt);
+  plate.height_mm = reader.number("height_mm", length_range, std::nullopt);
   std::size_t number = 0;
-  for (TomlReader& row : reader->sections("row")) read_row(row, ++number, plate);
+  for (TomlReader& row : reader.sections("row")) read_row(row, ++number, plate);
   number = 0;
-  for (TomlReader& table : reader->sections("rectangle")) plate.rectangles.push_back(read_rectangle(table, ++number));
+  for (TomlReader& table : reader.sections("rectangle")) plate.rectangles.push_back(read_rectangle(table, ++number));
   number = 0;
-  for (TomlReader& table : reader->sections("bars")) plate.bars.push_back(read_bars(table, ++number));
-  return checked(*reader, resource, std::move(plate));
+  for (TomlReader& table : reader.sections("bars")) plate.bars.push_back(read_bars(table, ++number));
+  return checked(reader, resource, std::move(plate));
 }
 
 Result<SensorSpec> load_sensor(std::string_view reference) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/text/text.h"
 
@@ -310,9 +311,8 @@ class InstrumentReader {
 }  // namespace
 
 Result<InstrumentTable> parse_instrument(const Resource& resource) {
-  auto file = TomlReader::parse(resource.text, resource.origin);
-  if (!file) return tl::unexpected(file.error());
-  return InstrumentReader(std::move(*file)).read(resource.origin);
+  TODBENCH_TRY(auto file, TomlReader::parse(resource.text, resource.origin));
+  return InstrumentReader(std::move(file)).read(resource.origin);
 }
 
 Result<InstrumentTable> load_instrument(std::string_view reference) {
@@ -324,9 +324,8 @@ Result<InstrumentTable> load_instrument(std::string_view reference) {
     return fail(ErrorCode::invalid_input, "unknown instrument '" + one_line(reference) + "'" +
                                               nearest_name_hint(reference, known) + " (known: " + quoted_list(known) +
                                               "; a file needs a slash or the ending .toml)");
-  const auto resource = find_resource(stage ? ResourceKind::stage : ResourceKind::black_body, reference);
-  if (!resource) return tl::unexpected(resource.error());
-  return parse_instrument(*resource);
+  TODBENCH_TRY(const auto resource, find_resource(stage ? ResourceKind::stage : ResourceKind::black_body, reference));
+  return parse_instrument(resource);
 }
 
 }  // namespace todbench

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/key_types.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/text/files.h"
@@ -143,9 +144,7 @@ Result<std::string> checked_png(std::string_view bytes) {
     if (png_number(bytes.substr(size + 8)) != sum) return wrong("the PNG has a wrong checksum");
     if ((type == "IHDR") == header.has_value()) return wrong("the PNG does not begin with one header");
     if (type == "IHDR") {
-      auto read = png_header(data);
-      if (!read) return tl::unexpected(read.error());
-      header = *read;
+      TODBENCH_TRY(header, png_header(data));
     }
     if (type == "IDAT") packed += data;
     if (type == "IHDR" || type == "PLTE" || type == "tRNS" || type == "IDAT" || type == "IEND") kept += whole;
@@ -157,35 +156,31 @@ Result<std::string> checked_png(std::string_view bytes) {
 }
 
 Result<Letterhead> load_letterhead(const std::filesystem::path& file) {
-  auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  return parse_letterhead({file.string(), *std::move(text)});
+  TODBENCH_TRY(auto text, read_text_file(file));
+  return parse_letterhead({file.string(), std::move(text)});
 }
 
 Result<Letterhead> parse_letterhead(const Resource& resource) {
-  auto reader = TomlReader::parse(resource.text, resource.origin);
-  if (!reader) return tl::unexpected(reader.error());
+  TODBENCH_TRY(auto reader, TomlReader::parse(resource.text, resource.origin));
   Letterhead letterhead;
-  letterhead.title = paragraph_in(*reader, "title");
-  const std::string logo = reader->text("logo", "");
-  letterhead.logo_text = paragraph_in(*reader, "logo_text");
-  letterhead.logo_height_mm = reader->number("logo_height_mm", NumberRange::between(5, 60), letterhead.logo_height_mm);
+  letterhead.title = paragraph_in(reader, "title");
+  const std::string logo = reader.text("logo", "");
+  letterhead.logo_text = paragraph_in(reader, "logo_text");
+  letterhead.logo_height_mm = reader.number("logo_height_mm", NumberRange::between(5, 60), letterhead.logo_height_mm);
   if (logo.find("://") != std::string::npos)
-    reader->reject("logo", "expected a local file: the program does not download files");
+    reader.reject("logo", "expected a local file: the program does not download files");
   if (!logo.empty() && letterhead.logo_text.empty())
-    reader->reject("logo", "needs logo_text, a description of the logo");
-  letterhead.lines = paragraphs_in(*reader, "lines");
-  letterhead.introduction = paragraphs_in(*reader, "introduction");
-  letterhead.closing_title = paragraph_in(*reader, "closing_title");
-  letterhead.closing = paragraphs_in(*reader, "closing");
-  if (letterhead.closing_title.empty() && !letterhead.closing.empty()) reader->reject("closing", "needs closing_title");
-  letterhead.foot = paragraph_in(*reader, "foot");
-  if (letterhead.foot.size() > 80) reader->reject("foot", "expected at most 80 bytes");
-  if (auto read = reader->finish(); !read) return tl::unexpected(read.error());
+    reader.reject("logo", "needs logo_text, a description of the logo");
+  letterhead.lines = paragraphs_in(reader, "lines");
+  letterhead.introduction = paragraphs_in(reader, "introduction");
+  letterhead.closing_title = paragraph_in(reader, "closing_title");
+  letterhead.closing = paragraphs_in(reader, "closing");
+  if (letterhead.closing_title.empty() && !letterhead.closing.empty()) reader.reject("closing", "needs closing_title");
+  letterhead.foot = paragraph_in(reader, "foot");
+  if (letterhead.foot.size() > 80) reader.reject("foot", "expected at most 80 bytes");
+  if (auto read = reader.finish(); !read) return tl::unexpected(read.error());
   if (logo.empty()) return letterhead;
-  auto png = logo_in(std::filesystem::path(resource.origin).parent_path() / logo);
-  if (!png) return tl::unexpected(png.error());
-  letterhead.logo_png = *std::move(png);
+  TODBENCH_TRY(letterhead.logo_png, logo_in(std::filesystem::path(resource.origin).parent_path() / logo));
   return letterhead;
 }
 
@@ -206,9 +201,8 @@ Result<std::vector<std::string>> keep_letterhead(const std::filesystem::path& se
 
 Result<std::optional<Letterhead>> kept_letterhead(const std::filesystem::path& session) {
   if (!is_there(session / letterhead_file)) return std::nullopt;
-  auto letterhead = load_letterhead(session / letterhead_file);
-  if (!letterhead) return tl::unexpected(letterhead.error());
-  return *std::move(letterhead);
+  TODBENCH_TRY(auto letterhead, load_letterhead(session / letterhead_file));
+  return letterhead;
 }
 
 }  // namespace todbench

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/instrument_description.h"
 #include "bench/plan/plan_keys.h"
@@ -17,10 +18,9 @@ namespace {
 template <typename T>
 Result<T> read_part(ResourceKind kind, const std::string& reference, const ResourceFinder& find, PlanParts& parts,
                     Result<T> (*parse)(const Resource&)) {
-  Result<Resource> resource = find(kind, reference);
-  if (!resource) return tl::unexpected(resource.error());
-  Result<T> part = parse(*resource);
-  parts.sources.insert_or_assign({kind, reference}, *std::move(resource));
+  TODBENCH_TRY(Resource resource, find(kind, reference));
+  Result<T> part = parse(resource);
+  parts.sources.insert_or_assign({kind, reference}, std::move(resource));
   return part;
 }
 
@@ -222,9 +222,8 @@ Plan with_absolute_references(Plan plan, const std::filesystem::path& folder) {
 }
 
 Result<LoadedPlan> read_plan(std::string_view reference, const ResourceFinder& find) {
-  const Result<Resource> resource = find(ResourceKind::plan, reference);
-  if (!resource) return tl::unexpected(resource.error());
-  return read_plan(*resource, is_file_reference(reference) ? std::filesystem::path(reference).parent_path() : "", find);
+  TODBENCH_TRY(const Resource resource, find(ResourceKind::plan, reference));
+  return read_plan(resource, is_file_reference(reference) ? std::filesystem::path(reference).parent_path() : "", find);
 }
 
 Result<LoadedPlan> read_camera_plan(std::string_view reference) {
@@ -237,15 +236,13 @@ Result<LoadedPlan> read_camera_plan(std::string_view reference) {
 }
 
 Result<Plan> load_plan(std::string_view reference) {
-  const Result<LoadedPlan> loaded = read_plan(reference);
-  if (!loaded) return tl::unexpected(loaded.error());
-  return loaded->plan();
+  TODBENCH_TRY(const LoadedPlan loaded, read_plan(reference));
+  return loaded.plan();
 }
 
 Result<Plan> parse_plan(const Resource& resource, const std::filesystem::path& folder) {
-  const Result<LoadedPlan> loaded = read_plan(resource, folder);
-  if (!loaded) return tl::unexpected(loaded.error());
-  return loaded->plan();
+  TODBENCH_TRY(const LoadedPlan loaded, read_plan(resource, folder));
+  return loaded.plan();
 }
 
 }  // namespace todbench

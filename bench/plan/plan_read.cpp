@@ -3,6 +3,7 @@
 #include <set>
 #include <string>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_keys.h"
 
@@ -106,11 +107,10 @@ class PlanReader {
 
 Result<LoadedPlan> read_plan(const Resource& resource, const std::filesystem::path& folder,
                              const ResourceFinder& find) {
-  Result<TomlReader> root = TomlReader::parse(resource.text, resource.origin);
-  if (!root) return tl::unexpected(root.error());
-  PlanReader reader(*root, folder, find);
+  TODBENCH_TRY(TomlReader root, TomlReader::parse(resource.text, resource.origin));
+  PlanReader reader(root, folder, find);
   reader.read();
-  if (const Result<void> read = root->finish(); !read) return tl::unexpected(read.error());
+  if (const Result<void> read = root.finish(); !read) return tl::unexpected(read.error());
   return LoadedPlan(std::move(reader.plan()), std::move(reader.parts()));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/resources.h"
 
+#include "acquisition/base/try.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -54,9 +55,8 @@ std::string absolute_reference(std::string_view reference, const std::filesystem
 
 Result<Resource> find_resource(ResourceKind kind, std::string_view reference) {
   if (is_file_reference(reference)) {
-    Result<std::string> text = read_text_file(std::filesystem::path(reference));
-    if (!text) return tl::unexpected(text.error());
-    return Resource{std::string(reference), *std::move(text)};
+    TODBENCH_TRY(std::string text, read_text_file(std::filesystem::path(reference)));
+    return Resource{std::string(reference), std::move(text)};
   }
   for (const EmbeddedResource& resource : embedded_resources()) {
     if (resource.kind != kind || resource.name != reference) continue;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/strict_toml.h"
 
@@ -51,12 +52,11 @@ std::filesystem::path folder_of(const Resource& resource) {
 }
 
 Result<TargetModel> parse_target(const Resource& resource) {
-  Result<TomlReader> reader = TomlReader::parse(resource.text, resource.origin);
-  if (!reader) return tl::unexpected(reader.error());
+  TODBENCH_TRY(TomlReader reader, TomlReader::parse(resource.text, resource.origin));
   TargetModel model;
-  model.name = reader->text("name", std::nullopt);
-  model.description = reader->text("description", "");
-  auto parts = reader->sections("part");
+  model.name = reader.text("name", std::nullopt);
+  model.description = reader.text("description", "");
+  auto parts = reader.sections("part");
   for (std::size_t i = 0; i < parts.size(); ++i) {
     TomlReader& table = parts[i];
     TargetPart part;
@@ -73,7 +73,7 @@ Result<TargetModel> parse_target(const Resource& resource) {
       model.parts.push_back(part);
     }
   }
-  if (const Result<void> read = reader->finish(); !read) return tl::unexpected(read.error());
+  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
   if (const Result<void> possible = validate(model); !possible) return fail(resource.origin, possible.error());
   return model;
 }
@@ -87,9 +87,8 @@ Result<void> add_target(TomlReader& table, const std::filesystem::path& folder, 
     table.reject("target", "expected the name or the file of a target");
     return {};
   }
-  auto model = load_target(absolute_reference(reference, folder));
-  if (!model) return tl::unexpected(model.error());
-  for (auto& region : view_of(*model, azimuth_deg)) {
+  TODBENCH_TRY(auto model, load_target(absolute_reference(reference, folder)));
+  for (auto& region : view_of(model, azimuth_deg)) {
     region.outline_m = placed(region.outline_m, 1, {x_m, -y_m});
     scene.regions.push_back(std::move(region));
   }
@@ -104,9 +103,8 @@ Result<void> add_plate(TomlReader table, const std::filesystem::path& folder, Fi
     table.reject("plate", "expected the name or the file of a plate");
     return {};
   }
-  auto plate = load_plate(absolute_reference(reference, folder));
-  if (!plate) return tl::unexpected(plate.error());
-  for (auto& region : scene_of_plate(*plate, delta_t_k, scene.background_k).regions)
+  TODBENCH_TRY(auto plate, load_plate(absolute_reference(reference, folder)));
+  for (auto& region : scene_of_plate(plate, delta_t_k, scene.background_k).regions)
     scene.regions.push_back(std::move(region));
   return {};
 }
@@ -127,17 +125,15 @@ Result<void> add_picture(TomlReader table, const std::filesystem::path& folder, 
   const auto path_of = [&](const std::string& name) {
     return (std::filesystem::path(name).is_absolute() ? std::filesystem::path(name) : folder / name).string();
   };
-  auto stored = read(path_of(file));
-  if (!stored) return tl::unexpected(stored.error());
-  if (stored->kind == StoredPicture::Kind::counts && (!kelvin_per_count || !offset_k)) {
+  TODBENCH_TRY(auto stored, read(path_of(file)));
+  if (stored.kind == StoredPicture::Kind::counts && (!kelvin_per_count || !offset_k)) {
     return fail(ErrorCode::invalid_input,
                 path_of(file) + ": a picture of integer counts needs a scale, kelvin_per_count and offset_k");
   }
-  picture.kelvin = stored->values * kelvin_per_count.value_or(1) + offset_k.value_or(0);
+  picture.kelvin = stored.values * kelvin_per_count.value_or(1) + offset_k.value_or(0);
   if (!mask.empty()) {
-    auto marked = read(path_of(mask));
-    if (!marked) return tl::unexpected(marked.error());
-    picture.target = marked->values != 0;
+    TODBENCH_TRY(auto marked, read(path_of(mask)));
+    picture.target = marked.values != 0;
   }
   scene.picture = std::move(picture);
   return {};
@@ -153,66 +149,61 @@ Result<T> checked_scene(const TomlReader& reader, const Resource& resource, T va
 }  // namespace
 
 Result<FieldScene> load_scene(std::string_view reference, const PictureReader& read_picture) {
-  const auto resource = find_resource(ResourceKind::scene, reference);
-  if (!resource) return tl::unexpected(resource.error());
-  Result<TomlReader> reader = TomlReader::parse(resource->text, resource->origin);
-  if (!reader) return tl::unexpected(reader.error());
+  TODBENCH_TRY(const auto resource, find_resource(ResourceKind::scene, reference));
+  TODBENCH_TRY(TomlReader reader, TomlReader::parse(resource.text, resource.origin));
   FieldScene scene;
-  scene.name = reader->text("name", std::nullopt);
-  scene.description = reader->text("description", "");
-  scene.background_k = reader->number("background_k", kelvin_range, std::nullopt);
-  scene.background_emissivity = reader->number("background_emissivity", share_range, scene.background_emissivity);
-  scene.surround_k = reader->number("surround_k", kelvin_range, scene.background_k);
-  const auto folder = folder_of(*resource);
-  auto regions = reader->sections("region");
+  scene.name = reader.text("name", std::nullopt);
+  scene.description = reader.text("description", "");
+  scene.background_k = reader.number("background_k", kelvin_range, std::nullopt);
+  scene.background_emissivity = reader.number("background_emissivity", share_range, scene.background_emissivity);
+  scene.surround_k = reader.number("surround_k", kelvin_range, scene.background_k);
+  const auto folder = folder_of(resource);
+  auto regions = reader.sections("region");
   for (std::size_t i = 0; i < regions.size(); ++i) scene.regions.push_back(read_region(regions[i], i + 1));
-  auto targets = reader->sections("target");
+  auto targets = reader.sections("target");
   for (TomlReader& table : targets) {
-    if (auto added = add_target(table, folder, scene); !added) return fail(resource->origin, added.error());
+    if (auto added = add_target(table, folder, scene); !added) return fail(resource.origin, added.error());
   }
   // Later in the list than the regions of the scene, so in front of them in the picture.
-  auto plate = add_plate(reader->section("plate"), folder, scene);
-  if (!plate) return fail(resource->origin, plate.error());
-  auto picture = add_picture(reader->section("picture"), folder, read_picture, scene);
-  if (!picture) return fail(resource->origin, picture.error());
-  return checked_scene(*reader, *resource, std::move(scene));
+  auto plate = add_plate(reader.section("plate"), folder, scene);
+  if (!plate) return fail(resource.origin, plate.error());
+  auto picture = add_picture(reader.section("picture"), folder, read_picture, scene);
+  if (!picture) return fail(resource.origin, picture.error());
+  return checked_scene(reader, resource, std::move(scene));
 }
 
 Result<TargetModel> load_target(std::string_view reference) {
-  const auto resource = find_resource(ResourceKind::target, reference);
-  if (!resource) return tl::unexpected(resource.error());
-  return parse_target(*resource);
+  TODBENCH_TRY(const auto resource, find_resource(ResourceKind::target, reference));
+  return parse_target(resource);
 }
 
 Result<TargetSet> load_target_set(std::string_view reference) {
-  const auto resource = find_resource(ResourceKind::target_set, reference);
-  if (!resource) return tl::unexpected(resource.error());
-  Result<TomlReader> reader = TomlReader::parse(resource->text, resource->origin);
-  if (!reader) return tl::unexpected(reader.error());
+  TODBENCH_TRY(const auto resource, find_resource(ResourceKind::target_set, reference));
+  TODBENCH_TRY(TomlReader reader, TomlReader::parse(resource.text, resource.origin));
   TargetSet set;
-  set.name = reader->text("name", std::nullopt);
-  set.description = reader->text("description", "");
-  const auto names = reader->texts("targets", std::nullopt);
-  set.azimuths_deg = reader->numbers("azimuths_deg", NumberRange::between(-360, 360), std::nullopt);
-  set.background_k = reader->number("background_k", kelvin_range, std::nullopt);
-  set.background_emissivity = reader->number("background_emissivity", share_range, set.background_emissivity);
-  set.surround_k = reader->number("surround_k", kelvin_range, set.background_k);
-  if (names.size() < 2 || names.size() > 64) reader->reject("targets", "expected 2 to 64 targets");
+  set.name = reader.text("name", std::nullopt);
+  set.description = reader.text("description", "");
+  const auto names = reader.texts("targets", std::nullopt);
+  set.azimuths_deg = reader.numbers("azimuths_deg", NumberRange::between(-360, 360), std::nullopt);
+  set.background_k = reader.number("background_k", kelvin_range, std::nullopt);
+  set.background_emissivity = reader.number("background_emissivity", share_range, set.background_emissivity);
+  set.surround_k = reader.number("surround_k", kelvin_range, set.background_k);
+  if (names.size() < 2 || names.size() > 64) reader.reject("targets", "expected 2 to 64 targets");
   if (set.azimuths_deg.empty() || set.azimuths_deg.size() > 16)
-    reader->reject("azimuths_deg", "expected 1 to 16 azimuths");
+    reader.reject("azimuths_deg", "expected 1 to 16 azimuths");
   std::set<double> sides;
   for (const double azimuth_deg : set.azimuths_deg) {
     // A duplicate aspect would count twice in every mean; 90 and -270 degrees are the same aspect.
     if (!sides.insert(azimuth_deg - 360 * std::floor(azimuth_deg / 360)).second)
-      reader->reject("azimuths_deg", fmt::format("expected every side once, found {:g} degrees twice", azimuth_deg));
+      reader.reject("azimuths_deg", fmt::format("expected every side once, found {:g} degrees twice", azimuth_deg));
   }
-  if (const Result<void> read = reader->finish(); !read) return tl::unexpected(read.error());
+  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
   std::set<std::string> known;
   for (const auto& name : names) {
-    auto model = load_target(absolute_reference(name, folder_of(*resource)));
-    if (!model) return fail(resource->origin, model.error());
+    auto model = load_target(absolute_reference(name, folder_of(resource)));
+    if (!model) return fail(resource.origin, model.error());
     if (!known.insert(model->name).second)
-      return fail(ErrorCode::invalid_input, resource->origin + ": target '" + model->name + "' is listed twice");
+      return fail(ErrorCode::invalid_input, resource.origin + ": target '" + model->name + "' is listed twice");
     set.targets.push_back(*std::move(model));
   }
   return set;

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/manifest.h"
@@ -65,23 +66,21 @@ cv::Mat1f samples_from(const std::string& text, int rows, int columns) {
 }
 
 Result<std::vector<ShownPatch>> read_shown(const std::filesystem::path& file, std::size_t trials) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  const auto table = parse_csv(*text, file.string());
-  if (!table) return tl::unexpected(table.error());
-  const bool has_noise = table->header.size() == shown_columns;
-  if (!has_noise && table->header.size() + later_shown_columns != shown_columns)
-    return table->wrong(1, "expected the columns " + std::string(shown_header));
-  if (table->rows.size() != trials) return table->wrong(1, "expected one row for each trial of trials_human.csv");
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  TODBENCH_TRY(const auto table, parse_csv(text, file.string()));
+  const bool has_noise = table.header.size() == shown_columns;
+  if (!has_noise && table.header.size() + later_shown_columns != shown_columns)
+    return table.wrong(1, "expected the columns " + std::string(shown_header));
+  if (table.rows.size() != trials) return table.wrong(1, "expected one row for each trial of trials_human.csv");
   std::vector<ShownPatch> out;
-  for (const auto& row : table->rows) {
+  for (const auto& row : table.rows) {
     const auto number = [&](std::size_t column) { return parse_number(row.fields[column]); };
     constexpr double most = 4096;  // samples on a side
     const auto rows = number(11), columns = number(12), magnification = number(8);
     if (!rows || !columns || !(*rows >= 1 && *rows <= most && *columns >= 1 && *columns <= most) || !number(6) ||
         !magnification || !number(9) || !number(10) || (!row.fields[7].empty() && !number(7)) ||
         (has_noise && !row.fields[14].empty() && !(number(14).value_or(-1) >= 0)))
-      return table->wrong(row.line, "a number is missing or out of range");
+      return table.wrong(row.line, "a number is missing or out of range");
     ShownPatch patch{.kelvin = samples_from(row.fields[13], static_cast<int>(*rows), static_cast<int>(*columns)),
                      .black_k = *number(9),
                      .white_k = *number(10),
@@ -90,7 +89,7 @@ Result<std::vector<ShownPatch>> read_shown(const std::filesystem::path& file, st
                      .response_s = *number(6),
                      .noise_k = has_noise ? number(14) : std::nullopt};
     if (const auto limit = number(7)) patch.limit_ms = static_cast<int>(*limit);
-    if (patch.kelvin.empty()) return table->wrong(row.line, "column kelvin: expected rows x columns numbers");
+    if (patch.kelvin.empty()) return table.wrong(row.line, "column kelvin: expected rows x columns numbers");
     out.push_back(std::move(patch));
   }
   return out;
@@ -100,25 +99,23 @@ Result<std::vector<ShownPatch>> read_shown(const std::filesystem::path& file, st
 
 Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPatch> shown, const Plan& plan) {
   assert(shown.size() == answers.size());
-  auto curve = tod_curve(answers, fit_options(plan));
-  if (!curve) return tl::unexpected(curve.error());
-  curve->observer = "human";
-  for (TodPoint& point : curve->points) {
+  TODBENCH_TRY(auto curve, tod_curve(answers, fit_options(plan)));
+  curve.observer = "human";
+  for (TodPoint& point : curve.points) {
     point.estimator_reason = EstimatorReason::person;
     point.answers = AnswersTaken{AnswerKind::binary, 1, AnswersReason::person};
   }
-  examine(*curve, fit_options(plan));
-  return HumanRecord{std::move(answers), *std::move(curve), std::move(shown)};
+  examine(curve, fit_options(plan));
+  return HumanRecord{std::move(answers), std::move(curve), std::move(shown)};
 }
 
 Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record) {
   if (auto intact = require_intact(session); !intact) return intact;
-  auto writer = TrialsWriter::create(session / trials_name);
-  if (!writer) return tl::unexpected(writer.error());
+  TODBENCH_TRY(auto writer, TrialsWriter::create(session / trials_name));
   for (const Trial& trial : record.trials) {
-    if (auto written = writer->append(trial); !written) return written;
+    if (auto written = writer.append(trial); !written) return written;
   }
-  if (auto synced = writer->sync(); !synced) return synced;
+  if (auto synced = writer.sync(); !synced) return synced;
   if (auto written = write_json_file(session / fits_name, curve_record(record.curve)); !written) return written;
   if (auto written = write_file_atomically(session / shown_name, shown_text(record)); !written) return written;
   return refresh_manifest(session, {trials_name, shown_name, fits_name});
@@ -127,21 +124,16 @@ Result<void> write_human(const std::filesystem::path& session, const HumanRecord
 Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session) {
   std::error_code none;
   if (!std::filesystem::exists(session / trials_name, none)) return std::nullopt;
-  auto trials = read_trials(session / trials_name);
-  if (!trials) return tl::unexpected(trials.error());
-  const auto text = read_text_file(session / fits_name);
-  if (!text) return tl::unexpected(text.error());
-  const Json json = Json::parse(*text, nullptr, false);
+  TODBENCH_TRY(auto trials, read_trials(session / trials_name));
+  TODBENCH_TRY(const auto text, read_text_file(session / fits_name));
+  const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return fail(ErrorCode::invalid_input, (session / fits_name).string() + ": not valid JSON");
-  auto curve = curve_from(json);
-  if (!curve) return tl::unexpected(curve.error());
+  TODBENCH_TRY(auto curve, curve_from(json));
   std::vector<ShownPatch> shown;
   if (std::filesystem::exists(session / shown_name, none)) {
-    auto patches = read_shown(session / shown_name, trials->size());
-    if (!patches) return tl::unexpected(patches.error());
-    shown = *std::move(patches);
+    TODBENCH_TRY(shown, read_shown(session / shown_name, trials.size()));
   }
-  return HumanRecord{*std::move(trials), *std::move(curve), std::move(shown)};
+  return HumanRecord{std::move(trials), std::move(curve), std::move(shown)};
 }
 
 }  // namespace todbench

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 
+#include "acquisition/base/try.h"
 #include "bench/session/foreign_files.h"
 #include "bench/session/signature.h"
 #include "bench/text/files.h"
@@ -39,9 +40,8 @@ Result<ManifestEntry> entry_of(const std::filesystem::path& file) {
   std::error_code problem;
   const std::uintmax_t bytes = std::filesystem::file_size(file, problem);
   if (problem) return fail(ErrorCode::io, file.string() + ": " + problem.message());
-  Result<std::string> sum = sha256_of_file(file);
-  if (!sum) return tl::unexpected(sum.error());
-  return ManifestEntry{bytes, *std::move(sum)};
+  TODBENCH_TRY(std::string sum, sha256_of_file(file));
+  return ManifestEntry{bytes, std::move(sum)};
 }
 
 /// Returns the digest of all data in the manifest of all files.
@@ -69,9 +69,8 @@ std::string text_of(const ManifestEntries& entries, OwnDigest own) {
 
 Result<Manifest> read_manifest(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / manifest_name;
-  const Result<std::string> text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  const Json json = Json::parse(*text, nullptr, false);
+  TODBENCH_TRY(const std::string text, read_text_file(file));
+  const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
   const JsonReader reader(json);
   Manifest manifest;
@@ -83,8 +82,7 @@ Result<Manifest> read_manifest(const std::filesystem::path& folder) {
   }
   if (const Result<void> read = reader.finish(); !read) return fail(file.string(), read.error());
   const bool of_an_earlier_version = !json.contains("manifest_sha256") && !json.contains("entries_sha256");
-  manifest.as_written =
-      *text == text_of(manifest.entries, of_an_earlier_version ? OwnDigest::none : OwnDigest::written);
+  manifest.as_written = text == text_of(manifest.entries, of_an_earlier_version ? OwnDigest::none : OwnDigest::written);
   return manifest;
 }
 
@@ -124,9 +122,8 @@ Result<void> check_entries(const std::filesystem::path& folder, const ManifestEn
       check.missing.push_back(path);
       continue;
     }
-    const Result<ManifestEntry> found = entry_of(folder / path);
-    if (!found) return tl::unexpected(found.error());
-    if (*found != expected) check.changed.push_back(path);
+    TODBENCH_TRY(const ManifestEntry found, entry_of(folder / path));
+    if (found != expected) check.changed.push_back(path);
   }
   return {};
 }
@@ -183,9 +180,8 @@ std::vector<std::string> session_files(const std::filesystem::path& folder) {
 Result<ManifestEntries> manifest_entries(const std::filesystem::path& folder) {
   ManifestEntries entries;
   for (const std::string& file : session_files(folder)) {
-    Result<ManifestEntry> entry = entry_of(folder / file);
-    if (!entry) return tl::unexpected(entry.error());
-    entries.emplace(file, *std::move(entry));
+    TODBENCH_TRY(ManifestEntry entry, entry_of(folder / file));
+    entries.emplace(file, std::move(entry));
   }
   return entries;
 }
@@ -203,9 +199,7 @@ std::string digest_of(const ManifestEntries& entries) {
 Result<void> update_entries(const std::filesystem::path& folder, const std::vector<std::string>& files,
                             ManifestEntries& entries) {
   for (const std::string& file : files) {
-    Result<ManifestEntry> entry = entry_of(folder / file);
-    if (!entry) return tl::unexpected(entry.error());
-    entries[file] = *std::move(entry);
+    TODBENCH_TRY(entries[file], entry_of(folder / file));
   }
   return {};
 }
@@ -215,9 +209,8 @@ Result<void> write_manifest(const std::filesystem::path& folder, const ManifestE
 }
 
 Result<void> write_manifest(const std::filesystem::path& folder) {
-  const Result<ManifestEntries> entries = manifest_entries(folder);
-  if (!entries) return tl::unexpected(entries.error());
-  return write_manifest(folder, *entries);
+  TODBENCH_TRY(const ManifestEntries entries, manifest_entries(folder));
+  return write_manifest(folder, entries);
 }
 
 Result<bool> is_listed(const std::filesystem::path& folder, const std::string& path) {
@@ -225,23 +218,20 @@ Result<bool> is_listed(const std::filesystem::path& folder, const std::string& p
   if (!manifest || !manifest->as_written) return false;
   const auto entry = manifest->entries.find(path);
   if (entry == manifest->entries.end()) return false;
-  const Result<ManifestEntry> found = entry_of(folder / path);
-  if (!found) return tl::unexpected(found.error());
-  return *found == entry->second;
+  TODBENCH_TRY(const ManifestEntry found, entry_of(folder / path));
+  return found == entry->second;
 }
 
 Result<std::string> manifest_digest(const std::filesystem::path& folder) {
-  const Result<Manifest> manifest = read_written_manifest(folder);
-  if (!manifest) return tl::unexpected(manifest.error());
-  return digest_of(manifest->entries);
+  TODBENCH_TRY(const Manifest manifest, read_written_manifest(folder));
+  return digest_of(manifest.entries);
 }
 
 Result<void> refresh_manifest(const std::filesystem::path& folder, const std::vector<std::string>& files) {
-  Result<Manifest> manifest = read_written_manifest(folder);
-  if (!manifest) return tl::unexpected(manifest.error());
+  TODBENCH_TRY(Manifest manifest, read_written_manifest(folder));
   if (auto open = require_unsigned(folder); !open) return open;
-  if (auto updated = update_entries(folder, files, manifest->entries); !updated) return updated;
-  return write_manifest(folder, manifest->entries);
+  if (auto updated = update_entries(folder, files, manifest.entries); !updated) return updated;
+  return write_manifest(folder, manifest.entries);
 }
 
 Result<ManifestCheck> check_manifest(const std::filesystem::path& folder) {
@@ -274,9 +264,8 @@ Result<void> require_no_links(const std::filesystem::path& folder) {
 Result<void> require_no_foreign_file(const std::filesystem::path& folder) {
   if (auto none = require_no_links(folder); !none) return none;
   if (!has_a_name(folder / manifest_name)) return {};
-  const Result<Manifest> manifest = read_manifest(folder);
-  if (!manifest) return tl::unexpected(manifest.error());
-  const std::vector<std::string> foreign = not_listed(folder, manifest->entries);
+  TODBENCH_TRY(const Manifest manifest, read_manifest(folder));
+  const std::vector<std::string> foreign = not_listed(folder, manifest.entries);
   if (foreign.empty()) return {};
   return fail(ErrorCode::invalid_input, folder.string() + ": the program does not write into this folder because " +
                                             foreign.front() + (foreign.size() == 1 ? " does" : " and other files do") +
@@ -286,13 +275,12 @@ Result<void> require_no_foreign_file(const std::filesystem::path& folder) {
 
 Result<std::vector<std::string>> verify_manifest(const std::filesystem::path& folder) {
   if (const Result<Manifest> manifest = read_manifest(folder); !manifest) return tl::unexpected(manifest.error());
-  const Result<ManifestCheck> check = check_manifest(folder);
-  if (!check) return tl::unexpected(check.error());
+  TODBENCH_TRY(const ManifestCheck check, check_manifest(folder));
   std::vector<std::string> deviations;
-  for (const std::string& path : check->changed) deviations.push_back(path + ": changed since the session was written");
-  for (const std::string& path : check->missing) deviations.push_back(path + ": missing");
+  for (const std::string& path : check.changed) deviations.push_back(path + ": changed since the session was written");
+  for (const std::string& path : check.missing) deviations.push_back(path + ": missing");
   std::sort(deviations.begin(), deviations.end());
-  for (const std::string& path : check->foreign) {
+  for (const std::string& path : check.foreign) {
     if (is_session_file(path)) deviations.push_back(path + ": not in the manifest");
   }
   return deviations;

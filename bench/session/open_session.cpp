@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "acquisition/base/try.h"
 #include "bench/session/foreign_files.h"
 #include "bench/session/signature.h"
 #include "bench/text/files.h"
@@ -67,10 +68,9 @@ Result<SessionCheck> check_session(const std::filesystem::path& folder) {
   if (!is_there(folder / "session.toml") && !is_there(folder / manifest_name)) {
     return fail(ErrorCode::invalid_input, folder.string() + ": not a session folder (there is no session.toml)");
   }
-  Result<ManifestCheck> files = check_manifest(folder);
-  if (!files) return tl::unexpected(files.error());
+  TODBENCH_TRY(ManifestCheck files, check_manifest(folder));
   SessionCheck check{
-      .condition = SessionCondition::intact, .files = *std::move(files), .not_vouched_for = {}, .sentence = {}};
+      .condition = SessionCondition::intact, .files = std::move(files), .not_vouched_for = {}, .sentence = {}};
   if (!is_there(folder / manifest_name) && says_running(folder)) {
     check.condition = SessionCondition::cut_off;
     check.not_vouched_for = check.files.missing;
@@ -93,31 +93,29 @@ Result<SessionCheck> check_session(const std::filesystem::path& folder) {
 }
 
 Result<Session> open_session(const std::filesystem::path& folder, const Opening& opening) {
-  const Result<SessionCheck> check = check_session(folder);
-  if (!check) return tl::unexpected(check.error());
-  const bool cut_off = check->condition == SessionCondition::cut_off;
-  const bool vouched_for = check->not_vouched_for.empty();
+  TODBENCH_TRY(const SessionCheck check, check_session(folder));
+  const bool cut_off = check.condition == SessionCondition::cut_off;
+  const bool vouched_for = check.not_vouched_for.empty();
   const bool taken = vouched_for || opening.accept_changed || (cut_off && opening.accept_cut_off);
   if (!taken) {
     return fail(ErrorCode::invalid_input, folder.string() + ": " + (cut_off ? "" : "the session was changed: ") +
-                                              check->sentence + " (use --accept-changed to read it anyway)");
+                                              check.sentence + " (use --accept-changed to read it anyway)");
   }
   Result<Session> session = read_session(folder);
   if (!session) return session;
   session->cut_off = cut_off;
-  session->manifest_sha256 = check->files.manifest_sha256;
-  if (!cut_off || !opening.accept_cut_off) session->accepted_changes = check->not_vouched_for;
+  session->manifest_sha256 = check.files.manifest_sha256;
+  if (!cut_off || !opening.accept_cut_off) session->accepted_changes = check.not_vouched_for;
   return session;
 }
 
 Result<void> require_intact(const std::filesystem::path& folder) {
-  const Result<SessionCheck> check = check_session(folder);
-  if (!check) return tl::unexpected(check.error());
-  if (check->not_vouched_for.empty()) {
+  TODBENCH_TRY(const SessionCheck check, check_session(folder));
+  if (check.not_vouched_for.empty()) {
     if (auto own = require_no_foreign_file(folder); !own) return own;
     return require_unsigned(folder);
   }
-  return fail(ErrorCode::invalid_input, folder.string() + ": the session was changed: " + check->sentence);
+  return fail(ErrorCode::invalid_input, folder.string() + ": the session was changed: " + check.sentence);
 }
 
 }  // namespace todbench

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "tod/adequacy/adequacy.h"
@@ -134,9 +135,8 @@ Result<SessionComparison> compare_sessions(const Session& a, const Session& b, s
   ComparisonOptions options = comparison_options(a.plan);
   options.margin_percent = margin_percent.value_or(margin_of(a, b));
   SessionComparison result{examined(a), examined(b), {}};
-  auto comparison = compare(result.a, result.b, options);
-  if (!comparison) return tl::unexpected(comparison.error());
-  result.comparison = *std::move(comparison);
+  TODBENCH_TRY(auto comparison, compare(result.a, result.b, options));
+  result.comparison = std::move(comparison);
   add_ratios_over_twin(result.comparison, a, b);
   if (const std::string difference = difference_of_plates(a.parts.plates, b.parts.plates); !difference.empty()) {
     add_finding(result.comparison, {.kind = FindingKind::identity,

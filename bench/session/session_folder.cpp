@@ -130,9 +130,8 @@ void add_rows(std::string& text, const TodCurve& curve, Side side, const std::op
 }
 
 Result<Json> read_json(const std::filesystem::path& file) {
-  const Result<std::string> text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  Json json = Json::parse(*text, nullptr, false);
+  TODBENCH_TRY(const std::string text, read_text_file(file));
+  Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
   return json;
 }
@@ -141,9 +140,8 @@ Result<Json> read_json(const std::filesystem::path& file) {
 template <typename T>
 Result<std::optional<T>> read_record(const std::filesystem::path& file, Result<T> (*from)(const Json&)) {
   if (!is_there(file)) return std::nullopt;
-  const Result<Json> json = read_json(file);
-  if (!json) return tl::unexpected(json.error());
-  Result<T> record = from(*json);
+  TODBENCH_TRY(const Json json, read_json(file));
+  Result<T> record = from(json);
   if (!record) return fail(file.string(), record.error());
   return *std::move(record);
 }
@@ -152,9 +150,8 @@ Result<std::optional<T>> read_record(const std::filesystem::path& file, Result<T
 Result<std::optional<SessionMeasures>> read_measures(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "measures.json";
   if (!is_there(file)) return std::nullopt;
-  const Result<Json> record = read_json(file);
-  if (!record) return tl::unexpected(record.error());
-  const Result<Json> whole = with_pictures(*record, folder);
+  TODBENCH_TRY(const Json record, read_json(file));
+  const Result<Json> whole = with_pictures(record, folder);
   if (!whole) return fail(file.string(), whole.error());
   auto measures = measures_from(*whole);
   if (!measures) return fail(file.string(), measures.error());
@@ -166,9 +163,7 @@ Result<void> read_all_trials(const std::filesystem::path& folder, Session& sessi
        {std::pair(SessionCurve::main, &session.trials), std::pair(SessionCurve::twin, &session.twin_trials)}) {
     const std::filesystem::path file = trials_file(folder, which);
     if (!is_there(file)) continue;
-    Result<std::vector<Trial>> trials = read_trials(file);
-    if (!trials) return tl::unexpected(trials.error());
-    *target = *std::move(trials);
+    TODBENCH_TRY(*target, read_trials(file));
   }
   return {};
 }
@@ -178,9 +173,7 @@ Result<void> read_all_targets(const std::filesystem::path& folder, Session& sess
                                       std::pair(SessionCurve::twin, &session.twin_presentations)}) {
     const std::filesystem::path file = targets_file(folder, which);
     if (!is_there(file)) continue;
-    Result<std::vector<Presentation>> presentations = read_targets(file);
-    if (!presentations) return tl::unexpected(presentations.error());
-    *target = *std::move(presentations);
+    TODBENCH_TRY(*target, read_targets(file));
   }
   return {};
 }
@@ -206,8 +199,7 @@ Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder,
     return fail(ErrorCode::invalid_input, folder.string() + ": expected a folder, found a file");
   }
   if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
-  auto claim = claim_folder(folder);
-  if (!claim) return tl::unexpected(claim.error());
+  TODBENCH_TRY(auto claim, claim_folder(folder));
   const bool empty = std::filesystem::is_empty(folder, problem);
   if (problem) return fail(code_of_path(problem), folder.string() + ": cannot be read: " + problem.message());
   if (!empty && existing == ExistingFolder::refuse) {
@@ -217,7 +209,7 @@ Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder,
   if (auto open = require_unsigned(folder); !open) return tl::unexpected(open.error());
   if (auto none = require_no_links(folder); !none) return tl::unexpected(none.error());
   if (const Result<void> removed = remove_session_files(folder); !removed) return tl::unexpected(removed.error());
-  return SessionFolder(folder, clocks, *std::move(claim));
+  return SessionFolder(folder, clocks, std::move(claim));
 }
 
 Result<SessionFolder> SessionFolder::create_numbered(const std::filesystem::path& folder, const HostClocks& clocks) {
@@ -226,9 +218,8 @@ Result<SessionFolder> SessionFolder::create_numbered(const std::filesystem::path
     std::error_code problem;
     // create_directory succeeds in only one of several programs.
     if (std::filesystem::create_directory(name, problem)) {
-      auto claim = claim_folder(name);
-      if (!claim) return tl::unexpected(claim.error());
-      return SessionFolder(name, clocks, *std::move(claim));
+      TODBENCH_TRY(auto claim, claim_folder(name));
+      return SessionFolder(name, clocks, std::move(claim));
     }
     if (problem && problem != std::errc::file_exists)
       return fail(code_of_path(problem), name.string() + ": cannot be created: " + problem.message());
@@ -249,9 +240,7 @@ Result<void> SessionFolder::write_plan(const LoadedPlan& loaded) {
     references.emplace_back(ResourceKind::stage, &stored.target.stage_table);
   }
   for (const auto& [kind, reference] : references) {
-    Result<std::string> copied = copies.copy(kind, *reference, loaded.parts().sources.at({kind, *reference}).text);
-    if (!copied) return tl::unexpected(copied.error());
-    *reference = *std::move(copied);
+    TODBENCH_TRY(*reference, copies.copy(kind, *reference, loaded.parts().sources.at({kind, *reference}).text));
   }
   if (loaded.parts().letterhead) {
     if (auto kept = keep_letterhead(folder_, *loaded.parts().letterhead); !kept) return tl::unexpected(kept.error());
@@ -318,9 +307,8 @@ Result<void> SessionFolder::write_report(std::string_view html) {
 }
 
 Result<void> SessionFolder::log(std::string_view sentence) {
-  Result<AppendFile> file = AppendFile::open(folder_ / "log.txt", AppendFile::Start::at_end);
-  if (!file) return tl::unexpected(file.error());
-  return file->append(clock_.now_utc() + " " + one_line(sentence) + "\n");
+  TODBENCH_TRY(AppendFile file, AppendFile::open(folder_ / "log.txt", AppendFile::Start::at_end));
+  return file.append(clock_.now_utc() + " " + one_line(sentence) + "\n");
 }
 
 Result<void> SessionFolder::finish(Provenance provenance, SessionState state) {
@@ -352,12 +340,10 @@ namespace {
 /// Sets the options that an earlier version did not have to its fixed behaviour: binary answers to one frame each and a
 /// Weibull function. An adaptive schedule with automatic answers gets the kind found in its trials.
 Result<void> keep_as_it_was(Plan& plan, std::span<const Trial> trials, const std::filesystem::path& file) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  auto reader = TomlReader::parse(*text, file.string());
-  if (!reader) return tl::unexpected(reader.error());
-  if (!reader->section("fit").has("estimator")) plan.fit.estimator = EstimatorChoice::weibull;
-  TomlReader schedule = reader->section("schedule");
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  TODBENCH_TRY(auto reader, TomlReader::parse(text, file.string()));
+  if (!reader.section("fit").has("estimator")) plan.fit.estimator = EstimatorChoice::weibull;
+  TomlReader schedule = reader.section("schedule");
   const auto is_graded = [](const Trial& trial) { return trial.probability_correct.has_value(); };
   const bool left_open =
       plan.schedule.kind == ScheduleKind::adaptive && plan.schedule.answers == AnswersChoice::automatic;
@@ -378,15 +364,13 @@ Result<Session> read_session(const std::filesystem::path& folder) {
     return fail(ErrorCode::invalid_input, folder.string() + ": not a session folder (there is no session.toml)");
   }
   Session session;
-  const Result<LoadedPlan> loaded = read_plan((folder / "session.toml").string());
-  if (!loaded) return tl::unexpected(loaded.error());
-  session.plan = loaded->plan();
-  session.parts = loaded->parts();
+  TODBENCH_TRY(const LoadedPlan loaded, read_plan((folder / "session.toml").string()));
+  session.plan = loaded.plan();
+  session.parts = loaded.parts();
 
   const std::filesystem::path provenance_file = folder / "provenance.json";
-  const Result<Json> provenance_text = read_json(provenance_file);
-  if (!provenance_text) return tl::unexpected(provenance_text.error());
-  Result<Provenance> provenance = provenance_from(*provenance_text);
+  TODBENCH_TRY(const Json provenance_text, read_json(provenance_file));
+  Result<Provenance> provenance = provenance_from(provenance_text);
   if (!provenance) return fail(provenance_file.string(), provenance.error());
   session.provenance = *std::move(provenance);
 

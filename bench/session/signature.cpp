@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "acquisition/base/process.h"
+#include "acquisition/base/try.h"
 #include "bench/session/manifest.h"
 #include "bench/session/open_session.h"
 #include "bench/text/files.h"
@@ -69,12 +70,11 @@ Result<void> require_file(const std::filesystem::path& file) {
 
 /// Runs a program. On failure the message is the last line of its output.
 Result<void> run_well(const std::vector<std::string>& words, ProgramOutput output, const std::stop_token& stop = {}) {
-  const auto run = run_program(words, output, stop);
-  if (!run) return tl::unexpected(run.error());
-  if (stop.stop_requested() || run->exit_code == 128 + SIGINT)
+  TODBENCH_TRY(const auto run, run_program(words, output, stop));
+  if (stop.stop_requested() || run.exit_code == 128 + SIGINT)
     return fail(ErrorCode::interrupted, words.front() + " was interrupted");
-  if (run->exit_code == 0) return {};
-  std::string said = run->output;
+  if (run.exit_code == 0) return {};
+  std::string said = run.output;
   while (!said.empty() && said.back() == '\n') said.pop_back();
   const std::size_t line = said.find_last_of('\n');
   if (line != std::string::npos) said = said.substr(line + 1);
@@ -125,11 +125,9 @@ Result<std::string> signature_over(std::string_view text, SigningProgram with, c
 /// Writes the detached signature of a session file next to it. The current content is signed.
 Result<void> sign_in(const std::filesystem::path& folder, std::string_view file, SigningProgram with,
                      const std::filesystem::path& key, const std::stop_token& stop) {
-  const auto text = read_text_file(folder / file);
-  if (!text) return tl::unexpected(text.error());
-  const auto signature = signature_over(*text, with, key, stop);
-  if (!signature) return tl::unexpected(signature.error());
-  return write_file_atomically(folder / signature_of(file, with), *signature);
+  TODBENCH_TRY(const auto text, read_text_file(folder / file));
+  TODBENCH_TRY(const auto signature, signature_over(text, with, key, stop));
+  return write_file_atomically(folder / signature_of(file, with), signature);
 }
 
 /// Returns whether the detached signature next to a session file matches the file and the key.
@@ -160,18 +158,16 @@ Result<std::string> public_key_of(SigningProgram with, const std::string& secret
 }
 
 Result<Json> read_record_file(const std::filesystem::path& file) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  Json json = Json::parse(*text, nullptr, false);
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
   return json;
 }
 
 Result<SessionSignature> read_signature(const std::filesystem::path& folder) {
   const auto file = folder / signature_record;
-  const auto json = read_record_file(file);
-  if (!json) return tl::unexpected(json.error());
-  const JsonReader reader(*json);
+  TODBENCH_TRY(const auto json, read_record_file(file));
+  const JsonReader reader(json);
   SessionSignature signature;
   signature.signs_time = reader.at("schema").text() != signature_schema_1;
   if (signature.signs_time) {
@@ -220,16 +216,13 @@ bool has_signed_revisions(const std::filesystem::path& folder, SigningProgram wi
 /// they are foreign.
 Result<std::string> wrong_revision(const std::filesystem::path& folder, SigningProgram with, const std::string& key) {
   if (!has_signed_revisions(folder, with)) return std::string();
-  const auto holds = is_signed_in(folder, revisions_record, with, key);
-  if (!holds) return tl::unexpected(holds.error());
-  if (!*holds) return "the signature does not belong to " + std::string(revisions_record) + " and this key";
-  const auto json = revisions_of(folder);
-  if (!json) return tl::unexpected(json.error());
-  const auto manifest = sha256_of_file(folder / manifest_name);
-  if (!manifest) return tl::unexpected(manifest.error());
-  if (json->value("manifest_file_sha256", Json()) != Json(*manifest))
+  TODBENCH_TRY(const auto holds, is_signed_in(folder, revisions_record, with, key));
+  if (!holds) return "the signature does not belong to " + std::string(revisions_record) + " and this key";
+  TODBENCH_TRY(const auto json, revisions_of(folder));
+  TODBENCH_TRY(const auto manifest, sha256_of_file(folder / manifest_name));
+  if (json.value("manifest_file_sha256", Json()) != Json(manifest))
     return std::string(revisions_record) + " belongs to another session";
-  const auto pages = pages_of(*json);
+  const auto pages = pages_of(json);
   if (!pages) return fail((folder / revisions_record).string(), pages.error());
   for (const auto& [path, expected] : *pages) {
     const auto digest = sha256_of_file(folder / path);
@@ -240,12 +233,10 @@ Result<std::string> wrong_revision(const std::filesystem::path& folder, SigningP
 }
 
 Result<void> require_whole(const std::filesystem::path& folder) {
-  const auto check = check_session(folder);
-  if (!check) return tl::unexpected(check.error());
-  if (check->condition == SessionCondition::intact) return {};
-  return fail(ErrorCode::invalid_input,
-              folder.string() + ": a session that is not intact cannot be signed: " +
-                  (check->sentence.empty() ? "files are missing or foreign" : check->sentence));
+  TODBENCH_TRY(const auto check, check_session(folder));
+  if (check.condition == SessionCondition::intact) return {};
+  return fail(ErrorCode::invalid_input, folder.string() + ": a session that is not intact cannot be signed: " +
+                                            (check.sentence.empty() ? "files are missing or foreign" : check.sentence));
 }
 
 }  // namespace
@@ -277,15 +268,10 @@ Result<SessionSignature> sign_session(const std::filesystem::path& folder, Signi
   if (auto found = require_file(secret_key); !found) return tl::unexpected(found.error());
   if (auto whole = require_whole(folder); !whole) return tl::unexpected(whole.error());
   SessionSignature made{.with = with, .signed_utc = signed_utc};
-  auto digest = manifest_digest(folder);
-  if (!digest) return tl::unexpected(digest.error());
-  made.manifest_sha256 = *std::move(digest);
-  auto file_digest = sha256_of_file(folder / manifest_name);
-  if (!file_digest) return tl::unexpected(file_digest.error());
-  made.manifest_file_sha256 = *std::move(file_digest);
-  auto public_key = public_key_of(with, argument(secret_key), stop);
-  if (!public_key) return tl::unexpected(public_key.error());
-  made.public_key = *std::move(public_key);
+  TODBENCH_TRY(made.manifest_sha256, manifest_digest(folder));
+  TODBENCH_TRY(made.manifest_file_sha256, sha256_of_file(folder / manifest_name));
+  TODBENCH_TRY(auto public_key, public_key_of(with, argument(secret_key), stop));
+  made.public_key = std::move(public_key);
   const Json record{{"schema", signature_schema},
                     {"with", to_string(with)},
                     {"signed_utc", made.signed_utc},
@@ -309,9 +295,8 @@ Result<SessionSignature> sign_session(const std::filesystem::path& folder, Signi
 Result<std::optional<SignatureCheck>> check_signature(const std::filesystem::path& folder,
                                                       const std::optional<std::filesystem::path>& public_key) {
   if (!is_signed(folder)) return std::nullopt;
-  auto signature = read_signature(folder);
-  if (!signature) return tl::unexpected(signature.error());
-  SignatureCheck check{.signature = *std::move(signature), .own_key = !public_key, .sentence = {}, .covers = {}};
+  TODBENCH_TRY(auto signature, read_signature(folder));
+  SignatureCheck check{.signature = std::move(signature), .own_key = !public_key, .sentence = {}, .covers = {}};
   const OwnFile own;
   std::string key = own.path().string();
   if (public_key) {
@@ -321,29 +306,25 @@ Result<std::optional<SignatureCheck>> check_signature(const std::filesystem::pat
     return tl::unexpected(written.error());
   }
   const SigningProgram with = check.signature.with;
-  const auto manifest_holds = is_signed_in(folder, manifest_name, with, key);
-  if (!manifest_holds) return tl::unexpected(manifest_holds.error());
-  if (!*manifest_holds) {
+  TODBENCH_TRY(const auto manifest_holds, is_signed_in(folder, manifest_name, with, key));
+  if (!manifest_holds) {
     check.sentence = "the signature does not belong to this manifest and key";
     return check;
   }
   check.covers.emplace_back(manifest_name);
   if (check.signature.signs_time) {
-    const auto time_holds = is_signed_in(folder, signature_record, with, key);
-    if (!time_holds) return tl::unexpected(time_holds.error());
-    const auto digest = sha256_of_file(folder / manifest_name);
-    if (!digest) return tl::unexpected(digest.error());
-    if (!*time_holds || *digest != check.signature.manifest_file_sha256) {
+    TODBENCH_TRY(const auto time_holds, is_signed_in(folder, signature_record, with, key));
+    TODBENCH_TRY(const auto digest, sha256_of_file(folder / manifest_name));
+    if (!time_holds || digest != check.signature.manifest_file_sha256) {
       check.sentence = "the time of signing was changed: the signature does not belong to " +
                        std::string(signature_record) + " and this key";
       return check;
     }
     check.covers.emplace_back("signed_utc");
   }
-  const auto wrong = wrong_revision(folder, with, key);
-  if (!wrong) return tl::unexpected(wrong.error());
-  if (!wrong->empty()) {
-    check.sentence = *wrong;
+  TODBENCH_TRY(const auto wrong, wrong_revision(folder, with, key));
+  if (!wrong.empty()) {
+    check.sentence = wrong;
     return check;
   }
   if (has_signed_revisions(folder, with)) check.covers.emplace_back("revisions");
@@ -358,23 +339,19 @@ Result<ReportRevision> next_revision(const std::filesystem::path& folder, const 
                 folder.string() + ": the session is not signed, so its report is rebuilt without a reason");
   if (reason.find_first_not_of(" \t\n") == std::string::npos)
     return fail(ErrorCode::invalid_input, folder.string() + ": a revision of a signed report needs a reason");
-  const auto check = check_signature(folder, std::nullopt);
-  if (!check) return tl::unexpected(check.error());
-  if (*check && !(*check)->valid)
-    return fail(ErrorCode::invalid_input, folder.string() + ": the revision was not added: " + (*check)->sentence);
-  const auto json = revisions_of(folder);
-  if (!json) return tl::unexpected(json.error());
-  return ReportRevision{static_cast<int>((*json)["revisions"].size()) + 2, utc, one_line(reason)};
+  TODBENCH_TRY(const auto check, check_signature(folder, std::nullopt));
+  if (check && !check->valid)
+    return fail(ErrorCode::invalid_input, folder.string() + ": the revision was not added: " + check->sentence);
+  TODBENCH_TRY(const auto json, revisions_of(folder));
+  return ReportRevision{static_cast<int>(json["revisions"].size()) + 2, utc, one_line(reason)};
 }
 
 Result<void> require_key_of_session(const std::filesystem::path& folder, const std::filesystem::path& secret_key,
                                     const std::stop_token& stop) {
   if (auto found = require_file(secret_key); !found) return found;
-  const auto signature = read_signature(folder);
-  if (!signature) return tl::unexpected(signature.error());
-  const auto key = public_key_of(signature->with, argument(secret_key), stop);
-  if (!key) return tl::unexpected(key.error());
-  if (*key == signature->public_key) return {};
+  TODBENCH_TRY(const auto signature, read_signature(folder));
+  TODBENCH_TRY(const auto key, public_key_of(signature.with, argument(secret_key), stop));
+  if (key == signature.public_key) return {};
   return fail(ErrorCode::invalid_input, secret_key.string() + ": this key did not sign the session");
 }
 
@@ -386,24 +363,20 @@ Result<void> keep_revision(const std::filesystem::path& folder, const ReportRevi
                            const std::vector<std::string>& pages, const std::filesystem::path& secret_key,
                            const std::stop_token& stop) {
   if (auto found = require_file(secret_key); !found) return found;
-  auto json = revisions_of(folder);
-  if (!json) return tl::unexpected(json.error());
-  const auto signature = read_signature(folder);
-  if (!signature) return tl::unexpected(signature.error());
-  const auto manifest = sha256_of_file(folder / manifest_name);
-  if (!manifest) return tl::unexpected(manifest.error());
-  (*json)["schema"] = revisions_schema;
-  (*json)["manifest_file_sha256"] = *manifest;
+  TODBENCH_TRY(auto json, revisions_of(folder));
+  TODBENCH_TRY(const auto signature, read_signature(folder));
+  TODBENCH_TRY(const auto manifest, sha256_of_file(folder / manifest_name));
+  json["schema"] = revisions_schema;
+  json["manifest_file_sha256"] = manifest;
   Json listed = Json::array();
   for (const std::string& page : pages) {
-    const auto digest = sha256_of_file(folder / page);
-    if (!digest) return tl::unexpected(digest.error());
-    listed.push_back({{"path", page}, {"sha256", *digest}});
+    TODBENCH_TRY(const auto digest, sha256_of_file(folder / page));
+    listed.push_back({{"path", page}, {"sha256", digest}});
   }
-  (*json)["revisions"].push_back(
+  json["revisions"].push_back(
       {{"number", revision.number}, {"utc", revision.utc}, {"reason", revision.reason}, {"pages", listed}});
-  if (auto written = write_file_atomically(folder / revisions_record, to_page(*json)); !written) return written;
-  return sign_in(folder, revisions_record, signature->with, secret_key, stop);
+  if (auto written = write_file_atomically(folder / revisions_record, to_page(json)); !written) return written;
+  return sign_in(folder, revisions_record, signature.with, secret_key, stop);
 }
 
 std::vector<std::string> files_of_signature(const std::filesystem::path& folder) {

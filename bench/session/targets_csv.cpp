@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "acquisition/base/try.h"
 #include "bench/session/csv_fields.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/text.h"
@@ -114,11 +115,10 @@ Presentation read_target(FieldReader& fields, std::size_t columns) {
 }  // namespace
 
 Result<TargetsWriter> TargetsWriter::create(const std::filesystem::path& file) {
-  Result<AppendFile> opened = AppendFile::open(file, AppendFile::Start::empty);
-  if (!opened) return tl::unexpected(opened.error());
-  if (const Result<void> written = opened->append(header_line(target_columns)); !written)
+  TODBENCH_TRY(AppendFile opened, AppendFile::open(file, AppendFile::Start::empty));
+  if (const Result<void> written = opened.append(header_line(target_columns)); !written)
     return tl::unexpected(written.error());
-  return TargetsWriter(*std::move(opened));
+  return TargetsWriter(std::move(opened));
 }
 
 Result<void> TargetsWriter::append(const Presentation& shown) {
@@ -134,22 +134,20 @@ Result<void> TargetsWriter::append(const Presentation& shown) {
 }
 
 Result<std::vector<Presentation>> read_targets(const std::filesystem::path& file) {
-  const Result<std::string> text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  const Result<CsvTable> table = parse_csv(*text, file.string());
-  if (!table) return tl::unexpected(table.error());
-  const std::size_t had = table->header.size();
+  TODBENCH_TRY(const std::string text, read_text_file(file));
+  TODBENCH_TRY(const CsvTable table, parse_csv(text, file.string()));
+  const std::size_t had = table.header.size();
   const std::span columns(target_columns.data(), had == without_air || had == without_error || had == without_place
                                                      ? had
                                                      : target_columns.size());
-  if (const Result<void> as_expected = check_columns(*table, columns); !as_expected)
+  if (const Result<void> as_expected = check_columns(table, columns); !as_expected)
     return tl::unexpected(as_expected.error());
   std::vector<Presentation> presentations;
-  presentations.reserve(table->rows.size());
-  for (const CsvRow& row : table->rows) {
+  presentations.reserve(table.rows.size());
+  for (const CsvRow& row : table.rows) {
     FieldReader fields(row.fields, target_columns);
     presentations.push_back(read_target(fields, columns.size()));
-    if (fields.wrong()) return table->wrong(row.line, *fields.wrong());
+    if (fields.wrong()) return table.wrong(row.line, *fields.wrong());
   }
   return presentations;
 }

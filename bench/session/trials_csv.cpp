@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "acquisition/base/try.h"
 #include "bench/session/csv_fields.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/text.h"
@@ -172,11 +173,10 @@ Result<Level> read_level(const CsvTable& table, const CsvRow& row, const LevelCo
 }  // namespace
 
 Result<TrialsWriter> TrialsWriter::create(const std::filesystem::path& file) {
-  Result<AppendFile> opened = AppendFile::open(file, AppendFile::Start::empty);
-  if (!opened) return tl::unexpected(opened.error());
-  if (const Result<void> written = opened->append(header_line(trial_columns)); !written)
+  TODBENCH_TRY(AppendFile opened, AppendFile::open(file, AppendFile::Start::empty));
+  if (const Result<void> written = opened.append(header_line(trial_columns)); !written)
     return tl::unexpected(written.error());
-  return TrialsWriter(*std::move(opened));
+  return TrialsWriter(std::move(opened));
 }
 
 Result<void> TrialsWriter::append(const Trial& trial) {
@@ -192,42 +192,36 @@ Result<void> TrialsWriter::append(const Trial& trial) {
 }
 
 Result<std::vector<Trial>> read_trials(const std::filesystem::path& file) {
-  const Result<std::string> text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  const Result<CsvTable> table = parse_csv(*text, file.string());
-  if (!table) return tl::unexpected(table.error());
+  TODBENCH_TRY(const std::string text, read_text_file(file));
+  TODBENCH_TRY(const CsvTable table, parse_csv(text, file.string()));
   std::span<const std::string_view> columns(trial_columns);
-  if (std::ranges::count(earlier_columns, table->header.size()) > 0) columns = columns.first(table->header.size());
-  if (const Result<void> as_expected = check_columns(*table, columns); !as_expected)
+  if (std::ranges::count(earlier_columns, table.header.size()) > 0) columns = columns.first(table.header.size());
+  if (const Result<void> as_expected = check_columns(table, columns); !as_expected)
     return tl::unexpected(as_expected.error());
   std::vector<Trial> trials;
-  trials.reserve(table->rows.size());
-  for (const CsvRow& row : table->rows) {
+  trials.reserve(table.rows.size());
+  for (const CsvRow& row : table.rows) {
     FieldReader fields(row.fields, columns);
     trials.push_back(read_trial(fields, columns.size()));
-    if (fields.wrong()) return table->wrong(row.line, *fields.wrong());
+    if (fields.wrong()) return table.wrong(row.line, *fields.wrong());
   }
   return trials;
 }
 
 Result<std::vector<Level>> parse_levels(std::string_view text, std::string_view name) {
-  const Result<CsvTable> table = parse_csv(text, name);
-  if (!table) return tl::unexpected(table.error());
-  const Result<LevelColumns> columns = level_columns(*table);
-  if (!columns) return tl::unexpected(columns.error());
+  TODBENCH_TRY(const CsvTable table, parse_csv(text, name));
+  TODBENCH_TRY(const LevelColumns columns, level_columns(table));
   std::vector<Level> levels;
-  for (const CsvRow& row : table->rows) {
-    Result<Level> level = read_level(*table, row, *columns);
-    if (!level) return tl::unexpected(level.error());
-    levels.push_back(*level);
+  for (const CsvRow& row : table.rows) {
+    TODBENCH_TRY(Level level, read_level(table, row, columns));
+    levels.push_back(level);
   }
   return levels;
 }
 
 Result<std::vector<Level>> read_levels(const std::filesystem::path& file) {
-  const Result<std::string> text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  return parse_levels(*text, file.string());
+  TODBENCH_TRY(const std::string text, read_text_file(file));
+  return parse_levels(text, file.string());
 }
 
 }  // namespace todbench

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "acquisition/base/process.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -29,9 +30,8 @@ class Children {
       const std::lock_guard lock(mutex_);
       if (ending_) return std::optional<int>();
       const Descriptor discarded = null_device();
-      const auto started = start_program(std::move(command), {.output = discarded.get()});
-      if (!started) return tl::unexpected(started.error());
-      process = *started;
+      TODBENCH_TRY(const auto started, start_program(std::move(command), {.output = discarded.get()}));
+      process = started;
       processes_.push_back(process);
     }
     // The process id stays reserved until it is off the list, so that no other process gets the signal.
@@ -40,9 +40,8 @@ class Children {
     }
     const std::lock_guard lock(mutex_);
     std::erase(processes_, process);
-    const auto code = wait_for_program(process);
-    if (!code) return tl::unexpected(code.error());
-    return std::optional<int>(*code);
+    TODBENCH_TRY(const auto code, wait_for_program(process));
+    return std::optional<int>(code);
   }
   /// Asks the running children to end; no other is started.
   void ask_to_end() {

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/text/text.h"
 
 #include <toml++/toml.h>
@@ -276,9 +277,8 @@ Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path
 }
 
 Result<SweepFile> read_sweep(const std::filesystem::path& file) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  return parse_sweep(*text, file);
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  return parse_sweep(text, file);
 }
 
 }  // namespace todbench

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "acquisition/base/safe_file.h"
+#include "acquisition/base/try.h"
 #include "bench/text/json_reader.h"
 #include "bench/text/spreadsheet.h"
 #include "bench/text/text.h"
@@ -18,9 +19,8 @@ namespace todbench {
 namespace {
 
 Result<Json> read_result(const std::filesystem::path& file) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  Json json = Json::parse(*text, nullptr, false);
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  Json json = Json::parse(text, nullptr, false);
   const JsonReader reader(json);
   reader.at("format").expect("todbench-sweep-result");
   for (const char* key : {"version", "commit", "sweep_sha256", "task"}) (void)reader.at(key).text();
@@ -158,10 +158,9 @@ Result<SweepTable> collected(const Sweep& sweep, MissingTasks missing) {
   std::vector<Json> results;
   for (std::size_t i = 0; i < status.states.size(); ++i) {
     if (status.states[i] != TaskState::done) continue;
-    auto result = read_result(result_file(sweep, sweep.task(i)));
-    if (!result) return tl::unexpected(result.error());
-    if (auto checked = check_versions(sweep, *result, table); !checked) return tl::unexpected(checked.error());
-    add_rows(table, sweep, *result);
+    TODBENCH_TRY(auto result, read_result(result_file(sweep, sweep.task(i))));
+    if (auto checked = check_versions(sweep, result, table); !checked) return tl::unexpected(checked.error());
+    add_rows(table, sweep, result);
   }
   // Rows before the first occurrence of a column are shorter.
   for (auto& row : table.rows) {
@@ -193,10 +192,9 @@ Json to_json(const SweepTable& table) {
 }
 
 Result<void> write_sqlite(const SweepTable& table, const std::filesystem::path& file) {
-  const auto part = make_file_beside(file);
-  if (!part) return tl::unexpected(part.error());
-  ::close(part->descriptor);
-  const std::filesystem::path& beside = part->path;
+  TODBENCH_TRY(const auto part, make_file_beside(file));
+  ::close(part.descriptor);
+  const std::filesystem::path& beside = part.path;
   std::error_code problem;
   sqlite3* opened = nullptr;
   const int code = sqlite3_open(beside.c_str(), &opened);

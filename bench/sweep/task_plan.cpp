@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_keys.h"
@@ -184,15 +185,15 @@ Json estimate_json(const LoadedPlan& plan, const std::vector<DirectPoint>& point
 Result<Json> estimated(const LoadedPlan& plan, std::stop_token stop) {
   if (auto none = refuse_modules(plan.plan(), plan.sensor()); !none) return tl::unexpected(none.error());
   const auto& simulation = plan.plan().simulation;
-  const auto accuracy = accuracy_of(plan.plan());
-  if (!accuracy) return tl::unexpected(accuracy.error());
+  TODBENCH_TRY(const auto accuracy, accuracy_of(plan.plan()));
   TemplateObserver observer(plan.observer(), triangle_alternatives());
   const SensorPlan effects = full_plan(plan.sensor(), simulation.skip, simulation.force, simulation.motion);
-  const auto points = direct_estimate(
-      plan.sensor(), effects, observer, plan.plan().target.delta_t_k,
-      {.motion = simulation.motion, .accuracy = *accuracy, .seed = plan.plan().seed, .stop = std::move(stop)});
-  if (!points) return tl::unexpected(points.error());
-  return estimate_json(plan, *points);
+  TODBENCH_TRY(
+      const auto points,
+      direct_estimate(
+          plan.sensor(), effects, observer, plan.plan().target.delta_t_k,
+          {.motion = simulation.motion, .accuracy = accuracy, .seed = plan.plan().seed, .stop = std::move(stop)}));
+  return estimate_json(plan, points);
 }
 
 Result<Json> simulated(const LoadedPlan& plan, const std::filesystem::path& scratch, std::stop_token stop) {
@@ -215,17 +216,16 @@ Result<Json> simulated(const LoadedPlan& plan, const std::filesystem::path& scra
 }  // namespace
 
 Result<RunnableSweep> load_sweep(const std::filesystem::path& path) {
-  auto file = read_sweep(path);
-  if (!file) return tl::unexpected(file.error());
-  std::vector<SweepParameter> base = file->base;
+  TODBENCH_TRY(auto file, read_sweep(path));
+  std::vector<SweepParameter> base = file.base;
   const auto plan = taken(base, "plan");
-  const std::string reference = plan ? absolute_reference(*plan, file->folder) : "demo";
+  const std::string reference = plan ? absolute_reference(*plan, file.folder) : "demo";
   auto initial = read_plan(reference);
   if (initial && !plan) initial = initial->with(plan_of_nobody(initial->plan()));
   if (!initial) return fail(path.string(), initial.error());
-  const auto loaded = applied(*initial, base, file->folder, initial->plan().seed);
+  const auto loaded = applied(*initial, base, file.folder, initial->plan().seed);
   if (!loaded) return fail(path.string(), loaded.error());
-  if (auto fine = check_values(*initial, base, *file); !fine) return fail(path.string(), fine.error());
+  if (auto fine = check_values(*initial, base, file); !fine) return fail(path.string(), fine.error());
   // The contents of named files affect results as well.
   std::string fingerprint = "plan " + sha256_of(to_toml(loaded->plan())) + "\n";
   for (const auto& [name, source] : loaded->parts().sources) fingerprint += sha256_of(source.text) + "\n";
@@ -240,7 +240,7 @@ Result<RunnableSweep> load_sweep(const std::filesystem::path& path) {
     if (const auto* whole = std::get_if<int SensorSpec::*>(&key->member)) return sensor.*(*whole);
     return std::nullopt;
   };
-  auto sweep = Sweep::expand(*std::move(file), std::move(fingerprint), number_of);
+  auto sweep = Sweep::expand(std::move(file), std::move(fingerprint), number_of);
   if (!sweep) return fail(path.string(), sweep.error());
   return RunnableSweep{*std::move(sweep), *std::move(initial), std::move(base)};
 }
@@ -258,20 +258,16 @@ Result<LoadedPlan> task_plan(const RunnableSweep& runnable, const SweepTask& tas
 
 Result<Json> run_task(const RunnableSweep& runnable, const SweepTask& task, const std::filesystem::path& scratch,
                       std::stop_token stop) {
-  const auto plan = task_plan(runnable, task, stop);
-  if (!plan) return tl::unexpected(plan.error());
-  return runnable.sweep.file().kind == TaskKind::estimate ? estimated(*plan, stop) : simulated(*plan, scratch, stop);
+  TODBENCH_TRY(const auto plan, task_plan(runnable, task, stop));
+  return runnable.sweep.file().kind == TaskKind::estimate ? estimated(plan, stop) : simulated(plan, scratch, stop);
 }
 
 Result<double> predicted_task_s(const RunnableSweep& runnable, const SweepTask& task, std::stop_token stop) {
-  const auto plan = task_plan(runnable, task, stop);
-  if (!plan) return tl::unexpected(plan.error());
+  TODBENCH_TRY(const auto plan, task_plan(runnable, task, stop));
   EffectPlanner planner;
-  const auto inputs = experiment_inputs(*plan, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
-  const auto time = predict_time(plan->plan(), *inputs, stop);
-  if (!time) return tl::unexpected(time.error());
-  return time->simulation_s;
+  TODBENCH_TRY(const auto inputs, experiment_inputs(plan, planner));
+  TODBENCH_TRY(const auto time, predict_time(plan.plan(), inputs, stop));
+  return time.simulation_s;
 }
 
 }  // namespace todbench
