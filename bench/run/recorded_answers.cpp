@@ -5,13 +5,14 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/text/json.h"
-#include "bench/text/json_reader.h"
+#include "acquisition/base/try.h"
+#include "bench/text/json_fields.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
 
+constexpr double unknown_number = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* rest_tag = "rest";
 constexpr const char* calls_tag = "calls";
 constexpr const char* recovery_tag = "recovery";
@@ -21,36 +22,42 @@ std::string clock_tag(Moment why) {
   return "clock." + std::string(to_string(why));
 }
 
-Json state_json(const TargetState& state) {
-  return {{"plate", state.plate},
-          {"mounting", to_string(state.mounting)},
-          {"delta_t_k", json_number(state.delta_t_k)},
-          {"shift_x_mm", json_number(state.shift_mm.x)},
-          {"shift_y_mm", json_number(state.shift_mm.y)}};
+/// A number that is not finite is null.
+void state_fields(JsonFields& json, TargetState& state) {
+  json.value("plate", state.plate);
+  json.value("mounting", state.mounting, all_mountings);
+  json.number_or("delta_t_k", state.delta_t_k, unknown_number);
+  json.number_or("shift_x_mm", state.shift_mm.x, unknown_number);
+  json.number_or("shift_y_mm", state.shift_mm.y, unknown_number);
 }
 
-Json error_json(const Error& error) {
-  return {{"code", static_cast<int>(error.code)}, {"message", error.message}};
+void error_fields(JsonFields& json, Error& error) {
+  constexpr auto last = static_cast<std::int64_t>(ErrorCode::internal);
+  auto code = static_cast<std::int64_t>(error.code);
+  json.value("code", code);
+  json.value("message", error.message);
+  error.code = static_cast<ErrorCode>(code >= 0 && code <= last ? code : last);
 }
 
-/// Converts an absent number back to NaN.
-double number_of(const JsonReader& reader) {
-  return reader.optional_number().value_or(std::numeric_limits<double>::quiet_NaN());
+void outcome_fields(JsonFields& json, std::optional<Error>& failed) {
+  json.value("failed", failed, error_fields);
 }
 
-TargetState state_of(const JsonReader& reader) {
-  TargetState state;
-  state.plate = reader.at("plate").text();
-  state.mounting = reader.at("mounting").named(all_mountings);
-  state.delta_t_k = number_of(reader.at("delta_t_k"));
-  state.shift_mm = {number_of(reader.at("shift_x_mm")), number_of(reader.at("shift_y_mm"))};
-  return state;
-}
+/// Request to a target and its report.
+struct TargetAnswer {
+  TargetState set;
+  std::optional<Error> failed{};
+  PresentedTarget said{};  ///< if it did not fail
+};
 
-Error error_of(const JsonReader& reader) {
-  const auto last = static_cast<std::int64_t>(ErrorCode::internal);
-  const std::int64_t code = reader.at("code").whole();
-  return {static_cast<ErrorCode>(code >= 0 && code <= last ? code : last), reader.at("message").text()};
+void target_answer_fields(JsonFields& json, TargetAnswer& answer) {
+  json.value("set", answer.set, state_fields);
+  outcome_fields(json, answer.failed);
+  if (answer.failed) return;
+  json.value("reached", answer.said.state, state_fields);
+  json.value("plate_temperature_k", answer.said.plate_temperature_k);
+  json.value("black_body_temperature_k", answer.said.black_body_temperature_k);
+  json.number_or("settling_s", answer.said.settling_s, unknown_number);
 }
 
 std::string described(const TargetState& state) {
@@ -73,19 +80,13 @@ Reading calls_answer(std::int64_t calls) {
 }
 
 Reading recovery_answer(const Result<void>& back) {
-  return {recovery_tag, to_line(Json{{"failed", back ? Json(nullptr) : error_json(back.error())}})};
+  const std::optional<Error> failed = back ? std::nullopt : std::optional(back.error());
+  return {recovery_tag, to_line(json_of(failed, outcome_fields).value_or(Json()))};
 }
 
 Reading target_answer(const TargetState& set, const Result<PresentedTarget>& said) {
-  Json answer{{"set", state_json(set)}};
-  answer["failed"] = said ? Json(nullptr) : error_json(said.error());
-  if (said) {
-    answer["reached"] = state_json(said->state);
-    answer["plate_temperature_k"] = json_number(said->plate_temperature_k);
-    answer["black_body_temperature_k"] = json_number(said->black_body_temperature_k);
-    answer["settling_s"] = json_number(said->settling_s);
-  }
-  return {target_tag, to_line(answer)};
+  const TargetAnswer answer = said ? TargetAnswer{set, std::nullopt, *said} : TargetAnswer{set, said.error()};
+  return {target_tag, to_line(json_of(answer, target_answer_fields).value_or(Json()))};
 }
 
 tl::unexpected<Error> RecordedAnswers::refuse(const std::string& expected, const std::string& found) {
@@ -126,38 +127,20 @@ Result<std::int64_t> RecordedAnswers::calls() {
 }
 
 Result<void> RecordedAnswers::recovery() {
-  const auto text = take(recovery_tag);
-  if (!text) return tl::unexpected(text.error());
-  const Json json = Json::parse(*text, nullptr, false);
-  const JsonReader answer(json);
-  const JsonReader failed = answer.at("failed");
-  const std::optional<Error> error = failed.is_null() ? std::nullopt : std::optional(error_of(failed));
-  if (const auto read = answer.finish(); !read) return refuse("an outcome for 'recovery'", read.error().message);
-  if (error) return tl::unexpected(*error);
+  TODBENCH_TRY(const std::string text, take(recovery_tag));
+  const auto failed = from_json<std::optional<Error>>(Json::parse(text, nullptr, false), outcome_fields);
+  if (!failed) return refuse("an outcome for 'recovery'", failed.error().message);
+  if (*failed) return tl::unexpected(**failed);
   return {};
 }
 
 Result<PresentedTarget> RecordedAnswers::target(const TargetState& set) {
-  const auto text = take(target_tag);
-  if (!text) return tl::unexpected(text.error());
-  const Json json = Json::parse(*text, nullptr, false);
-  const JsonReader answer(json);
-  const TargetState then = state_of(answer.at("set"));
-  const JsonReader failed = answer.at("failed");
-  std::optional<Error> error;
-  PresentedTarget said;
-  if (failed.is_null()) {
-    said = {.state = state_of(answer.at("reached")),
-            .plate_temperature_k = answer.at("plate_temperature_k").optional_number(),
-            .black_body_temperature_k = answer.at("black_body_temperature_k").optional_number(),
-            .settling_s = number_of(answer.at("settling_s"))};
-  } else {
-    error = error_of(failed);
-  }
-  if (const auto read = answer.finish(); !read) return refuse("a report of the target", read.error().message);
-  if (then != set) return refuse("a target set to " + described(set), described(then));
-  if (error) return tl::unexpected(*error);
-  return said;
+  TODBENCH_TRY(const std::string text, take(target_tag));
+  const auto answer = from_json<TargetAnswer>(Json::parse(text, nullptr, false), target_answer_fields);
+  if (!answer) return refuse("a report of the target", answer.error().message);
+  if (answer->set != set) return refuse("a target set to " + described(set), described(answer->set));
+  if (answer->failed) return tl::unexpected(*answer->failed);
+  return answer->said;
 }
 
 Result<void> RecordedAnswers::agreed() const {

@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <string>
+
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -46,6 +51,38 @@ TEST(Error, AboutAKeyNamesItInItsMessage) {
   ASSERT_FALSE(failed);
   EXPECT_EQ(failed.error().message, "fits.json: cannot be read");
   EXPECT_EQ(failed.error().key, (ErrorKey{"fits.json", "cannot be read"}));
+}
+
+Result<std::unique_ptr<int>> owned(int value) {
+  if (value < 0) return fail_at(ErrorCode::invalid_input, "value", "negative");
+  return std::make_unique<int>(value);
+}
+
+Result<std::string> joined(int first, int second) {
+  std::string text;
+  TODBENCH_TRY(const std::unique_ptr<int> one, owned(first));
+  TODBENCH_TRY(text, [](int low, int high) -> Result<std::string> { return std::to_string(low + high); }(0, *one));
+  if (second != 0) {
+    TODBENCH_TRY(auto other, owned(second));
+    text += "," + std::to_string(*other);
+  }
+  return text;
+}
+
+TEST(Try, GivesTheValueToAVariableOrAMember) {
+  EXPECT_EQ(joined(3, 0).value(), "3");
+  EXPECT_EQ(joined(3, 4).value(), "3,4");
+}
+
+TEST(Try, ReturnsTheFirstErrorWithItsCodeAndKey) {
+  for (const auto& [first, second] : {std::pair(-1, 4), std::pair(3, -1)}) {
+    const Result<std::string> failed = joined(first, second);
+
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(failed.error().code, ErrorCode::invalid_input);
+    EXPECT_EQ(failed.error().message, "value: negative");
+    EXPECT_EQ(failed.error().key, (ErrorKey{"value", "negative"}));
+  }
 }
 
 }  // namespace
