@@ -45,7 +45,7 @@ Json fleet_json(const FleetForecast& fleet) {
 Json measure_limits_json(const std::vector<MeasureForecast>& forecasts) {
   Json limits = Json::array();
   for (const MeasureForecast& forecast : forecasts) {
-    limits.push_back({{"measure", to_string(forecast.measure)},
+    limits.push_back({{"measure", forecast.measure},
                       {"at_least", json_number(forecast.at_least)},
                       {"at_most", json_number(forecast.at_most)},
                       {"u", json_number(forecast.u)},

@@ -9,6 +9,7 @@
 
 #include "acquisition/base/try.h"
 #include "bench/plan/key_types.h"
+#include "bench/plan/quantity.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -29,9 +30,7 @@ std::optional<double> contrast_of(const std::string& condition) {
 
 bool can_be_limited(const HistoryValue& value) {
   if (value.measure == fleet_acuity) return contrast_of(value.condition).has_value();
-  return value.condition.empty() &&
-         std::any_of(limited_measures.begin(), limited_measures.end(),
-                     [&](LimitedMeasure measure) { return to_string(measure) == value.measure; });
+  return value.condition.empty() && find_limited_quantity(value.measure) != nullptr;
 }
 
 /// Last value of every unit.

@@ -2,7 +2,6 @@
 #include "bench/judgement/demand_kinds.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cctype>
 #include <cmath>
@@ -120,13 +119,13 @@ Demand judged_acuity(const AcuityLimit& limit, const JudgementInput& evidence) {
   return demand;
 }
 
-std::vector<Demand> judge_acuity(const JudgementInput& evidence) {
+std::vector<Demand> judge_acuity(const DemandKindRow& /*row*/, const JudgementInput& evidence) {
   std::vector<Demand> demands;
   for (const AcuityLimit& limit : evidence.limits.acuity) demands.push_back(judged_acuity(limit, evidence));
   return demands;
 }
 
-std::string acuity_in_words(const Demand& demand) {
+std::string acuity_in_words(const DemandKindRow& /*row*/, const Demand& demand) {
   return "acuity at " + rounded(demand.delta_t_k) + " K at least " + rounded(demand.limit) + " 1/mrad";
 }
 
@@ -151,7 +150,7 @@ Demand judged_identified(const TodPoint& point, const CurveUncertainty* uncertai
   return demand;
 }
 
-std::vector<Demand> judge_identified(const JudgementInput& evidence) {
+std::vector<Demand> judge_identified(const DemandKindRow& /*row*/, const JudgementInput& evidence) {
   std::vector<Demand> demands;
   for (const TodPoint& point : evidence.curve.points) {
     const auto& limits = evidence.limits.acuity;
@@ -163,7 +162,7 @@ std::vector<Demand> judge_identified(const JudgementInput& evidence) {
   return demands;
 }
 
-std::string identified_in_words(const Demand& demand) {
+std::string identified_in_words(const DemandKindRow& /*row*/, const Demand& demand) {
   return "identified threshold at " + rounded(demand.delta_t_k) + " K";
 }
 
@@ -303,7 +302,7 @@ bool proven_different(const ComparisonPoint& point) {
 }
 
 /// Decides as the comparison does, if it used the demanded margin.
-std::vector<Demand> judge_equivalence(const JudgementInput& evidence) {
+std::vector<Demand> judge_equivalence(const DemandKindRow& /*row*/, const JudgementInput& evidence) {
   if (!evidence.limits.equivalence_margin_percent) return {};
   const double margin_percent = *evidence.limits.equivalence_margin_percent;
   Demand demand{.kind = DemandKind::equivalence, .limit = margin_percent, .interval_percent = 90};
@@ -337,53 +336,31 @@ std::vector<Demand> judge_equivalence(const JudgementInput& evidence) {
   return {demand};
 }
 
-std::string equivalence_in_words(const Demand& demand) {
+std::string equivalence_in_words(const DemandKindRow& /*row*/, const Demand& demand) {
   return "acuity equivalent to the simulated twin within " + rounded(demand.limit) + " %";
 }
 
-std::string scene_dependence_in_words(const Demand& demand) {
+std::string scene_dependence_in_words(const DemandKindRow& /*row*/, const Demand& demand) {
   return "change of the response at " + rounded(demand.delta_t_k) + " K by a hot bar in the field at most " +
          rounded(demand.limit) + " %";
 }
 
-const auto& table() {
-  static const std::array rows{
-      DemandKindRow{DemandKind::acuity, "acuity", "1/mrad", LimitSide::at_least, judge_acuity, acuity_in_words},
-      DemandKindRow{DemandKind::identified, "identified", "1/mrad", LimitSide::none, judge_identified,
-                    identified_in_words},
-      DemandKindRow{DemandKind::equivalence, "equivalence", "%", LimitSide::at_most, judge_equivalence,
-                    equivalence_in_words},
-      measure_row(DemandKind::netd),
-      measure_row(DemandKind::temporal_noise),
-      measure_row(DemandKind::noise_t),
-      measure_row(DemandKind::noise_v),
-      measure_row(DemandKind::noise_h),
-      measure_row(DemandKind::noise_tv),
-      measure_row(DemandKind::noise_th),
-      measure_row(DemandKind::noise_vh),
-      measure_row(DemandKind::noise_tvh),
-      measure_row(DemandKind::temperature_scale_at_least),
-      measure_row(DemandKind::temperature_scale_at_most),
-      measure_row(DemandKind::mtf_x),
-      measure_row(DemandKind::mtf_y),
-      measure_row(DemandKind::ctf_x),
-      measure_row(DemandKind::ctf_y),
-      measure_row(DemandKind::ifov_x_at_least),
-      measure_row(DemandKind::ifov_x_at_most),
-      measure_row(DemandKind::ifov_y_at_least),
-      measure_row(DemandKind::ifov_y_at_most),
-      measure_row(DemandKind::distortion),
-      measure_row(DemandKind::drift_rate),
-      measure_row(DemandKind::drift_pattern_rate),
-      measure_row(DemandKind::response_time),
-      // Made by its own session (bench/scene_dependence/scene_dependence_session.h), not from the limits of a plan.
-      DemandKindRow{DemandKind::scene_dependence, "scene_dependence", "%", LimitSide::at_most,
-                    [](const JudgementInput&) { return std::vector<Demand>(); }, scene_dependence_in_words},
-      zone_row(DemandKind::zone_bad_pixels),
-      zone_row(DemandKind::zone_substituted_pixels),
-      zone_row(DemandKind::zone_clusters),
-      zone_row(DemandKind::zone_largest_cluster),
-  };
+std::vector<DemandKindRow> all_rows() {
+  std::vector<DemandKindRow> rows{
+      {DemandKind::acuity, "1/mrad", LimitSide::at_least, judge_acuity, acuity_in_words},
+      {DemandKind::identified, "1/mrad", LimitSide::none, judge_identified, identified_in_words},
+      {DemandKind::equivalence, "%", LimitSide::at_most, judge_equivalence, equivalence_in_words}};
+  for (const DemandKindRow& row : measure_rows()) rows.push_back(row);
+  // Made by its own session (bench/scene_dependence/scene_dependence_session.h), not from the limits of a plan.
+  rows.push_back({DemandKind::scene_dependence, "%", LimitSide::at_most,
+                  [](const DemandKindRow&, const JudgementInput&) { return std::vector<Demand>(); },
+                  scene_dependence_in_words});
+  for (const DemandKindRow& row : zone_rows()) rows.push_back(row);
+  return rows;
+}
+
+const std::vector<DemandKindRow>& table() {
+  static const std::vector<DemandKindRow> rows = all_rows();
   return rows;
 }
 
@@ -400,10 +377,6 @@ const DemandKindRow& row_of(DemandKind kind) {
   return *row;
 }
 
-std::string_view to_string(DemandKind kind) {
-  return row_of(kind).name;
-}
-
 const MeasuredQuantity* quantity_of(const JudgementInput& evidence, std::string_view measure) {
   if (!evidence.measures) return nullptr;
   const auto found = std::find_if(evidence.measures->begin(), evidence.measures->end(),
@@ -412,7 +385,8 @@ const MeasuredQuantity* quantity_of(const JudgementInput& evidence, std::string_
 }
 
 std::string in_words(const Demand& demand) {
-  return row_of(demand.kind).in_words(demand);
+  const DemandKindRow& row = row_of(demand.kind);
+  return row.in_words(row, demand);
 }
 
 std::string title(const Demand& demand) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table of demand kinds: one row for each DemandKind with its name, its rule of judgement and its words.
+// Table of demand kinds: one row for each DemandKind with its unit, its rule of judgement and its words.
 #pragma once
 
 #include <span>
@@ -8,29 +8,23 @@
 #include <vector>
 
 #include "bench/judgement/verdict.h"
+#include "bench/plan/quantity.h"
 
 namespace todbench {
 
-/// Side of the limit on which a result conforms.
-enum class LimitSide {
-  at_least,
-  at_most,
-  none,  ///< the demand has no number
-};
-
 struct DemandKindRow {
   DemandKind kind;
-  std::string_view name;  ///< as in verdict.json
   std::string_view unit;  ///< of limit, result and interval
   LimitSide side;
-  std::vector<Demand> (*judge)(const JudgementInput& evidence);  ///< all demands of this kind; empty if there are none
-  std::string (*in_words)(const Demand& demand);
+  /// Returns all demands of this kind; empty if there are none.
+  std::vector<Demand> (*judge)(const DemandKindRow& row, const JudgementInput& evidence);
+  std::string (*in_words)(const DemandKindRow& row, const Demand& demand);
+  const Quantity* quantity = nullptr;  ///< of a limit on a physical measure
 };
 
 /// Returns all kinds in the order of judgement and presentation.
 [[nodiscard]] std::span<const DemandKindRow> demand_kinds();
 [[nodiscard]] const DemandKindRow& row_of(DemandKind kind);
-[[nodiscard]] std::string_view to_string(DemandKind kind);
 
 /// Returns the measured quantity with this name (measures.json); null if not measured. Lives as long as the evidence.
 [[nodiscard]] const MeasuredQuantity* quantity_of(const JudgementInput& evidence, std::string_view measure);

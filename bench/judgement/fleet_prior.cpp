@@ -9,7 +9,6 @@
 
 #include "acquisition/base/distributions.h"
 #include "bench/judgement/demand_kinds.h"
-#include "bench/judgement/measure_demands.h"
 
 namespace todbench {
 namespace {
@@ -169,7 +168,8 @@ const FleetRow* fleet_of(const LimitsPlan& limits, const Demand& demand) {
       if (row.measure == fleet_acuity && row.delta_t_k && demand.delta_t_k &&
           same_contrast(*row.delta_t_k, *demand.delta_t_k))
         return &row;
-    } else if (const auto measure = limited_measure_of(demand.kind); measure && row.measure == to_string(*measure)) {
+    } else if (const Quantity* quantity = row_of(demand.kind).quantity;
+               quantity != nullptr && row.measure == quantity->name) {
       return &row;
     }
   }

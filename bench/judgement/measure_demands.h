@@ -2,15 +2,13 @@
 // Demands on physical measures: rows of the table of demand kinds.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "bench/judgement/demand_kinds.h"
 
 namespace todbench {
 
-/// Returns the row. Precondition: `kind` is a physical measure.
-[[nodiscard]] DemandKindRow measure_row(DemandKind kind);
-/// Returns the measure of a demand kind; empty if it is not about a physical measure.
-[[nodiscard]] std::optional<LimitedMeasure> limited_measure_of(DemandKind kind);
+/// Returns a row for each limit that a quantity can have, in the order of the table of quantities.
+[[nodiscard]] std::vector<DemandKindRow> measure_rows();
 
 }  // namespace todbench

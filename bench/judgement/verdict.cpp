@@ -128,7 +128,7 @@ Verdict judge(const JudgementInput& evidence) {
                   .ended_early = evidence.ended_early,
                   .judged = evidence.judged};
   for (const DemandKindRow& row : demand_kinds()) {
-    for (Demand& demand : row.judge(evidence)) verdict.demands.push_back(std::move(demand));
+    for (Demand& demand : row.judge(row, evidence)) verdict.demands.push_back(std::move(demand));
   }
   add_fleet_risks(verdict.demands, limits);
   if (evidence.uncertainty != nullptr) verdict.not_stated = evidence.uncertainty->not_stated;

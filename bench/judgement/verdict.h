@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +32,23 @@ enum class JudgedWhen {
 [[nodiscard]] std::string_view to_string(JudgedWhen when);
 /// Returns a sentence for a verdict that was made afterwards; otherwise empty.
 [[nodiscard]] std::string_view remark_on(JudgedWhen when);
+
+/// Kind of a demand, by its name in verdict.json. bench/judgement/demand_kinds.cpp has a row for each: name, unit, rule
+/// of judgement, presentation. The kinds of physical measures are the limits of the table of quantities.
+struct DemandKind {
+  std::string_view name;
+  static const DemandKind acuity;  ///< 75 % acuity at a contrast, [[limits.acuity]]
+  /// A threshold with both ends of its interval, at every contrast without a limit on acuity.
+  static const DemandKind identified;
+  static const DemandKind equivalence;       ///< to the simulated twin, [limits] equivalence_margin_percent
+  static const DemandKind scene_dependence;  ///< of the response to a hot bar, `todbench scene-dependence`
+  auto operator<=>(const DemandKind&) const = default;
+};
+inline constexpr DemandKind DemandKind::acuity{"acuity"}, DemandKind::identified{"identified"},
+    DemandKind::equivalence{"equivalence"}, DemandKind::scene_dependence{"scene_dependence"};
+[[nodiscard]] constexpr std::string_view to_string(DemandKind kind) {
+  return kind.name;
+}
 
 /// Ratio of camera and twin that an equivalence demand uses.
 enum class RatioKind {

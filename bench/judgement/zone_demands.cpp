@@ -14,21 +14,19 @@ namespace {
 struct ZoneDemand {
   DemandKind kind;
   std::optional<double> ZoneLimit::*limit;
-  std::string_view name, measure, words;
+  std::string_view measure, words;
 };
 constexpr std::array zone_demands{
-    ZoneDemand{DemandKind::zone_bad_pixels, &ZoneLimit::bad_pixels, "zone_bad_pixels", "bad_pixels", "bad pixels"},
-    ZoneDemand{DemandKind::zone_substituted_pixels, &ZoneLimit::substituted_pixels, "zone_substituted_pixels",
-               "substituted_pixels", "substituted pixels"},
-    ZoneDemand{DemandKind::zone_clusters, &ZoneLimit::clusters, "zone_clusters", "defect_clusters",
-               "clusters of defective pixels"},
-    ZoneDemand{DemandKind::zone_largest_cluster, &ZoneLimit::largest_cluster, "zone_largest_cluster", "largest_cluster",
-               "pixels in the largest cluster"},
+    ZoneDemand{{"zone_bad_pixels"}, &ZoneLimit::bad_pixels, "bad_pixels", "bad pixels"},
+    ZoneDemand{{"zone_substituted_pixels"}, &ZoneLimit::substituted_pixels, "substituted_pixels", "substituted pixels"},
+    ZoneDemand{{"zone_clusters"}, &ZoneLimit::clusters, "defect_clusters", "clusters of defective pixels"},
+    ZoneDemand{
+        {"zone_largest_cluster"}, &ZoneLimit::largest_cluster, "largest_cluster", "pixels in the largest cluster"},
 };
 
-const ZoneDemand& zone_demand_of(DemandKind kind) {
+const ZoneDemand& zone_demand_of(const DemandKindRow& row) {
   const auto* const found = std::find_if(zone_demands.begin(), zone_demands.end(),
-                                         [&](const ZoneDemand& demand) { return demand.kind == kind; });
+                                         [&](const ZoneDemand& demand) { return demand.kind == row.kind; });
   assert(found != zone_demands.end());
   return *found;
 }
@@ -56,41 +54,27 @@ Demand judged_zone(const ZoneDemand& asked, const ZoneLimit& zone, double limit,
   return demand;
 }
 
-template <DemandKind kind>
-std::vector<Demand> judge_zones(const JudgementInput& evidence) {
-  const ZoneDemand& asked = zone_demand_of(kind);
+std::vector<Demand> judge_zones(const DemandKindRow& row, const JudgementInput& evidence) {
+  const ZoneDemand& asked = zone_demand_of(row);
   std::vector<Demand> demands;
   for (const ZoneLimit& zone : evidence.limits.zones)
     if (const auto& limit = zone.*asked.limit) demands.push_back(judged_zone(asked, zone, *limit, evidence));
   return demands;
 }
 
-std::string zone_in_words(const Demand& demand) {
+std::string zone_in_words(const DemandKindRow& row, const Demand& demand) {
   const std::string limit = demand.limit ? number_text(*demand.limit) : "(no number)";
-  return "at most " + limit + " " + std::string(zone_demand_of(demand.kind).words) + " in zone '" +
-         demand.zone.value_or("") + "'";
-}
-
-template <DemandKind kind>
-DemandKindRow row_of_zone() {
-  return {kind, zone_demand_of(kind).name, "1", LimitSide::at_most, judge_zones<kind>, zone_in_words};
+  return "at most " + limit + " " + std::string(zone_demand_of(row).words) + " in zone '" + demand.zone.value_or("") +
+         "'";
 }
 
 }  // namespace
 
-DemandKindRow zone_row(DemandKind kind) {
-  switch (kind) {
-    case DemandKind::zone_bad_pixels:
-      return row_of_zone<DemandKind::zone_bad_pixels>();
-    case DemandKind::zone_substituted_pixels:
-      return row_of_zone<DemandKind::zone_substituted_pixels>();
-    case DemandKind::zone_clusters:
-      return row_of_zone<DemandKind::zone_clusters>();
-    default:
-      break;
-  }
-  assert(kind == DemandKind::zone_largest_cluster);
-  return row_of_zone<DemandKind::zone_largest_cluster>();
+std::vector<DemandKindRow> zone_rows() {
+  std::vector<DemandKindRow> rows;
+  for (const ZoneDemand& demand : zone_demands)
+    rows.push_back({demand.kind, "1", LimitSide::at_most, judge_zones, zone_in_words});
+  return rows;
 }
 
 }  // namespace todbench

@@ -2,11 +2,13 @@
 // Demands on the pixels of a zone: rows of the table of demand kinds.
 #pragma once
 
+#include <vector>
+
 #include "bench/judgement/demand_kinds.h"
 
 namespace todbench {
 
-/// Returns the row. Precondition: `kind` belongs to [[limits.zone]].
-[[nodiscard]] DemandKindRow zone_row(DemandKind kind);
+/// Returns a row for each number that [[limits.zone]] can limit.
+[[nodiscard]] std::vector<DemandKindRow> zone_rows();
 
 }  // namespace todbench

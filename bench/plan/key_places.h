@@ -36,9 +36,6 @@ constexpr const auto& values_of(const Mounting&) {
 constexpr const auto& values_of(const ConformityRule&) {
   return conformity_rules;
 }
-constexpr const auto& values_of(const LimitedMeasure&) {
-  return limited_measures;
-}
 constexpr const auto& values_of(const PixelArea&) {
   return all_pixel_areas;
 }

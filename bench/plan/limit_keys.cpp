@@ -4,6 +4,7 @@
 
 #include "bench/plan/key_places.h"
 #include "bench/plan/plan_checks.h"
+#include "bench/plan/quantity.h"
 
 namespace todbench {
 
@@ -97,7 +98,7 @@ PlanSection measure_limits_section() {
           .sentence =
               "Limits on a physical measure of [measures], in its unit (K; K/K for transfer_slope, 1 for MTF and CTF).",
           .keys = {{.name = "measure",
-                    .type = ChoiceKey{names_of(limited_measures)},
+                    .type = ChoiceKey{limited_quantity_names()},
                     .sentence = "Name of the measure, as in measures.json",
                     .place = in_row(rows, &MeasureLimit::measure),
                     .required = Required::always,

@@ -73,67 +73,9 @@ std::string_view to_string(ConformityRule rule) {
   return "";
 }
 
-std::string_view to_string(LimitedMeasure measure) {
-  switch (measure) {
-    case LimitedMeasure::netd:
-      return "netd";
-    case LimitedMeasure::temporal_noise:
-      return "temporal_noise";
-    case LimitedMeasure::noise_t:
-      return "noise_t";
-    case LimitedMeasure::noise_v:
-      return "noise_v";
-    case LimitedMeasure::noise_h:
-      return "noise_h";
-    case LimitedMeasure::noise_tv:
-      return "noise_tv";
-    case LimitedMeasure::noise_th:
-      return "noise_th";
-    case LimitedMeasure::noise_vh:
-      return "noise_vh";
-    case LimitedMeasure::noise_tvh:
-      return "noise_tvh";
-    case LimitedMeasure::transfer_slope:
-      return "transfer_slope";
-    case LimitedMeasure::mtf_x:
-      return "mtf_x";
-    case LimitedMeasure::mtf_y:
-      return "mtf_y";
-    case LimitedMeasure::ctf_x:
-      return "ctf_x";
-    case LimitedMeasure::ctf_y:
-      return "ctf_y";
-    case LimitedMeasure::ifov_x:
-      return "ifov_x";
-    case LimitedMeasure::ifov_y:
-      return "ifov_y";
-    case LimitedMeasure::distortion:
-      return "distortion";
-    case LimitedMeasure::drift_rate:
-      return "drift_rate";
-    case LimitedMeasure::drift_pattern_rate:
-      return "drift_pattern_rate";
-    case LimitedMeasure::response_time:
-      return "response_time";
-  }
-  return "";
-}
-
-bool is_modulation(LimitedMeasure measure) {
-  return measure == LimitedMeasure::mtf_x || measure == LimitedMeasure::mtf_y || measure == LimitedMeasure::ctf_x ||
-         measure == LimitedMeasure::ctf_y;
-}
-
-bool is_ifov(LimitedMeasure measure) {
-  return measure == LimitedMeasure::ifov_x || measure == LimitedMeasure::ifov_y;
-}
-
-bool takes_at_least(LimitedMeasure measure) {
-  return measure == LimitedMeasure::transfer_slope || is_modulation(measure) || is_ifov(measure);
-}
-
-bool takes_at_most(LimitedMeasure measure) {
-  return !is_modulation(measure);
+bool MeasuresPlan::any() const {
+  return std::any_of(measure_keys.begin(), measure_keys.end(),
+                     [&](const MeasureKey& key) { return this->*key.requested; });
 }
 
 double relative_u_of_scale(const Plan& plan) {

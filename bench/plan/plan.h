@@ -18,6 +18,7 @@
 #include "bench/plan/resources.h"
 #include "sim_devices/module/module_plan.h"
 #include "sim_devices/sensor/sensor_plan.h"
+#include "tod/camera_measures/camera_measures.h"
 #include "tod/measurement/measurement.h"
 #include "tod/measurement/place_source.h"
 #include "tod/plate/target_plate.h"
@@ -142,44 +143,6 @@ struct FitPlan {
   bool operator==(const FitPlan&) const = default;
 };
 
-/// Kinds of demands. bench/judgement/demand_kinds.cpp has a row for each: name, rule of judgement, presentation.
-enum class DemandKind {
-  acuity,  ///< 75 % acuity at a contrast, [[limits.acuity]]
-  /// A threshold with both ends of its interval, at every contrast without a limit on acuity.
-  identified,
-  equivalence,  ///< to the simulated twin, [limits] equivalence_margin_percent
-  // Physical measures, [[limits.measure]].
-  netd,
-  temporal_noise,
-  noise_t,
-  noise_v,
-  noise_h,
-  noise_tv,
-  noise_th,
-  noise_vh,
-  noise_tvh,
-  temperature_scale_at_least,  ///< slope of the signal transfer
-  temperature_scale_at_most,
-  mtf_x,
-  mtf_y,
-  ctf_x,
-  ctf_y,
-  ifov_x_at_least,
-  ifov_x_at_most,
-  ifov_y_at_least,
-  ifov_y_at_most,
-  distortion,
-  drift_rate,
-  drift_pattern_rate,
-  response_time,
-  scene_dependence,  ///< of the response to a hot bar in the field, `todbench scene-dependence`
-  // Pixels of a zone, [[limits.zone]].
-  zone_bad_pixels,
-  zone_substituted_pixels,
-  zone_clusters,
-  zone_largest_cluster,
-};
-
 /// Row of [[limits.acuity]]: required 75 % acuity at a contrast.
 struct AcuityLimit {
   double delta_t_k = 0;
@@ -187,61 +150,9 @@ struct AcuityLimit {
   bool operator==(const AcuityLimit&) const = default;
 };
 
-/// Physical measures that can have a limit, named as in measures.json.
-enum class LimitedMeasure {
-  netd,
-  temporal_noise,
-  noise_t,
-  noise_v,
-  noise_h,
-  noise_tv,
-  noise_th,
-  noise_vh,
-  noise_tvh,
-  transfer_slope,  ///< the temperature scale
-  mtf_x,           ///< at the frequency of [measures]
-  mtf_y,
-  ctf_x,  ///< best phase, of the group nearest to the frequency of [measures]
-  ctf_y,
-  ifov_x,
-  ifov_y,
-  distortion,          ///< at the corner, absolute value
-  drift_rate,          ///< of the mean, absolute value
-  drift_pattern_rate,  ///< of the spatial noise
-  response_time,
-};
-inline constexpr std::array limited_measures{LimitedMeasure::netd,
-                                             LimitedMeasure::temporal_noise,
-                                             LimitedMeasure::noise_t,
-                                             LimitedMeasure::noise_v,
-                                             LimitedMeasure::noise_h,
-                                             LimitedMeasure::noise_tv,
-                                             LimitedMeasure::noise_th,
-                                             LimitedMeasure::noise_vh,
-                                             LimitedMeasure::noise_tvh,
-                                             LimitedMeasure::transfer_slope,
-                                             LimitedMeasure::mtf_x,
-                                             LimitedMeasure::mtf_y,
-                                             LimitedMeasure::ctf_x,
-                                             LimitedMeasure::ctf_y,
-                                             LimitedMeasure::ifov_x,
-                                             LimitedMeasure::ifov_y,
-                                             LimitedMeasure::distortion,
-                                             LimitedMeasure::drift_rate,
-                                             LimitedMeasure::drift_pattern_rate,
-                                             LimitedMeasure::response_time};
-[[nodiscard]] std::string_view to_string(LimitedMeasure measure);
-/// Returns whether the measure is an MTF or a CTF.
-[[nodiscard]] bool is_modulation(LimitedMeasure measure);
-/// Returns whether the measure is an angle per pixel.
-[[nodiscard]] bool is_ifov(LimitedMeasure measure);
-/// Return whether the measure can have this kind of limit.
-[[nodiscard]] bool takes_at_least(LimitedMeasure measure);
-[[nodiscard]] bool takes_at_most(LimitedMeasure measure);
-
 /// Row of [[limits.measure]]: limits in the unit of the measure.
 struct MeasureLimit {
-  LimitedMeasure measure = LimitedMeasure::netd;
+  std::string measure = "netd";      ///< a quantity that can have a limit (quantity.h)
   std::optional<double> at_least{};  ///< temperature scale, MTF, CTF and IFOV only
   std::optional<double> at_most{};
   bool operator==(const MeasureLimit&) const = default;
@@ -259,7 +170,7 @@ struct ZoneLimit {
   bool operator==(const ZoneLimit&) const = default;
 };
 
-/// Name of the acuity in [[limits.fleet]]; other rows use the names of LimitedMeasure.
+/// Name of the acuity in [[limits.fleet]]; other rows use the names of quantities (quantity.h).
 inline constexpr std::string_view fleet_acuity = "acuity";
 /// Least number of units for a fleet: their standard deviation then has a relative standard error of a quarter.
 inline constexpr int least_fleet_units = 10;
@@ -320,42 +231,59 @@ inline constexpr std::array all_pixel_areas{PixelArea::plate, PixelArea::frame};
 
 /// Section [measures]: physical measures of the camera, after the trials with the same target, and of the twin.
 struct MeasuresPlan {
-  bool noise = false;     ///< temporal noise, NETD and 3-D noise of the first plate at contrast 0
-  int noise_frames = 64;  ///< frames of the noise cube
-  bool pixels = false;    ///< bad and substituted pixels, from the noise cube
+  bool noise = false;  ///< temporal noise, NETD and 3-D noise of the first plate at contrast 0
+  int noise_frames = CameraMeasuresOptions{}.noise_frames;  ///< frames of the noise cube
+  bool pixels = false;                                      ///< bad and substituted pixels, from the noise cube
   PixelArea pixels_area = PixelArea::plate;
-  double pixels_response = 0.25;  ///< dead: response deviates from the median by more than this share
-  double pixels_offset = 5;       ///< dead or hot: level deviates by more than this many 1.4826 median deviations
-  double pixels_noisy = 3;        ///< noisy: temporal noise above this many medians
-  double pixels_blinking = 3;     ///< blinking: change of level above this many medians
-  bool transfer = false;          ///< signal transfer: observed contrast over target read-back
+  double pixels_response =
+      BadPixelRules{}.dead_responsivity;  ///< dead: response deviates from the median by more than this share
+  double pixels_offset =
+      BadPixelRules{}.offset;  ///< dead or hot: level deviates by more than this many 1.4826 median deviations
+  double pixels_noisy = BadPixelRules{}.noisy;           ///< noisy: temporal noise above this many medians
+  double pixels_blinking = PixelDefectRules{}.blinking;  ///< blinking: change of level above this many medians
+  bool transfer = false;                                 ///< signal transfer: observed contrast over target read-back
   std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
-  bool drift = false;                            ///< growth of mean and spatial noise after a correction
-  double drift_s = 20;                           ///< duration of the observation
-  bool response = false;                         ///< time constant, from contrast steps of the first plate
-  double response_delta_t_k = 10;                ///< the contrast steps between this and 0
-  int response_steps = 16;                       ///< up and down in turn
-  int response_frames = 24;                      ///< recorded after each step
-  std::optional<double> response_settling_ms{};  ///< of the target, to 0.1 %; empty only if it is simulated
-  bool geometry = false;                         ///< IFOV and distortion, from the positions of the triangles
-  bool triangles = false;                        ///< mean pictures of the smallest triangles at every contrast
-  bool mtf = false;                              ///< along both axes, from the edges of mtf_plate
-  std::string mtf_plate = "edge";                ///< name or file
-  double mtf_delta_t_k = 10;                     ///< contrast of the plate
-  int mtf_frames = 64;                           ///< frames averaged
-  double mtf_frequency_per_pitch = 0.25;         ///< frequency at which the MTF is reported and limited
-  bool ctf = false;                              ///< along both axes, from the bars of ctf_plate
-  std::string ctf_plate = "bars";                ///< name or file
-  double ctf_delta_t_k = 10;                     ///< contrast of the plate
-  int ctf_frames = 64;                           ///< frames averaged
-  double ctf_frequency_per_pitch = 0.4;          ///< the nearest bar group is reported and limited
+  bool drift = false;                                       ///< growth of mean and spatial noise after a correction
+  double drift_s = DriftOptions{}.drift_s;                  ///< duration of the observation
+  bool response = false;                                    ///< time constant, from contrast steps of the first plate
+  double response_delta_t_k = ResponseOptions{}.delta_t_k;  ///< the contrast steps between this and 0
+  int response_steps = ResponseOptions{}.steps;             ///< up and down in turn
+  int response_frames = ResponseOptions{}.frames;           ///< recorded after each step
+  std::optional<double> response_settling_ms{};             ///< of the target, to 0.1 %; empty only if it is simulated
+  bool geometry = false;           ///< IFOV and distortion, from the positions of the triangles
+  bool triangles = false;          ///< mean pictures of the smallest triangles at every contrast
+  bool mtf = false;                ///< along both axes, from the edges of mtf_plate
+  std::string mtf_plate = "edge";  ///< name or file
+  double mtf_delta_t_k = CameraMeasuresOptions{}.mtf_delta_t_k;  ///< contrast of the plate
+  int mtf_frames = CameraMeasuresOptions{}.mtf_frames;           ///< frames averaged
+  /// Frequency at which the MTF is reported and limited.
+  double mtf_frequency_per_pitch = CameraMeasuresOptions{}.mtf_frequency_per_pitch;
+  bool ctf = false;                                              ///< along both axes, from the bars of ctf_plate
+  std::string ctf_plate = "bars";                                ///< name or file
+  double ctf_delta_t_k = CameraMeasuresOptions{}.ctf_delta_t_k;  ///< contrast of the plate
+  int ctf_frames = CameraMeasuresOptions{}.ctf_frames;           ///< frames averaged
+  /// The nearest bar group is reported and limited.
+  double ctf_frequency_per_pitch = CameraMeasuresOptions{}.ctf_frequency_per_pitch;
   bool operator==(const MeasuresPlan&) const = default;
 
   /// Returns whether any measure is on.
-  [[nodiscard]] bool any() const {
-    return noise || transfer || drift || response || geometry || triangles || mtf || ctf;
-  }
+  [[nodiscard]] bool any() const;
 };
+
+/// Key of [measures] that requests a measure.
+struct MeasureKey {
+  std::string_view name;
+  bool MeasuresPlan::*requested;
+};
+inline constexpr std::array measure_keys{MeasureKey{"noise", &MeasuresPlan::noise},
+                                         MeasureKey{"pixels", &MeasuresPlan::pixels},
+                                         MeasureKey{"transfer", &MeasuresPlan::transfer},
+                                         MeasureKey{"drift", &MeasuresPlan::drift},
+                                         MeasureKey{"response", &MeasuresPlan::response},
+                                         MeasureKey{"geometry", &MeasuresPlan::geometry},
+                                         MeasureKey{"triangles", &MeasuresPlan::triangles},
+                                         MeasureKey{"mtf", &MeasuresPlan::mtf},
+                                         MeasureKey{"ctf", &MeasuresPlan::ctf}};
 
 /// Section [motion]: passes of a plate on a moving stage, for `todbench dynamic PLAN`.
 struct MotionPlan {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "acquisition/core/control_text.h"
+#include "bench/plan/quantity.h"
 #include "bench/text/text.h"
 #include "tod/instruments/instrument_line.h"
 #include "tod/psychometric/tod_curve.h"
@@ -240,39 +241,19 @@ ValueMistakes check_margin(const Plan& plan, std::size_t /*row*/) {
 }
 
 ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
-  const LimitedMeasure measure = plan.limits.measures[row].measure;
-  const bool mtf = measure == LimitedMeasure::mtf_x || measure == LimitedMeasure::mtf_y;
-  const bool ctf = measure == LimitedMeasure::ctf_x || measure == LimitedMeasure::ctf_y;
-  const bool geometry = is_ifov(measure) || measure == LimitedMeasure::distortion;
-  const bool drift = measure == LimitedMeasure::drift_rate || measure == LimitedMeasure::drift_pattern_rate;
-  const bool response = measure == LimitedMeasure::response_time;
-  const bool noise = !mtf && !ctf && !geometry && !drift && !response && measure != LimitedMeasure::transfer_slope;
-  const bool transfer = measure == LimitedMeasure::transfer_slope || measure == LimitedMeasure::netd;
+  const std::string& name = plan.limits.measures[row].measure;
+  const Quantity* quantity = find_limited_quantity(name);
+  if (quantity == nullptr) return {};
   ValueMistakes mistakes;
-  if (noise && !plan.measures.noise)
-    mistakes.push_back(
-        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs noise = true in [measures]"});
-  if (transfer && !plan.measures.transfer)
-    mistakes.push_back(
-        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs transfer = true in [measures]"});
-  if (mtf && !plan.measures.mtf)
-    mistakes.push_back(
-        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs mtf = true in [measures]"});
-  if (ctf && !plan.measures.ctf)
-    mistakes.push_back(
-        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs ctf = true in [measures]"});
-  if (geometry && !plan.measures.geometry)
-    mistakes.push_back(
-        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs geometry = true in [measures]"});
-  if (drift && !plan.measures.drift)
-    mistakes.push_back(
-        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs drift = true in [measures]"});
-  if (response && !plan.measures.response)
-    mistakes.push_back(
-        {std::nullopt, "a limit on " + std::string(to_string(measure)) + " needs response = true in [measures]"});
+  for (const std::string_view needed : {quantity->measure, quantity->second_measure}) {
+    for (const MeasureKey& key : measure_keys) {
+      if (key.name == needed && !(plan.measures.*key.requested))
+        mistakes.push_back(
+            {std::nullopt, "a limit on " + name + " needs " + std::string(needed) + " = true in [measures]"});
+    }
+  }
   for (std::size_t other = 0; other < row; ++other) {
-    if (plan.limits.measures[other].measure == measure)
-      mistakes.push_back({std::nullopt, "a second row for " + std::string(to_string(measure))});
+    if (plan.limits.measures[other].measure == name) mistakes.push_back({std::nullopt, "a second row for " + name});
   }
   return mistakes;
 }
@@ -280,9 +261,7 @@ ValueMistakes check_limited_measure(const Plan& plan, std::size_t row) {
 ValueMistakes check_fleet_measure(const Plan& plan, std::size_t row) {
   const FleetRow& fleet = plan.limits.fleets[row];
   const bool acuity = fleet.measure == fleet_acuity;
-  const bool known = acuity || std::any_of(limited_measures.begin(), limited_measures.end(),
-                                           [&](LimitedMeasure one) { return to_string(one) == fleet.measure; });
-  if (!known)
+  if (!acuity && find_limited_quantity(fleet.measure) == nullptr)
     return {
         {std::nullopt, "expected acuity or a measure that can have a limit, found '" + one_line(fleet.measure) + "'"}};
   if (acuity && !fleet.delta_t_k) return {{std::nullopt, "a fleet of acuities needs delta_t_k"}};
@@ -297,18 +276,19 @@ ValueMistakes check_fleet_measure(const Plan& plan, std::size_t row) {
 
 ValueMistakes check_measure_limits(const Plan& plan, std::size_t row) {
   const MeasureLimit& limits = plan.limits.measures[row];
-  const std::string name(to_string(limits.measure));
+  const std::string& name = limits.measure;
+  const Quantity* quantity = find_limited_quantity(name);
+  if (quantity == nullptr) return {};
   if (!limits.at_least && !limits.at_most) return {{std::nullopt, name + " has no limit: state at_least or at_most"}};
-  if (limits.at_least && !takes_at_least(limits.measure))
+  if (limits.at_least && !quantity->at_least.possible())
     return {{std::nullopt, name + " has no lower limit, only an upper one"}};
-  if (limits.at_most && !takes_at_most(limits.measure))
+  if (limits.at_most && !quantity->at_most.possible())
     return {{std::nullopt, name + " has no upper limit, only a lower one"}};
   if (!limits.at_least || !limits.at_most) return {};
   if (*limits.at_least >= *limits.at_most)
     return {{std::nullopt, "no unit can pass: the lower limit of " + name + " is not below the upper limit"}};
   if (plan.limits.rule == ConformityRule::simple) return {};
-  const double stated_u = is_ifov(limits.measure) ? relative_u_of_distance(plan) : relative_u_of_scale(plan);
-  const double expanded = 1.96 * stated_u * 0.5 * (*limits.at_least + *limits.at_most);
+  const double expanded = 1.96 * relative_u(plan, quantity->stated) * 0.5 * (*limits.at_least + *limits.at_most);
   if (2 * expanded < *limits.at_most - *limits.at_least) return {};
   return {{std::nullopt, "no unit can pass: the budget alone gives " + name + " an expanded uncertainty of " +
                              number_text(std::round(1e6 * expanded) / 1e6) + ", but the tolerance is " +

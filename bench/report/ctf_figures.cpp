@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/report/ctf_figures.h"
-
 #include <algorithm>
 #include <string>
 #include <utility>
 
 #include "bench/report/drawing.h"
+#include "bench/report/measure_figures.h"
 #include "bench/report/plot.h"
 
 namespace todbench {
@@ -20,16 +19,16 @@ struct CtfPen {
   double dodge_px = 0;
 };
 
-PlotSeries ctf_series(const CtfGroups& side, EdgeAxis axis, Modulation BarsCtf::*phase, const CtfPen& pen) {
+PlotSeries ctf_series(const CtfMeasure& side, EdgeAxis axis, Estimate BarsCtf::*phase, const CtfPen& pen) {
   PlotSeries series{.label = pen.label,
                     .tone = pen.tone,
                     .marker = pen.marker,
                     .line = pen.line,
                     .points = {},
                     .dodge_px = pen.dodge_px};
-  for (const BarsCtf& group : side.groups) {
+  for (const BarsCtf& group : side.bars.groups) {
     if (group.axis != axis) continue;
-    const Modulation& found = group.*phase;
+    const Estimate& found = group.*phase;
     series.points.push_back({.x = group.frequency_per_pitch / side.pitch_mrad,
                              .y = std::max(0.0, found.value),
                              .x_interval = {},
@@ -39,11 +38,11 @@ PlotSeries ctf_series(const CtfGroups& side, EdgeAxis axis, Modulation BarsCtf::
 }
 
 /// Adds the closed form as lines without markers behind the other curves, if there is one.
-void add_model(Plot& plot, const CtfGroups& side, EdgeAxis axis) {
+void add_model(Plot& plot, const CtfMeasure& side, EdgeAxis axis) {
   for (const auto& [phase, label] : {std::pair(&BarsModel::best, "closed form"), std::pair(&BarsModel::worst, "")}) {
     PlotSeries series{
         .label = label, .tone = PlotTone::muted, .marker = PlotMarker::none, .line = PlotLine::dotted, .points = {}};
-    for (const BarsCtf& group : side.groups) {
+    for (const BarsCtf& group : side.bars.groups) {
       if (group.axis != axis || !group.model) continue;
       series.points.push_back({.x = group.frequency_per_pitch / side.pitch_mrad,
                                .y = std::max(0.0, *group.model.*phase),
@@ -54,7 +53,7 @@ void add_model(Plot& plot, const CtfGroups& side, EdgeAxis axis) {
   }
 }
 
-void add_side(Plot& plot, const CtfGroups& side, EdgeAxis axis, const std::string& who, bool first) {
+void add_side(Plot& plot, const CtfMeasure& side, EdgeAxis axis, const std::string& who, bool first) {
   const PlotTone tone = first ? PlotTone::first : PlotTone::second;
   const double dodge = first ? 0 : 3;
   const PlotLine best = first ? PlotLine::solid : PlotLine::dashed;
@@ -74,9 +73,9 @@ Figure ctf_figure(EdgeAxis axis, const SessionMeasures& measures, bool camera) {
   plot.width = 430, plot.height = 390;
   plot.x = {.label = "Frequency (1/mrad)", .low = 0, .high = 0, .ticks = {}};
   plot.y = {.label = "CTF along " + name, .low = 0, .high = 1.1, .ticks = {}};
-  const auto reach = [&](const CtfGroups& side) {
+  const auto reach = [&](const CtfMeasure& side) {
     plot.bands = {{"beyond half a cycle per pixel", PlotTone::muted, {0.5 / side.pitch_mrad, std::nullopt}}};
-    for (const BarsCtf& group : side.groups) {
+    for (const BarsCtf& group : side.bars.groups) {
       plot.x.high = std::max(plot.x.high, 1.15 * group.frequency_per_pitch / side.pitch_mrad);
       plot.y.high = std::max(plot.y.high, 1.05 * group.best.high);
     }
@@ -104,7 +103,7 @@ std::optional<FigurePairs> ctf_figures(const SessionMeasures& measures, bool cam
   if (!side || !side->ctf) return std::nullopt;
   FigurePairs figures;
   for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
-    const auto& groups = side->ctf->groups;
+    const auto& groups = side->ctf->bars.groups;
     if (std::any_of(groups.begin(), groups.end(), [&](const BarsCtf& group) { return group.axis == axis; }))
       figures.figures.push_back(ctf_figure(axis, measures, camera));
   }

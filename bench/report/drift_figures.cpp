@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/report/drift_figures.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "bench/report/measure_figures.h"
 #include "bench/report/plot.h"
 
 namespace todbench {
@@ -45,9 +44,9 @@ Figure drift_figure(const DriftLaw& law, const DriftFit& fit, double zero_k, con
 
 }  // namespace
 
-std::optional<FigurePairs> drift_figures(const SessionMeasures& measures) {
+std::optional<FigurePairs> drift_figures(const SessionMeasures& measures, bool /*camera*/) {
   if (!measures.main || !measures.main->drift) return std::nullopt;
-  const DriftLaw& law = *measures.main->drift;
+  const DriftLaw& law = measures.main->drift->law;
   FigurePairs figures;
   figures.figures.push_back(
       drift_figure(law, law.level, law.level.fitted_k.front(),

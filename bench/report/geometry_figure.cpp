@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/report/geometry_figure.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "bench/report/drawing.h"
+#include "bench/report/measure_figures.h"
 
 namespace todbench {
 namespace {
@@ -20,8 +19,8 @@ constexpr double longest_share = 0.07;
 double longest_of(const std::optional<MeasureLines>& side) {
   double longest = 1e-6;
   if (!side || !side->geometry) return longest;
-  for (const GeometryPlace& place : side->geometry->places)
-    longest = std::max(longest, cv::norm(place.residual_px) / side->geometry->width);
+  for (const GeometryPlace& place : side->geometry->geometry.places)
+    longest = std::max(longest, cv::norm(place.residual_px) / side->geometry->picture.width);
   return longest;
 }
 
@@ -33,17 +32,17 @@ double magnification(const SessionMeasures& measures) {
   return std::clamp(step * decade, 1.0, 1e4);
 }
 
-Figure residual_map(const GeometryMap& map, const std::string& who, const std::string& id, double times) {
+Figure residual_map(const GeometryMeasure& measure, const std::string& who, const std::string& id, double times) {
   constexpr double width = 430;
-  const double scale = width / map.width;
+  const double scale = width / measure.picture.width;
   Drawing drawing;
   drawing.id = "geometry-" + id;
   drawing.title = "Residuals of the triangles, " + who;
-  drawing.width = width, drawing.height = scale * map.height;
+  drawing.width = width, drawing.height = scale * measure.picture.height;
   drawing.frame = {0.5, 0.5, drawing.width - 1, drawing.height - 1};
   const auto place_of = [&](cv::Point2d px) { return Place{(px.x + 0.5) * scale, (px.y + 0.5) * scale}; };
   Polyline lines;
-  for (const GeometryPlace& place : map.places) {
+  for (const GeometryPlace& place : measure.geometry.places) {
     lines.runs.push_back({place_of(place.found_px), place_of(place.found_px + times * place.residual_px)});
     drawing.marks.push_back(
         {.shape = Disc{place_of(place.found_px), 2.5}, .pen = Pen::marker, .tone = PlotTone::first});

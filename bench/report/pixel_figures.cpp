@@ -1,27 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/report/pixel_figures.h"
-
 #include <algorithm>
-#include <array>
 #include <utility>
 
+#include "bench/report/measure_figures.h"
 #include "bench/report/number_format.h"
 
 namespace todbench {
 namespace {
-
-constexpr std::array<std::pair<std::string_view, std::string_view>, 10> pixel_measures{{
-    {"bad_pixels", "Bad pixels"},
-    {"substituted_pixels", "Substituted pixels"},
-    {"defect_clusters", "Clusters of defective pixels"},
-    {"largest_cluster", "Largest cluster, pixels"},
-    {"operability", "Operability"},
-    {"pixels_stuck", "Stuck pixels"},
-    {"pixels_offset", "Dead or hot pixels, by level"},
-    {"pixels_unresponsive", "Dead pixels, by response"},
-    {"pixels_noisy", "Noisy pixels"},
-    {"pixels_blinking", "Blinking pixels"},
-}};
 
 /// Returns the title of a map and the meaning of its greys or colours.
 std::pair<std::string, std::string> words_of(const PixelMap& map) {
@@ -74,17 +59,6 @@ std::optional<FigurePairs> pixel_figures(const SessionMeasures& measures, bool c
   }
   if (figures.figures.empty()) return std::nullopt;
   return figures;
-}
-
-std::string pixel_measure_name(std::string_view measure) {
-  const std::size_t zone = measure.find(" (");
-  const std::string_view base = measure.substr(0, zone);
-  for (const auto& [name, words] : pixel_measures) {
-    if (name != base) continue;
-    if (zone == std::string_view::npos) return std::string(words);
-    return std::string(words) + " in zone '" + std::string(measure.substr(zone + 2, measure.size() - zone - 3)) + "'";
-  }
-  return "";
 }
 
 }  // namespace todbench

@@ -99,7 +99,7 @@ void add_verdict(std::string& table, const ReportData& data) {
 }
 
 void add_bars(std::string& table, const std::string& section, const BarsCtf& group) {
-  const auto phase = [&](const std::string& name, const Modulation& found) {
+  const auto phase = [&](const std::string& name, const Estimate& found) {
     add(table, {.section = section,
                 .name = "ctf_" + name + "_" + std::string(to_string(group.axis)) + " at " +
                         number_text(group.frequency_per_pitch) + " cycles per pitch, " + group.group,
@@ -124,7 +124,7 @@ void add_measures(std::string& table, const std::string& section, const std::opt
                 .text = line.conditions});
   }
   if (side->ctf) {
-    for (const BarsCtf& group : side->ctf->groups) add_bars(table, section, group);
+    for (const BarsCtf& group : side->ctf->bars.groups) add_bars(table, section, group);
   }
   if (!side->mtf) return;
   for (const EdgeMtf& edge : side->mtf->edges) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/report/response_figure.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "bench/report/measure_figures.h"
 #include "bench/report/plot.h"
 
 namespace todbench {
@@ -15,7 +14,7 @@ constexpr double milliseconds = 1000;
 constexpr double shown_time_constants = 8;
 constexpr double longest_s = 1e6, most_left = 10;  // limits for records that may have been edited
 
-Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::string& who) {
+Figure figure_of(const StepResponse& curve, const std::string& id, const std::string& who) {
   Plot plot;
   plot.id = id, plot.title = "Response to steps, " + who;
   plot.description = "Remaining part of a step of the target over the time since the step, " + who +
@@ -28,7 +27,7 @@ Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::s
                   .points = {}};
   PlotSeries rise{.label = "rise", .tone = PlotTone::first, .marker = PlotMarker::disc, .points = {}};
   PlotSeries fall{.label = "fall", .tone = PlotTone::first, .marker = PlotMarker::square, .points = {}};
-  const double last_s = shown_time_constants * curve.time_constant_s;
+  const double last_s = shown_time_constants * curve.both.value_s;
   double low = 0, high = 0.1;
   for (const StepPoint& point : curve.points) {
     if (!(point.time_s >= 0) || point.time_s > last_s || std::abs(point.left) > most_left) continue;
@@ -38,7 +37,7 @@ Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::s
   }
   constexpr int parts = 80;
   for (int i = 0; i <= parts; ++i) {
-    const double time_s = last_s * i / parts, left = std::exp(-time_s / curve.time_constant_s);
+    const double time_s = last_s * i / parts, left = std::exp(-time_s / curve.both.value_s);
     if (left <= 1.1 * high)
       line.points.push_back({.x = milliseconds * time_s, .y = left, .x_interval = {}, .y_interval = {}});
   }
@@ -50,20 +49,21 @@ Figure figure_of(const ResponseCurve& curve, const std::string& id, const std::s
 }
 
 bool drawable(const std::optional<MeasureLines>& side) {
-  return side && side->response && side->response->time_constant_s > 0 && side->response->time_constant_s < longest_s &&
-         !side->response->points.empty();
+  if (!side || !side->response) return false;
+  const StepResponse& response = side->response->response;
+  return response.both.value_s > 0 && response.both.value_s < longest_s && !response.points.empty();
 }
 
 }  // namespace
 
-std::optional<FigurePairs> response_figure(const SessionMeasures& measures, bool camera) {
+std::optional<FigurePairs> response_figures(const SessionMeasures& measures, bool camera) {
   FigurePairs figures;
   if (drawable(measures.main)) {
     figures.figures.push_back(
-        figure_of(*measures.main->response, "response-main", camera ? "camera" : "simulated sensor"));
+        figure_of(measures.main->response->response, "response-main", camera ? "camera" : "simulated sensor"));
   }
   if (drawable(measures.twin))
-    figures.figures.push_back(figure_of(*measures.twin->response, "response-twin", "simulated twin"));
+    figures.figures.push_back(figure_of(measures.twin->response->response, "response-twin", "simulated twin"));
   if (figures.figures.empty()) return std::nullopt;
   return figures;
 }

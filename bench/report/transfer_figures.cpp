@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/report/transfer_figures.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "acquisition/base/normal.h"
+#include "bench/report/measure_figures.h"
 #include "bench/report/plot.h"
 
 namespace todbench {
@@ -16,7 +15,7 @@ constexpr double millikelvin_of_transfer = 1000;
 
 /// Side drawn in front, or the twin behind it.
 struct TransferSide {
-  const TransferCurve* curve = nullptr;
+  const TransferMeasure* measure = nullptr;
   std::string label;
   bool first = true;
 
@@ -39,7 +38,7 @@ std::vector<TransferSide> transfer_sides(const SessionMeasures& measures, bool c
 Interval shown_range(const std::vector<TransferSide>& sides) {
   double low = 0, high = 0;
   for (const TransferSide& side : sides) {
-    for (const TransferStep& step : side.curve->steps)
+    for (const TransferStep& step : side.measure->steps)
       low = std::min(low, step.said_delta_t_k), high = std::max(high, step.said_delta_t_k);
   }
   const double room = 0.06 * std::max(high - low, 1e-6);
@@ -82,13 +81,13 @@ Figure transfer_figure(const std::vector<TransferSide>& sides) {
                     .line = side.first ? PlotLine::solid : PlotLine::dashed,
                     .points = {}};
     for (const double shown : {*range.low, *range.high}) {
-      const double seen = side.curve->offset_k + side.curve->slope * shown;
+      const double seen = side.measure->line.offset + side.measure->line.slope * shown;
       line.points.push_back({.x = shown, .y = seen, .x_interval = {}, .y_interval = {}});
       low = std::min(low, seen), high = std::max(high, seen);
     }
     PlotSeries steps{
         .label = side.label, .tone = side.tone(), .marker = side.marker(), .legend_line = line.line, .points = {}};
-    for (const TransferStep& step : side.curve->steps) {
+    for (const TransferStep& step : side.measure->steps) {
       steps.points.push_back({.x = step.said_delta_t_k, .y = step.seen_delta_t_k, .x_interval = {}, .y_interval = {}});
       low = std::min(low, step.seen_delta_t_k), high = std::max(high, step.seen_delta_t_k);
     }
@@ -111,8 +110,8 @@ Figure residual_figure(const std::vector<TransferSide>& sides) {
   double reach = 1e-3;
   for (const TransferSide& side : sides) {
     PlotSeries left{.label = side.label, .tone = side.tone(), .marker = side.marker(), .points = {}, .dodge_px = 0};
-    for (const TransferStep& step : side.curve->steps) {
-      const double fitted = side.curve->offset_k + side.curve->slope * step.said_delta_t_k;
+    for (const TransferStep& step : side.measure->steps) {
+      const double fitted = side.measure->line.offset + side.measure->line.slope * step.said_delta_t_k;
       const double residual = millikelvin_of_transfer * (step.seen_delta_t_k - fitted);
       const double half = millikelvin_of_transfer * normal_z95 * step.seen_u_k;
       left.points.push_back({.x = step.said_delta_t_k,

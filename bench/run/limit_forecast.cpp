@@ -9,6 +9,7 @@
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/normal.h"
 #include "bench/judgement/acuity_uncertainty.h"
+#include "bench/plan/quantity.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -129,9 +130,10 @@ Result<std::vector<MeasureForecast>> measure_forecasts(const LimitsPlan& limits)
   std::vector<MeasureForecast> forecasts;
   for (const MeasureLimit& limit : limits.measures) {
     // The fleet of a quantity without sign is not normally distributed.
-    if (limit.measure == LimitedMeasure::distortion || limit.measure == LimitedMeasure::drift_rate) continue;
+    const Quantity* quantity = find_limited_quantity(limit.measure);
+    if (quantity == nullptr || quantity->absolute) continue;
     const auto row = std::find_if(limits.fleets.begin(), limits.fleets.end(),
-                                  [&](const FleetRow& one) { return one.measure == to_string(limit.measure); });
+                                  [&](const FleetRow& one) { return one.measure == limit.measure; });
     if (row == limits.fleets.end() || !(row->u > 0)) continue;
     MeasureForecast forecast{.measure = limit.measure,
                              .at_least = limit.at_least,
@@ -155,7 +157,7 @@ Result<std::vector<MeasureForecast>> measure_forecasts(const LimitsPlan& limits)
 }
 
 std::string in_words(const MeasureForecast& forecast) {
-  std::string text(to_string(forecast.measure));
+  std::string text = forecast.measure;
   if (forecast.at_least) text += ", at least " + number_text(*forecast.at_least);
   if (forecast.at_most) text += ", at most " + number_text(*forecast.at_most);
   return text + fmt::format(", measured as before (u = {:.3g}): ", forecast.u) +

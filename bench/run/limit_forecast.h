@@ -38,7 +38,7 @@ struct LimitForecast {
 /// Forecast of one limit on a measure for which the plan has the row of a fleet: with the uncertainty of the row's
 /// values, and with half of it.
 struct MeasureForecast {
-  LimitedMeasure measure = LimitedMeasure::netd;
+  std::string measure;
   std::optional<double> at_least{}, at_most{};
   double u = 0;
   FleetForecast as_before, half_u;

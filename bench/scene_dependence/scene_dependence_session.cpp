@@ -42,14 +42,11 @@ const SizeDependence* worst_of(const SceneDependence& found) {
 MeasureLines lines_of(const SceneDependence& found, const SceneDependenceTask& task) {
   MeasureLines out;
   for (const SizeDependence& size : found.sizes) {
-    out.lines.push_back({.measure = fmt::format("scene_ratio ({:g} mm)", size.size_mm),
-                         .unit = "1",
-                         .value = size.ratio,
-                         .ci95 = size.ci95,
-                         .conditions = fmt::format(
-                             "{} triangles of {:.2f} px at {:g} K, {} cycles of 4 x {} frames; simultaneous "
-                             "intervals for all sizes",
-                             size.triangles, size.size_px, found.set_delta_t_k, found.cycles, task.options.frames)});
+    out.lines.push_back(measure_line(
+        fmt::format("scene_ratio ({:g} mm)", size.size_mm), size.ratio, size.ci95,
+        fmt::format("{} triangles of {:.2f} px at {:g} K, {} cycles of 4 x {} frames; simultaneous "
+                    "intervals for all sizes",
+                    size.triangles, size.size_px, found.set_delta_t_k, found.cycles, task.options.frames)));
   }
   double black = 0, white = 1;
   cv::minMaxLoc(found.out, &black, &white);

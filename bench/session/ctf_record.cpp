@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/session/ctf_record.h"
+// CTF in measures.json.
 
 #include <fmt/format.h>
 
@@ -8,20 +8,16 @@
 #include <string>
 #include <utility>
 
+#include "bench/session/measure_row.h"
+
 namespace todbench {
 namespace {
 
-Json modulation_json(const Modulation& found) {
-  return {{"value", json_number(found.value)}, {"ci95", {json_number(found.low), json_number(found.high)}}};
-}
-
-Modulation modulation_from(const JsonReader& found) {
+Estimate modulation_from(const JsonReader& found) {
   const Interval interval = found.at("ci95").interval();
   const double value = found.at("value").number();
   return {value, interval.low.value_or(value), interval.high.value_or(value)};
 }
-
-}  // namespace
 
 void add_ctf_lines(MeasureLines& out, const CtfMeasure& ctf) {
   for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
@@ -33,17 +29,17 @@ void add_ctf_lines(MeasureLines& out, const CtfMeasure& ctf) {
         "{} frames of plate {} at {:g} K, {} pixels, {} bars separated at the best phase",
         group->frequency_per_pitch, group->frequency_per_pitch / ctf.pitch_mrad, group->group, group->angle_deg,
         ctf.frames, ctf.plate, ctf.said_delta_t_k, group->pixels, group->bars_separated_at_best);
-    const auto add = [&](const std::string& phase, const Modulation& found) {
-      out.lines.push_back({"ctf_" + phase + name, "1", found.value, {found.low, found.high}, frames});
+    const auto add = [&](const std::string& phase, const Estimate& found) {
+      out.lines.push_back(measure_line("ctf_" + phase + name, found.value, found.interval(), frames));
     };
     add("", group->best), add("mean_", group->mean), add("worst_", group->worst);
     if (!group->model) continue;
     const std::string closed = fmt::format("closed form of the sensor model for four bars at {:.4g} cycles per pitch",
                                            group->frequency_per_pitch);
-    out.lines.push_back({"ctf_" + name + "_model", "1", group->model->best, {}, closed});
-    out.lines.push_back({"ctf_worst_" + name + "_model", "1", group->model->worst, {}, closed});
+    out.lines.push_back(measure_line("ctf_" + name + "_model", group->model->best, {}, closed));
+    out.lines.push_back(measure_line("ctf_worst_" + name + "_model", group->model->worst, {}, closed));
   }
-  out.ctf = CtfGroups{ctf.pitch_mrad, ctf.bars.groups};
+  out.ctf = ctf;
 }
 
 Json ctf_json(const CtfMeasure& ctf) {
@@ -63,9 +59,9 @@ Json ctf_json(const CtfMeasure& ctf) {
                       {"middle_px", {json_number(group.middle_px.x), json_number(group.middle_px.y)}},
                       {"pixels", group.pixels},
                       {"noise_over_contrast", json_number(group.noise_over_contrast)},
-                      {"best", modulation_json(group.best)},
-                      {"mean", modulation_json(group.mean)},
-                      {"worst", modulation_json(group.worst)},
+                      {"best", estimate_json(group.best)},
+                      {"mean", estimate_json(group.mean)},
+                      {"worst", estimate_json(group.worst)},
                       {"bars_separated_at_best", group.bars_separated_at_best},
                       {"share_of_four", json_number(group.share_of_four)},
                       {"model", model}});
@@ -81,8 +77,9 @@ Json ctf_json(const CtfMeasure& ctf) {
           {"groups", groups}};
 }
 
-CtfGroups ctf_from(const JsonReader& ctf) {
-  CtfGroups out{ctf.at("pitch_mrad").number(), {}};
+CtfMeasure ctf_from(const JsonReader& ctf) {
+  CtfMeasure out;
+  out.pitch_mrad = ctf.at("pitch_mrad").number();
   for (const JsonReader& group : ctf.at("groups").elements()) {
     BarsCtf one;
     one.group = group.at("group").text();
@@ -99,16 +96,29 @@ CtfGroups ctf_from(const JsonReader& ctf) {
     const JsonReader model = group.at("model");
     if (!model.is_null())
       one.model = BarsModel{model.at("best").number(), model.at("mean").number(), model.at("worst").number()};
-    out.groups.push_back(std::move(one));
+    out.bars.groups.push_back(std::move(one));
   }
   return out;
 }
 
-bool ctf_drawable(const std::optional<MeasureLines>& side) {
-  if (!side || !side->ctf) return true;
-  const auto& groups = side->ctf->groups;
-  return side->ctf->pitch_mrad > 0 &&
+bool drawable(const CtfMeasure& ctf) {
+  const auto& groups = ctf.bars.groups;
+  return ctf.pitch_mrad > 0 &&
          std::all_of(groups.begin(), groups.end(), [](const BarsCtf& group) { return group.frequency_per_pitch > 0; });
+}
+
+}  // namespace
+
+MeasureRow ctf_row() {
+  return {.key = "ctf",
+          .add =
+              [](MeasureLines& out, const CameraMeasures& measures) {
+                if (measures.ctf) add_ctf_lines(out, *measures.ctf);
+              },
+          .to_json = [](const CameraMeasures& measures) { return measures.ctf ? ctf_json(*measures.ctf) : Json(); },
+          .read = [](MeasureLines& out, const JsonReader& part) { out.ctf = ctf_from(part); },
+          .valid = [](const MeasureLines& lines) { return !lines.ctf || drawable(*lines.ctf); },
+          .mistake = "'ctf.groups': expected frequencies and a pitch above 0"};
 }
 
 }  // namespace todbench

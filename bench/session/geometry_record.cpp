@@ -1,28 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/session/geometry_record.h"
-
+// IFOV and distortion in measures.json.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "acquisition/base/normal.h"
+#include "bench/session/measure_row.h"
 
 namespace todbench {
 namespace {
 
 /// Joins each side with a relative standard uncertainty.
-Interval joined(const GeometryValue& found, double relative_u) {
+Interval joined(const Estimate& found, double relative_u) {
   const double stated = normal_z95 * relative_u * found.value;
   return {.low = found.value - std::hypot(found.value - found.low, stated),
           .high = found.value + std::hypot(found.high - found.value, stated)};
 }
-
-Json geometry_value_json(const GeometryValue& found) {
-  return {{"value", json_number(found.value)}, {"ci95", {json_number(found.low), json_number(found.high)}}};
-}
-
-}  // namespace
 
 void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
   const PlateGeometry& found = measure.geometry;
@@ -35,27 +31,27 @@ void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
                                                         100 * normal_z95 * *measure.distance_relative_u)
                                           : " without a stated uncertainty";
   for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
-    const GeometryValue ifov = measure.ifov_mrad(axis);
-    MeasureLine line{"ifov_" + std::string(to_string(axis)), "mrad", ifov.value, {ifov.low, ifov.high}, distance};
+    const Estimate ifov = measure.ifov_mrad(axis);
+    MeasureLine line = measure_line("ifov_" + std::string(to_string(axis)), ifov.value, ifov.interval(), distance);
     if (measure.distance_relative_u) line.expanded = joined(ifov, *measure.distance_relative_u);
     out.lines.push_back(std::move(line));
   }
-  const auto exact = [&](const char* name, const char* unit, double value, const char* what) {
-    out.lines.push_back({name, unit, value, {value, value}, what});
+  const auto exact = [&](const char* name, double value, const char* what) {
+    out.lines.push_back(measure_line(name, value, {value, value}, what));
   };
-  exact("ifov_stated", "mrad", measure.stated_ifov_mrad, "IFOV stated in the plan");
-  if (measure.model_ifov_mrad) exact("ifov_model", "mrad", *measure.model_ifov_mrad, "IFOV of the sensor model");
-  const auto line = [&](const char* name, const char* unit, const GeometryValue& value) {
-    out.lines.push_back({name, unit, value.value, {value.low, value.high}, conditions});
+  exact("ifov_stated", measure.stated_ifov_mrad, "IFOV stated in the plan");
+  if (measure.model_ifov_mrad) exact("ifov_model", *measure.model_ifov_mrad, "IFOV of the sensor model");
+  const auto line = [&](const char* name, const Estimate& value) {
+    out.lines.push_back(measure_line(name, value.value, value.interval(), conditions));
   };
-  line("plate_rotation", "deg", found.rotation_deg);
-  line("keystone_x", "%", found.keystone_x_percent);
-  line("keystone_y", "%", found.keystone_y_percent);
-  line("distortion", "%", found.distortion_percent);
+  line("plate_rotation", found.rotation_deg);
+  line("keystone_x", found.keystone_x_percent);
+  line("keystone_y", found.keystone_y_percent);
+  line("distortion", found.distortion_percent);
   if (measure.model_distortion_percent)
-    exact("distortion_model", "%", *measure.model_distortion_percent, "distortion of the sensor model, both terms");
-  out.lines.push_back({"geometry_residual", "px", found.residual_px, {}, conditions});
-  out.geometry = GeometryMap{measure.picture.width * 1.0, measure.picture.height * 1.0, found.places};
+    exact("distortion_model", *measure.model_distortion_percent, "distortion of the sensor model, both terms");
+  out.lines.push_back(measure_line("geometry_residual", found.residual_px, {}, conditions));
+  out.geometry = measure;
 }
 
 Json geometry_json(const GeometryMeasure& measure) {
@@ -73,32 +69,53 @@ Json geometry_json(const GeometryMeasure& measure) {
           {"distance_relative_u", json_number(measure.distance_relative_u)},
           {"stated_ifov_mrad", measure.stated_ifov_mrad},
           {"picture_px", {measure.picture.width, measure.picture.height}},
-          {"mm_per_px_x", geometry_value_json(found.mm_per_px_x)},
-          {"mm_per_px_y", geometry_value_json(found.mm_per_px_y)},
-          {"rotation_deg", geometry_value_json(found.rotation_deg)},
-          {"keystone_x_percent", geometry_value_json(found.keystone_x_percent)},
-          {"keystone_y_percent", geometry_value_json(found.keystone_y_percent)},
-          {"distortion_percent", geometry_value_json(found.distortion_percent)},
+          {"mm_per_px_x", estimate_json(found.mm_per_px_x)},
+          {"mm_per_px_y", estimate_json(found.mm_per_px_y)},
+          {"rotation_deg", estimate_json(found.rotation_deg)},
+          {"keystone_x_percent", estimate_json(found.keystone_x_percent)},
+          {"keystone_y_percent", estimate_json(found.keystone_y_percent)},
+          {"distortion_percent", estimate_json(found.distortion_percent)},
           {"residual_px", json_number(found.residual_px)},
           {"farthest_px", json_number(found.farthest_px)},
           {"corner_px", json_number(found.corner_px)},
           {"places", places}};
 }
 
-GeometryMap geometry_from(const JsonReader& geometry) {
+GeometryMeasure geometry_from(const JsonReader& geometry) {
   const Interval size = geometry.at("picture_px").interval();
-  GeometryMap map{size.low.value_or(0), size.high.value_or(0), {}};
+  const auto pixels = [](const std::optional<double>& side) {
+    constexpr double most_px = 1e6;  // of a record that may have been edited
+    return static_cast<int>(std::clamp(side.value_or(0), 0.0, most_px));
+  };
+  GeometryMeasure found;
+  found.picture = {pixels(size.low), pixels(size.high)};
   for (const JsonReader& place : geometry.at("places").elements()) {
-    const Interval found = place.at("found_px").interval(), left = place.at("residual_px").interval();
-    map.places.push_back({place.at("triangle").text(),
-                          {found.low.value_or(0), found.high.value_or(0)},
-                          {left.low.value_or(0), left.high.value_or(0)}});
+    const Interval at = place.at("found_px").interval(), left = place.at("residual_px").interval();
+    found.geometry.places.push_back({place.at("triangle").text(),
+                                     {at.low.value_or(0), at.high.value_or(0)},
+                                     {left.low.value_or(0), left.high.value_or(0)}});
   }
-  return map;
+  return found;
 }
 
-bool geometry_drawable(const std::optional<MeasureLines>& side) {
-  return !side || !side->geometry || (side->geometry->width > 0 && side->geometry->height > 0);
+bool drawable(const GeometryMeasure& geometry) {
+  return geometry.picture.width > 0 && geometry.picture.height > 0;
+}
+
+}  // namespace
+
+MeasureRow geometry_row() {
+  return {
+      .key = "geometry",
+      .add =
+          [](MeasureLines& out, const CameraMeasures& measures) {
+            if (measures.geometry) add_geometry_lines(out, *measures.geometry);
+          },
+      .to_json =
+          [](const CameraMeasures& measures) { return measures.geometry ? geometry_json(*measures.geometry) : Json(); },
+      .read = [](MeasureLines& out, const JsonReader& part) { out.geometry = geometry_from(part); },
+      .valid = [](const MeasureLines& lines) { return !lines.geometry || drawable(*lines.geometry); },
+      .mistake = "'geometry.picture_px': expected numbers above 0"};
 }
 
 }  // namespace todbench

@@ -25,35 +25,10 @@ struct MeasureLine {
   std::optional<Interval> expanded{};
 };
 
-/// MTF of every edge, for figures.
-struct MtfCurves {
-  double pitch_mrad = 0;
-  std::vector<EdgeMtf> edges;
-};
-
-/// CTF of every bar group, for figures.
-struct CtfGroups {
-  double pitch_mrad = 0;
-  std::vector<BarsCtf> groups;
-};
-
-/// Signal transfer, for figures.
-struct TransferCurve {
-  std::vector<TransferStep> steps;
-  double slope = 0, offset_k = 0;
-};
-
-/// Remaining part of steps of the target over time, for figures.
-struct ResponseCurve {
-  double time_constant_s = 0;
-  std::vector<StepPoint> points;
-};
-
-/// Positions of the triangles relative to the fitted lens, for figures.
-struct GeometryMap {
-  double width = 0, height = 0;  ///< of the picture, in pixels
-  std::vector<GeometryPlace> places;
-};
+/// Returns a line in the unit of the quantity (table of quantities). `name`: of the quantity, with a place if any:
+/// "mtf_x (corner)".
+[[nodiscard]] MeasureLine measure_line(std::string name, std::optional<double> value, const Interval& ci95,
+                                       std::string conditions);
 
 /// Observed plate, plate according to the sensor model, and their difference: grey PNG files in base64, all of the same
 /// part of the picture.
@@ -68,12 +43,13 @@ struct PlatePanels {
 /// All measures of one camera, and the reasons for missing ones.
 struct MeasureLines {
   std::vector<MeasureLine> lines;
-  std::optional<MtfCurves> mtf{};
-  std::optional<CtfGroups> ctf{};
-  std::optional<TransferCurve> transfer{};
-  std::optional<GeometryMap> geometry{};
-  std::optional<DriftLaw> drift{};
-  std::optional<ResponseCurve> response{};
+  // For figures and tables. Of a record, the numbers that they show.
+  std::optional<MtfMeasure> mtf{};
+  std::optional<CtfMeasure> ctf{};
+  std::optional<TransferMeasure> transfer{};
+  std::optional<GeometryMeasure> geometry{};
+  std::optional<DriftMeasure> drift{};
+  std::optional<ResponseMeasure> response{};
   std::optional<PlatePanels> picture{};
   std::vector<PixelMap> maps{};
   std::vector<std::string> reasons;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bench/picture_files/encoded_picture.h"
+#include "bench/session/measure_row.h"
 #include "bench/text/base64.h"
 #include "tod/measures/medians.h"
 
@@ -126,6 +127,44 @@ bool drawable(const std::vector<PixelMap>& maps) {
   });
 }
 
+namespace {
+
+/// Adds "bad_pixels" for the whole frame and "bad_pixels (NAME)" for a zone. Unobserved parts may contain more.
+void add_pixels(MeasureLines& out, const PixelMeasure& pixels) {
+  for (const PixelMeasure::Zone& zone : pixels.zones) {
+    const ZoneCount& count = zone.count;
+    const std::string name = zone.area.name == "whole" ? "" : " (" + zone.area.name + ")";
+    const std::string conditions =
+        fmt::format("zone '{}': {} of its {} pixels were observed, in {} frames at a contrast of 0", zone.area.name,
+                    count.measured, count.pixels, pixels.defects.frames);
+    const auto line = [&](const char* measure, int found) {
+      Interval most{.low = found, .high = found};
+      if (count.measured < count.pixels) most.high.reset();
+      out.lines.push_back(measure_line(measure + name, found, most, conditions));
+    };
+    line("bad_pixels", count.bad);
+    line("substituted_pixels", count.substituted);
+    line("defect_clusters", count.clusters);
+    line("largest_cluster", count.largest_cluster);
+    if (count.measured > 0)
+      out.lines.push_back(
+          measure_line("operability" + name, 100.0 * (1 - 1.0 * count.bad / count.measured), {}, conditions));
+  }
+  for (const PixelDefect kind : pixel_defect_kinds) {
+    if (kind == PixelDefect::substituted) continue;
+    const auto found = static_cast<double>(cv::countNonZero(pixels.defects.of(kind)));
+    const std::string seen =
+        kind == PixelDefect::unresponsive
+            ? fmt::format("of the {} pixels whose response was observed inside triangles",
+                          pixels.defects.response_tested)
+            : fmt::format("of the {} x {} observed pixels", pixels.field.width, pixels.field.height);
+    out.lines.push_back(measure_line("pixels_" + std::string(to_string(kind)), found, {found, found}, seen));
+  }
+  for (const std::string& sentence : pixels.defects.not_tested) out.reasons.push_back("pixels: " + sentence);
+}
+
+/// Returns {"frames", "frame_px", "field_px", "response_tested", "counts", "zones": [...], "defects": [{"x_px", "y_px",
+/// "kinds", "cluster"}], "defects_listed", "not_tested"}.
 Json pixels_json(const PixelMeasure& pixels) {
   Json counts, zones = Json::array(), defects = Json::array();
   for (const PixelDefect kind : pixel_defect_kinds)
@@ -163,6 +202,18 @@ Json pixels_json(const PixelMeasure& pixels) {
           {"defects", defects},
           {"defects_found", all},
           {"not_tested", pixels.defects.not_tested}};
+}
+
+}  // namespace
+
+MeasureRow pixels_row() {
+  return {.key = "pixels",
+          .add =
+              [](MeasureLines& out, const CameraMeasures& measures) {
+                if (measures.pixels) add_pixels(out, *measures.pixels);
+              },
+          .to_json =
+              [](const CameraMeasures& measures) { return measures.pixels ? pixels_json(*measures.pixels) : Json(); }};
 }
 
 }  // namespace todbench

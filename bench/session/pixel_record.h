@@ -37,10 +37,6 @@ struct DefectColour {
 /// Returns whether the maps are base64 PNG files of at least one pixel.
 [[nodiscard]] bool drawable(const std::vector<PixelMap>& maps);
 
-/// Returns {"frames", "frame_px", "field_px", "response_tested", "counts", "zones": [...], "defects": [{"x_px", "y_px",
-/// "kinds", "cluster"}], "defects_listed", "not_tested"}.
-[[nodiscard]] Json pixels_json(const PixelMeasure& pixels);
-
 /// Returns a grey PNG in base64; values below `black` are black, above `white` white.
 [[nodiscard]] std::string grey_png(const cv::Mat1d& values, double black, double white);
 

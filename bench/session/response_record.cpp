@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/session/response_record.h"
-
+// Response time in measures.json.
 #include <fmt/format.h>
 
 #include <array>
 #include <string>
+
+#include "bench/session/measure_row.h"
 
 namespace todbench {
 namespace {
@@ -22,8 +23,6 @@ Json time_constant_json(const std::optional<StepTimeConstant>& found) {
           {"steps", found->steps}};
 }
 
-}  // namespace
-
 void add_response_lines(MeasureLines& out, const ResponseMeasure& measure) {
   const std::string settling =
       measure.settling_s > 0 ? fmt::format(", settling time of the target {:g} ms", ms_of_s * measure.settling_s) : "";
@@ -32,12 +31,12 @@ void add_response_lines(MeasureLines& out, const ResponseMeasure& measure) {
                   measure.response.both.steps, measure.delta_t_k, measure.response.samples, ms_of_s * measure.frame_s,
                   measure.bright_pixels, settling);
   const auto add = [&](const char* name, const std::optional<StepTimeConstant>& found) {
-    if (found) out.lines.push_back({name, "ms", ms_of_s * found->value_s, ms_interval(*found), conditions});
+    if (found) out.lines.push_back(measure_line(name, ms_of_s * found->value_s, ms_interval(*found), conditions));
   };
   add("response_time", measure.response.both);
   add("response_time_rise", measure.response.rise);
   add("response_time_fall", measure.response.fall);
-  out.response = ResponseCurve{measure.response.both.value_s, measure.response.points};
+  out.response = measure;
 }
 
 Json response_json(const ResponseMeasure& measure) {
@@ -57,14 +56,31 @@ Json response_json(const ResponseMeasure& measure) {
           {"points", points}};
 }
 
-ResponseCurve response_from(const JsonReader& response) {
-  ResponseCurve curve{response.at("time_constant_ms").at("value").number() / ms_of_s, {}};
+ResponseMeasure response_from(const JsonReader& response) {
+  ResponseMeasure found;
+  found.response.both.value_s = response.at("time_constant_ms").at("value").number() / ms_of_s;
   for (const JsonReader& point : response.at("points").elements()) {
-    curve.points.push_back({.time_s = point.at("time_s").number(),
-                            .left = point.at("left").number(),
-                            .rising = point.at("rising").flag()});
+    found.response.points.push_back({.time_s = point.at("time_s").number(),
+                                     .left = point.at("left").number(),
+                                     .rising = point.at("rising").flag()});
   }
-  return curve;
+  return found;
+}
+
+}  // namespace
+
+MeasureRow response_row() {
+  return {
+      .key = "response",
+      .add =
+          [](MeasureLines& out, const CameraMeasures& measures) {
+            if (measures.response) add_response_lines(out, *measures.response);
+            if (const auto& model = measures.response_model_ms)
+              out.lines.push_back(measure_line("response_time_model", *model, {}, "time constant of the sensor model"));
+          },
+      .to_json =
+          [](const CameraMeasures& measures) { return measures.response ? response_json(*measures.response) : Json(); },
+      .read = [](MeasureLines& out, const JsonReader& part) { out.response = response_from(part); }};
 }
 
 }  // namespace todbench

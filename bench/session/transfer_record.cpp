@@ -1,7 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/session/transfer_record.h"
+// Signal transfer in measures.json.
+#include <fmt/format.h>
+
+#include <string>
+
+#include "bench/session/measure_row.h"
 
 namespace todbench {
+namespace {
+
+void add_transfer(MeasureLines& out, const TransferMeasure& transfer) {
+  const SignalTransfer& line = transfer.line;
+  const double half = transfer.slope_half_width();
+  const std::string conditions =
+      fmt::format("{} steps of {} frames, observed contrast over the contrast reported by the target",
+                  transfer.steps.size(), transfer.frames_each);
+  out.lines.push_back(measure_line("transfer_slope", line.slope, {line.slope - half, line.slope + half}, conditions));
+  out.lines.push_back(measure_line("transfer_offset", line.offset, {}, conditions));
+  out.lines.push_back(measure_line("transfer_nonlinearity", line.nonlinearity_percent, {}, conditions));
+  out.transfer = transfer;
+}
 
 Json transfer_json(const TransferMeasure& transfer) {
   Json steps = Json::array();
@@ -22,13 +40,29 @@ Json transfer_json(const TransferMeasure& transfer) {
           {"nonlinearity_percent", json_number(transfer.line.nonlinearity_percent)}};
 }
 
-TransferCurve transfer_from(const JsonReader& transfer) {
-  TransferCurve curve{{}, transfer.at("slope").number(), transfer.at("offset_k").number()};
+TransferMeasure transfer_from(const JsonReader& transfer) {
+  TransferMeasure found;
+  found.line.slope = transfer.at("slope").number();
+  found.line.offset = transfer.at("offset_k").number();
   for (const JsonReader& step : transfer.at("steps").elements()) {
-    curve.steps.push_back({step.at("set_delta_t_k").number(), step.at("said_delta_t_k").number(),
+    found.steps.push_back({step.at("set_delta_t_k").number(), step.at("said_delta_t_k").number(),
                            step.at("seen_delta_t_k").number(), step.at("seen_u_k").number()});
   }
-  return curve;
+  return found;
+}
+
+}  // namespace
+
+MeasureRow transfer_row() {
+  return {
+      .key = "transfer",
+      .add =
+          [](MeasureLines& out, const CameraMeasures& measures) {
+            if (measures.transfer) add_transfer(out, *measures.transfer);
+          },
+      .to_json =
+          [](const CameraMeasures& measures) { return measures.transfer ? transfer_json(*measures.transfer) : Json(); },
+      .read = [](MeasureLines& out, const JsonReader& part) { out.transfer = transfer_from(part); }};
 }
 
 }  // namespace todbench

@@ -123,9 +123,9 @@ struct Repeated {
     return std::sqrt(std::max(0.0, squares / repetitions - mean() * mean()) * repetitions / (repetitions - 1));
   }
   /// `coarser`: result with wider knots.
-  [[nodiscard]] Modulation around(double found, double coarser, double contrast, double relative_u95) const {
+  [[nodiscard]] Estimate around(double found, double coarser, double contrast, double relative_u95) const {
     const double bias = mean() - found;
-    Modulation out;
+    Estimate out;
     out.value = (found - bias) / contrast;
     const double noise = (normal_z95 * sd() + std::abs(bias)) / contrast;
     const double method = std::hypot((found - coarser) / contrast, method_error);

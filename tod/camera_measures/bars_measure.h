@@ -8,17 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/base/interval.h"
 #include "acquisition/base/result.h"
 #include "tod/measures/slanted_edge.h"
 #include "tod/plate/target_plate.h"
 #include "tod/registration/registration.h"
 
 namespace todbench {
-
-/// A modulation with its 95 % interval.
-struct Modulation {
-  double value = 0, low = 0, high = 0;
-};
 
 /// Modulations of a simulated sensor for a group, in closed form.
 struct BarsModel {
@@ -35,7 +31,7 @@ struct BarsCtf {
   cv::Point2d middle_px{0, 0};       ///< centre of the group in the picture
   int pixels = 0;                    ///< used for the profile
   double noise_over_contrast = 0;    ///< of one pixel, from the residuals of the profile
-  Modulation best, mean, worst;      ///< over the sampling phases
+  Estimate best, mean, worst;        ///< over the sampling phases
   int bars_separated_at_best = 1;    ///< 4 if every space is lower than both neighbouring bars
   double share_of_four = 0;          ///< share of the phases that show four bars
   std::optional<BarsModel> model{};  ///< empty for a real camera

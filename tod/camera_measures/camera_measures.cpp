@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "acquisition/base/distributions.h"
 #include "tod/measurement/target_change.h"
@@ -55,75 +57,46 @@ class Run {
 
   Result<CameraMeasures> operator()() {
     CameraMeasures measures;
-    const auto keep = [&](const char* what, const Error& error) -> Result<void> {
-      if (error.code == ErrorCode::interrupted) return tl::unexpected(error);
-      measures.reasons.push_back(std::string(what) + ": " + error.message);
-      return {};
-    };
-    auto found = locate();
-    if (!found) {
-      if (auto kept = keep("physical measures", found.error()); !kept) return tl::unexpected(kept.error());
-      return measures;
-    }
-    measures.view = view_;
-    measures.geometry = std::move(geometry_);
-    if (!geometry_reason_.empty()) measures.reasons.push_back(geometry_reason_);
-    if (options_.transfer) {
-      auto transfer = measure_transfer();
-      if (transfer)
-        measures.transfer = *std::move(transfer);
-      else if (auto kept = keep("signal transfer", transfer.error()); !kept)
-        return tl::unexpected(kept.error());
-    }
-    if (options_.noise) {
-      auto noise = measure_noise();
-      if (noise)
-        measures.noise = *std::move(noise);
-      else if (auto kept = keep("noise", noise.error()); !kept)
-        return tl::unexpected(kept.error());
-      measures.pixels = std::move(pixels_);
-      if (!pixel_reason_.empty()) measures.reasons.push_back(pixel_reason_);
-    }
-    if (options_.drift_s) {
-      auto drift = follow_drift();
-      if (drift)
-        measures.drift = *std::move(drift);
-      else if (auto kept = keep("drift", drift.error()); !kept)
-        return tl::unexpected(kept.error());
-    }
-    if (options_.response) {
-      auto response = time_response();
-      if (response)
-        measures.response = *std::move(response);
-      else if (auto kept = keep("response time", response.error()); !kept)
-        return tl::unexpected(kept.error());
-    }
-    for (const double contrast_k : options_.triangles_k) {
-      auto strip = show_triangles(contrast_k);
-      if (strip)
-        measures.triangles.push_back(*std::move(strip));
-      else if (auto kept = keep("smallest triangles", strip.error()); !kept)
-        return tl::unexpected(kept.error());
-    }
-    // Last, because the plate changes.
-    if (options_.mtf_plate) {
-      auto mtf = measure_mtf(measures.reasons);
-      if (mtf)
-        measures.mtf = *std::move(mtf);
-      else if (auto kept = keep("MTF", mtf.error()); !kept)
-        return tl::unexpected(kept.error());
-    }
-    if (options_.ctf_plate) {
-      auto ctf = measure_ctf(measures.reasons);
-      if (ctf)
-        measures.ctf = *std::move(ctf);
-      else if (auto kept = keep("CTF", ctf.error()); !kept)
+    if (auto kept = keep(measures, "physical measures", locate(measures)); !kept) return tl::unexpected(kept.error());
+    if (!located_) return measures;
+    for (const Step& step : steps()) {
+      if (!step.requested(options_)) continue;
+      if (auto kept = keep(measures, step.name, (this->*step.take)(measures)); !kept)
         return tl::unexpected(kept.error());
     }
     return measures;
   }
 
  private:
+  /// A measure, with its name in reasons.
+  struct Step {
+    const char* name;
+    bool (*requested)(const CameraMeasuresOptions& options);
+    Result<void> (Run::*take)(CameraMeasures& measures);
+  };
+
+  /// All measures in their order. MTF and CTF come last, because the plate changes.
+  static std::span<const Step> steps() {
+    using Options = CameraMeasuresOptions;
+    static constexpr std::array table{
+        Step{"signal transfer", [](const Options& o) { return o.transfer; }, &Run::measure_transfer},
+        Step{"noise", [](const Options& o) { return o.noise; }, &Run::measure_noise},
+        Step{"drift", [](const Options& o) { return o.drift_s.has_value(); }, &Run::follow_drift},
+        Step{"response time", [](const Options& o) { return o.response.has_value(); }, &Run::time_response},
+        Step{"smallest triangles", [](const Options& o) { return !o.triangles_k.empty(); }, &Run::show_triangles},
+        Step{"MTF", [](const Options& o) { return o.mtf_plate.has_value(); }, &Run::measure_mtf},
+        Step{"CTF", [](const Options& o) { return o.ctf_plate.has_value(); }, &Run::measure_ctf}};
+    return table;
+  }
+
+  /// Turns the error of a measure into a reason; returns it if the run was interrupted.
+  static Result<void> keep(CameraMeasures& measures, const char* name, const Result<void>& taken) {
+    if (taken) return {};
+    if (taken.error().code == ErrorCode::interrupted) return tl::unexpected(taken.error());
+    measures.reasons.push_back(std::string(name) + ": " + taken.error().message);
+    return {};
+  }
+
   static FrameTakerOptions taker_options(const MeasurementOptions& options, const SourceInfo& info) {
     FrameTakerOptions out{.integrity = options.integrity,
                           .frames_after_change = options.frames_after_change,
@@ -153,7 +126,7 @@ class Run {
   }
 
   /// Locates the plate at the contrast that shows it best.
-  Result<void> locate() {
+  Result<void> locate(CameraMeasures& measures) {
     double largest = 0;
     for (const double step : options_.transfer_steps_k) largest = std::abs(step) > std::abs(largest) ? step : largest;
     if (largest == 0)
@@ -166,39 +139,40 @@ class Run {
     auto found = register_plate(picture->kelvin, plate(), registration);
     if (!found) return fail("finding the plate", found.error());
     where_ = *found;
-    keep_view(*picture, largest);
-    if (options_.geometry) tell_geometry(*picture, largest);
+    keep_view(measures, *picture, largest);
+    if (options_.geometry) tell_geometry(measures, *picture, largest);
+    located_ = true;
     return {};
   }
 
-  void tell_geometry(const AveragedPicture& picture, double delta_t_k) {
+  void tell_geometry(CameraMeasures& measures, const AveragedPicture& picture, double delta_t_k) {
     auto found = plate_geometry(picture.kelvin, plate(), where_);
     if (!found) {
-      geometry_reason_ = "IFOV and distortion: " + found.error().message;
+      measures.reasons.push_back("IFOV and distortion: " + found.error().message);
       return;
     }
-    geometry_ = GeometryMeasure{.plate = plate().name,
-                                .frames = options_.measurement.registration_frames,
-                                .set_delta_t_k = delta_t_k,
-                                .distance_m = options_.measurement.distance_m,
-                                .stated_ifov_mrad = options_.measurement.ifov_mrad,
-                                .picture = picture.kelvin.size(),
-                                .geometry = *std::move(found)};
+    measures.geometry = GeometryMeasure{.plate = plate().name,
+                                        .frames = options_.measurement.registration_frames,
+                                        .set_delta_t_k = delta_t_k,
+                                        .distance_m = options_.measurement.distance_m,
+                                        .stated_ifov_mrad = options_.measurement.ifov_mrad,
+                                        .picture = picture.kelvin.size(),
+                                        .geometry = *std::move(found)};
   }
 
-  void keep_view(const AveragedPicture& picture, double delta_t_k) {
+  void keep_view(CameraMeasures& measures, const AveragedPicture& picture, double delta_t_k) {
     const auto where = field();
     if (!where) return;
-    view_ = PlateView{.frames = options_.measurement.registration_frames,
-                      .set_delta_t_k = delta_t_k,
-                      .where = where_,
-                      .picture = picture.kelvin.size(),
-                      .field = *where,
-                      .kelvin = picture.kelvin(*where).clone(),
-                      .temporal_noise_k = picture.temporal_noise_k};
+    measures.view = PlateView{.frames = options_.measurement.registration_frames,
+                              .set_delta_t_k = delta_t_k,
+                              .where = where_,
+                              .picture = picture.kelvin.size(),
+                              .field = *where,
+                              .kelvin = picture.kelvin(*where).clone(),
+                              .temporal_noise_k = picture.temporal_noise_k};
   }
 
-  Result<TransferMeasure> measure_transfer() {
+  Result<void> measure_transfer(CameraMeasures& measures) {
     TransferMeasure transfer;
     transfer.frames_each = options_.measurement.contrast_frames;
     const auto response = options_.measurement.contrast_response.find(plate().name);
@@ -221,11 +195,12 @@ class Run {
     auto line = signal_transfer(steps);
     if (!line) return tl::unexpected(line.error());
     transfer.line = *std::move(line);
-    return transfer;
+    measures.transfer = std::move(transfer);
+    return {};
   }
 
   /// The mean picture round the smallest triangles at a contrast.
-  Result<TriangleStrip> show_triangles(double contrast_k) {
+  Result<TriangleStrip> triangles_at(double contrast_k) {
     constexpr int shown_triangles = 6;
     if (auto shown = show(contrast_k); !shown) return tl::unexpected(shown.error());
     const auto picture = taker_.average(options_.measurement.contrast_frames, stop_);
@@ -235,8 +210,20 @@ class Run {
     return strip;
   }
 
+  /// A contrast that fails adds a reason.
+  Result<void> show_triangles(CameraMeasures& measures) {
+    for (const double contrast_k : options_.triangles_k) {
+      auto strip = triangles_at(contrast_k);
+      if (strip)
+        measures.triangles.push_back(*std::move(strip));
+      else if (auto kept = keep(measures, "smallest triangles", tl::unexpected(strip.error())); !kept)
+        return kept;
+    }
+    return {};
+  }
+
   /// Sides that could not be measured add reasons.
-  Result<MtfMeasure> measure_mtf(std::vector<std::string>& reasons) {
+  Result<void> measure_mtf(CameraMeasures& measures) {
     const TargetPlate& edge_plate = *options_.mtf_plate;
     const auto shown = show(edge_plate.name, options_.mtf_delta_t_k);
     if (!shown) return tl::unexpected(shown.error());
@@ -251,13 +238,14 @@ class Run {
     mtf.pitch_mrad = options_.measurement.ifov_mrad;
     mtf.frequency_per_pitch = options_.mtf_frequency_per_pitch;
     mtf.edges = std::move(found->edges);
-    reasons.insert(reasons.end(), found->reasons.begin(), found->reasons.end());
+    measures.reasons.insert(measures.reasons.end(), found->reasons.begin(), found->reasons.end());
     if (mtf.edges.empty()) return fail(ErrorCode::calibration, "no edge of the plate could be measured");
-    return mtf;
+    measures.mtf = std::move(mtf);
+    return {};
   }
 
   /// Groups that could not be measured add reasons.
-  Result<CtfMeasure> measure_ctf(std::vector<std::string>& reasons) {
+  Result<void> measure_ctf(CameraMeasures& measures) {
     const TargetPlate& bars_plate = *options_.ctf_plate;
     const auto shown = show(bars_plate.name, options_.ctf_delta_t_k);
     if (!shown) return tl::unexpected(shown.error());
@@ -265,7 +253,7 @@ class Run {
     if (!picture) return tl::unexpected(picture.error());
     auto found = plate_bars_ctf(picture->kelvin, bars_plate, where_);
     if (!found) return tl::unexpected(found.error());
-    reasons.insert(reasons.end(), found->reasons.begin(), found->reasons.end());
+    measures.reasons.insert(measures.reasons.end(), found->reasons.begin(), found->reasons.end());
     if (found->groups.empty()) return fail(ErrorCode::calibration, "no group of bars could be measured");
     CtfMeasure ctf;
     ctf.plate = bars_plate.name;
@@ -274,7 +262,8 @@ class Run {
     ctf.pitch_mrad = options_.measurement.ifov_mrad;
     ctf.frequency_per_pitch = options_.ctf_frequency_per_pitch;
     ctf.bars = *std::move(found);
-    return ctf;
+    measures.ctf = std::move(ctf);
+    return {};
   }
 
   /// The upright rectangle of the picture that the plate covers, without its rim.
@@ -310,28 +299,34 @@ class Run {
     return true;
   }
 
-  Result<DriftMeasure> follow_drift() {
+  Result<void> follow_drift(CameraMeasures& measures) {
     const auto where = field();
     if (!where) return tl::unexpected(where.error());
     if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
     const bool simulated = !options_.measurement.free_running;
     const auto commanded = simulated ? Result<bool>(false) : correct();
     if (!commanded) return tl::unexpected(commanded.error());
-    return measure_drift(taker_, *where,
-                         {.drift_s = *options_.drift_s,
-                          .frame_rate_hz = source_.info().frame_rate_hz,
-                          .commanded = *commanded,
-                          .simulated = simulated},
-                         stop_);
+    auto drift = measure_drift(taker_, *where,
+                               {.drift_s = *options_.drift_s,
+                                .frame_rate_hz = source_.info().frame_rate_hz,
+                                .commanded = *commanded,
+                                .simulated = simulated},
+                               stop_);
+    if (!drift) return tl::unexpected(drift.error());
+    measures.drift = *std::move(drift);
+    return {};
   }
 
-  Result<ResponseMeasure> time_response() {
+  Result<void> time_response(CameraMeasures& measures) {
     const auto where = field();
     if (!where) return tl::unexpected(where.error());
     ResponseOptions response = *options_.response;
     response.plate = plate().name;
     response.contrast_frames = options_.measurement.contrast_frames;
-    return measure_response(taker_, target_, host_, *where, response, source_.info().frame_rate_hz, stop_);
+    auto timed = measure_response(taker_, target_, host_, *where, response, source_.info().frame_rate_hz, stop_);
+    if (!timed) return tl::unexpected(timed.error());
+    measures.response = *std::move(timed);
+    return {};
   }
 
   struct Cube {
@@ -378,7 +373,7 @@ class Run {
     return cube;
   }
 
-  Result<NoiseMeasure> measure_noise() {
+  Result<void> measure_noise(CameraMeasures& measures) {
     const auto where = field();
     if (!where) return tl::unexpected(where.error());
     if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
@@ -399,8 +394,9 @@ class Run {
     auto noise = summed_up(*cube);
     if (!noise) return tl::unexpected(noise.error());
     noise->field = *where;
-    if (options_.pixels) tell_pixels(*cube, *where, *noise);
-    return noise;
+    if (options_.pixels) tell_pixels(measures, *cube, *where, *noise);
+    measures.noise = *std::move(noise);
+    return {};
   }
 
   /// Temperature of a count at the level of the frames; empty: the scale is not known.
@@ -411,7 +407,7 @@ class Run {
     return kelvin && *kelvin > 0 ? kelvin : std::nullopt;
   }
 
-  void tell_pixels(const Cube& cube, const cv::Rect& field, const NoiseMeasure& noise) {
+  void tell_pixels(CameraMeasures& measures, const Cube& cube, const cv::Rect& field, const NoiseMeasure& noise) {
     const cv::Rect window = pixel_window(field);
     PixelScene scene{.shading = {}, .responsivity = {}, .unit_per_count = kelvin_per_count(noise.mean_k)};
     if (step_pictures_.size() > 2)
@@ -419,9 +415,9 @@ class Run {
     auto found = measure_pixels(cube.pixel_frames, {source_.info().width, source_.info().height}, window,
                                 std::move(scene), *options_.pixels);
     if (found)
-      pixels_ = *std::move(found);
+      measures.pixels = *std::move(found);
     else
-      pixel_reason_ = "pixels: " + found.error().message;
+      measures.reasons.push_back("pixels: " + found.error().message);
   }
 
   [[nodiscard]] Result<NoiseMeasure> summed_up(const Cube& cube) const {
@@ -450,18 +446,14 @@ class Run {
   std::stop_token stop_;
   FrameTaker taker_;
   Registration where_;
-  std::optional<PlateView> view_;
+  bool located_ = false;
   std::vector<ContrastPicture> step_pictures_;  ///< of the signal transfer
-  std::optional<GeometryMeasure> geometry_;
-  std::string geometry_reason_;
-  std::optional<PixelMeasure> pixels_;
-  std::string pixel_reason_;
 };
 
 }  // namespace
 
-GeometryValue GeometryMeasure::ifov_mrad(EdgeAxis axis) const {
-  const GeometryValue& mm = axis == EdgeAxis::x ? geometry.mm_per_px_x : geometry.mm_per_px_y;
+Estimate GeometryMeasure::ifov_mrad(EdgeAxis axis) const {
+  const Estimate& mm = axis == EdgeAxis::x ? geometry.mm_per_px_x : geometry.mm_per_px_y;
   return {mm.value / distance_m, mm.low / distance_m, mm.high / distance_m};
 }
 

@@ -87,7 +87,7 @@ struct GeometryMeasure {
   std::optional<double> model_ifov_mrad{}, model_distortion_percent{};  ///< of a simulated sensor
 
   /// IFOV along x or y; the interval contains the errors of the picture only.
-  [[nodiscard]] GeometryValue ifov_mrad(EdgeAxis axis) const;
+  [[nodiscard]] Estimate ifov_mrad(EdgeAxis axis) const;
 };
 
 struct MtfMeasure {

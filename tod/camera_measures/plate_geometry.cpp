@@ -168,7 +168,7 @@ std::optional<std::size_t> outlier(const std::vector<LocatedTriangle>& located, 
 class DerivedQuantity {
  public:
   DerivedQuantity(const LensFit& fit, double factor) : fit_(fit), factor_(factor) {}
-  GeometryValue operator()(const std::function<double(const LensParameters&)>& of) const {
+  Estimate operator()(const std::function<double(const LensParameters&)>& of) const {
     cv::Mat1d gradient(1, lens_parameters);
     for (int k = 0; k < lens_parameters; ++k) {
       LensParameters up = fit_.parameters, down = fit_.parameters;

@@ -6,16 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/base/interval.h"
 #include "acquisition/base/result.h"
 #include "tod/plate/target_plate.h"
 #include "tod/registration/registration.h"
 
 namespace todbench {
-
-/// A number with its 95 % interval.
-struct GeometryValue {
-  double value = 0, low = 0, high = 0;
-};
 
 /// Located place of a triangle and its residual.
 struct GeometryPlace {
@@ -28,14 +24,14 @@ struct GeometryPlace {
 /// picture, q = c + (p - c)(1 + k r^2 / R^2), R half the picture's diagonal (Brown 1966, first term).
 struct PlateGeometry {
   /// On the plate along the picture's rows and columns, at the middle of the plate, without distortion.
-  GeometryValue mm_per_px_x, mm_per_px_y;
-  GeometryValue rotation_deg;        ///< of the plate in the picture, clockwise
-  GeometryValue keystone_x_percent;  ///< excess of the scale at the plate's right border over that at its left
-  GeometryValue keystone_y_percent;  ///< excess at its lower border over that at its upper
-  GeometryValue distortion_percent;  ///< k at the corner of the picture; positive: pincushion
-  double residual_px = 0;            ///< root mean square of a coordinate, over the degrees of freedom
-  double farthest_px = 0;            ///< largest distance of a triangle from the middle of the picture
-  double corner_px = 0;              ///< distance of the corner
+  Estimate mm_per_px_x, mm_per_px_y;
+  Estimate rotation_deg;        ///< of the plate in the picture, clockwise
+  Estimate keystone_x_percent;  ///< excess of the scale at the plate's right border over that at its left
+  Estimate keystone_y_percent;  ///< excess at its lower border over that at its upper
+  Estimate distortion_percent;  ///< k at the corner of the picture; positive: pincushion
+  double residual_px = 0;       ///< root mean square of a coordinate, over the degrees of freedom
+  double farthest_px = 0;       ///< largest distance of a triangle from the middle of the picture
+  double corner_px = 0;         ///< distance of the corner
   std::vector<GeometryPlace> places;
 };
 

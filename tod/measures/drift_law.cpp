@@ -79,7 +79,7 @@ struct Regression {
 
 struct TimeConstant {
   double best_s = 0;
-  DriftInterval ci95{};
+  Interval ci95{};
   double left = 0;  ///< residual sum of squares
 };
 

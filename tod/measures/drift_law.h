@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "acquisition/base/interval.h"
 #include "acquisition/base/result.h"
 
 namespace todbench {
@@ -26,18 +27,13 @@ enum class DriftShape {
 };
 [[nodiscard]] std::string_view to_string(DriftShape shape);
 
-/// A side without a value is open.
-struct DriftInterval {
-  std::optional<double> low, high;
-};
-
 /// One quantity over time.
 struct DriftFit {
   DriftShape shape = DriftShape::linear;
   double change_k = 0;                    ///< from the first group to the last, by the fit
-  DriftInterval change_ci95{};            ///< in kelvin
+  Interval change_ci95{};                 ///< in kelvin
   std::optional<double> time_constant_s;  ///< of an approach
-  DriftInterval time_constant_ci95{};     ///< a side that the data do not determine is open
+  Interval time_constant_ci95{};          ///< a side that the data do not determine is open
   double p_linear = 1;                    ///< p value of a straight line against an approach (F test)
   std::vector<double> seen_k, fitted_k;   ///< by group
 };

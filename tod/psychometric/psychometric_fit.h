@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "acquisition/base/interval.h"
 #include "acquisition/base/result.h"
 
 namespace todbench {
@@ -57,11 +58,6 @@ struct FitOptions {
   std::optional<double> fixed_lapse = 0.0;  ///< empty: free in [0, 0.1]
   bool with_posterior = true;
   bool graded = false;  ///< levels are of graded answers: their counts need not be whole
-};
-
-/// A side without a value is unbounded.
-struct Interval {
-  std::optional<double> low, high;
 };
 
 struct Posterior {

@@ -97,7 +97,7 @@ TEST(PlanFields, HaveTheLimitsOnMeasuresAsATable) {
   ASSERT_EQ(limits.entered(plan, "response_time: : 14, transfer_slope: 0.98: 1.02"), "");
 
   ASSERT_EQ(plan.limits.measures.size(), 2u);
-  EXPECT_EQ(plan.limits.measures[0].measure, LimitedMeasure::response_time);
+  EXPECT_EQ(plan.limits.measures[0].measure, "response_time");
   EXPECT_EQ(plan.limits.measures[0].at_least, std::nullopt);
   EXPECT_EQ(plan.limits.measures[0].at_most, 14);
   EXPECT_EQ(plan.limits.measures[1].at_least, 0.98);

@@ -114,7 +114,7 @@ TEST(ValidPlan, NoNumberLeavesItsRangeWhoeverMadeThePlan) {
   Plan good = with_rows();
   good.limits.acuity = {{16.9, 0.4}};
   good.measures.noise = good.measures.transfer = true;
-  good.limits.measures = {{LimitedMeasure::netd, std::nullopt, 0.05}};
+  good.limits.measures = {{"netd", std::nullopt, 0.05}};
   good.measures.pixels = true;
   good.limits.zones = {{.name = "centre", .bad_pixels = 0}};
   good.limits.fleets = {{.delta_t_k = 0.23, .mean = 0.3, .sd = 0.04, .units = 12}};

@@ -83,7 +83,7 @@ Plan plan_with_budget() {
 Plan plan_with_rule() {
   Plan plan;
   plan.measures.noise = plan.measures.transfer = true;
-  plan.limits.measures = {{LimitedMeasure::noise_tvh, std::nullopt, 0.05}, {LimitedMeasure::transfer_slope, 0.9, 1.1}};
+  plan.limits.measures = {{"noise_tvh", std::nullopt, 0.05}, {"transfer_slope", 0.9, 1.1}};
   plan.limits.rule = ConformityRule::non_binary;
   plan.limits.guard_band_risk = 0.01;
   plan.limits.fleet_sd_percent = 4;

@@ -72,7 +72,7 @@ inline Result<BarsCoverage> bars_coverage(const SensorSpec& sensor, double noise
         sum.group = group.group, sum.frequency_per_pitch = group.frequency_per_pitch;
         sum.truth = bar_modulation(BlurredBars(group.frequency_per_pitch, of, 8));
       }
-      const std::array<std::pair<Modulation, double>, 3> pairs{
+      const std::array<std::pair<Estimate, double>, 3> pairs{
           {{group.best, sum.truth.best}, {group.mean, sum.truth.mean}, {group.worst, sum.truth.worst}}};
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         const auto& [modulation, truth] = pairs[k];

@@ -62,9 +62,7 @@ TEST(LimitForecasts, SayWhatShareOfTheGoodUnitsOfAFleetAPlanRejects) {
 
 TEST(LimitForecasts, SayTheSameOfMeasuresWithTheUncertaintyOfEarlierSessions) {
   LimitsPlan limits;
-  limits.measures = {{LimitedMeasure::netd, std::nullopt, 0.06},
-                     {LimitedMeasure::distortion, std::nullopt, 2},
-                     {LimitedMeasure::transfer_slope, 0.98, 1.02}};
+  limits.measures = {{"netd", std::nullopt, 0.06}, {"distortion", std::nullopt, 2}, {"transfer_slope", 0.98, 1.02}};
   limits.fleets = {{.measure = "netd", .mean = 0.055, .sd = 0.003, .u = 0.001, .units = 20},
                    {.measure = "distortion", .mean = 1, .sd = 0.3, .u = 0.1, .units = 20},
                    {.measure = "transfer_slope", .mean = 1, .sd = 0.01, .u = 0, .units = 20}};
@@ -74,7 +72,7 @@ TEST(LimitForecasts, SayTheSameOfMeasuresWithTheUncertaintyOfEarlierSessions) {
   ASSERT_TRUE(forecasts) << forecasts.error().message;
   ASSERT_EQ(forecasts->size(), 1u) << "neither a size without sign nor a row without uncertainty";
   const MeasureForecast& netd = forecasts->front();
-  EXPECT_EQ(netd.measure, LimitedMeasure::netd);
+  EXPECT_EQ(netd.measure, "netd");
   const double sd = std::sqrt(9e-6 + (9e-6 + 1e-6) / 20);
   const Counted truth = counted(-0.055, sd, 0.001, -0.06, -0.06 + 1.959964e-3);
   EXPECT_NEAR(netd.as_before.good_rejected, truth.good_rejected, 0.004);

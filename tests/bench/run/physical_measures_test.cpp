@@ -231,10 +231,10 @@ TEST(PhysicalMeasures, FindTheDefectsOfTheArrayAndJudgeThemByZones) {
   EXPECT_LE(bad->value.value(), static_cast<double>(faults.size()) + 6);
   ASSERT_TRUE(session->verdict);
   for (const Demand& demand : session->verdict->demands) {
-    if (demand.kind == DemandKind::zone_bad_pixels) {
+    if (demand.kind == DemandKind{"zone_bad_pixels"}) {
       EXPECT_EQ(demand.decision, VerdictKind::pass) << demand.reason;
     }
-    if (demand.kind == DemandKind::zone_substituted_pixels) {
+    if (demand.kind == DemandKind{"zone_substituted_pixels"}) {
       EXPECT_EQ(demand.decision, VerdictKind::fail) << demand.reason;
     }
   }

@@ -92,7 +92,7 @@ TEST_F(MeasuredSession, ReplaysWithTheSameTrialsAndTheSameReadings) {
 
 TEST_F(MeasuredSession, WithLimitsOnPhysicalMeasuresReplaysWithoutThem) {
   plan_.measures.geometry = true;
-  plan_.limits.measures.push_back({.measure = LimitedMeasure::ifov_x, .at_least = 1.0, .at_most = 2.0});
+  plan_.limits.measures.push_back({.measure = "ifov_x", .at_least = 1.0, .at_most = 2.0});
   ASSERT_TRUE(measure("m"));
 
   const auto replay = replay_session(at("m"), options("r"), {}, {});

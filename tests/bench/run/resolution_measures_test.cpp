@@ -27,7 +27,7 @@ using testing::TemporaryFolder;
 TEST(PhysicalMeasures, FindTheMtfOfTheSensorModelAndJudgeIt) {
   const TemporaryFolder folder;
   Plan plan = plan_of_one(&MeasuresPlan::mtf);
-  plan.limits.measures = {{LimitedMeasure::mtf_x, 0.5, std::nullopt}, {LimitedMeasure::mtf_y, 0.99, std::nullopt}};
+  plan.limits.measures = {{"mtf_x", 0.5, std::nullopt}, {"mtf_y", 0.99, std::nullopt}};
 
   const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
 
@@ -66,7 +66,7 @@ TEST(PhysicalMeasures, FindTheMtfOfTheSensorModelAndJudgeIt) {
 TEST(PhysicalMeasures, FindTheCtfOfTheSensorModelAndJudgeIt) {
   const TemporaryFolder folder;
   Plan plan = plan_of_one(&MeasuresPlan::ctf);
-  plan.limits.measures = {{LimitedMeasure::ctf_x, 0.3, std::nullopt}, {LimitedMeasure::ctf_y, 0.95, std::nullopt}};
+  plan.limits.measures = {{"ctf_x", 0.3, std::nullopt}, {"ctf_y", 0.95, std::nullopt}};
 
   const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
 
@@ -87,8 +87,8 @@ TEST(PhysicalMeasures, FindTheCtfOfTheSensorModelAndJudgeIt) {
   const auto session = open_session(folder.path() / "session", {});
   ASSERT_TRUE(session) << session.error().message;
   ASSERT_TRUE(session->measures && session->measures->main->ctf && session->measures->twin->ctf);
-  EXPECT_EQ(session->measures->main->ctf->groups.size(), 10u);
-  EXPECT_TRUE(session->measures->twin->ctf->groups.front().model);
+  EXPECT_EQ(session->measures->main->ctf->bars.groups.size(), 10u);
+  EXPECT_TRUE(session->measures->twin->ctf->bars.groups.front().model);
   const auto* x = line_of(session->measures->main, "ctf_x");
   ASSERT_NE(x, nullptr);
   const BarsCtf* stated = outcome->measures->ctf->stated(EdgeAxis::x);
@@ -153,7 +153,7 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
   no_bars.measures.ctf_plate = "edge";
   no_contrast.measures.ctf_delta_t_k = 0;
   no_ctf.measures.ctf = false;
-  no_ctf.limits.measures = {{LimitedMeasure::ctf_y, 0.5, std::nullopt}};
+  no_ctf.limits.measures = {{"ctf_y", 0.5, std::nullopt}};
   Plan triangles = plan_of_one(&MeasuresPlan::mtf), rectangles = plan_of_one(&MeasuresPlan::mtf),
        flat = plan_of_one(&MeasuresPlan::mtf), unasked = plan_of_one(&MeasuresPlan::mtf),
        above = plan_of_one(&MeasuresPlan::mtf);
@@ -161,15 +161,15 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
   rectangles.target.plates = {"edge"};
   flat.measures.mtf_delta_t_k = 0;
   unasked.measures.mtf = false;
-  unasked.limits.measures = {{LimitedMeasure::mtf_x, 0.5, std::nullopt}};
-  above.limits.measures = {{LimitedMeasure::mtf_x, std::nullopt, 0.5}};
+  unasked.limits.measures = {{"mtf_x", 0.5, std::nullopt}};
+  above.limits.measures = {{"mtf_x", std::nullopt, 0.5}};
 
   Plan no_geometry = plan_of_one(&MeasuresPlan::geometry), distorted = plan_of_one(&MeasuresPlan::geometry),
        narrow = plan_of_one(&MeasuresPlan::geometry);
   no_geometry.measures.geometry = false;
-  no_geometry.limits.measures = {{LimitedMeasure::ifov_y, 0.5, std::nullopt}};
-  distorted.limits.measures = {{LimitedMeasure::distortion, 0.5, std::nullopt}};
-  narrow.limits.measures = {{LimitedMeasure::ifov_x, 1.307, 1.309}};
+  no_geometry.limits.measures = {{"ifov_y", 0.5, std::nullopt}};
+  distorted.limits.measures = {{"distortion", 0.5, std::nullopt}};
+  narrow.limits.measures = {{"ifov_x", 1.307, 1.309}};
   narrow.uncertainty.rows = {{.name = "distance", .value = 0.01, .unit = "m"}};
 
   EXPECT_EQ(refusal(plan_of_one(&MeasuresPlan::geometry)), "");

@@ -89,7 +89,7 @@ TEST(PhysicalMeasures, FindTheTimeConstantOfASimulatedSensor) {
   EXPECT_NEAR(line_of(record->main, "response_time")->value.value(), 1e3 * found.value_s, 1e-9);
   EXPECT_NEAR(line_of(record->main, "response_time_fall")->ci95.high.value(),
               1e3 * measures->response->response.fall->high_s, 1e-9);
-  EXPECT_EQ(record->main->response->points, measures->response->response.points);
+  EXPECT_EQ(record->main->response->response.points, measures->response->response.points);
 }
 
 /// A target that steps only by being presented, as instruments do: the camera is not told when.
@@ -131,7 +131,7 @@ TEST(PhysicalMeasures, OfASessionHaveTheResponseTimeBesideThatOfTheTwin) {
   const std::string text = testing::content_of(source_file("sim_devices/sensors/sc2000.toml"));
   plan.simulation.sensor = folder.write("bolometer.toml", text + "\ntime_constant_ms = 10\n").string();
   plan.camera.id = "sim:" + plan.simulation.sensor;
-  plan.limits.measures = {{LimitedMeasure::response_time, std::nullopt, 14}};
+  plan.limits.measures = {{"response_time", std::nullopt, 14}};
 
   const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
 
@@ -150,7 +150,7 @@ TEST(PhysicalMeasures, OfASessionHaveTheResponseTimeBesideThatOfTheTwin) {
   EXPECT_EQ(line_of(session->measures->twin, "response_time_model")->value, 10);
   const auto& demands = outcome->verdict.demands;
   const auto demand = std::find_if(demands.begin(), demands.end(),
-                                   [](const Demand& one) { return one.kind == DemandKind::response_time; });
+                                   [](const Demand& one) { return one.kind == DemandKind{"response_time"}; });
   ASSERT_NE(demand, demands.end());
   EXPECT_EQ(demand->decision, VerdictKind::pass);
   EXPECT_THAT(render_report(*report_data(*session, "session")), HasSubstr("response-twin"));
@@ -164,7 +164,7 @@ TEST(PlanOfMeasures, NeedsTheSettlingOfATargetWhoseResponseTimeIsAsked) {
   plan.measures.response_delta_t_k = 10;
   plan.measures.response = false;
   plan.measures.noise = true;
-  plan.limits.measures = {{LimitedMeasure::response_time, std::nullopt, 14}};
+  plan.limits.measures = {{"response_time", std::nullopt, 14}};
   EXPECT_EQ(mistakes_in(plan).size(), 1u);
   plan.measures.response = true;
   EXPECT_TRUE(mistakes_in(plan).empty());

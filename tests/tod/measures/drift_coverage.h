@@ -62,7 +62,7 @@ struct DriftCoverage {
   double level_half_k = 0, pattern_half_k = 0;                       ///< mean half-width
 };
 
-inline bool holds(const DriftInterval& interval, double truth) {
+inline bool holds(const Interval& interval, double truth) {
   return (!interval.low || *interval.low <= truth) && (!interval.high || *interval.high >= truth);
 }
 

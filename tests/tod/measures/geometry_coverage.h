@@ -86,8 +86,8 @@ inline GeometryCoverage geometry_coverage(const TargetPlate& plate, const LensCa
       continue;
     }
     ++out.seeds;
-    const GeometryValue* values[] = {&found->mm_per_px_x, &found->mm_per_px_y, &found->rotation_deg,
-                                     &found->distortion_percent};
+    const Estimate* values[] = {&found->mm_per_px_x, &found->mm_per_px_y, &found->rotation_deg,
+                                &found->distortion_percent};
     for (std::size_t k = 0; k < out.within.size(); ++k) {
       out.within[k] += seen.truth[k] >= values[k]->low && seen.truth[k] <= values[k]->high ? 1 : 0;
       out.mean_error[k] += values[k]->value - seen.truth[k];

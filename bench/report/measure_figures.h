@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figures of the physical measures in the report: one function for each measure, in the file of the measure.
+#pragma once
+
+#include <optional>
+
+#include "bench/report/document.h"
+#include "bench/session/measures_record.h"
+
+namespace todbench {
+
+// Each returns the figures of the camera (of the simulated sensor if not `camera`) and of the twin; empty if neither
+// has the measure.
+
+[[nodiscard]] std::optional<FigurePairs> transfer_figures(const SessionMeasures& measures, bool camera);
+/// One figure for each place and axis: camera with intervals, twin, closed form.
+[[nodiscard]] std::optional<FigurePairs> mtf_figures(const SessionMeasures& measures, bool camera);
+/// Of the camera alone.
+[[nodiscard]] std::optional<FigurePairs> drift_figures(const SessionMeasures& measures, bool camera);
+[[nodiscard]] std::optional<FigurePairs> response_figures(const SessionMeasures& measures, bool camera);
+[[nodiscard]] std::optional<FigurePairs> geometry_figures(const SessionMeasures& measures, bool camera);
+/// One figure for each axis: best and worst sampling phase of every group of bars, and the closed form.
+[[nodiscard]] std::optional<FigurePairs> ctf_figures(const SessionMeasures& measures, bool camera);
+/// Maps of the camera next to those of the twin.
+[[nodiscard]] std::optional<FigurePairs> pixel_figures(const SessionMeasures& measures, bool camera);
+
+}  // namespace todbench

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Table of the physical measures in measures.json: one row for each measure, in the file of the measure.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/session/measures_record.h"
+#include "bench/text/json.h"
+#include "bench/text/json_reader.h"
+#include "tod/camera_measures/camera_measures.h"
+
+namespace todbench {
+
+/// A measure in measures.json.
+struct MeasureRow {
+  std::string_view key;  ///< of its part of the record
+  /// Adds its quantities, and the measure itself if a figure or a table shows it; no effect if it was not taken.
+  void (*add)(MeasureLines& out, const CameraMeasures& measures);
+  Json (*to_json)(const CameraMeasures& measures);  ///< null if it was not taken
+  /// Reads the numbers that figures and tables show; mistakes are recorded in the reader. Null: none are shown.
+  void (*read)(MeasureLines& out, const JsonReader& part) = nullptr;
+  bool (*valid)(const MeasureLines& lines) = nullptr;  ///< of the numbers read; null: always
+  std::string_view mistake{};                          ///< sentence if they are not valid
+};
+
+// Each in the file of its measure.
+[[nodiscard]] MeasureRow transfer_row();
+[[nodiscard]] MeasureRow geometry_row();
+[[nodiscard]] MeasureRow noise_row();
+[[nodiscard]] MeasureRow drift_row();
+[[nodiscard]] MeasureRow response_row();
+[[nodiscard]] MeasureRow pixels_row();
+[[nodiscard]] MeasureRow mtf_row();
+[[nodiscard]] MeasureRow ctf_row();
+
+/// Returns all rows in the order of their quantities.
+[[nodiscard]] inline const auto& measure_table() {
+  static const std::array rows{transfer_row(), geometry_row(), noise_row(), drift_row(),
+                               response_row(), pixels_row(),   mtf_row(),   ctf_row()};
+  return rows;
+}
+
+[[nodiscard]] Json measure_numbers_json(const std::vector<double>& values);
+[[nodiscard]] std::vector<double> measure_numbers_from(const JsonReader& list);
+/// Returns {"value", "ci95"}.
+[[nodiscard]] Json estimate_json(const Estimate& found);
+
+}  // namespace todbench
