@@ -9,6 +9,8 @@
 #include "bench/selftest/selftest.h"
 #include "bench/session/build_info.h"
 #include "bench/session/json_output.h"
+#include "bench/session/selftest_record.h"
+#include "bench/text/files.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -58,8 +60,20 @@ int run_selftest(Console& console, bool all, std::stop_token stop) {
   console.end_progress();
   if (!cases) return report_error(console, cases.error());
   const std::ptrdiff_t failed = std::count_if(cases->begin(), cases->end(), [](const auto& one) { return !one.ok(); });
+  const Json json = selftest_json(*cases, failed);
+  const auto passed = static_cast<std::ptrdiff_t>(cases->size()) - failed;
+  const std::filesystem::path file = selftest_file();
+  const auto kept = keep_selftest(file, {.utc = {},
+                                         .passed = static_cast<int>(passed),
+                                         .failed = static_cast<int>(failed),
+                                         .cases_sha256 = sha256_of(json["cases"].dump()),
+                                         .program_version = {},
+                                         .git_commit = {},
+                                         .compiler = {},
+                                         .host = {}});
+  if (!kept) console.note("later sessions cannot state this result: " + kept.error().message);
   if (console.json()) {
-    console.object(selftest_json(*cases, failed));
+    console.object(json);
     return failed == 0 ? 0 : a_case_failed;
   }
   print_groups(console, *cases);
@@ -70,7 +84,6 @@ int run_selftest(Console& console, bool all, std::stop_token stop) {
                       one.ok() ? "ok" : "FAILED"});
   }
   if (!rows.empty()) console.table({"group", "case", "value", "expected", "tolerance", ""}, rows);
-  const auto passed = static_cast<std::ptrdiff_t>(cases->size()) - failed;
   console.text(fmt::format("verified on this machine: {} of {}", passed, cases->size()));
   return failed == 0 ? 0 : a_case_failed;
 }

@@ -508,6 +508,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
   if (!folder) return tl::unexpected(folder.error());
   const OpenSession open{*folder, listener};
   if (listener.on_session) listener.on_session(folder->path());
+  note_failed_selftest(open, provenance);
 
   for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
   phase(*folder, listener, "simulating " + inputs->sensor.name);
@@ -586,6 +587,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   if (!folder) return tl::unexpected(folder.error());
   const OpenSession open{*folder, listener};
   if (listener.on_session) listener.on_session(folder->path());
+  note_failed_selftest(open, provenance);
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
   for (const auto& warning : bench.warnings) note(*folder, listener, warning);
   for (const auto& warning : inputs.warnings) note(*folder, listener, warning);

@@ -33,6 +33,8 @@ void add_provenance(ReportData& data, const Provenance& provenance) {
                      {"Source commit", provenance.git_commit},
                      {"Compiler", provenance.compiler},
                      {"Host", provenance.host}};
+  data.provenance.emplace_back("Self-test", provenance.selftest ? in_words(*provenance.selftest)
+                                                                : "not recorded for this program on this computer");
   for (const auto& [name, seed] : provenance.seeds)
     data.provenance.emplace_back("Seed of the " + name, std::to_string(seed));
   for (const auto& module : provenance.modules) {

@@ -94,12 +94,19 @@ Result<SessionFolder> begin_session(const LoadedPlan& loaded, const ExperimentOp
   auto folder = SessionFolder::create(options.folder, options.existing, options.host.clocks);
   if (!folder) return folder;
   provenance.started_utc = folder->clock().started_utc();
+  provenance.selftest = kept_selftest(selftest_file());
   auto begun = take_ending_rooms(folder->path());
   if (begun) begun = folder->write_plan(loaded);
   if (begun) begun = folder->write_provenance(provenance);
   if (begun) return folder;
   free_ending_rooms(folder->path());
   return tl::unexpected(begun.error());
+}
+
+void note_failed_selftest(const OpenSession& open, const Provenance& provenance) {
+  if (!provenance.selftest || provenance.selftest->failed == 0) return;
+  note(open.folder, open.listener,
+       "the last self-test of this program on this computer failed: " + in_words(*provenance.selftest));
 }
 
 tl::unexpected<Error> abandon(const OpenSession& open, const Plan& plan, const Provenance& provenance, Error error) {

@@ -23,6 +23,9 @@ void note(SessionFolder& folder, const ExperimentListener& listener, const std::
 [[nodiscard]] Result<SessionFolder> begin_session(const LoadedPlan& loaded, const ExperimentOptions& options,
                                                   Provenance& provenance);
 
+/// Adds a note if the last self-test of this program on this computer failed.
+void note_failed_selftest(const OpenSession& open, const Provenance& provenance);
+
 /// Ends a session without a curve: leaves a valid folder and returns the reason.
 [[nodiscard]] tl::unexpected<Error> abandon(const OpenSession& open, const Plan& plan, const Provenance& provenance,
                                             Error error);

@@ -133,6 +133,7 @@ void provenance_fields(JsonFields& json, Provenance& provenance) {
   json.value("run", provenance.run, run_fields);
   json.value("twin_run", provenance.twin_run, run_fields);
   json.if_any("camera_optics", provenance.camera_optics, optics_fields);
+  json.if_any("selftest", provenance.selftest, selftest_fields);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "acquisition/core/frame_source.h"
 #include "bench/plan/plan_options.h"
 #include "bench/session/json_output.h"
+#include "bench/session/selftest_record.h"
 #include "tod/measurement/measurement.h"
 
 namespace todbench {
@@ -79,6 +80,8 @@ struct Provenance {
   std::optional<RunRecord> run;         ///< of trials.csv
   std::optional<RunRecord> twin_run;    ///< of trials_simulated.csv
   std::optional<CameraOpticsRecord> camera_optics{};
+  /// The last self-test of this program on this computer; empty: none.
+  std::optional<SelftestRecord> selftest{};
 };
 
 /// Returns the number of parts between camera losses; 1: the camera was never lost.

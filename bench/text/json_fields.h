@@ -26,7 +26,7 @@
 namespace todbench {
 
 /// One object that a description writes or reads. A value is a number, whole number, flag, text, interval, or a list,
-/// map or optional of values; an empty optional is null. Further argument `how`: the list of the enumerators that are
+/// map or optional of values; an empty optional is null. Further argument `how`: the list of the values that are
 /// written as words, or the description of a nested record. Keeps the first mistake. Lives during one description.
 class JsonFields {
  public:
@@ -160,6 +160,11 @@ template <typename Value>
 inline constexpr bool is_map = false;
 template <typename Value>
 inline constexpr bool is_map<std::map<std::string, Value>> = true;
+/// Written as the word of its to_string(): an enumeration, or a class whose values have names.
+template <typename Value>
+concept Word = std::is_enum_v<Value> ||(std::is_class_v<Value>&& requires(const Value& value) {
+  { to_string(value) } -> std::same_as<std::string_view>;
+});
 }  // namespace json_fields_detail
 
 template <typename Value, typename... How>
@@ -181,7 +186,7 @@ Json JsonFields::written(const std::string& path, Value& value, const How&... ho
     Json object = Json::object();
     for (auto& [key, item] : value) object[key] = written(path + "." + key, item, how...);
     return object;
-  } else if constexpr (std::is_enum_v<Value>) {
+  } else if constexpr (detail::Word<Value>) {
     return Json(to_string(value));
   } else if constexpr (std::is_same_v<Value, double>) {
     return finite(path, value);
@@ -207,7 +212,7 @@ void JsonFields::read(const JsonReader& reader, Value& value, const How&... how)
   } else if constexpr (detail::is_map<Value>) {
     value.clear();
     for (const auto& [key, item] : reader.items()) read(item, value[key], how...);
-  } else if constexpr (std::is_enum_v<Value>) {
+  } else if constexpr (detail::Word<Value>) {
     value = reader.named(how...);
   } else if constexpr (std::is_same_v<Value, double>) {
     value = reader.number();
