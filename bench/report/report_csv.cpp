@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "bench/judgement/demand_kinds.h"
+#include "bench/plan/quantity.h"
 #include "bench/text/spreadsheet.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
@@ -23,6 +24,7 @@ struct Row {
   std::string unit{};
   std::string decision{};
   std::string text{};
+  std::string definition{};
 };
 
 std::string field(const std::optional<double>& number) {
@@ -40,7 +42,8 @@ void add(std::string& table, const Row& row) {
                           field(row.limit),
                           spreadsheet_field(row.unit),
                           spreadsheet_field(row.decision),
-                          spreadsheet_field(row.text)};
+                          spreadsheet_field(row.text),
+                          spreadsheet_field(row.definition)};
   for (const std::string& text : fields) table += (&text == &fields.front() ? "" : ",") + text;
   table += "\n";
 }
@@ -115,13 +118,15 @@ void add_measures(std::string& table, const std::string& section, const std::opt
   if (!side) return;
   for (const MeasureLine& line : side->lines) {
     const bool bounded = line.ci95.low || line.ci95.high;
+    const Quantity* quantity = find_quantity(line.measure);
     add(table, {.section = section,
                 .name = line.measure,
                 .value = line.value,
                 .interval = line.ci95,
                 .interval_percent = bounded ? std::optional(95) : std::nullopt,
                 .unit = line.unit,
-                .text = line.conditions});
+                .text = line.conditions,
+                .definition = quantity == nullptr ? std::string() : std::string(quantity->definition)});
   }
   if (side->ctf) {
     for (const BarsCtf& group : side->ctf->bars.groups) add_bars(table, section, group);
@@ -234,7 +239,8 @@ void add_frames(std::string& table, const ReportData& data) {
 }  // namespace
 
 std::string report_csv(const ReportData& data) {
-  std::string table = "section,name,set_delta_t_k,value,low,high,interval_percent,limit,unit,decision,text\n";
+  std::string table =
+      "section,name,set_delta_t_k,value,low,high,interval_percent,limit,unit,decision,text,definition\n";
   add_session(table, data);
   add_verdict(table, data);
   add_curve(table, "measured", data.measured);

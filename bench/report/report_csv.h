@@ -21,6 +21,7 @@ namespace todbench {
 /// | unit             | of value, interval and limit; empty for texts, counts and ratios
 /// | decision         | "pass" ... of a demand or of the verdict; of a threshold the verdict of its fit
 /// | text             | sentence, or a value that is not a number
+/// | definition       | of a physical measure
 [[nodiscard]] std::string report_csv(const ReportData& data);
 
 }  // namespace todbench

@@ -40,8 +40,8 @@ TEST(ReportCsv, HasTheColumnsOfTheDocumentsInEveryRow) {
   const Rows rows = rows_of(sample_report());
 
   EXPECT_THAT(rows.front(), ElementsAre("section", "name", "set_delta_t_k", "value", "low", "high", "interval_percent",
-                                        "limit", "unit", "decision", "text"));
-  EXPECT_THAT(rows, Each(SizeIs(11)));
+                                        "limit", "unit", "decision", "text", "definition"));
+  EXPECT_THAT(rows, Each(SizeIs(12)));
 }
 
 TEST(ReportCsv, HasTheNumbersOfEveryPointAsTheyAre) {
@@ -97,7 +97,7 @@ TEST(ReportCsv, KeepsTextsOfOthersInOneField) {
   ReportData data = sample_report();
   data.operator_name = "A, \"B\"\nverdict,decision,,,,,,,,pass,";
 
-  EXPECT_THAT(rows_of(data), Each(SizeIs(11)));
+  EXPECT_THAT(rows_of(data), Each(SizeIs(12)));
   EXPECT_THAT(rows_of(data, "verdict", "decision"), SizeIs(1));
 }
 
