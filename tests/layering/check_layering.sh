@@ -18,8 +18,9 @@ BEGIN {
   may["acquisition/v4l2"] = core " acquisition/pixel_formats"
   may["acquisition/usb"] = core " acquisition/pixel_formats"
   may["hvs/shape"] = base
-  may["hvs/observer"] = base " hvs/shape"
-  hvs = base " hvs/shape hvs/observer"
+  may["hvs/eye"] = base
+  may["hvs/observer"] = base " hvs/shape hvs/eye"
+  hvs = base " hvs/shape hvs/eye hvs/observer"
   may["tod/plate"] = hvs
   may["tod/pattern"] = hvs " tod/plate"
   may["tod/presentation"] = base " tod/plate"

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Optics of the eye: pupil, light on the retina, modulation transfer.
+#pragma once
+
+namespace todbench {
+
+/// Diameter of the pupil in mm, both eyes open (Watson and Yellott 2012, unified formula). `field_deg2` is the area of
+/// the adapting field. Precondition: luminance and field above 0.
+[[nodiscard]] double pupil_diameter_mm(double luminance_cd_m2, double field_deg2, double age_years);
+
+/// Effective light on the retina in troland, with the Stiles-Crawford effect (as in Barten's model).
+[[nodiscard]] double retinal_illuminance_td(double luminance_cd_m2, double pupil_mm);
+
+/// Frequency in cycles per degree above which a perfect eye with this pupil passes nothing, at 555 nm.
+[[nodiscard]] double diffraction_limit_per_degree(double pupil_mm);
+
+/// Mean radial modulation transfer of the best-corrected eye (Watson 2013, equations 3 to 5): 1 at frequency 0, 0 from
+/// the diffraction limit on.
+[[nodiscard]] double eye_mtf(double frequency_per_degree, double pupil_mm);
+
+}  // namespace todbench
