@@ -56,7 +56,7 @@ Result<void> check_pixels(const ViewedDisplay& display) {
   const bool by_size = display.diagonal_in > 0 || !display.pixels.empty();
   if (display.pixel_pitch_mm > 0 && by_size)
     return refuse("pixel_pitch_mm", "state either the pixel pitch, or diagonal_in and pixels");
-  if (display.pixel_pitch_mm == 0 && !(display.diagonal_in > 0 && display.pixels.size() == 2)) {
+  if (!(display.pixel_pitch_mm > 0) && !(display.diagonal_in > 0 && display.pixels.size() == 2)) {
     return refuse("pixel_pitch_mm",
                   "the size of a display pixel is unknown: state pixel_pitch_mm, or diagonal_in and pixels "
                   "(columns and rows)");
@@ -184,6 +184,13 @@ Result<double> luminance_contrast(const ViewedDisplay& display, double delta_t_k
                                         "luminances",
                                         delta_t_k, display.span_k, display.span_k * std::min(level, 1 - level)));
   }
+  return shown_contrast(display, delta_t_k);
+}
+
+double shown_contrast(const ViewedDisplay& display, double delta_t_k) {
+  if (display.span_k == 0) return display.contrast;
+  const double level = background_level(display);
+  const double step = std::min({std::abs(delta_t_k) / display.span_k, level, 1 - level});
   return (luminance_at(display, level + step) - luminance_at(display, level - step)) / 2 /
          adaptation_luminance_cd_m2(display);
 }

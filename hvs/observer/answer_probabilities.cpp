@@ -68,20 +68,27 @@ struct Contenders {
   std::size_t second = 0;  ///< the best of another alternative, if one can win
 };
 
-Contenders contenders(const ScoreNoise& noise, double sd, const AnswerRoom& room) {
+Contenders contenders(const ScoreNoise& noise, const ScoreNoiseLevels& levels, const AnswerRoom& room) {
   Contenders out;
+  const double sd = levels.total();
   const auto rows = room.rows;
   out.first = static_cast<std::size_t>(std::max_element(rows.begin(), rows.end()) - rows.begin());
   if (sd > 0) {
-    noise.copy_factor(out.first, room.numbers);
-    noise.scores(room.numbers, room.along);  // correlations with the best
+    const auto numbers = room.numbers.first(noise.rank());
+    noise.copy_factor(out.first, numbers);
+    noise.weigh(levels, numbers);
+    noise.weigh(levels, numbers);
+    noise.scores(numbers, room.along);  // covariances with the best
   }
-  // behind > reach sd sqrt(2 (1 - rho)), squared.
+  // behind > reach sd sqrt(2 (variance - covariance)), squared, with the mean variance of the two scores.
+  const ScoreNoise::Shares shares = noise.shares(levels);
+  const float own = noise.variance(shares, out.first);
   const auto limit = static_cast<float>(2 * std::pow(reach_sd * sd, 2));
   float best_of_others = none;
   for (std::size_t t = 0; t < noise.size(); ++t) {
     const float behind = rows[out.first] - rows[t];
-    if (behind > 0 && (sd == 0 || behind * behind > limit * (1 - room.along[t]))) continue;
+    if (behind > 0 && (sd == 0 || behind * behind > limit * ((own + noise.variance(shares, t)) / 2 - room.along[t])))
+      continue;
     out.blocks.set(t / block);
     out.alternatives.set(t / noise.row());
     if (t / noise.row() != out.first / noise.row() && rows[t] > best_of_others) {
@@ -94,17 +101,20 @@ Contenders contenders(const ScoreNoise& noise, double sd, const AnswerRoom& room
 
 /// Finds the unit direction from the second to the first template, and its product with every template. False if the
 /// two templates are equal.
-bool find_direction(const ScoreNoise& noise, const Contenders& able, const AnswerRoom& room) {
+bool find_direction(const ScoreNoise& noise, const ScoreNoiseLevels& levels, const Contenders& able,
+                    const AnswerRoom& room) {
+  const auto numbers = room.numbers.first(noise.rank());
   noise.copy_factor(able.first, room.direction);
-  noise.copy_factor(able.second, room.numbers);
+  noise.copy_factor(able.second, numbers);
   double square = 0;
-  for (std::size_t k = 0; k < noise.rank(); ++k) {
-    room.direction[k] -= room.numbers[k];
-    square += std::pow(static_cast<double>(room.direction[k]), 2);
-  }
+  for (std::size_t k = 0; k < noise.rank(); ++k) room.direction[k] -= numbers[k];
+  noise.weigh(levels, room.direction);
+  for (const float number : room.direction) square += std::pow(static_cast<double>(number), 2);
   if (square == 0) return false;
   for (float& number : room.direction) number = static_cast<float>(static_cast<double>(number) / std::sqrt(square));
-  noise.scores(room.direction, room.along);
+  std::copy(room.direction.begin(), room.direction.end(), numbers.begin());
+  noise.weigh(levels, numbers);
+  noise.scores(numbers, room.along);
   return true;
 }
 
@@ -126,56 +136,105 @@ Strata values_in_strata(double share) {
   return out;
 }
 
-/// Share of wins of each alternative under one draw across the direction, over the strata; equal scores share.
-Shares winners(const ScoreNoise& noise, const Contenders& able, const AnswerRoom& room, float scale,
-               const Strata& values) {
-  std::array<std::array<float, Choice::max_alternatives>, strata> tops;
-  for (auto& top : tops) top.fill(none);
+/// Some draws across the direction: as many as are multiplied together.
+struct Vectors {
+  std::size_t count = 0;
+  std::array<Strata, products_at_once> values{};
+};
+
+/// The scores of one block under the draws.
+void draw_block(const ScoreNoise& noise, const AnswerRoom& room, std::size_t first, std::size_t count,
+                std::array<std::array<float, block>, products_at_once>& drawn) {
+  const std::size_t rank = noise.rank();
+  if (count == products_at_once) {
+    std::array<const float*, products_at_once> numbers{};
+    std::array<float*, products_at_once> sums{};
+    for (std::size_t j = 0; j < count; ++j) {
+      numbers[j] = room.numbers.data() + j * rank;
+      sums[j] = drawn[j].data();
+      drawn[j].fill(0.0F);
+    }
+    add_block_products(noise.factor(first), numbers, rank, sums);
+    return;
+  }
+  for (std::size_t j = 0; j < count; ++j)
+    block_product(noise.factor(first), room.numbers.data() + j * rank, rank, drawn[j].data());
+}
+
+/// Share of wins of each alternative under each draw across the direction, over the strata; equal scores share.
+std::array<Shares, products_at_once> winners(const ScoreNoise& noise, const Contenders& able, const AnswerRoom& room,
+                                             float scale, const Vectors& vectors) {
+  using Tops = std::array<std::array<float, Choice::max_alternatives>, strata>;
+  std::array<Tops, products_at_once> tops;
+  for (Tops& of_vector : tops)
+    for (auto& top : of_vector) top.fill(none);
+  std::array<std::array<float, block>, products_at_once> drawn;
   for (std::size_t o = 0; o < noise.alternatives(); ++o) {
     if (!able.alternatives[o]) continue;
-    Best best;
-    for (auto& lanes : best.lanes) std::fill(lanes, lanes + block, none);
+    std::array<Best, products_at_once> best;
+    for (std::size_t j = 0; j < vectors.count; ++j)
+      for (auto& lanes : best[j].lanes) std::fill(lanes, lanes + block, none);
     for (std::size_t first = o * noise.row(); first < (o + 1) * noise.row(); first += block) {
       if (!able.blocks[first / block]) continue;
-      float drawn[block];
-      block_product(noise.factor(first), room.numbers.data(), noise.rank(), drawn);
-      take_block(drawn, &room.rows[first], &room.along[first], scale, values, best);
+      draw_block(noise, room, first, vectors.count, drawn);
+      for (std::size_t j = 0; j < vectors.count; ++j)
+        take_block(drawn[j].data(), &room.rows[first], &room.along[first], scale, vectors.values[j], best[j]);
     }
-    for (std::size_t v = 0; v < strata; ++v) tops[v][o] = largest(best.lanes[v]);
+    for (std::size_t j = 0; j < vectors.count; ++j)
+      for (std::size_t v = 0; v < strata; ++v) tops[j][v][o] = largest(best[j].lanes[v]);
   }
-  Shares out{};
-  for (const auto& top : tops) {
-    const float most = *std::max_element(top.begin(), top.end());
-    const auto equal = static_cast<double>(std::count(top.begin(), top.end(), most));
-    for (std::size_t o = 0; o < top.size(); ++o) out[o] += top[o] == most ? 1 / (equal * strata) : 0;
+  std::array<Shares, products_at_once> out{};
+  for (std::size_t j = 0; j < vectors.count; ++j) {
+    for (const auto& top : tops[j]) {
+      const float most = *std::max_element(top.begin(), top.end());
+      const auto equal = static_cast<double>(std::count(top.begin(), top.end(), most));
+      for (std::size_t o = 0; o < top.size(); ++o) out[j][o] += top[o] == most ? 1 / (equal * strata) : 0;
+    }
+  }
+  return out;
+}
+
+/// Draws the numbers of some vectors, from number `first` on.
+Vectors draw_vectors(const ScoreNoise& noise, const ScoreNoiseLevels& levels, const RandomStream& stream, int first,
+                     int last, const AnswerRoom& room) {
+  Vectors out;
+  for (int vector = first; vector < last && out.count < products_at_once; ++vector, ++out.count) {
+    const RandomStream own = stream.sub(static_cast<std::uint64_t>(vector));
+    const auto numbers = room.numbers.subspan(out.count * noise.rank(), noise.rank());
+    own.fill_normal(numbers);
+    project_across(numbers, room.direction);
+    noise.weigh(levels, numbers);
+    out.values[out.count] = values_in_strata(own.uniform(noise.rank()));
   }
   return out;
 }
 
 }  // namespace
 
-AnswerProbabilities answer_probabilities(const ScoreNoise& noise, std::span<const float> scores, double sd,
-                                         const RandomStream& stream, int draws, const AnswerRoom& room) {
+AnswerProbabilities answer_probabilities(const ScoreNoise& noise, std::span<const float> scores,
+                                         const ScoreNoiseLevels& levels, const RandomStream& stream, int draws,
+                                         const AnswerRoom& room) {
   noise.in_rows(scores, none, room.rows);
-  const Contenders able = contenders(noise, sd, room);
+  const double sd = levels.total();
+  const Contenders able = contenders(noise, levels, room);
   AnswerProbabilities out;
-  if (sd == 0 || able.alternatives.count() == 1 || !find_direction(noise, able, room)) {
+  if (sd == 0 || able.alternatives.count() == 1 || !find_direction(noise, levels, able, room)) {
     for (std::size_t o = 0; o < able.alternatives.size(); ++o)
       out.probability[o] = able.alternatives[o] ? 1 / static_cast<double>(able.alternatives.count()) : 0;
     return out;
   }
   const int vectors = std::max(least_vectors, (draws + static_cast<int>(strata) - 1) / static_cast<int>(strata));
   Shares sum{}, squares{};
-  for (int vector = 0; vector < vectors; ++vector) {
-    const RandomStream own = stream.sub(static_cast<std::uint64_t>(vector));
-    own.fill_normal(room.numbers);
-    project_across(room.numbers, room.direction);
-    const Shares share =
-        winners(noise, able, room, static_cast<float>(sd), values_in_strata(own.uniform(noise.rank())));
-    for (std::size_t o = 0; o < share.size(); ++o) {
-      sum[o] += share[o];
-      squares[o] += share[o] * share[o];
+  for (int vector = 0; vector < vectors;) {
+    const Vectors drawn = draw_vectors(noise, levels, stream, vector, vectors, room);
+    const auto shares = winners(noise, able, room, static_cast<float>(sd), drawn);
+    for (std::size_t j = 0; j < drawn.count; ++j) {
+      for (std::size_t o = 0; o < shares[j].size(); ++o) {
+        sum[o] += shares[j][o];
+        squares[o] += shares[j][o] * shares[j][o];
+      }
     }
+    vector += static_cast<int>(drawn.count);
   }
   const double n = vectors;
   for (std::size_t o = 0; o < sum.size(); ++o) out.probability[o] = sum[o] / n;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "acquisition/base/rng.h"
+#include "hvs/observer/block_product.h"
 #include "hvs/observer/observer.h"
 #include "hvs/observer/score_noise.h"
 
@@ -15,16 +16,16 @@ namespace todbench {
 struct AnswerRoom {
   std::span<float> rows;       ///< ScoreNoise::size() elements
   std::span<float> along;      ///< ScoreNoise::size() elements
-  std::span<float> numbers;    ///< ScoreNoise::rank() elements
+  std::span<float> numbers;    ///< products_at_once times ScoreNoise::rank() elements
   std::span<float> direction;  ///< ScoreNoise::rank() elements
 };
 
 /// Returns the share of the noise for which each alternative has the largest score. `scores` are those of the patch
-/// without the noise, as its bank gives them; `sd` is the standard deviation of the noise per sample, in the same unit.
+/// without the noise, as its bank gives them; `levels` are the standard deviations of the noise, in the same unit.
 ///
 /// Without noise the best alternative has probability 1 (equal ones share it). With noise a template takes part only if
 /// it can come within five standard deviations of the best one: score_best - score < 5 sd sqrt(2 (1 - rho)) with rho
-/// the product of the two templates. An alternative that is the only one left has probability 1 (error below 3e-7 for
+/// the correlation of the two scores. An alternative that is the only one left has probability 1 (error below 3e-7 for
 /// each omitted template).
 ///
 /// Otherwise the noise is drawn in the directions across the difference of the two best alternatives' templates. Along
@@ -32,7 +33,7 @@ struct AnswerRoom {
 /// and stratified sampling, Owen 2013, 8.7 and 8.4). `draws` is rounded up to a multiple of eight, at least 32.
 /// Allocates no memory. The same bits on every instruction set.
 [[nodiscard]] AnswerProbabilities answer_probabilities(const ScoreNoise& noise, std::span<const float> scores,
-                                                       double sd, const RandomStream& stream, int draws,
-                                                       const AnswerRoom& room);
+                                                       const ScoreNoiseLevels& levels, const RandomStream& stream,
+                                                       int draws, const AnswerRoom& room);
 
 }  // namespace todbench

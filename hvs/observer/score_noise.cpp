@@ -3,48 +3,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "hvs/observer/block_product.h"
+#include "hvs/observer/eye_noise.h"
+#include "hvs/observer/pivoted_cholesky.h"
 
 namespace todbench {
 namespace {
 
 constexpr std::size_t score_block = TemplateBank::block;
 
-/// Columns of the factor, one per normal number.
-std::vector<std::vector<double>> cholesky_columns(const TemplateBank& bank) {
+/// Columns of the factor of white noise, one per normal number.
+std::vector<std::vector<double>> white_columns(const TemplateBank& bank, double max_left_out) {
   const auto templates = static_cast<std::size_t>(bank.templates());
   const auto side = static_cast<std::size_t>(bank.window_samples());
-  std::vector<double> left(templates, 1);  // templates have unit norm
-  std::vector<std::vector<double>> columns;
   std::vector<float> pivot(side * side), products(bank.padded_templates());
-  while (columns.size() < std::min(templates, side * side)) {
-    const auto at = static_cast<std::size_t>(std::max_element(left.begin(), left.end()) - left.begin());
-    if (left[at] <= ScoreNoise::max_left_out) break;
+  std::vector<double> variances(templates, 1);  // templates have unit norm
+  if (bank.eye() != nullptr) {
+    for (std::size_t t = 0; t < templates; ++t) variances[t] = bank.square(t);
+  }
+  return pivoted_cholesky(std::move(variances), max_left_out, side * side, [&](std::size_t at) {
     bank.copy_template(at, pivot);
     bank.project(pivot, products);
-    std::vector<double> column(products.begin(), products.begin() + static_cast<std::ptrdiff_t>(templates));
-    for (const std::vector<double>& earlier : columns) {
-      for (std::size_t t = 0; t < templates; ++t) column[t] -= earlier[t] * earlier[at];
-    }
-    const double root = std::sqrt(left[at]);
-    for (std::size_t t = 0; t < templates; ++t) {
-      column[t] /= root;
-      left[t] -= column[t] * column[t];
-    }
-    left[at] = 0;
-    columns.push_back(std::move(column));
-  }
-  return columns;
+    return std::vector<double>(products.begin(), products.begin() + static_cast<std::ptrdiff_t>(templates));
+  });
 }
 
 }  // namespace
 
-ScoreNoise::ScoreNoise(const TemplateBank& bank)
+ScoreNoise::ScoreNoise(const TemplateBank& bank, AddedWhiteNoise white)
     : places_(static_cast<std::size_t>(bank.places())),
       row_((places_ + score_block - 1) / score_block * score_block),
       alternatives_(static_cast<std::size_t>(bank.alternatives())) {
-  const std::vector<std::vector<double>> columns = cholesky_columns(bank);
+  std::vector<std::vector<double>> columns;
+  if (bank.eye() != nullptr) columns = bank.eye()->columns();
+  eye_rank_ = columns.size();
+  if (white == AddedWhiteNoise::yes) {
+    auto added = white_columns(bank, bank.eye() != nullptr ? EyeNoise::max_left_out : max_left_out);
+    std::move(added.begin(), added.end(), std::back_inserter(columns));
+  }
   rank_ = columns.size();
   values_.assign(size() * rank_, 0.0F);
   for (std::size_t k = 0; k < rank_; ++k) {
@@ -53,6 +52,23 @@ ScoreNoise::ScoreNoise(const TemplateBank& bank)
       values_[(at / score_block * rank_ + k) * score_block + at % score_block] = static_cast<float>(columns[k][t]);
     }
   }
+  if (eye_rank_ == 0) return;
+  squares_.assign(size(), 0.0F);
+  for (std::size_t t = 0; t < alternatives_ * places_; ++t)
+    squares_[t / places_ * row_ + t % places_] = static_cast<float>(bank.square(t));
+}
+
+void ScoreNoise::weigh(const ScoreNoiseLevels& levels, std::span<float> numbers) const {
+  if (eye_rank_ == 0) return;
+  const double total = levels.total();
+  const auto eye = static_cast<float>(levels.eye / total), white = static_cast<float>(levels.white / total);
+  for (std::size_t k = 0; k < rank_; ++k) numbers[k] *= k < eye_rank_ ? eye : white;
+}
+
+ScoreNoise::Shares ScoreNoise::shares(const ScoreNoiseLevels& levels) const {
+  const double total = levels.total();
+  if (eye_rank_ == 0 || total == 0) return {};
+  return {static_cast<float>(std::pow(levels.eye / total, 2)), static_cast<float>(std::pow(levels.white / total, 2))};
 }
 
 void ScoreNoise::in_rows(std::span<const float> scores, float padding, std::span<float> rows) const {

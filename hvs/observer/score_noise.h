@@ -2,6 +2,7 @@
 // Template scores of white noise from few random numbers, through a factor of the templates' product matrix.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -10,10 +11,23 @@
 
 namespace todbench {
 
+/// Standard deviations of the noise that an observer adds, in units of its signal.
+struct ScoreNoiseLevels {
+  double white = 0;  ///< per sample
+  double eye = 0;    ///< of a score (EyeNoise::sd())
+  [[nodiscard]] double total() const { return eye == 0 ? white : std::hypot(white, eye); }
+};
+
+/// Whether an observer adds white noise to the samples.
+enum class AddedWhiteNoise { no, yes };
+
 /// Scores of white noise of sd 1 per sample are jointly normal, with the products of the templates as covariance.
 /// Templates of one shape at neighbouring places are nearly equal, so this matrix has a small effective rank: a pivoted
 /// Cholesky decomposition (Harbrecht, Peters and Schneider 2012) ends when every template has at most `max_left_out` of
 /// its variance left. Immutable, thread-safe.
+///
+/// An observer with an eye has the numbers of the eye's noise first, then those of white noise. weigh() gives them
+/// their shares.
 ///
 /// Rows of scores begin anew with each alternative: alternative o at place p is element o * row() + p.
 class ScoreNoise {
@@ -22,7 +36,7 @@ class ScoreNoise {
   /// more than 1e-2 of their variance.
   static constexpr double max_left_out = 1e-5;
 
-  explicit ScoreNoise(const TemplateBank& bank);
+  explicit ScoreNoise(const TemplateBank& bank, AddedWhiteNoise white = AddedWhiteNoise::yes);
 
   /// Number of independent normal numbers in one draw.
   [[nodiscard]] std::size_t rank() const { return rank_; }
@@ -40,12 +54,24 @@ class ScoreNoise {
   [[nodiscard]] const float* factor(std::size_t first) const { return values_.data() + first * rank_; }
   /// The factor of one template: rank() numbers; products with those of other templates are the covariances.
   void copy_factor(std::size_t index, std::span<float> numbers) const;
+  /// Multiplies numbers by the shares of eye and white noise in the total. Without an eye it changes nothing.
+  void weigh(const ScoreNoiseLevels& levels, std::span<float> numbers) const;
+  /// Shares of eye and white noise in the variance of total noise 1.
+  struct Shares {
+    float eye = 1, white = 0;
+  };
+  [[nodiscard]] Shares shares(const ScoreNoiseLevels& levels) const;
+  /// Variance of a score of total noise 1; 1 without an eye.
+  [[nodiscard]] float variance(const Shares& shares, std::size_t index) const {
+    return squares_.empty() ? 1 : shares.eye + shares.white * squares_[index];
+  }
   /// Scores of all templates for the normal numbers `numbers`: size() elements.
   void scores(std::span<const float> numbers, std::span<float> out) const;
 
  private:
-  std::size_t rank_ = 0, places_ = 0, row_ = 0, alternatives_ = 0;
-  std::vector<float> values_;  ///< [block of templates][number][template in block]
+  std::size_t rank_ = 0, eye_rank_ = 0, places_ = 0, row_ = 0, alternatives_ = 0;
+  std::vector<float> values_;   ///< [block of templates][number][template in block]
+  std::vector<float> squares_;  ///< of the templates; only with an eye
 };
 
 }  // namespace todbench

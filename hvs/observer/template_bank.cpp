@@ -7,7 +7,10 @@
 #include <numbers>
 #include <string>
 
+#include "hvs/eye/contrast_sensitivity.h"
+#include "hvs/eye/eye_optics.h"
 #include "hvs/observer/block_product.h"
+#include "hvs/observer/eye_noise.h"
 #include "hvs/observer/template_observer.h"
 #include "hvs/shape/polygon_image.h"
 
@@ -42,6 +45,42 @@ void normalise(std::vector<double>& values) {
   for (double& v : values) v /= std::sqrt(energy);
 }
 
+/// Filter of an observer's templates, and how far it reaches.
+struct ViewingFilter {
+  TransferFunction transfer;
+  double band_per_sample = 0;  ///< above it the filter passes nothing that counts
+  double reach_samples = 0;    ///< beyond it its response is nearly 0
+};
+
+/// Display twice and H^2: the display draws a sample of the patch, and the template is the shape behind the display.
+ViewingFilter seeing_filter(const TemplateObserverSpec& spec) {
+  const ViewedDisplay& display = *spec.display;
+  const EyeFilter eye(*spec.eye, adaptation_luminance_cd_m2(display));
+  const double per_sample = 60 / arcmin_per_sample(display);  // cycles per degree of one cycle per sample
+  // Values fall with the square of the spectrum of a displayed sample. Those below 1e-6 of the peak change the
+  // covariance of the noise by less than 1e-7, because the spectrum of the shape falls as well.
+  double peak = 0, band = 0;
+  const double limit = diffraction_limit_per_degree(eye.pupil_mm());
+  for (double f = limit / 400; f < limit; f += limit / 400) {
+    const double envelope = std::min(1.0, std::pow(std::numbers::pi * f / per_sample, -2));
+    const double value = eye.identification_power(f) * envelope;
+    peak = std::max(peak, value);
+    if (value > 1e-6 * peak) band = f;
+  }
+  // The cusp of the diffraction MTF leaves an algebraic tail: copies this far away change the covariance by 5e-7.
+  constexpr double reach_arcmin = 24;
+  return {[display, eye, per_sample](double u, double w) -> std::complex<double> {
+            const double transfer = display_transfer(display, u, w);
+            return eye.identification_power(per_sample * std::hypot(u, w)) * transfer * transfer;
+          },
+          band / per_sample, reach_arcmin / arcmin_per_sample(display) + 1};
+}
+
+ViewingFilter filter_of(const TemplateObserverSpec& spec) {
+  if (spec.eye) return seeing_filter(spec);
+  return {viewing_filter(spec.blur_sigma_samples), filter_band(spec.blur_sigma_samples), 7 * spec.blur_sigma_samples};
+}
+
 }  // namespace
 
 Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const Alternatives& alternatives,
@@ -51,8 +90,13 @@ Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const
   }
   const int steps = static_cast<int>(std::lround(1 / spec.search_step_samples));
   const int reach = static_cast<int>(std::lround(spec.search_range_samples * steps));
-  const double half_pitch =
-      std::ceil(spec.window_size_factor * size_samples / samples_per_pitch + spec.window_margin_pitch - 1e-9);
+  double margin_pitch = spec.window_margin_pitch;
+  if (spec.eye) {
+    if (!spec.display) return fail(ErrorCode::invalid_input, "an observer with an eye needs a display");
+    margin_pitch =
+        std::max(margin_pitch, spec.window_margin_arcmin / (arcmin_per_sample(*spec.display) * samples_per_pitch));
+  }
+  const double half_pitch = std::ceil(spec.window_size_factor * size_samples / samples_per_pitch + margin_pitch - 1e-9);
   const double samples = std::pow(2 * half_pitch * samples_per_pitch, 2);
   TemplateBank bank;
   bank.alternatives_ = static_cast<int>(alternatives.size());
@@ -67,15 +111,16 @@ Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const
   bank.window_ = 2 * half;
 
   // Sample centres lie on half samples, search places on 1 / steps: one fine grid contains both.
-  const double band = filter_band(spec.blur_sigma_samples);
+  const ViewingFilter viewing = filter_of(spec);
   // The next copy of the shape must stay outside the window: shape, seven sigma of blur, the display sample, and the
   // search range.
-  const int period = static_cast<int>(
-      std::ceil(half + spec.search_range_samples + 0.9 * size_samples + 7 * spec.blur_sigma_samples + 1));
-  const FrequencyLattice lattice{.period = period, .band = static_cast<int>(std::ceil(band * period))};
+  const int period = static_cast<int>(std::ceil((spec.eye ? 2 : 1) * (half + spec.search_range_samples) +
+                                                0.9 * size_samples + viewing.reach_samples + 1));
+  const FrequencyLattice lattice{.period = period,
+                                 .band = static_cast<int>(std::ceil(viewing.band_per_sample * period))};
   int per_sample = steps % 2 == 0 ? steps : 2 * steps;
   while (period * per_sample <= 2 * lattice.band) per_sample *= 2;
-  const FilterTable filter(lattice, viewing_filter(spec.blur_sigma_samples));
+  const FilterTable filter(lattice, viewing.transfer);
   const int stride = per_sample / steps;
   const int n = period * per_sample;
   const auto count = static_cast<std::size_t>(bank.window_) * static_cast<std::size_t>(bank.window_);
@@ -94,13 +139,39 @@ Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const
           values[static_cast<std::size_t>(j * bank.window_ + i)] = fine(y, x);
         }
       }
-      normalise(values);
+      if (!spec.eye) normalise(values);
       const auto t = static_cast<std::size_t>(o * bank.places_ + place);
       float* target = bank.values_.data() + t / block * block * count + t % block;
       for (std::size_t s = 0; s < count; ++s) target[s * block] = static_cast<float>(values[s]);
     }
   }
+  if (spec.eye) bank.add_eye(spec, alternatives, size_samples, filter);
   return bank;
+}
+
+void TemplateBank::add_eye(const TemplateObserverSpec& spec, const Alternatives& alternatives, double size_samples,
+                           const FilterTable& filter) {
+  // One scale for all: that of the noise must be the same for every template.
+  const double norm = std::sqrt(square(static_cast<std::size_t>(central_place())));
+  for (float& value : values_) value = static_cast<float>(static_cast<double>(value) / norm);
+  const double sample_deg = arcmin_per_sample(*spec.display) / 60;
+  const int steps = static_cast<int>(std::lround(1 / spec.search_step_samples));
+  EyeTemplates templates{.steps = steps,
+                         .reach = static_cast<int>(std::lround(spec.search_range_samples * steps)),
+                         .sample_deg = sample_deg,
+                         .contrast_noise = spec.eye->contrast_noise,
+                         .template_scale = norm * sample_deg * sample_deg,
+                         .display = *spec.display};
+  for (const Polygon& shape : alternatives) templates.shapes.push_back(placed(shape, size_samples, {0, 0}));
+  eye_ = std::make_shared<const EyeNoise>(std::move(templates), filter);
+}
+
+double TemplateBank::square(std::size_t index) const {
+  const auto count = static_cast<std::size_t>(window_) * static_cast<std::size_t>(window_);
+  const float* source = values_.data() + index / block * block * count + index % block;
+  double sum = 0;
+  for (std::size_t s = 0; s < count; ++s) sum += std::pow(static_cast<double>(source[s * block]), 2);
+  return sum;
 }
 
 void TemplateBank::project(std::span<const float> patch, std::span<float> scores) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -11,9 +12,12 @@
 
 namespace todbench {
 
+class EyeNoise;
+class FilterTable;
 struct TemplateObserverSpec;
 
-/// Zero-mean, unit-norm templates, single precision. Immutable, thread-safe.
+/// Zero-mean, unit-norm templates, single precision. Immutable, thread-safe. With an eye they are the ideal shapes
+/// behind display and eye, all with one scale: the norm of the central template of the first alternative is 1.
 ///
 /// Template (o, p) is alternative o at search place p, sampled at displayed-sample centres k + 1/2, k = -m..m-1, from
 /// the window's centre.
@@ -44,6 +48,10 @@ class TemplateBank {
   /// Adds `amount` times every template's value at one sample to the scores: the change of project() when that sample
   /// of the patch changes by `amount`.
   void add_sample(std::size_t sample, float amount, std::span<float> scores) const;
+  /// Noise of the eye; null without an eye.
+  [[nodiscard]] const EyeNoise* eye() const { return eye_.get(); }
+  /// Sum of the squares of a template's values; 1 without an eye.
+  [[nodiscard]] double square(std::size_t index) const;
   /// One template as an image, for tests and pictures.
   [[nodiscard]] cv::Mat1f image(int alternative, int place) const;
 
@@ -55,8 +63,11 @@ class TemplateBank {
 
  private:
   TemplateBank() = default;
+  void add_eye(const TemplateObserverSpec& spec, const Alternatives& alternatives, double size_samples,
+               const FilterTable& filter);
   int window_ = 0, alternatives_ = 0, places_ = 0;
   std::size_t blocks_ = 0;
+  std::shared_ptr<const EyeNoise> eye_;
   std::vector<float> values_;  ///< [block of templates][sample][template in block]
 };
 

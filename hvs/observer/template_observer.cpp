@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hvs/observer/answer_probabilities.h"
+#include "hvs/observer/eye_noise.h"
 
 namespace todbench {
 namespace {
@@ -20,6 +21,8 @@ constexpr std::size_t stack_templates = 4096;
 
 // Positions in a trial's random stream: pixel noise first, the tie-break far behind it.
 constexpr std::uint64_t tie_break_index = std::uint64_t{1} << 40;
+// Substream of a trial for the noise of the eye.
+constexpr std::uint64_t eye_sub_stream = 2;
 // Substream of a trial for the draws of graded answers, separate from the single answer.
 constexpr std::uint64_t graded_sub_stream = 1;
 
@@ -40,6 +43,37 @@ void scale_to_contrast(const Patch& patch, double contrast_k, std::span<float> s
   mean = background + mean / static_cast<double>(signal.size());
   std::size_t s = 0;
   for (const double value : patch.kelvin) signal[s++] = static_cast<float>((value - mean) / contrast_k);
+}
+
+/// The patch without the mean of its outermost samples, in units of the contrast.
+void scale_to_background(const Patch& patch, double contrast_k, std::span<float> signal) {
+  const cv::Mat1d& kelvin = patch.kelvin;
+  const double background = kelvin(0, 0);
+  double sum = 0;
+  int count = 0;
+  const auto add = [&](double value) {
+    sum += value - background;
+    ++count;
+  };
+  for (int column = 0; column < kelvin.cols; ++column) {
+    add(kelvin(0, column));
+    add(kelvin(kelvin.rows - 1, column));
+  }
+  for (int row = 1; row + 1 < kelvin.rows; ++row) {
+    add(kelvin(row, 0));
+    add(kelvin(row, kelvin.cols - 1));
+  }
+  const double surround = background + sum / count;
+  std::size_t s = 0;
+  for (const double value : kelvin) signal[s++] = static_cast<float>((value - surround) / contrast_k);
+}
+
+void scale_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, std::span<float> signal) {
+  if (spec.eye) {
+    scale_to_background(patch, contrast_k, signal);
+  } else {
+    scale_to_contrast(patch, contrast_k, signal);
+  }
 }
 
 class PreparedTemplateObserver final : public PreparedObserver {
@@ -70,18 +104,21 @@ class PreparedTemplateObserver final : public PreparedObserver {
     const ScoreNoise& own = own_noise_of_scores();
     const auto side = static_cast<std::size_t>(bank_->window_samples());
     const std::size_t templates = bank_->padded_templates();
-    if (side * side <= stack_samples && templates <= stack_templates && own.size() <= stack_templates) {
-      std::array<float, stack_samples> signal, numbers, direction;
+    if (side * side <= stack_samples && templates <= stack_templates && own.size() <= stack_templates &&
+        own.rank() <= stack_samples) {
+      std::array<float, stack_samples> signal, direction;
+      std::array<float, products_at_once * stack_samples> numbers;
       std::array<float, stack_templates> scores, rows, along;
       return {choice, probabilities(patch, contrast_k, noise, draws, std::span(signal).first(side * side),
                                     std::span(scores).first(templates),
                                     {.rows = std::span(rows).first(own.size()),
                                      .along = std::span(along).first(own.size()),
-                                     .numbers = std::span(numbers).first(own.rank()),
+                                     .numbers = std::span(numbers).first(products_at_once * own.rank()),
                                      .direction = std::span(direction).first(own.rank())})};
     }
     std::vector<float> signal(side * side), scores(templates);
-    std::vector<float> rows(own.size()), along(own.size()), numbers(own.rank()), direction(own.rank());
+    std::vector<float> rows(own.size()), along(own.size()), numbers(products_at_once * own.rank()),
+        direction(own.rank());
     return {choice, probabilities(patch, contrast_k, noise, draws, signal, scores,
                                   {.rows = rows, .along = along, .numbers = numbers, .direction = direction})};
   }
@@ -91,6 +128,13 @@ class PreparedTemplateObserver final : public PreparedObserver {
                               std::span<float> draws, std::span<float> scores) const {
     seen_patch(spec_, patch, contrast_k, noise, signal, draws);
     bank_->project(signal, scores);
+    if (const EyeNoise* eye = bank_->eye(); eye != nullptr) {
+      std::array<float, stack_templates> numbers;
+      std::vector<float> many(eye->rank() > numbers.size() ? eye->rank() : 0);
+      const auto own = many.empty() ? std::span<float>(numbers).first(eye->rank()) : std::span<float>(many);
+      noise.sub(eye_sub_stream).fill_normal(own);
+      eye->add(own, static_cast<float>(eye->sd(contrast_k)), scores);
+    }
     Choice choice;
     choice.alternatives = bank_->alternatives();
     const auto places = static_cast<std::size_t>(bank_->places());
@@ -105,15 +149,17 @@ class PreparedTemplateObserver final : public PreparedObserver {
   [[nodiscard]] AnswerProbabilities probabilities(const Patch& patch, double contrast_k, const RandomStream& noise,
                                                   int draws, std::span<float> signal, std::span<float> scores,
                                                   const AnswerRoom& room) const {
-    scale_to_contrast(patch, contrast_k, signal);
+    scale_patch(spec_, patch, contrast_k, signal);
     bank_->project(signal, scores);
-    return answer_probabilities(own_noise_of_scores(), scores, own_noise(spec_, patch, contrast_k),
-                                noise.sub(graded_sub_stream), draws, room);
+    const ScoreNoiseLevels levels{.white = own_noise(spec_, patch, contrast_k),
+                                  .eye = bank_->eye() != nullptr ? bank_->eye()->sd(contrast_k) : 0};
+    return answer_probabilities(own_noise_of_scores(), scores, levels, noise.sub(graded_sub_stream), draws, room);
   }
 
   /// Created at the first graded answer: it costs as much as the bank, and most observers only choose.
   [[nodiscard]] const ScoreNoise& own_noise_of_scores() const {
-    std::call_once(noise_made_, [this] { noise_.emplace(*bank_); });
+    const bool white = !spec_.eye || spec_.sensor_noise_factor > 1;
+    std::call_once(noise_made_, [&] { noise_.emplace(*bank_, white ? AddedWhiteNoise::yes : AddedWhiteNoise::no); });
     return *noise_;
   }
 
@@ -127,7 +173,7 @@ class PreparedTemplateObserver final : public PreparedObserver {
 
 void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
                 std::span<float> seen, std::span<float> room) {
-  scale_to_contrast(patch, contrast_k, seen);
+  scale_patch(spec, patch, contrast_k, seen);
   const auto sd = static_cast<float>(own_noise(spec, patch, contrast_k));
   if (!(sd > 0)) return;
   noise.fill_normal(room);
@@ -165,6 +211,15 @@ Result<void> validate(const TemplateObserverSpec& spec) {
     return refuse("window_size_factor must be from 0.9 to 10");
   if (!(spec.window_margin_pitch >= 0 && spec.window_margin_pitch <= 100))
     return refuse("window_margin_pitch must be from 0 to 100");
+  if (!spec.eye) {
+    if (spec.display) return refuse("only an observer with an eye has a display");
+    return {};
+  }
+  if (auto possible = validate(*spec.eye); !possible) return possible;
+  if (spec.internal_noise != 0) return refuse("an observer with an eye has no internal_noise of its own");
+  if (!(spec.window_margin_arcmin >= 0 && spec.window_margin_arcmin <= 120))
+    return refuse("window_margin_arcmin must be from 0 to 120");
+  if (spec.display) return validate(*spec.display);
   return {};
 }
 

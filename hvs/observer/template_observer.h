@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The recommended observer: normalised correlation with ideal shapes behind the viewing filter, search for the
-// position, and internal noise proportional to the contrast.
+// The template observer: correlation with ideal shapes behind the viewing filter, and search for the position. hvs-1
+// has a blur and internal noise in proportion to the contrast, hvs-2 a display and an eye.
 #pragma once
 
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "hvs/eye/contrast_sensitivity.h"
+#include "hvs/eye/viewed_display.h"
 #include "hvs/observer/observer.h"
 #include "hvs/observer/template_bank.h"
 
@@ -27,14 +30,21 @@ struct TemplateObserverSpec {
   double search_step_samples = 0.125;
   double window_size_factor = 1.05;  ///< half window = ceil(factor * size + margin), in detector pitches
   double window_margin_pitch = 2;
+  /// Eye of the observer (hvs-2). It replaces blur_sigma_samples and internal_noise, which is then 0, and needs a
+  /// display.
+  std::optional<EyeParameters> eye{};
+  double window_margin_arcmin = 0;         ///< the larger of both margins counts; only with an eye
+  std::optional<ViewedDisplay> display{};  ///< of the plan; only with an eye
   bool operator==(const TemplateObserverSpec&) const = default;
 };
 
 /// Error: `invalid_input` with the parameter that is out of its range.
 [[nodiscard]] Result<void> validate(const TemplateObserverSpec& spec);
 
-/// Computes the input of an observer's templates: the patch without its mean, in units of the contrast, with the
-/// observer's own noise drawn from the trial's `noise`. `seen` and `room` have one value for each sample of the patch.
+/// Computes the input of an observer's templates: the patch without its background (the mean of the patch; with an eye,
+/// that of its outermost samples, because the eye sees no uniform field but part of a large target's mean), in units of
+/// the contrast, with the observer's own noise per sample drawn from the trial's `noise`. `seen` and `room` have one
+/// value for each sample of the patch.
 void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
                 std::span<float> seen, std::span<float> room);
 /// Returns the alternative with the highest score; equal scores are decided by the trial's `noise`.

@@ -28,8 +28,18 @@ Patch noisy_patch(int side, double contrast_k = 1) {
   return patch;
 }
 
-void observer_decision(benchmark::State& state, double size_samples) {
-  TemplateObserver observer({}, triangle_alternatives());
+/// hvs-2 at a display whose samples are 3 arcmin, with a background of 50 cd/m2.
+TemplateObserverSpec viewer() {
+  return {.name = "hvs-2",
+          .internal_noise = 0,
+          .sensor_noise_factor = 1.75,
+          .eye = EyeParameters{},
+          .window_margin_arcmin = 6,
+          .display = ViewedDisplay{.pixel_pitch_mm = 0.8726647, .viewing_distance_m = 1, .luminance_white_cd_m2 = 100}};
+}
+
+void observer_decision(benchmark::State& state, const TemplateObserverSpec& spec, double size_samples) {
+  TemplateObserver observer(spec, triangle_alternatives());
   const auto prepared = observer.prepare(size_samples, 1).value();
   const Patch patch = noisy_patch(prepared->window_samples());
   const RandomStream noise(1, "benchmark.observer");
@@ -37,14 +47,17 @@ void observer_decision(benchmark::State& state, double size_samples) {
   for (auto _ : state) benchmark::DoNotOptimize(prepared->choose(patch, 1.0, noise.sub(trial++)));
   state.SetItemsProcessed(state.iterations());
 }
-BENCHMARK_CAPTURE(observer_decision, size_1_6, 1.6)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(observer_decision, size_2_6, 2.6)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(observer_decision, size_5, 5.0)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_decision, size_1_6, TemplateObserverSpec{}, 1.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_decision, size_2_6, TemplateObserverSpec{}, 2.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_decision, size_5, TemplateObserverSpec{}, 5.0)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_decision, eye_1_6, viewer(), 1.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_decision, eye_2_6, viewer(), 2.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_decision, eye_5, viewer(), 5.0)->Unit(benchmark::kMicrosecond);
 
 /// Probabilities of the answers, 32 draws of the observer's noise for each: `draws`.
-void observer_graded(benchmark::State& state, double size_samples) {
+void observer_graded(benchmark::State& state, const TemplateObserverSpec& spec, double size_samples) {
   constexpr double contrast_k = 0.23;
-  TemplateObserver observer({}, triangle_alternatives());
+  TemplateObserver observer(spec, triangle_alternatives());
   const auto prepared = observer.prepare(size_samples, 1).value();
   const Patch patch = noisy_patch(prepared->window_samples(), contrast_k);
   const RandomStream noise(1, "benchmark.observer");
@@ -58,18 +71,22 @@ void observer_graded(benchmark::State& state, double size_samples) {
   state.SetItemsProcessed(state.iterations());
   state.counters["draws"] = benchmark::Counter(draws, benchmark::Counter::kAvgIterations);
 }
-BENCHMARK_CAPTURE(observer_graded, size_1_6, 1.6)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(observer_graded, size_2_6, 2.6)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(observer_graded, size_5, 5.0)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_graded, size_1_6, TemplateObserverSpec{}, 1.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_graded, size_2_6, TemplateObserverSpec{}, 2.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_graded, size_5, TemplateObserverSpec{}, 5.0)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_graded, eye_1_6, viewer(), 1.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_graded, eye_2_6, viewer(), 2.6)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(observer_graded, eye_5, viewer(), 5.0)->Unit(benchmark::kMicrosecond);
 
-void template_bank(benchmark::State& state, double size_samples) {
-  const TemplateObserverSpec spec;
+void template_bank(benchmark::State& state, const TemplateObserverSpec& spec, double size_samples) {
   const Alternatives alternatives = triangle_alternatives();
   for (auto _ : state) benchmark::DoNotOptimize(TemplateBank::build(spec, alternatives, size_samples, 1).value());
 }
-BENCHMARK_CAPTURE(template_bank, size_1_6, 1.6)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(template_bank, size_2_6, 2.6)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(template_bank, size_5, 5.0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(template_bank, size_1_6, TemplateObserverSpec{}, 1.6)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(template_bank, size_2_6, TemplateObserverSpec{}, 2.6)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(template_bank, size_5, TemplateObserverSpec{}, 5.0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(template_bank, eye_1_6, viewer(), 1.6)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(template_bank, eye_5, viewer(), 5.0)->Unit(benchmark::kMillisecond);
 
 /// As many as a frame of 320 x 240 needs.
 void normal_numbers(benchmark::State& state) {

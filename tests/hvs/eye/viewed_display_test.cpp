@@ -108,6 +108,7 @@ TEST(ViewedDisplay, RefusesWhatCannotBeViewed) {
   EXPECT_THAT(with([](auto& d) { d.luminance_black_cd_m2 = 100; }), HasSubstr("brighter than black"));
   EXPECT_THAT(with([](auto& d) { d.pixel_pitch_mm = 0; }), HasSubstr("pixel_pitch_mm"));
   EXPECT_THAT(with([](auto& d) { d.diagonal_in = 20; }), HasSubstr("either"));
+  EXPECT_THAT(with([](auto& d) { d.pixel_pitch_mm = std::nan(""); }), HasSubstr("pixel_pitch_mm"));
   EXPECT_THAT(with([](auto& d) { d.contrast = 1.2; }), HasSubstr("cannot show"));
   EXPECT_THAT(with([](auto& d) { d.zoom = 1.5; }), HasSubstr("zoom"));
   EXPECT_THAT(with([](auto& d) {

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Noise of the eye in the scores of an observer's templates.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "hvs/eye/viewed_display.h"
+#include "hvs/observer/observer.h"
+#include "hvs/shape/polygon_image.h"
+
+namespace todbench {
+
+/// Templates of an observer with an eye, as the continuous patterns that the eye has of them.
+struct EyeTemplates {
+  Alternatives shapes{};      ///< of the target's size, in displayed samples
+  int steps = 8;              ///< search places per sample
+  int reach = 8;              ///< search steps each way
+  double sample_deg = 0;      ///< side of a displayed sample
+  double contrast_noise = 0;  ///< kappa
+  double template_scale = 1;  ///< d'^2 at contrast 1 per unit of the bank's scores
+  ViewedDisplay display;
+};
+
+/// White noise of 1 per square degree behind the eye's filter H. The score of template i has the covariance G_ij = <H
+/// F_i, H F_j> with that of template j, F being the target behind the display; G_ii is d'^2 of the ideal target at
+/// contrast 1. Noise in proportion to the contrast multiplies the standard deviation by sqrt(1 + kappa^2 c^2 G_ii).
+/// Immutable, thread-safe.
+class EyeNoise {
+ public:
+  /// Largest share of a score's variance that the draws may miss. Scores of two small triangles differ by about 1e-2 of
+  /// their variance.
+  static constexpr double max_left_out = 3e-4;
+
+  /// `power` is H^2 times the square of the display's transfer, in cycles per displayed sample.
+  EyeNoise(EyeTemplates templates, const FilterTable& power);
+
+  /// G of two templates, with the numbering of the bank.
+  [[nodiscard]] double covariance(std::size_t first, std::size_t second) const;
+  /// d'^2 of the ideal target at luminance contrast 1.
+  [[nodiscard]] double energy() const { return energy_; }
+  /// Standard deviation of the noise in a score of the bank, in units of the contrast, for a target of `contrast_k`.
+  [[nodiscard]] double sd(double contrast_k) const;
+  /// Number of independent normal numbers in one draw.
+  [[nodiscard]] std::size_t rank() const { return columns_.size(); }
+  /// Columns of the factor of the covariance relative to energy(): one value for each template.
+  [[nodiscard]] const std::vector<std::vector<double>>& columns() const { return columns_; }
+  /// Adds `sd` times the scores of the normal numbers: rank() numbers, the bank's padded_templates() scores.
+  void add(std::span<const float> numbers, float sd, std::span<float> scores) const;
+  /// Variance of the score difference of the alternatives at the middle of the search, the largest, relative to
+  /// energy().
+  [[nodiscard]] double largest_difference() const;
+
+ private:
+  void tabulate(const FilterTable& power);
+  [[nodiscard]] bool shapes_are_turned() const;
+  void decompose();
+  [[nodiscard]] std::size_t alternatives() const { return templates_.shapes.size(); }
+  [[nodiscard]] int places() const { return (2 * templates_.reach + 1) * (2 * templates_.reach + 1); }
+
+  EyeTemplates templates_;
+  double energy_ = 0;
+  /// Alternative o is the first one after o quarter turns, and the filter allows it: four tables hold everything.
+  bool turned_ = false;
+  std::vector<std::vector<double>> tables_;  ///< G by pair of alternatives and displacement
+  std::vector<std::vector<double>> columns_;
+  std::vector<float> factor_;  ///< [block of templates][number][template in block]
+};
+
+}  // namespace todbench
