@@ -49,7 +49,7 @@ struct NoiseShares {
 
 NoiseShares noise_shares(const ExperimentInputs& inputs, const ContrastOutlook& outlook) {
   const TemplateObserverSpec& observer = inputs.observer;
-  const double white = outlook.q_eff * outlook.q_eff, own = observer.internal_noise * observer.internal_noise;
+  const double white = outlook.q_eff * outlook.q_eff, own = outlook.observer_variance;
   const double factor = observer.sensor_noise_factor * observer.sensor_noise_factor;
   const double pattern =
       std::pow(inputs.sensor.samples_per_pitch() * inputs.sensor.fixed_pattern_k / outlook.delta_t_k, 2);

@@ -30,11 +30,12 @@ struct EffectPlannerOptions {
 /// Prediction at one contrast before the simulation.
 struct ContrastOutlook {
   double delta_t_k = 0;
-  double q_eff = 0;           ///< white noise per sample over the contrast, internal noise included
-  double s75_pitch = 0;       ///< of the observer that knows the position
-  double noise_exponent = 0;  ///< d ln S75 / d ln q_eff
-  double blur_exponent = 0;   ///< d ln D / d ln S
-  double weibull_slope = 0;   ///< of the psychometric function of that observer, at 75 %
+  double q_eff = 0;              ///< white noise per sample over the contrast, internal noise included
+  double s75_pitch = 0;          ///< of the observer that knows the position
+  double noise_exponent = 0;     ///< d ln S75 / d ln q_eff
+  double blur_exponent = 0;      ///< d ln D / d ln S
+  double observer_variance = 0;  ///< share of the observer's own noise (internal, or of the eye) in q_eff squared
+  double weibull_slope = 0;      ///< of the psychometric function of that observer, at 75 %
 };
 
 struct EffectPlan {

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "hvs/observer/eye_noise.h"
 #include "hvs/observer/known_position.h"
 #include "hvs/observer/share_won.h"
 #include "sim_devices/sensor/effect_dead_pixels.h"
@@ -33,6 +34,11 @@ std::uint64_t rare_part(std::uint64_t draw, std::uint64_t part) {
 /// Stream of the observer, for trials of pixels.
 std::uint64_t observer_part(std::uint64_t trial) {
   return (std::uint64_t{1} << 42) + trial;
+}
+
+/// Stream of the observer's eye.
+std::uint64_t eye_part(std::uint64_t draw) {
+  return (std::uint64_t{1} << 43) + draw;
 }
 
 /// Named stream of one draw.
@@ -285,6 +291,29 @@ double SizeTrial::variance_ratio(SharedBy shared_by) const {
   return largest;
 }
 
+double SizeTrial::eye_variance(double contrast_k) const {
+  const EyeNoise* eye = bank_->eye();
+  if (eye == nullptr) return 0;
+  double least = 0;  // the difference that white noise moves least
+  for (int first = 0; first < bank_->alternatives(); ++first) {
+    for (int other = first + 1; other < bank_->alternatives(); ++other) {
+      const cv::Mat1f d = bank_->image(first, bank_->central_place()) - bank_->image(other, bank_->central_place());
+      least = least > 0 ? std::min(least, d.dot(d)) : d.dot(d);
+    }
+  }
+  return std::pow(eye->sd(contrast_k), 2) * eye->largest_difference() / least;
+}
+
+std::vector<float> SizeTrial::eye_scores(std::uint64_t index, double sd) const {
+  std::vector<float> scores(bank_->padded_templates(), 0.0F);
+  const EyeNoise* eye = bank_->eye();
+  if (eye == nullptr) return scores;
+  std::vector<float> numbers(eye->rank());
+  stream_.sub(eye_part(index)).fill_normal(numbers);
+  eye->add(numbers, static_cast<float>(sd), scores);
+  return scores;
+}
+
 /// The sum of sensor's and internal noise is white noise filtered by sqrt((s^2 |D|^2 + i^2) / (s^2 + i^2)).
 void SizeTrial::shape_white(const WhiteNoise& white) {
   if (display_taps_.empty()) return;
@@ -354,6 +383,7 @@ void SizeTrial::draw_up_to(std::size_t draws) {
     project(white, noise_);
     project(coloured, coloured_);
   }
+  while (bank_->eye() != nullptr && eye_.size() < draws) eye_.push_back(eye_scores(eye_.size(), 1));
 }
 
 Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int draws) {
@@ -364,9 +394,10 @@ Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int
   const auto scale = static_cast<float>(total > 0 ? total : 1);
   const auto ratio = static_cast<float>(1 / (contrast_k * static_cast<double>(scale)));
   const float own = total > 0 ? 1.0F : 0.0F;
+  const float eye = bank_->eye() != nullptr ? static_cast<float>(bank_->eye()->sd(contrast_k)) / scale : 0.0F;
   double sum = 0, squares = 0;
   for (std::size_t d = 0; d < static_cast<std::size_t>(draws); ++d) {
-    const double p = share_in_all_ways(d, own, scale, ratio);
+    const double p = share_in_all_ways(d, own, scale, ratio, eye);
     sum += p;
     squares += p * p;
   }
@@ -392,13 +423,20 @@ void SizeTrial::turn_noise(const std::vector<float>& noise, const std::vector<fl
   }
 }
 
-double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, float ratio) {
+double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, float ratio, float eye) {
   turned_.resize(bank_->padded_templates());
+  // The noise of the eye is as probable turned or mirrored as white noise.
+  if (eye > 0) {
+    mixed_.resize(noise_[draw].size());
+    for (std::size_t t = 0; t < mixed_.size(); ++t) mixed_[t] = own * noise_[draw][t] + eye * eye_[draw][t];
+    own = 1;
+  }
+  const std::vector<float>& drawn = eye > 0 ? mixed_ : noise_[draw];
   if (turns_.size() > 1) {
     across_.resize(turned_.size());
     const int places = bank_->places(), side = static_cast<int>(std::lround(std::sqrt(places)));
     for (int from = 0; from < bank_->templates(); from += places)
-      transpose(noise_[draw].data() + from, side, across_.data() + from);
+      transpose(drawn.data() + from, side, across_.data() + from);
   }
   const cv::Mat1b defects = dead(draw, bank_->window_samples());
   const bool has_coloured = !coloured_stages_.empty();
@@ -409,7 +447,7 @@ double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, fl
   const std::size_t ways = 2 * turns;
   std::size_t seen = 0, way = places_of_dance_ > 1 ? draw * ways + draw * ways / phase_group_.size() : draw;
   for (std::size_t turn = 0; turn < turns; ++turn) {
-    turn_noise(noise_[draw], across_, turn, own);
+    turn_noise(drawn, across_, turn, own);
     for (std::size_t t = 0; has_coloured && t < turned_.size(); ++t) turned_[t] += ratio * coloured_[draw][t];
     const cv::Mat1b map = defects.empty() ? defects : dead_turned_back(defects, turn);
     for (const float sign : {1.0F, -1.0F}) {
@@ -452,8 +490,8 @@ double SizeTrial::pixel_trial(const Response& response, const PixelContrast& con
     }
   }
   const std::vector<float> scores = projected(seen);
-  const std::vector<float> nothing(scores.size(), 0.0F);
-  return correct(response.truth, scores, nothing, 1.0F);
+  const double eye_sd = bank_->eye() != nullptr ? bank_->eye()->sd(contrast.seen_k) : 0;
+  return correct(response.truth, scores, eye_scores(index, eye_sd), 1.0F);
 }
 
 Proportion SizeTrial::pixel_proportion(const PixelContrast& contrast, int draws) {

@@ -77,6 +77,9 @@ class SizeTrial {
   /// Variance of the score difference between the true template and another, for numbers of sd 1 that samples share as
   /// stated, over that for white noise of sd 1. The largest over the alternatives, at the middle of the search.
   [[nodiscard]] double variance_ratio(SharedBy shared) const;
+  /// Variance per sample of the white noise that moves this difference as much as the noise of the observer's eye, in
+  /// units of the contrast squared. 0 without an eye.
+  [[nodiscard]] double eye_variance(double contrast_k) const;
 
  private:
   struct Response {
@@ -97,12 +100,14 @@ class SizeTrial {
   [[nodiscard]] cv::Mat1b dead(std::uint64_t index, int window) const;
   [[nodiscard]] std::vector<float> projected(const cv::Mat1f& samples) const;
   void shape_white(const WhiteNoise& white);
+  /// Scores of the noise of the eye with sd 1, for draw or trial `index`; empty without an eye.
+  [[nodiscard]] std::vector<float> eye_scores(std::uint64_t index, double sd) const;
   /// 1 if the true alternative wins; the fair share of a tie.
   [[nodiscard]] double correct(int truth, std::span<const float> signal, std::span<const float> noise,
                                float scale) const;
   /// Share of correct answers over the phases and the ways of using a draw. White noise is multiplied by `own`,
-  /// `coloured` noise by `ratio`.
-  [[nodiscard]] double share_in_all_ways(std::size_t draw, float own, float scale, float ratio);
+  /// coloured noise by `ratio`, that of the eye by `eye`.
+  [[nodiscard]] double share_in_all_ways(std::size_t draw, float own, float scale, float ratio, float eye);
   /// Scores of a response whose picture has `defects` replaced.
   [[nodiscard]] std::vector<float> with_defects(const Response& response, const cv::Mat1b& defects) const;
   void find_turns();
@@ -128,6 +133,8 @@ class SizeTrial {
   std::vector<std::uint32_t> every_response_;
   std::vector<float> turned_, across_;                 ///< scratch
   std::vector<std::vector<float>> noise_;              ///< per draw: projected unit white noise
+  std::vector<std::vector<float>> eye_;                ///< per draw: scores of the eye's noise of sd 1
+  std::vector<float> mixed_;                           ///< scratch
   std::vector<std::vector<float>> coloured_;           ///< per draw: projected coloured noise in kelvin
   std::map<double, std::vector<double>> pixel_draws_;  ///< by contrast of the scene: proportion of each draw
 };
