@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// todbench observer fit
+// todbench observer
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <numbers>
+#include <optional>
 #include <system_error>
+#include <vector>
 
 #include "bench/cli/commands.h"
 #include "bench/cli/session_argument.h"
@@ -15,6 +19,7 @@
 #include "bench/report/html.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "hvs/eye/contrast_sensitivity.h"
 
 namespace todbench {
 namespace {
@@ -75,6 +80,7 @@ Result<PeopleFitOptions> options_of(const ObserverFitArguments& arguments, const
   const auto from = find_resource(ResourceKind::observer, arguments.from);
   if (!from) return tl::unexpected(from.error());
   const auto spec = parse_observer(*from);
+  if (auto blind = refuse_eye(*spec, "observer fit"); !blind) return tl::unexpected(blind.error());
   if (!spec) return tl::unexpected(spec.error());
   options.from = *spec;
   options.from_sha256 = sha256_of(from->text);
@@ -152,11 +158,78 @@ int run_observer_fit(Console& console, const ObserverFitArguments& arguments, co
   return exit_code(ErrorCode::not_identifiable);
 }
 
+struct SensitivityArguments {
+  std::string observer = "hvs-2";
+  double luminance_cd_m2 = 0;
+  std::vector<double> frequencies;
+  std::optional<double> age_years, field_deg;
+};
+
+/// Sensitivity of an eye to gratings that fill a square field.
+Result<std::vector<double>> sensitivities(const SensitivityArguments& arguments) {
+  const auto resource = find_resource(ResourceKind::observer, arguments.observer);
+  if (!resource) return tl::unexpected(resource.error());
+  const auto spec = parse_observer(*resource);
+  if (!spec) return tl::unexpected(spec.error());
+  if (!spec->eye)
+    return fail_at(ErrorCode::invalid_input, arguments.observer,
+                   "the observer has no eye, so it has no contrast sensitivity in absolute units");
+  EyeParameters eye = *spec->eye;
+  if (arguments.age_years) eye.age_years = *arguments.age_years;
+  if (arguments.field_deg) eye.field_deg2 = *arguments.field_deg * *arguments.field_deg;
+  if (auto possible = validate(eye); !possible) return tl::unexpected(possible.error());
+  if (!NumberRange::between(1e-3, 1e5).contains(arguments.luminance_cd_m2))
+    return fail_at(ErrorCode::invalid_input, "--luminance", "expected 0.001 to 100000 cd/m2");
+  const EyeFilter filter(eye, arguments.luminance_cd_m2);
+  // The Gaussian envelope with the area of the field.
+  const double sigma_deg = std::sqrt(eye.field_deg2 / std::numbers::pi);
+  std::vector<double> found;
+  for (const double frequency : arguments.frequencies) {
+    if (!NumberRange::between(0.01, 200).contains(frequency))
+      return fail_at(ErrorCode::invalid_input, "--frequency", "expected 0.01 to 200 cycles per degree");
+    found.push_back(filter.gabor_d_prime(frequency, sigma_deg) / detection_d_prime(1));
+  }
+  return found;
+}
+
+int run_sensitivity(Console& console, const SensitivityArguments& arguments) {
+  const auto found = sensitivities(arguments);
+  if (!found) return report_error(console, found.error());
+  if (console.json()) {
+    Json json{{"observer", arguments.observer}, {"luminance_cd_m2", json_number(arguments.luminance_cd_m2)}};
+    json["frequency_per_degree"] = arguments.frequencies;
+    json["sensitivity"] = *found;
+    console.object(json);
+    return 0;
+  }
+  std::vector<TableRow> rows;
+  for (std::size_t i = 0; i < found->size(); ++i)
+    rows.push_back({fixed(arguments.frequencies[i], 2), fixed((*found)[i], 2)});
+  console.table({"frequency [1/deg]", "sensitivity"}, rows);
+  return 0;
+}
+
+void add_sensitivity_command(CLI::App& observer, Program& program) {
+  auto* command = observer.add_subcommand(
+      "sensitivity", "prints the contrast sensitivity (1 over contrast at threshold) of an observer with an eye");
+  auto a = std::make_shared<SensitivityArguments>();
+  command->add_option("NAME", a->observer, "observer: name or file")->required();
+  command->add_option("--luminance", a->luminance_cd_m2, "luminance that the eye adapts to, in cd/m2")->required();
+  command->add_option("--frequency", a->frequencies, "spatial frequencies in cycles per degree, separated by commas")
+      ->delimiter(',')
+      ->required();
+  command->add_option("--age", a->age_years, "age in years, in place of the observer's");
+  command->add_option("--field-deg", a->field_deg,
+                      "side of the square field in degrees: it sets the pupil and the area of the gratings");
+  finish_command(*command, program, [a](Console& console) { return run_sensitivity(console, *a); });
+}
+
 }  // namespace
 
 void add_observer_command(CLI::App& app, Program& program) {
-  auto* observer = app.add_subcommand("observer", "fits observers to the answers of people");
+  auto* observer = app.add_subcommand("observer", "fits observers to the answers of people, and prints what they see");
   observer->require_subcommand(1);
+  add_sensitivity_command(*observer, program);
   auto* command = observer->add_subcommand(
       "fit", "fits the parameters of an observer to human answers, each with the picture that the person saw");
   auto a = std::make_shared<ObserverFitArguments>();

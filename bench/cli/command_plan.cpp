@@ -6,6 +6,7 @@
 #include "bench/cli/findings.h"
 #include "bench/cli/simulation_plan.h"
 #include "bench/judgement/verdict.h"
+#include "bench/run/acuity_limits.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/limit_forecast.h"
 #include "bench/run/prediction.h"
@@ -80,7 +81,20 @@ Json limits_json(const std::vector<LimitForecast>& forecasts) {
   return limits;
 }
 
-int run_plan(Console& console, SimulationOverrides overrides, const Program& program) {
+Json acuity_limits_json(const std::vector<AcuityLimits>& limits) {
+  Json json = Json::array();
+  for (const AcuityLimits& at : limits) {
+    Json costs = Json::object();
+    for (const FactorCost& cost : at.costs) costs[std::string(to_string(cost.factor))] = json_number(cost.percent);
+    json.push_back({{"delta_t_k", at.delta_t_k},
+                    {"s75_mrad", json_number(at.s75_mrad)},
+                    {"limited_by", at.costs.empty() ? Json(nullptr) : Json(to_string(at.costs.front().factor))},
+                    {"cost_percent", std::move(costs)}});
+  }
+  return json;
+}
+
+int run_plan(Console& console, SimulationOverrides overrides, bool what_limits, const Program& program) {
   if (program.common.seed_given) overrides.seed = program.common.seed;
   const auto loaded = simulation_plan(overrides, program.stop->token());
   if (!loaded) return report_error(console, loaded.error());
@@ -103,19 +117,30 @@ int run_plan(Console& console, SimulationOverrides overrides, const Program& pro
   if (!limits) return report_error(console, limits.error());
   const auto measure_limits = measure_forecasts(plan.limits);
   if (!measure_limits) return report_error(console, measure_limits.error());
+  std::vector<AcuityLimits> acuity;
+  if (what_limits || inputs->observer.eye) {
+    auto found = acuity_limits(*inputs, plan.target.delta_t_k, program.stop->token());
+    if (!found) return report_error(console, found.error());
+    acuity = *std::move(found);
+  }
   if (console.json()) {
     Json json = plan_json(inputs->effects, prediction->figures);
     if (!plan.limits.acuity.empty()) json["limits"] = limits_json(*limits);
     if (!measure_limits->empty()) json["measure_limits"] = measure_limits_json(*measure_limits);
+    if (!acuity.empty()) json["acuity_limits"] = acuity_limits_json(acuity);
     if (frontier) json["frontier"] = frontier_json(*frontier);
     console.object(json);
   } else {
     print_plan(console, *inputs, *prediction);
     if (frontier) print_frontier(console, *frontier);
+    for (const AcuityLimits& at : acuity) console.text(in_words(at));
     for (const LimitForecast& limit : *limits) console.text("limit at " + in_words(limit));
     for (const MeasureForecast& limit : *measure_limits) console.text("limit on " + in_words(limit));
   }
   for (const auto& warning : prediction->warnings) console.note(warning);
+  if (inputs->observer.display) {
+    if (const auto warning = small_sample_warning(*inputs->observer.display)) console.note(*warning);
+  }
   // Without a camera there is no comparison.
   if (!plan.camera.id.empty()) {
     const std::string forecast = comparison_forecast(plan, *prediction).sentence;
@@ -134,7 +159,11 @@ void add_plan_command(CLI::App& app, Program& program) {
   auto o = std::make_shared<SimulationOverrides>();
   command->add_option("PLAN.toml", o->plan, "plan: name or file")->required();
   add_key_options(*command, OptionOf::simulations, o->keys);
-  finish_command(*command, program, [o, &program](Console& console) { return run_plan(console, *o, program); });
+  auto what_limits = std::make_shared<bool>(false);
+  command->add_flag("--what-limits", *what_limits,
+                    "state what limits the acuity at each contrast; always stated for an observer with an eye");
+  finish_command(*command, program,
+                 [o, what_limits, &program](Console& console) { return run_plan(console, *o, *what_limits, program); });
 }
 
 }  // namespace todbench

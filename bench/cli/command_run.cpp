@@ -80,6 +80,12 @@ void print_curve(const Console& console, const TodCurve& curve) {
   console.text("TOD of " + curve.sensor + ", observer " + curve.observer);
   console.table({"dT [K]", "S75 [mrad]", "95 %", "acuity [1/mrad]", "95 %", "S75 direct [mrad]", "trials", "fit"},
                 rows);
+  for (const auto& point : curve.points) {
+    if (!point.s75_spread_mrad) continue;
+    console.text(fixed(point.set_delta_t_k, 3) + " K: S75 " + fixed(point.s75_spread_mrad->first, 4) + " to " +
+                 fixed(point.s75_spread_mrad->second, 4) +
+                 " mrad over the open parameters of the observer (a range of the model, not a confidence interval)");
+  }
   for (const auto& point : curve.points)
     print_findings(console, point.adequacy, fixed(point.set_delta_t_k, 3) + " K: ");
 }

@@ -33,6 +33,7 @@ Result<ComparedModel> described(ComparedModel model, const Resource& resource) {
   if (model.kind == ModelKind::observer) {
     auto observer = parse_observer_with_module(resource);
     if (!observer) return tl::unexpected(observer.error());
+    if (auto blind = refuse_eye(observer->spec, "compare-models"); !blind) return tl::unexpected(blind.error());
     model.observer = *std::move(observer);
     model.name = model.observer.spec.name;
     if (model.observer.module) model.provenance.push_back(text_of(module_record(*model.observer.module)));
@@ -341,7 +342,8 @@ Result<ComparedModel> read_compared_model(const std::string& reference) {
     model.package = *std::move(package);
     return model;
   }
-  if (resource->text.find("blur_sigma_samples") != std::string::npos) model.kind = ModelKind::observer;
+  const auto states = [&](std::string_view key) { return resource->text.find(key) != std::string::npos; };
+  if (states("blur_sigma_samples") || states("[eye]")) model.kind = ModelKind::observer;
   return described(std::move(model), *resource);
 }
 

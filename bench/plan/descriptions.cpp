@@ -14,6 +14,10 @@ namespace todbench {
 
 namespace {
 
+constexpr const char* needs_display_here =
+    "the observer has an eye and needs a display, which this command does not have; use simulate, measure or plan with "
+    "a plan that has a section [display], or an observer without an eye (hvs-1)";
+
 /// Ranges of plate dimensions, in mm.
 const NumberRange length_range = NumberRange::between(0.001, 1e5);
 const NumberRange place_range = NumberRange::between(-1e5, 1e5);
@@ -172,12 +176,36 @@ Result<SensorSpec> parse_sensor(const Resource& resource) {
   return checked(reader, resource, std::move(spec));
 }
 
+/// Reads the [eye] of an observer; empty without one.
+std::optional<EyeParameters> read_eye(TomlReader table) {
+  if (!table.present()) return std::nullopt;
+  EyeParameters eye;
+  const std::pair<std::string_view, double EyeParameters::*> keys[] = {
+      {"sensitivity", &EyeParameters::sensitivity},
+      {"photon_noise_td", &EyeParameters::photon_noise_td},
+      {"inhibition_per_degree", &EyeParameters::inhibition_per_degree},
+      {"critical_cycles", &EyeParameters::critical_cycles},
+      {"area_exponent", &EyeParameters::area_exponent},
+      {"uncertainty_channels", &EyeParameters::uncertainty_channels},
+      {"contrast_noise", &EyeParameters::contrast_noise},
+      {"age_years", &EyeParameters::age_years},
+      {"field_deg2", &EyeParameters::field_deg2}};
+  for (const auto& [name, member] : keys) eye.*member = table.number(name, NumberRange::between(0, 1e9), eye.*member);
+  return eye;
+}
+
 Result<DescribedObserver> parse_observer_with_module(const Resource& resource) {
   TODBENCH_TRY(TomlReader reader, TomlReader::parse(resource.text, resource.origin));
   TemplateObserverSpec spec;
   spec.name = reader.text("name", std::nullopt);
-  spec.blur_sigma_samples = reader.number("blur_sigma_samples", NumberRange::between(0.1, 10), std::nullopt);
-  spec.internal_noise = reader.number("internal_noise", NumberRange::between(0, 10), std::nullopt);
+  spec.eye = read_eye(reader.section("eye"));
+  if (spec.eye) {
+    spec.internal_noise = 0;
+    spec.window_margin_arcmin = reader.number("window_margin_arcmin", NumberRange::between(0, 120), 6.0);
+  } else {
+    spec.blur_sigma_samples = reader.number("blur_sigma_samples", NumberRange::between(0.1, 10), std::nullopt);
+    spec.internal_noise = reader.number("internal_noise", NumberRange::between(0, 10), std::nullopt);
+  }
   spec.sensor_noise_factor =
       reader.number("sensor_noise_factor", NumberRange::between(1, 100), spec.sensor_noise_factor);
   spec.search_range_samples =
@@ -242,7 +270,16 @@ Result<SensorSpec> load_sensor_with_modules(std::string_view reference) {
 }
 
 Result<TemplateObserverSpec> load_observer(std::string_view reference) {
-  return load(ResourceKind::observer, reference, parse_observer);
+  auto spec = load(ResourceKind::observer, reference, parse_observer);
+  if (spec && spec->eye) return fail_at(ErrorCode::invalid_input, std::string(reference), needs_display_here);
+  return spec;
+}
+
+Result<void> refuse_eye(const TemplateObserverSpec& observer, std::string_view work) {
+  if (!observer.eye) return {};
+  return fail_at(ErrorCode::invalid_input, "observer.name",
+                 std::string(work) + " does not model the eye of observer " + observer.name +
+                     " and its display; use an observer without an eye (hvs-1)");
 }
 
 Result<TargetPlate> load_plate(std::string_view reference) {

@@ -27,8 +27,11 @@ struct DescribedObserver {
 [[nodiscard]] Result<SensorSpec> load_sensor(std::string_view reference);
 /// Loads a sensor with its modules, for callers that run them.
 [[nodiscard]] Result<SensorSpec> load_sensor_with_modules(std::string_view reference);
-/// Loads an observer. An observer with a module is rejected: plans have their own [[module]].
+/// Loads an observer. An observer with a module is rejected: plans have their own [[module]]. So is one with an eye:
+/// only a plan has a display.
 [[nodiscard]] Result<TemplateObserverSpec> load_observer(std::string_view reference);
+/// Fails if the observer has an eye, for work that does not model a display: "WORK does not model ...".
+[[nodiscard]] Result<void> refuse_eye(const TemplateObserverSpec& observer, std::string_view work);
 /// Loads a plate. Rows of cut-outs: [[row]] size_mm, y_mm, x_mm = [...], apex = ["up", ...], optionally names = [...];
 /// default names are "row R, triangle T", counted from 1. Rectangles: [[rectangle]] x_mm, y_mm, width_mm, height_mm,
 /// optionally name and angle_deg.

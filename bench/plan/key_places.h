@@ -57,6 +57,9 @@ constexpr const auto& values_of(const PlaceSource&) {
 constexpr const auto& values_of(const ContrastUnit&) {
   return all_contrast_units;
 }
+constexpr const auto& values_of(const DisplayInterpolation&) {
+  return all_display_interpolations;
+}
 constexpr const auto& values_of(const Effect&) {
   return all_effects;
 }

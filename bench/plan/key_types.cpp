@@ -59,6 +59,7 @@ std::vector<ValueMistake> list_mistakes(const std::vector<std::string>& list, st
 
 std::vector<ValueMistake> numbers_mistakes(const NumbersKey& type, const std::vector<double>& list) {
   std::vector<ValueMistake> mistakes;
+  if (list.empty() && type.may_be_empty == MayBeEmpty::yes) return {};
   if (type.count && list.size() != *type.count) return {{std::nullopt, "expected " + std::string(type.noun)}};
   if (!type.count && list.empty()) return {{std::nullopt, "expected at least one " + std::string(type.noun)}};
   for (std::size_t i = 0; i < list.size(); ++i) {

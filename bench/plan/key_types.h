@@ -46,13 +46,14 @@ struct WholesKey {
 struct ChoiceKey {
   std::vector<std::string> words;
 };
+enum class MayBeEmpty { no, yes };
 /// List of numbers. `noun` is the name of an element in messages.
 struct NumbersKey {
   NumberRange range;
   std::string_view noun;
   std::optional<std::size_t> count{};  ///< empty: at least one
+  MayBeEmpty may_be_empty = MayBeEmpty::no;
 };
-enum class MayBeEmpty { no, yes };
 /// List of words, each at most once.
 struct ChoicesKey {
   std::vector<std::string> words;

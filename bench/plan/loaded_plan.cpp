@@ -130,8 +130,25 @@ Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFin
   return {};
 }
 
+}  // namespace
+
+Result<void> check_eye(const Plan& plan, const PlanParts& parts) {
+  const auto judges = [](const ModulePlan& module) { return module.place == ModulePlace::observer; };
+  if (std::ranges::any_of(plan.modules, judges)) {
+    if (auto blind = refuse_eye(parts.observer, "a module in place of the observer"); !blind) return blind;
+  }
+  if (!parts.observer.eye || has_display(plan)) return {};
+  return fail_at(ErrorCode::invalid_input, "observer.name",
+                 "observer " + parts.observer.name +
+                     " has an eye and needs a display: state its pixel pitch, viewing distance and luminance in "
+                     "section [display] of the plan");
+}
+
+namespace {
+
 /// Returns the contradictions between parts and plan.
 Result<void> fits_together(const Plan& plan, const PlanParts& parts) {
+  if (auto shown = check_eye(plan, parts); !shown) return shown;
   constexpr double steepest = 0.5;  // motion of the target between two rows, in pitches
   const cv::Point2d slope = readout_slope(parts.sensor, plan.simulation.motion);
   if (std::hypot(slope.x, slope.y) <= steepest) return {};
@@ -183,6 +200,7 @@ std::vector<TargetPlate> LoadedPlan::shown_plates() const {
 LoadedPlan::LoadedPlan(Plan plan, PlanParts parts)
     : plan_(std::move(plan)), parts_(std::move(parts)), sensor_(parts_.sensor) {
   sensor_.microscan = plan_.simulation.microscan;
+  parts_.observer.display = parts_.observer.eye ? std::optional(plan_.display) : std::nullopt;
 }
 
 Result<LoadedPlan> LoadedPlan::load(Plan plan, const ResourceFinder& find) {
@@ -195,6 +213,7 @@ Result<LoadedPlan> LoadedPlan::load(Plan plan, const ResourceFinder& find) {
 
 Result<LoadedPlan> LoadedPlan::of(Plan plan, PlanParts parts) {
   if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
+  if (auto shown = check_eye(plan, parts); !shown) return tl::unexpected(shown.error());
   return LoadedPlan(std::move(plan), std::move(parts));
 }
 

@@ -76,6 +76,9 @@ class LoadedPlan {
 /// Returns the plan with absolute paths of the files that it names; relative ones are relative to `folder`.
 [[nodiscard]] Plan with_absolute_references(Plan plan, const std::filesystem::path& folder);
 
+/// Fails if the observer has an eye, and the plan has no display or a module in place of the observer.
+[[nodiscard]] Result<void> check_eye(const Plan& plan, const PlanParts& parts);
+
 /// Reads the parts that keys of a type name in `plan` into `parts`. Returns the mistakes by element of the list.
 [[nodiscard]] std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, const ResourceFinder& find,
                                                    PlanParts& parts);

@@ -16,6 +16,7 @@
 #include "bench/plan/budget_row.h"
 #include "bench/plan/conformity_rule.h"
 #include "bench/plan/resources.h"
+#include "hvs/eye/viewed_display.h"
 #include "sim_devices/module/module_plan.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "tod/camera_measures/camera_measures.h"
@@ -320,6 +321,8 @@ struct Plan {
   CameraPlan camera;
   TargetPlan target;
   std::string observer = "hvs-1";  ///< name or file; key `name` of [observer]
+  /// Section [display]: the display of the operator, for an observer with an eye. All defaults: not stated.
+  ViewedDisplay display;
   SimulationPlan simulation;
   SchedulePlan schedule;
   FitPlan fit;
@@ -335,6 +338,11 @@ struct Plan {
   std::vector<ModulePlan> modules{};
   bool operator==(const Plan&) const = default;
 };
+
+/// Returns whether the plan has a section [display].
+[[nodiscard]] inline bool has_display(const Plan& plan) {
+  return plan.display != ViewedDisplay{};
+}
 
 /// Reads a plan by name ("demo") or file; the keys are the rows of bench/plan/..._keys.cpp, listed in
 /// docs/reference/plan-keys.md. Relative file names in the plan are relative to its folder; the result has absolute

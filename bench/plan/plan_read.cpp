@@ -111,6 +111,7 @@ Result<LoadedPlan> read_plan(const Resource& resource, const std::filesystem::pa
   PlanReader reader(root, folder, find);
   reader.read();
   if (const Result<void> read = root.finish(); !read) return tl::unexpected(read.error());
+  if (auto seen = check_eye(reader.plan(), reader.parts()); !seen) return fail(resource.origin, seen.error());
   return LoadedPlan(std::move(reader.plan()), std::move(reader.parts()));
 }
 

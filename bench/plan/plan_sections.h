@@ -23,6 +23,9 @@ inline constexpr NumberRange share = NumberRange::between(0, 1);
 [[nodiscard]] PlanSection module_section();
 [[nodiscard]] PlanSection report_section();
 
+// display_keys.cpp
+[[nodiscard]] PlanSection display_section();
+
 // run_keys.cpp
 [[nodiscard]] PlanSection observer_section();
 [[nodiscard]] PlanSection simulation_section();

@@ -109,6 +109,30 @@ void add_findings(Section& section, const ReportData& data) {
   section.blocks.emplace_back(std::move(findings));
 }
 
+/// States S75 over the open parameters of an observer with an eye.
+void add_spread(Section& section, const ReportData& data) {
+  List spreads;
+  for (const auto& [curve, which] : {std::pair(&data.measured, "Measured"), std::pair(&data.simulated, "Simulated")}) {
+    if (!*curve) continue;
+    for (const TodPoint& point : (*curve)->points) {
+      if (!point.s75_spread_mrad) continue;
+      spreads.items.push_back(plain(std::string(which) + " at " + stated(point.set_delta_t_k) +
+                                    " K: " + fixed(point.s75_spread_mrad->first, 3) + " to " +
+                                    fixed(point.s75_spread_mrad->second, 3) + " mrad"));
+    }
+  }
+  if (spreads.items.empty()) return;
+  section.blocks.emplace_back(Paragraph{strong("S₇₅ over the open parameters of the observer")});
+  section.blocks.emplace_back(
+      Paragraph{plain("Public data do not determine the observer's sensitivity (±4 dB), its channels of uncertainty "
+                      "(100 to 3000), its noise in proportion to the contrast (0 to 0.07) and its factor on the noise "
+                      "of the sensor (1.1 to 3.2). These are the thresholds at the ends of all four ranges together. "
+                      "They are not confidence intervals: no probability belongs to them. Public data carry detection "
+                      "and the shape of acuity over luminance and contrast; they do not carry a TOD of people behind "
+                      "a sensor.")});
+  section.blocks.emplace_back(std::move(spreads));
+}
+
 std::vector<RichText> curve_row(const TodPoint& point, bool with_direct) {
   const PsychometricFit& fit = point.fit;
   const std::string_view reason = fit.verdict == FitVerdict::no_data ? "no trials" : "not identified";
@@ -377,6 +401,7 @@ Section curve_section(const ReportData& data) {
     section.blocks.emplace_back(
         curve_table(*data.simulated, "Simulated; brackets: 95 % interval, ±: standard error", true));
   add_findings(section, data);
+  add_spread(section, data);
   section.blocks.emplace_back(note(plain(form_in_words(data) + answers_in_words(data) + " " +
                                          std::string(one_sided_note) + " " + std::string(groups_note))));
   if (data.simulated)

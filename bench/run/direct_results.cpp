@@ -4,9 +4,35 @@
 #include <utility>
 
 #include "bench/run/twin_shapes.h"
+#include "hvs/observer/open_parameters.h"
 #include "hvs/observer/template_observer.h"
 
 namespace todbench {
+namespace {
+
+/// Adds the spread over the open parameters. A contrast without a threshold at an end has no spread and a note.
+void add_spread(const ExperimentInputs& inputs, DirectEstimateOptions options, DirectResults& results) {
+  const auto range = open_parameter_range(inputs.observer);
+  if (!range) return;
+  options.accuracy.standard_error_percent = 0;  // the spread is ten times wider than the error of the usual draws
+  TemplateObserver best(range->best, triangle_alternatives()), worst(range->worst, triangle_alternatives());
+  for (const auto& [contrast, point] : results.points) {
+    const auto low = direct_estimate(inputs.sensor, inputs.effects, best, {contrast}, options);
+    const auto high = direct_estimate(inputs.sensor, inputs.effects, worst, {contrast}, options);
+    if (low && high) {
+      results.spread_pitch[contrast] = {low->front().s75_pitch, high->front().s75_pitch};
+      continue;
+    }
+    const Error& error = low ? high.error() : low.error();
+    if (error.code == ErrorCode::interrupted) {
+      results.ended_by = error;
+      return;
+    }
+    results.notes.push_back("no spread over the observer's open parameters: " + error.message);
+  }
+}
+
+}  // namespace
 
 DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inputs,
                              const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
@@ -30,6 +56,7 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
       results.notes.push_back("no direct estimate: " + found.error().message);
     }
   }
+  if (!results.ended_by) add_spread(inputs, options, results);
   return results;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/run/experiment_inputs.h"
@@ -18,6 +19,8 @@ namespace todbench {
 /// S75 without trials for the contrasts of a curve; contrasts without an estimate have a note.
 struct DirectResults {
   std::map<double, DirectPoint> points;  ///< by contrast
+  /// S75 in pitches over the range of the observer's open parameters (open_parameters.h), by contrast.
+  std::map<double, std::pair<double, double>> spread_pitch;
   std::vector<std::string> notes;
   std::optional<Error> ended_by;
 };

@@ -236,6 +236,10 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
       if (found == direct.points.end()) continue;
       point.direct_s75_mrad = found->second.s75_pitch * inputs.sensor.ifov_mrad();
       point.direct_s75_se_mrad = found->second.standard_error_pitch * inputs.sensor.ifov_mrad();
+      const auto spread = direct.spread_pitch.find(point.delta_t_k);
+      if (spread == direct.spread_pitch.end()) continue;
+      point.s75_spread_mrad = {spread->second.first * inputs.sensor.ifov_mrad(),
+                               spread->second.second * inputs.sensor.ifov_mrad()};
     }
   }
   examine(run.curve, fit_options(plan));
@@ -462,6 +466,17 @@ struct BackgroundWork {
   BackgroundMeasures& measures;
 };
 
+/// The measured thresholds with the relative spread of the twin's: both have the same observer.
+void take_spread(TodCurve& curve, const TodCurve& twin) {
+  for (TodPoint& point : curve.points) {
+    const auto same = std::ranges::find_if(
+        twin.points, [&](const TodPoint& other) { return same_contrast(other.set_delta_t_k, point.set_delta_t_k); });
+    if (same == twin.points.end() || !same->s75_spread_mrad || !same->direct_s75_mrad || !point.fit.threshold) continue;
+    const double scale = *point.fit.threshold / *same->direct_s75_mrad;
+    point.s75_spread_mrad = {same->s75_spread_mrad->first * scale, same->s75_spread_mrad->second * scale};
+  }
+}
+
 /// Adds run, comparison and physical measures of the twin.
 void add_twin(ExperimentOutcome& outcome, Provenance& provenance, const FromCamera& camera, const LoadedPlan& loaded,
               const Plan& plan, const ExperimentInputs& inputs, const BackgroundWork& background,
@@ -469,6 +484,7 @@ void add_twin(ExperimentOutcome& outcome, Provenance& provenance, const FromCame
   TwinResults twin = run_twin(plan, inputs, camera, open.folder, host, open.listener, stop);
   provenance.twin_run = std::move(twin.run);
   outcome.twin = std::move(twin.curve);
+  if (outcome.twin) take_spread(outcome.curve, *outcome.twin);
   outcome.comparison = std::move(twin.comparison);
   outcome.ended_by = std::move(twin.ended_by);
   if (background.pairs != nullptr) pair_with_twin(outcome, *background.pairs, inputs, open, stop);

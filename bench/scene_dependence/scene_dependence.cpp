@@ -11,6 +11,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/core/forwarding_source.h"
+#include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
 #include "bench/run/module_chain.h"
@@ -408,6 +409,8 @@ Result<SceneDependence> plan_scene_dependence(const LoadedPlan& loaded, const En
                                               const SceneDependenceOptions& options, const ExperimentHost& host,
                                               std::stop_token stop) {
   const Plan& plan = loaded.plan();
+  if (auto blind = refuse_eye(loaded.observer(), "a study of scene dependence"); !blind)
+    return tl::unexpected(blind.error());
   if (package != nullptr) {
     if (auto same = refuse_finer_pictures(*package, "the response to a bar"); !same)
       return tl::unexpected(same.error());

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tod/presentation/trial.h"
@@ -66,6 +67,9 @@ struct TodPoint {
   std::optional<Adequacy> adequacy;       ///< findings against the threshold; empty: not examined
   std::optional<double> direct_s75_mrad;  ///< simulated sensors only: no psychometric form assumed
   std::optional<double> direct_s75_se_mrad;
+  /// S75 over the range of the observer's open parameters, low and high. It is not a confidence interval. Empty: the
+  /// observer has no open parameters, or they were not varied.
+  std::optional<std::pair<double, double>> s75_spread_mrad;
   /// Share of the point's trials with saturated pixels inside the window of their triangle.
   double saturated_share = 0;
   /// Temporal noise of a pixel in counts; empty: not known, or not counted in whole numbers.

@@ -61,7 +61,7 @@ TEST(Resources, EveryShippedDescriptionReadsAndIsCalledAsItsFile) {
     EXPECT_EQ(sensor->name, name);
   }
   for (const std::string& name : resource_names(ResourceKind::observer)) {
-    const auto observer = load_observer(name);
+    const auto observer = parse_observer(find_resource(ResourceKind::observer, name).value());
     ASSERT_TRUE(observer) << observer.error().message;
     EXPECT_EQ(observer->name, name);
   }
@@ -162,6 +162,16 @@ TEST(Sensor, EveryKeyIsInTheDocument) {
 
 TEST(ObserverFile, Hvs1IsTheDefaultOfTheStruct) {
   EXPECT_EQ(load_observer("hvs-1").value(), TemplateObserverSpec{});
+}
+
+TEST(ObserverFile, Hvs2HasTheDefaultEye) {
+  const auto observer = parse_observer(find_resource(ResourceKind::observer, "hvs-2").value());
+
+  ASSERT_TRUE(observer) << observer.error().message;
+  EXPECT_EQ(observer->eye, EyeParameters{});
+  EXPECT_EQ(observer->internal_noise, 0);
+  EXPECT_EQ(observer->sensor_noise_factor, 1.75);
+  EXPECT_EQ(observer->window_margin_arcmin, 6);
 }
 
 TEST(ObserverFile, HumanLike1DiffersInBlurInternalNoiseAndSensorNoiseOnly) {
