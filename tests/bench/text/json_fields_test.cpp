@@ -15,8 +15,8 @@ namespace {
 using ::testing::EndsWith;
 using ::testing::StartsWith;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_end = std::numeric_limits<double>::infinity();
 
 enum class Lamp { off, on };
 constexpr std::array lamps{Lamp::off, Lamp::on};
@@ -183,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(JsonFields, RefuseToWriteANumberThatIsNotFinite) {
-  for (const double bad : {nan, infinity, -infinity}) {
+  for (const double bad : {not_a_number, no_end, -no_end}) {
     Sample sample, in_list, nested;
     sample.number = bad;
     in_list.numbers[1] = bad;
@@ -201,7 +201,7 @@ TEST(JsonFields, RefuseToWriteANumberThatIsNotFinite) {
 }
 
 TEST(JsonFields, WriteAnOptionalNumberThatIsNotFiniteAsNull) {
-  for (const double bad : {nan, infinity}) {
+  for (const double bad : {not_a_number, no_end}) {
     Sample sample;
     sample.unknown = bad;
     sample.interval.high = bad;
@@ -219,7 +219,7 @@ TEST(JsonFile, IsNotWrittenIfTheRecordHasAMistake) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "sample.json";
   Sample bad;
-  bad.number = nan;
+  bad.number = not_a_number;
 
   const Result<void> refused = write_json_file(file, json_of(bad, sample_fields));
   const bool there = std::filesystem::exists(file);
