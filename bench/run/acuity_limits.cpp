@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -149,10 +150,12 @@ std::string in_words(const AcuityLimits& limits) {
   };
   std::string text = fmt::format("at {:g} K", limits.delta_t_k);
   if (limits.costs.empty()) return text + " nothing that can be left out limits the acuity";
-  text += fmt::format(" the {} limits the acuity most; without it the 75 % size would be smaller: ",
+  text += fmt::format(" the {} limits the acuity most; S75 is larger than without it by: ",
                       name(limits.costs.front().factor));
   for (std::size_t i = 0; i < limits.costs.size(); ++i) {
-    text += fmt::format("{}{} {:.0f} %", i == 0 ? "" : ", ", name(limits.costs[i].factor), limits.costs[i].percent);
+    // Adding 0 turns a rounded -0 into 0.
+    text += fmt::format("{}{} {:.0f} %", i == 0 ? "" : ", ", name(limits.costs[i].factor),
+                        std::round(limits.costs[i].percent) + 0.0);
   }
   return text;
 }

@@ -17,6 +17,6 @@ cd "$folder"
 grep -q '^verdict,decision,,,,,,,,pass,' session-0.1/report.csv || fail "$(cat session-0.1/report.csv)"
 s75=$(field "$2/curve.csv" s75_mrad)
 [ "${s75%%.*}" -eq 2 ] || fail "S75 $s75"
-grep -q "^simulated,s75_mrad,16.9,$s75,$(field "$2/curve.csv" s75_ci95_low_mrad),$(field "$2/curve.csv" s75_ci95_high_mrad),95,,mrad,ok,$" \
+grep -q "^simulated,s75_mrad,16.9,$s75,$(field "$2/curve.csv" s75_ci95_low_mrad),$(field "$2/curve.csv" s75_ci95_high_mrad),95,,mrad,ok,,$" \
   session-0.1/report.csv || fail "$(cat session-0.1/report.csv)"
 "$program" range --tod session-0.1 --size-m 2.3 --delta-t-k 16.9 --quiet >/dev/null || fail "no range"

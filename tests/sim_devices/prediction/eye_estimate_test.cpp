@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hvs/observer/open_parameters.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tests/sim_devices/reference.h"
 #include "tod/plate/test_pattern.h"
@@ -76,6 +77,37 @@ TEST(EyeEstimate, FallsWithLightContrastAndSampleAngle) {
   EXPECT_GT(at([](ViewedDisplay& d) { d.contrast = 0.1; }), usual);
   EXPECT_GT(at([](ViewedDisplay& d) { d.viewing_distance_m = 2; }), usual);
   EXPECT_GT(at([](ViewedDisplay& d) { d.spot_mm = 0.4 * d.pixel_pitch_mm; }), usual);
+}
+
+TEST(EyeEstimate, IsMonotoneInEachOpenParameterSoThatTheEndsHoldAll) {
+  for (const double contrast_k : {16.9, 0.23}) {
+    const auto of = [&](const TemplateObserverSpec& spec) {
+      return estimated(test::sc2000(), spec, {contrast_k}, Accuracy::draft())[0].s75_pitch;
+    };
+    const TemplateObserverSpec usual = viewer(3);
+    const OpenParameterRange range = open_parameter_range(usual).value();
+    const double low = of(range.best), middle = of(usual), high = of(range.worst);
+    EXPECT_LT(low, middle);
+    EXPECT_LT(middle, high);
+    // One parameter of the four at one end; estimates of draft accuracy differ by up to 2 %.
+    constexpr double scatter = 0.02;
+    for (int parameter = 0; parameter < 4; ++parameter) {
+      const auto at_end = [&](const TemplateObserverSpec& end) {
+        TemplateObserverSpec spec = usual;
+        if (parameter == 0) spec.eye->sensitivity = end.eye->sensitivity;
+        if (parameter == 1) spec.eye->uncertainty_channels = end.eye->uncertainty_channels;
+        if (parameter == 2) spec.eye->contrast_noise = end.eye->contrast_noise;
+        if (parameter == 3) spec.sensor_noise_factor = end.sensor_noise_factor;
+        return of(spec);
+      };
+      const double better = at_end(range.best), worse = at_end(range.worst);
+      std::printf("%g K, parameter %d: %.3f < %.3f < %.3f\n", contrast_k, parameter, better, middle, worse);
+      EXPECT_LT(better, middle * (1 + scatter)) << parameter;
+      EXPECT_GT(worse, middle * (1 - scatter)) << parameter;
+      EXPECT_GT(better, low * (1 - scatter)) << parameter;
+      EXPECT_LT(worse, high * (1 + scatter)) << parameter;
+    }
+  }
 }
 
 }  // namespace
