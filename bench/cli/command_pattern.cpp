@@ -12,6 +12,7 @@
 #include "bench/picture_files/npy.h"
 #include "bench/report/pattern_truth.h"
 #include "bench/text/files.h"
+#include "bench/text/text.h"
 #include "tod/pattern/test_picture.h"
 
 namespace todbench {

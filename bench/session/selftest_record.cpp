@@ -10,6 +10,7 @@
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/json_fields.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 
