@@ -80,8 +80,8 @@ Result<PeopleFitOptions> options_of(const ObserverFitArguments& arguments, const
   const auto from = find_resource(ResourceKind::observer, arguments.from);
   if (!from) return tl::unexpected(from.error());
   const auto spec = parse_observer(*from);
-  if (auto blind = refuse_eye(*spec, "observer fit"); !blind) return tl::unexpected(blind.error());
   if (!spec) return tl::unexpected(spec.error());
+  if (auto blind = refuse_eye(*spec, "observer fit"); !blind) return tl::unexpected(blind.error());
   options.from = *spec;
   options.from_sha256 = sha256_of(from->text);
   options.name = *name;

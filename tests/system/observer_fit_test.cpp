@@ -136,5 +136,15 @@ TEST_F(ObserverFitCommand, WritesNoObserverForAnswersOfAnotherKind) {
   EXPECT_THAT(content_of(at("x.html")), HasSubstr("MODEL REJECTED"));
 }
 
+TEST_F(ObserverFitCommand, RefusesAnObserverThatItCannotReadOrFit) {
+  folder_.write("bad.toml", "name = \"bad\"\n");
+  const auto from = [&](const std::string& observer) {
+    return run({"observer", "fit", "a", "--from", observer, "--free", "internal_noise", "--out", "o.toml"});
+  };
+
+  expect_refused(from("./bad.toml"), 2, "blur_sigma_samples");
+  expect_refused(from("hvs-2"), 2, "eye");
+}
+
 }  // namespace
 }  // namespace todbench::testing
