@@ -52,7 +52,8 @@ struct StreamFormat {
 /// omitted. Error: `disconnected` at the first read without an answer.
 [[nodiscard]] Result<std::map<std::string, std::string>> read_settings(ArvDevice* device);
 
-/// Commands that correct the non-uniformity, best first: those of the family, or by name if it has none.
+/// Commands that correct the non-uniformity, best first: those of the family; for a family without them, those that
+/// their names suggest.
 [[nodiscard]] std::vector<std::string> nonuniformity_commands(ArvDevice* device, const CameraFamily& family);
 
 /// Disables automatic corrections, so that only commands correct. Returns a warning if the camera cannot disable them.

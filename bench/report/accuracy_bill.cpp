@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "acquisition/base/median.h"
 #include "acquisition/base/normal.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
@@ -30,13 +31,7 @@ struct RunTimes {
   std::map<double, double> presentations_s;  ///< by set contrast
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Empty for a scene that has no times.
+/// Empty if a presentation has no time.
 std::optional<RunTimes> times_of(std::span<const Presentation> presentations) {
   RunTimes times;
   std::map<double, ContrastTime> by_contrast;

@@ -40,7 +40,7 @@ struct BillInput {
 
 /// Divides the time of a run. A presentation begins when the target is in place and ends when its next change begins.
 /// The first presentation of a set-up or a contrast also locates the plate and measures the contrast: the excess over
-/// the median presentation of the same contrast is that time. A simulated scene has no times of its own: all time is
+/// the median presentation of the same contrast is that time. If the presentations have no times, all time is
 /// computing. The least time for the verdict assumes a half-width that falls with the root of the presentations, at
 /// least one presentation of each set-up.
 [[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);

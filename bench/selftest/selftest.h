@@ -29,7 +29,8 @@ struct SelftestGroup {
 [[nodiscard]] std::vector<SelftestGroup> selftest_groups();
 
 /// Computes all cases: closed forms, 50-digit references, hard cases, the numbers of every part, the same bits on two
-/// threads, and the first case of the reference set. Takes about 15 s of processor time. Errors: `interrupted`.
+/// threads, and the first case of the reference set. Takes about half a second of processor time. Errors:
+/// `interrupted`.
 [[nodiscard]] Result<std::vector<SelftestCase>> selftest(std::stop_token stop);
 
 }  // namespace todbench

@@ -24,8 +24,8 @@ Json drift_fit_json(const DriftFit& fit) {
           {"time_constant_s", json_number(fit.time_constant_s)},
           {"time_constant_ci95_s", json_interval(fit.time_constant_ci95)},
           {"p_linear", json_number(fit.p_linear)},
-          {"seen_k", measure_numbers_json(fit.seen_k)},
-          {"fitted_k", measure_numbers_json(fit.fitted_k)}};
+          {"seen_k", json_numbers(fit.seen_k)},
+          {"fitted_k", json_numbers(fit.fitted_k)}};
 }
 
 DriftFit drift_fit_from(const JsonReader& record) {
@@ -36,8 +36,8 @@ DriftFit drift_fit_from(const JsonReader& record) {
   fit.time_constant_s = record.at("time_constant_s").optional_number();
   fit.time_constant_ci95 = record.at("time_constant_ci95_s").interval();
   fit.p_linear = record.at("p_linear").number();
-  fit.seen_k = measure_numbers_from(record.at("seen_k"));
-  fit.fitted_k = measure_numbers_from(record.at("fitted_k"));
+  fit.seen_k = record.at("seen_k").numbers();
+  fit.fitted_k = record.at("fitted_k").numbers();
   return fit;
 }
 
@@ -68,15 +68,14 @@ Json drift_json(const DriftMeasure& measure) {
           {"first_s", json_number(measure.first_s)},
           {"last_s", json_number(measure.last_s)},
           {"ended_by_correction", measure.ended_by_correction},
-          {"time_s", measure_numbers_json(measure.law.time_s)},
+          {"time_s", json_numbers(measure.law.time_s)},
           {"level", drift_fit_json(measure.law.level)},
           {"pattern", drift_fit_json(measure.law.pattern)}};
 }
 
 DriftMeasure drift_from(const JsonReader& drift) {
   DriftMeasure found;
-  found.law = {measure_numbers_from(drift.at("time_s")), drift_fit_from(drift.at("level")),
-               drift_fit_from(drift.at("pattern"))};
+  found.law = {drift.at("time_s").numbers(), drift_fit_from(drift.at("level")), drift_fit_from(drift.at("pattern"))};
   return found;
 }
 

@@ -43,8 +43,6 @@ struct MeasureRow {
   return rows;
 }
 
-[[nodiscard]] Json measure_numbers_json(const std::vector<double>& values);
-[[nodiscard]] std::vector<double> measure_numbers_from(const JsonReader& list);
 /// Returns {"value", "ci95"}.
 [[nodiscard]] Json estimate_json(const Estimate& found);
 

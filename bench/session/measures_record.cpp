@@ -159,18 +159,6 @@ MeasureLine measure_line(std::string name, std::optional<double> value, const In
   return {std::move(name), unit, value, ci95, std::move(conditions)};
 }
 
-Json measure_numbers_json(const std::vector<double>& values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(json_number(value));
-  return list;
-}
-
-std::vector<double> measure_numbers_from(const JsonReader& list) {
-  std::vector<double> values;
-  for (const JsonReader& value : list.elements()) values.push_back(value.number());
-  return values;
-}
-
 Json estimate_json(const Estimate& found) {
   return {{"value", json_number(found.value)}, {"ci95", {json_number(found.low), json_number(found.high)}}};
 }

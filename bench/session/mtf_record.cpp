@@ -58,14 +58,14 @@ Json mtf_json(const MtfMeasure& mtf) {
                      {"middle_px", {json_number(edge.middle_px.x), json_number(edge.middle_px.y)}},
                      {"angle_deg", json_number(edge.angle_deg)},
                      {"noise_over_step", json_number(edge.noise_over_step)},
-                     {"frequency_per_pitch", measure_numbers_json(edge.frequency_per_pitch)},
-                     {"frequency_per_mrad", measure_numbers_json(per_mrad)},
-                     {"mtf", measure_numbers_json(edge.mtf)},
+                     {"frequency_per_pitch", json_numbers(edge.frequency_per_pitch)},
+                     {"frequency_per_mrad", json_numbers(per_mrad)},
+                     {"mtf", json_numbers(edge.mtf)},
                      {"mtf_ci95", intervals},
                      {"widest_halo_pitch", json_number(edge.widest_halo_pitch)},
                      {"halo_allowance", json_number(edge.halo_allowance)},
                      {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
-                     {"model", edge.model.empty() ? Json() : measure_numbers_json(edge.model)}});
+                     {"model", edge.model.empty() ? Json() : json_numbers(edge.model)}});
   }
   return {{"plate", mtf.plate},
           {"frames", mtf.frames},
@@ -86,15 +86,15 @@ MtfMeasure mtf_from(const JsonReader& mtf) {
     one.sides = static_cast<int>(edge.at("sides").whole());
     one.angle_deg = edge.at("angle_deg").number();
     one.noise_over_step = edge.at("noise_over_step").number();
-    one.frequency_per_pitch = measure_numbers_from(edge.at("frequency_per_pitch"));
-    one.mtf = measure_numbers_from(edge.at("mtf"));
+    one.frequency_per_pitch = edge.at("frequency_per_pitch").numbers();
+    one.mtf = edge.at("mtf").numbers();
     for (const JsonReader& sides : edge.at("mtf_ci95").elements()) {
       const Interval interval = sides.interval();
       one.low.push_back(interval.low.value_or(0)), one.high.push_back(interval.high.value_or(0));
     }
     one.mtf50_per_pitch = edge.at("mtf50_per_pitch").optional_number();
     const JsonReader model = edge.at("model");
-    if (!model.is_null()) one.model = measure_numbers_from(model);
+    if (!model.is_null()) one.model = model.numbers();
     found.edges.push_back(std::move(one));
   }
   return found;
