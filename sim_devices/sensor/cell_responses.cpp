@@ -9,8 +9,8 @@
 namespace todbench {
 namespace {
 
-constexpr int table_period = 32;  ///< samples; responses of coefficients have fallen by (26 / 6)^-4 at the wrap
-constexpr int radial_nodes = 8192;
+constexpr int table_period = 32;    ///< samples; responses of coefficients have fallen by (26 / 6)^-4 at the wrap
+constexpr int radial_nodes = 8192;  // at least
 
 /// Fourier transform of the orthonormal polynomial of degree a: sqrt(2a+1) (-i)^a j_a(pi u).
 std::complex<double> legendre_spectrum(int a, double u) {
@@ -69,12 +69,14 @@ SampleTransfer::SampleTransfer(const ChainScope& scope, const Accuracy& accuracy
       footprint_(scope),
       others_(other_transfers(scope)) {
   const OpticsMtf optics(scope);
-  for (int i = 0; i <= radial_nodes + 1; ++i) optics_.push_back(optics(band_ * i / radial_nodes));
+  // Ten nodes within the standard deviation of the transfer of the widest halo, a fifth of its reach.
+  nodes_ = std::max(radial_nodes, static_cast<int>(std::ceil(13 * band_ * spread_of(scope).halo_reach)));
+  for (int i = 0; i <= nodes_ + 1; ++i) optics_.push_back(optics(band_ * i / nodes_));
 }
 
 double SampleTransfer::optics(double rho_squared) const {
-  const double place = std::sqrt(rho_squared) * per_pitch_ / band_ * radial_nodes;
-  if (place > radial_nodes) return 0;
+  const double place = std::sqrt(rho_squared) * per_pitch_ / band_ * nodes_;
+  if (place > nodes_) return 0;
   const auto at = static_cast<std::size_t>(place);
   return optics_[at] + (place - static_cast<double>(at)) * (optics_[at + 1] - optics_[at]);
 }

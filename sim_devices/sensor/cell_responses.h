@@ -46,6 +46,7 @@ class SampleTransfer {
   FootprintMtf footprint_;
   std::vector<TransferFunction> others_;
   std::vector<double> optics_;
+  int nodes_ = 0;  ///< of the table of optics
 };
 
 /// Responses of the samples round a cell to the polynomials of legendre_pairs() over that cell. One row for each

@@ -13,6 +13,7 @@
   EFFECT(diffraction)            \
   EFFECT(spectral_band)          \
   EFFECT(aberration)             \
+  EFFECT(halo)                   \
   EFFECT(distortion)             \
   EFFECT(detector)               \
   EFFECT(motion)                 \

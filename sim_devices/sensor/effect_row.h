@@ -91,10 +91,12 @@ using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfe
 
 /// Extent over which a stage of image formation spreads the picture of a point, in pitches.
 struct Spread {
-  double period = 0;    ///< added to the period, so that tails do not wrap round
-  double window = 0;    ///< added round a window, within which shapes are computed exactly
-  double variance = 0;  ///< per axis, pitches squared
-  double far = 0;       ///< the parts of a plane more than r pitches away add far r^(-5/3)
+  double period = 0;      ///< added to the period, so that tails do not wrap round
+  double window = 0;      ///< added round a window, within which shapes are computed exactly
+  double variance = 0;    ///< per axis, pitches squared
+  double far = 0;         ///< the parts of a plane more than r pitches away add far r^(-5/3)
+  double halo_share = 0;  ///< of the light, spread over `halo_reach`
+  double halo_reach = 0;  ///< added to the period, and round a frame
 };
 
 /// Samples that share one random number.

@@ -60,7 +60,10 @@ FrequencyLattice ImageChain::lattice(double size_pitch) const {
   const double spot = spec_.wavelength_max_um * spec_.f_number / spec_.pitch_um;
   const double relative_spot = plan_.simulates(Effect::diffraction) ? std::max(1.0, spot / (13 / 47.5)) : 1.0;
   const double tails = 16 * std::cbrt(1.6e-4 * relative_area * relative_spot / accuracy_.wrap_tolerance);
-  const double body = 2 * size_pitch + 16 + spread_.period;
+  // Copies of a halo that is wider than the period add up to a uniform level of share x area / period^2.
+  const double halo =
+      std::min(spread_.halo_reach, size_pitch * std::sqrt(spread_.halo_share / accuracy_.wrap_tolerance));
+  const double body = 2 * size_pitch + 16 + spread_.period + halo;
   const int period = 8 * static_cast<int>(std::ceil(std::max(tails, body) / 8 - 1e-9));
   return {.period = period, .band = static_cast<int>(std::floor(band_per_pitch_ * period))};
 }
@@ -113,7 +116,8 @@ ImageChain::InfinitePlane ImageChain::infinite_plane(const Polygon& whole_shape_
 void ImageChain::add_far_field(InfinitePlane& near, const Polygon& shape_pitch, cv::Point2d first, double step,
                                double half_width) const {
   const OpticsMtf optics(scope());
-  constexpr double small = 1e-4;  // cycles per pitch; the next terms are of second and third order
+  // In cycles per pitch; the next terms, those of a halo among them, are of second and third order.
+  const double small = 1e-4 / (1 + spread_.halo_reach * spread_.halo_reach);
   const double cusp = (1 - optics(small)) / small / (4 * std::numbers::pi * std::numbers::pi);
   double largest = 0;
   for (int row = 0; row < near.values.rows; ++row) {

@@ -16,6 +16,11 @@ using FloatRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 constexpr int margin_pitches = 48;
 
+/// Pitches beyond the margin from which a halo spreads light into the frame.
+int halo_margin_pitches(const SensorSpec& spec, const SensorPlan& plan) {
+  return static_cast<int>(std::ceil(spread_of({.spec = spec, .plan = plan}).halo_reach));
+}
+
 /// Elements of a picture that overlap a cell along one axis, with the integral of each polynomial over each of them.
 struct Overlap {
   int first = 0, count = 0;
@@ -58,7 +63,7 @@ struct SceneImager::Tables {
       : spec(std::move(s)),
         plan(std::move(p)),
         transfer({.spec = spec, .plan = plan, .wavelengths = accuracy.wavelengths, .motion = motion}, accuracy),
-        margin(margin_pitches * spec.samples_per_pitch()),
+        margin((margin_pitches + halo_margin_pitches(spec, plan)) * spec.samples_per_pitch()),
         degree(std::clamp(static_cast<int>(std::ceil(2.4 * transfer.band_per_sample())) + 3, 4, largest_degree)),
         pairs(legendre_pairs(degree)),
         responses(coefficient_responses(transfer, degree)) {}

@@ -25,8 +25,8 @@ namespace todbench {
 /// Green). Each polynomial has its own response, which falls as r^-4 and is kept for 6 samples. The degree follows from
 /// the band: the result equals ImageChain to 3e-5 of a contrast (test SceneImager.EqualsTheImageOfThePolygonAlone).
 ///
-/// The plane outside the frame and a margin of 48 pitches has level 0. The frame is periodic with that margin: a
-/// contrast that reaches the frame's edge has an error of up to 3e-4 of itself there.
+/// The plane outside the frame and a margin of 48 pitches, with a halo that and its reach, has level 0. The frame is
+/// periodic with that margin: a contrast that reaches the frame's edge has an error of up to 3e-4 of itself there.
 class SceneImager {
  public:
   /// Precondition: validate(spec) succeeds. The plan selects the effects of image formation; noise is not applied.

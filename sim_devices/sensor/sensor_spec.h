@@ -34,6 +34,8 @@ struct SensorSpec {
   double turbulence_correlation_ms = 0;   ///< of the image dance; 0: every frame is the long exposure
   double optics_transmission = 0.8;       ///< normalised out of the signal: NETD is referred to the scene
   double aberration_sigma_pitch = 0;  ///< Gaussian blur of the lens beyond diffraction, per axis, in detector pitches
+  double halo_share = 0;              ///< of the light, spread into a wide Gaussian round every point; 0: no halo
+  double halo_sigma_pitch = 0;        ///< sigma of that Gaussian per axis
   double distortion_percent = 0;      ///< radial, third power, at the corner of the picture; positive: pincushion
   double distortion_r4_percent = 0;   ///< radial, fifth power, at the corner
   double netd_k = 0.07;               ///< temporal noise per sample

@@ -97,6 +97,8 @@ Spread spread_of(const ChainScope& scope) {
     sum.window += own.window;
     sum.variance += own.variance;
     sum.far += own.far;
+    sum.halo_share += own.halo_share;
+    sum.halo_reach += own.halo_reach;
   }
   return sum;
 }

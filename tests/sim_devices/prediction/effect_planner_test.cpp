@@ -292,6 +292,16 @@ TEST(EffectPlannerProof, ExposureAndReadoutChangeNoMoreThanTheirBounds) {
   }
 }
 
+TEST(EffectPlannerProof, AHaloChangesNoMoreThanItsBound) {
+  for (const double delta_t_k : {0.23, 1.93, 16.9}) {
+    for (const double sigma_pitch : {2.0, 6.0, 20.0}) {
+      SensorSpec sensor = test::sc2000();
+      sensor.halo_share = 0.05, sensor.halo_sigma_pitch = sigma_pitch;
+      expect_bounded(Effect::halo, sensor, {}, delta_t_k, 100);
+    }
+  }
+}
+
 /// A field of 0.047 mrad a pixel whose short frames dance by `sd_pitch` per axis.
 SensorSpec dancing(double sd_pitch) {
   SensorSpec sensor = test::sc2000();
