@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/loaded_plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -57,9 +59,28 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
   return mistakes;
 }
 
+/// A plate of a physical measure in plan and parts.
+struct MeasurePlate {
+  bool MeasuresPlan::*requested;
+  std::string MeasuresPlan::*reference;
+  std::optional<TargetPlate> PlanParts::*part;
+};
+
+MeasurePlate plate_of(PlateUse use) {
+  switch (use) {
+    case PlateUse::mtf:
+      return {&MeasuresPlan::mtf, &MeasuresPlan::mtf_plate, &PlanParts::mtf_plate};
+    case PlateUse::ctf:
+      return {&MeasuresPlan::ctf, &MeasuresPlan::ctf_plate, &PlanParts::ctf_plate};
+    case PlateUse::source_size:
+      break;
+  }
+  return {&MeasuresPlan::source_size, &MeasuresPlan::source_size_plate, &PlanParts::source_plate};
+}
+
 /// Returns whether the plan needs the part, for keys that name a single one.
 bool is_asked_for(const ResourceKey& key, const Plan& plan) {
-  if (key.kind == ResourceKind::plate) return key.use == PlateUse::mtf ? plan.measures.mtf : plan.measures.ctf;
+  if (key.kind == ResourceKind::plate) return plan.measures.*plate_of(key.use).requested;
   if (key.kind == ResourceKind::black_body || key.kind == ResourceKind::stage)
     return plan.target.kind == TargetKind::scpi;
   if (key.kind == ResourceKind::letterhead) return !plan.report.letterhead.empty();
@@ -75,6 +96,8 @@ std::vector<ValueMistake> read_letterhead(const Plan& plan, const ResourceFinder
 
 /// Returns the reason why a plate cannot be used for a measure; empty if it can.
 std::string unfit_for(PlateUse use, const TargetPlate& plate) {
+  if (use == PlateUse::source_size && plate.rectangles.size() < 2)
+    return "the plate has fewer than two rectangles, but the size-of-source effect compares square apertures";
   if (plate.rectangles.empty()) return "the plate has no rectangles, but an MTF or CTF needs straight edges";
   if (use == PlateUse::ctf && plate.bars.empty()) return "the plate has no bars, but a CTF needs groups of bars";
   return "";
@@ -82,9 +105,9 @@ std::string unfit_for(PlateUse use, const TargetPlate& plate) {
 
 std::vector<ValueMistake> read_measure_plate(PlateUse use, const Plan& plan, const ResourceFinder& find,
                                              PlanParts& parts) {
-  const bool mtf = use == PlateUse::mtf;
-  std::optional<TargetPlate>& part = mtf ? parts.mtf_plate : parts.ctf_plate;
-  const std::string& reference = mtf ? plan.measures.mtf_plate : plan.measures.ctf_plate;
+  const MeasurePlate own = plate_of(use);
+  std::optional<TargetPlate>& part = parts.*own.part;
+  const std::string& reference = plan.measures.*own.reference;
   part.reset();
   if (!is_asked_for({ResourceKind::plate, use}, plan)) return {};
   Result<TargetPlate> plate = read_part(ResourceKind::plate, reference, find, parts, parse_plate);
@@ -94,8 +117,13 @@ std::vector<ValueMistake> read_measure_plate(PlateUse use, const Plan& plan, con
     if (parts.plates[i].name == plate->name && i < plan.target.plates.size() && plan.target.plates[i] != reference)
       return {{std::nullopt, reference + ": a plate of the trials has the same name, '" + plate->name + "'"}};
   }
-  if (!mtf && parts.mtf_plate && parts.mtf_plate->name == plate->name && plan.measures.mtf_plate != reference)
-    return {{std::nullopt, reference + ": the plate of the MTF has the same name, '" + plate->name + "'"}};
+  for (const auto& [other_use, measure] : {std::pair(PlateUse::mtf, "MTF"), std::pair(PlateUse::ctf, "CTF")}) {
+    const MeasurePlate other = plate_of(other_use);
+    const std::optional<TargetPlate>& shown = parts.*other.part;
+    if (other_use < use && shown && shown->name == plate->name && plan.measures.*other.reference != reference)
+      return {{std::nullopt,
+               fmt::format("{}: the plate of the {} has the same name, '{}'", reference, measure, plate->name)}};
+  }
   part = *std::move(plate);
   return {};
 }
@@ -190,7 +218,7 @@ std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, cons
 
 std::vector<TargetPlate> LoadedPlan::shown_plates() const {
   std::vector<TargetPlate> plates = parts_.plates;
-  for (const auto* added : {&parts_.mtf_plate, &parts_.ctf_plate}) {
+  for (const auto* added : {&parts_.mtf_plate, &parts_.ctf_plate, &parts_.source_plate}) {
     const auto there = [&](const TargetPlate& plate) { return plate.name == (*added)->name; };
     if (*added && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(**added);
   }

@@ -26,11 +26,12 @@ namespace todbench {
 struct PlanParts {
   std::vector<TargetPlate> plates;  ///< in the order of the plan, names unique
   TemplateObserverSpec observer;
-  SensorSpec sensor;                       ///< with the microscan of its file
-  std::optional<TargetPlate> mtf_plate{};  ///< present if [measures] requests an MTF
-  std::optional<TargetPlate> ctf_plate{};  ///< present if [measures] requests a CTF
-  InstrumentTable black_body{}, stage{};   ///< only for targets of kind scpi; otherwise unspecified
-  std::optional<Letterhead> letterhead{};  ///< present if [report] names one
+  SensorSpec sensor;                          ///< with the microscan of its file
+  std::optional<TargetPlate> mtf_plate{};     ///< present if [measures] requests an MTF
+  std::optional<TargetPlate> ctf_plate{};     ///< present if [measures] requests a CTF
+  std::optional<TargetPlate> source_plate{};  ///< present if [measures] requests the size-of-source effect
+  InstrumentTable black_body{}, stage{};      ///< only for targets of kind scpi; otherwise unspecified
+  std::optional<Letterhead> letterhead{};     ///< present if [report] names one
   /// Source texts by kind and reference.
   std::map<std::pair<ResourceKind, std::string>, Resource> sources{};
 };

@@ -166,7 +166,35 @@ PlanSection measures_section() {
            .sentence =
                "Frequency of the CTF, in cycles per pixel pitch. The nearest group of bars is reported and limited",
            .place = of(&MeasuresPlan::ctf_frequency_per_pitch),
-           .form = {"Frequency of the CTF (cycles per pitch)", "planCtfFrequency"}}}};
+           .form = {"Frequency of the CTF (cycles per pitch)", "planCtfFrequency"}},
+          {.name = "source_size",
+           .type = FlagKey{},
+           .sentence = "Measure the size-of-source effect, from the apertures and opaque spots of source_size_plate, "
+                       "and the slope of the signal transfer on an extended source",
+           .place = of(&MeasuresPlan::source_size),
+           .form = {"Measure the size-of-source effect", "planSourceSize"}},
+          {.name = "source_size_plate",
+           .type = ResourceKey{ResourceKind::plate, PlateUse::source_size},
+           .sentence = "Plate with square apertures, by name or file",
+           .place = of(&MeasuresPlan::source_size_plate),
+           .form = {"Plate of the size-of-source effect", "planSourceSizePlate"}},
+          {.name = "source_size_delta_t_k",
+           .type = NumberKey{NumberRange::between(-500, 500)},
+           .unit = "K",
+           .sentence = "Contrast of source_size_plate",
+           .place = of(&MeasuresPlan::source_size_delta_t_k),
+           .form = {"Contrast of the size-of-source effect", "planSourceSizeContrast"},
+           .check = check_source_size_contrast},
+          {.name = "source_size_frames",
+           .type = WholeKey{2, 10000},
+           .sentence = "Frames averaged with the contrast, and as many before and after without it",
+           .place = of(&MeasuresPlan::source_size_frames)},
+          {.name = "source_size_px",
+           .type = NumberKey{NumberRange::between(4, 1000)},
+           .unit = "px",
+           .sentence = "Side of the square source whose loss is reported and limited",
+           .place = of(&MeasuresPlan::source_size_px),
+           .form = {"Side of the source (px)", "planSourceSizePx"}}}};
 }
 
 }  // namespace todbench

@@ -265,6 +265,11 @@ struct MeasuresPlan {
   int ctf_frames = CameraMeasuresOptions{}.ctf_frames;           ///< frames averaged
   /// The nearest bar group is reported and limited.
   double ctf_frequency_per_pitch = CameraMeasuresOptions{}.ctf_frequency_per_pitch;
+  bool source_size = false;                                                 ///< size-of-source effect
+  std::string source_size_plate = "apertures";                              ///< name or file
+  double source_size_delta_t_k = CameraMeasuresOptions{}.source_delta_t_k;  ///< contrast of the plate
+  int source_size_frames = CameraMeasuresOptions{}.source_frames;  ///< averaged; without contrast twice as many
+  double source_size_px = CameraMeasuresOptions{}.source_size_px;  ///< side of the source whose loss is reported
   bool operator==(const MeasuresPlan&) const = default;
 
   /// Returns whether any measure is on.
@@ -284,7 +289,8 @@ inline constexpr std::array measure_keys{MeasureKey{"noise", &MeasuresPlan::nois
                                          MeasureKey{"geometry", &MeasuresPlan::geometry},
                                          MeasureKey{"triangles", &MeasuresPlan::triangles},
                                          MeasureKey{"mtf", &MeasuresPlan::mtf},
-                                         MeasureKey{"ctf", &MeasuresPlan::ctf}};
+                                         MeasureKey{"ctf", &MeasuresPlan::ctf},
+                                         MeasureKey{"source_size", &MeasuresPlan::source_size}};
 
 /// Section [motion]: passes of a plate on a moving stage, for `todbench dynamic PLAN`.
 struct MotionPlan {

@@ -204,6 +204,11 @@ ValueMistakes check_ctf_contrast(const Plan& plan, std::size_t /*row*/) {
   return {{std::nullopt, "the CTF needs a contrast other than 0"}};
 }
 
+ValueMistakes check_source_size_contrast(const Plan& plan, std::size_t /*row*/) {
+  if (!plan.measures.source_size || plan.measures.source_size_delta_t_k != 0) return {};
+  return {{std::nullopt, "the size-of-source effect needs a contrast other than 0"}};
+}
+
 ValueMistakes check_response(const Plan& plan, std::size_t /*row*/) {
   if (!plan.measures.response) return {};
   ValueMistakes mistakes;

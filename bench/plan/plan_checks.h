@@ -50,6 +50,7 @@ using ValueMistakes = std::vector<ValueMistake>;
 /// Not 0 if an MTF is requested.
 [[nodiscard]] ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_ctf_contrast(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_source_size_contrast(const Plan& plan, std::size_t row);
 /// If a response time is requested: a step large enough to observe, and a target with a known settling time.
 [[nodiscard]] ValueMistakes check_response(const Plan& plan, std::size_t row);
 /// One of the contrasts of the target, not in an earlier row.

@@ -119,6 +119,25 @@ constexpr std::array table{
             "Modulation of four bars along y over the contrast of large areas, largest over the sampling phases.",
         .measure = "ctf",
         .at_least = {"ctf_y", "CTF along y of the bars nearest to the frequency of the plan, best phase, at least "}},
+    Quantity{.name = "source_size_loss",
+             .unit = "1",
+             .title = "Size-of-source effect: loss of a small source",
+             .definition =
+                 "Share of the signal that a square source of the side in the plan loses against the reference "
+                 "aperture, in the middle of each (direct and inverse method, after IEC TS 63144-1:2020, known "
+                 "from its abstract).",
+             .measure = "source_size",
+             .at_most = {"source_size_loss", "loss of a small source by the size-of-source effect at most "},
+             .absolute = true},
+    Quantity{
+        .name = "netd_extended",
+        .unit = "K",
+        .title = "NETD on an extended source",
+        .definition = "Temporal noise of a pixel divided by the slope of the signal transfer on an extended source.",
+        .measure = "noise",
+        .second_measure = "source_size",
+        .at_most = {"netd_extended", "NETD on an extended source at most "},
+        .stated = StatedUncertainty::scale},
     Quantity{
         .name = "ifov_x",
         .unit = "mrad",
@@ -217,6 +236,11 @@ constexpr std::array table{
              "Smallest modulation over the sampling phases of four bars along y, from the transfer function of the "
              "sensor model.",
              "ctf"},
+    Quantity{"source_size_loss_model", "1", "Size-of-source effect, closed form of the sensor model",
+             "Loss of a square source against the reference aperture in the image of the sensor model.", "source_size"},
+    Quantity{"transfer_slope_extended", "K/K", "Slope of the signal transfer on an extended source",
+             "Signal in the middle of the reference aperture divided by the contrast that the target reports.",
+             "source_size"},
     Quantity{"ifov_stated", "mrad", "IFOV stated in the plan", "Angle per pixel that the plan states.", "geometry"},
     Quantity{"ifov_model", "mrad", "IFOV of the sensor model", "Angle per sample of the sensor model.", "geometry"},
     Quantity{"plate_rotation", "deg", "Rotation of the plate in the picture, clockwise",

@@ -21,6 +21,8 @@ namespace todbench {
 [[nodiscard]] std::optional<FigurePairs> geometry_figures(const SessionMeasures& measures, bool camera);
 /// One figure for each axis: best and worst sampling phase of every group of bars, and the closed form.
 [[nodiscard]] std::optional<FigurePairs> ctf_figures(const SessionMeasures& measures, bool camera);
+/// Loss of apertures and gain of opaque spots against their size, with the fitted curve.
+[[nodiscard]] std::optional<FigurePairs> source_size_figures(const SessionMeasures& measures, bool camera);
 /// Maps of the camera next to those of the twin.
 [[nodiscard]] std::optional<FigurePairs> pixel_figures(const SessionMeasures& measures, bool camera);
 

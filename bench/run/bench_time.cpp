@@ -65,6 +65,10 @@ class Walk {
     const double new_plate_s = std::max(target.plate_change_s, target.contrast_change_s);
     if (measures.mtf) change(new_plate_s, measures.mtf_frames);
     if (measures.ctf) change(new_plate_s, measures.ctf_frames);
+    if (measures.source_size) {
+      change(new_plate_s, measures.source_size_frames);
+      for (int i = 0; i < 2; ++i) change(target.contrast_change_s, measures.source_size_frames);
+    }
   }
 
   [[nodiscard]] BenchTime finished(double frame_rate_hz) {

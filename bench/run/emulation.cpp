@@ -111,6 +111,7 @@ EmulationArguments emulation_for(const Plan& plan) {
   };
   if (plan.measures.mtf) add(plan.measures.mtf_plate);
   if (plan.measures.ctf) add(plan.measures.ctf_plate);
+  if (plan.measures.source_size) add(plan.measures.source_size_plate);
   arguments.distance_m = plan.target.distance_m;
   arguments.black_body_port = 0;
   arguments.stage_port = 0;

@@ -45,6 +45,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   inputs.plates = loaded.plates();
   inputs.mtf_plate = loaded.parts().mtf_plate;
   inputs.ctf_plate = loaded.parts().ctf_plate;
+  inputs.source_plate = loaded.parts().source_plate;
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
   inputs.stated_noise_counts = noise_in_counts(loaded.sensor());

@@ -17,9 +17,10 @@ namespace todbench {
 
 /// Inputs of a run: the parts of a plan, and the planner's decisions about them.
 struct ExperimentInputs {
-  std::vector<TargetPlate> plates;         ///< of the trials
-  std::optional<TargetPlate> mtf_plate{};  ///< if an MTF is requested
-  std::optional<TargetPlate> ctf_plate{};  ///< if a CTF is requested
+  std::vector<TargetPlate> plates;            ///< of the trials
+  std::optional<TargetPlate> mtf_plate{};     ///< if an MTF is requested
+  std::optional<TargetPlate> ctf_plate{};     ///< if a CTF is requested
+  std::optional<TargetPlate> source_plate{};  ///< if the size-of-source effect is requested
   TemplateObserverSpec observer;
   SensorSpec sensor;                      ///< as planned: parameters of skipped effects have their neutral values
   double stated_noise_counts = 0;         ///< temporal noise of the sensor with all effects, in counts

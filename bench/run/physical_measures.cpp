@@ -12,6 +12,7 @@
 #include "bench/run/plate_picture.h"
 #include "bench/run/simulated_responses.h"
 #include "sim_devices/sensor/effect_row.h"
+#include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/module_sensor.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
@@ -57,6 +58,19 @@ void add_closed_form(CtfMeasure& ctf, const SensorModel& model, const Experiment
     const BarModulation found = bar_modulation(BlurredBars(group.frequency_per_pitch, of, band));
     group.model = BarsModel{found.best, found.mean, found.worst};
   }
+}
+
+/// Adds the loss of a square source of the stated side against the reference, by image formation without noise. Sides
+/// are in samples.
+void add_closed_form(SourceSizeMeasure& source, const SensorModel& model, const ExperimentInputs& inputs) {
+  const ImageChain chain(model.spec(), model.plan(), inputs.accuracy, inputs.motion);
+  const int samples = model.spec().samples_per_pitch();
+  const auto in_the_middle = [&](double side_px) {
+    const double half = 0.5 * side_px / samples;
+    const Polygon square{{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+    return chain.infinite_plane(square, {0, 0}, 1, {1, 1}).values(0, 0);
+  };
+  source.model_loss = 1 - in_the_middle(source.stated_px) / in_the_middle(source.effect.reference_px);
 }
 
 }  // namespace
@@ -126,6 +140,10 @@ MaybeMeasures measures_of_bench(const Plan& plan, const MeasurementOptions& opti
                                   .ctf_delta_t_k = plan.measures.ctf_delta_t_k,
                                   .ctf_frames = plan.measures.ctf_frames,
                                   .ctf_frequency_per_pitch = plan.measures.ctf_frequency_per_pitch,
+                                  .source_plate = inputs.source_plate,
+                                  .source_delta_t_k = plan.measures.source_size_delta_t_k,
+                                  .source_frames = plan.measures.source_size_frames,
+                                  .source_size_px = plan.measures.source_size_px,
                                   .measurement = options},
                                  *bench.host, std::move(stop));
   if (!measures) return tl::unexpected(measures.error());
@@ -213,6 +231,7 @@ MaybeMeasures measures_of_sensor(const LoadedPlan& loaded, const ExperimentInput
   }
   if (measures && *measures && (*measures)->mtf) add_closed_form(*(*measures)->mtf, *model, inputs);
   if (measures && *measures && (*measures)->ctf) add_closed_form(*(*measures)->ctf, *model, inputs);
+  if (measures && *measures && (*measures)->source) add_closed_form(*(*measures)->source, *model, inputs);
   return measures;
 }
 

@@ -35,11 +35,12 @@ struct MeasureRow {
 [[nodiscard]] MeasureRow pixels_row();
 [[nodiscard]] MeasureRow mtf_row();
 [[nodiscard]] MeasureRow ctf_row();
+[[nodiscard]] MeasureRow source_size_row();
 
 /// Returns all rows in the order of their quantities.
 [[nodiscard]] inline const auto& measure_table() {
-  static const std::array rows{transfer_row(), geometry_row(), noise_row(), drift_row(),
-                               response_row(), pixels_row(),   mtf_row(),   ctf_row()};
+  static const std::array rows{transfer_row(), geometry_row(), noise_row(), drift_row(),      response_row(),
+                               pixels_row(),   mtf_row(),      ctf_row(),   source_size_row()};
   return rows;
 }
 

@@ -46,6 +46,7 @@ struct MeasureLines {
   // For figures and tables. Of a record, the numbers that they show.
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
+  std::optional<SourceSizeMeasure> source{};
   std::optional<TransferMeasure> transfer{};
   std::optional<GeometryMeasure> geometry{};
   std::optional<DriftMeasure> drift{};
@@ -66,8 +67,8 @@ struct SessionMeasures {
 };
 
 /// Returns {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "drift": {...},
-/// "response": {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "maps": [...], "picture": {...}, "reasons": [...]},
-/// "twin": the same or null}.
+/// "response": {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "source_size": {...}, "maps": [...], "picture":
+/// {...}, "reasons": [...]}, "twin": the same or null}.
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// Returns the same with numbers, maps and reasons only.
 [[nodiscard]] Json measures_json(const MeasureLines& main);

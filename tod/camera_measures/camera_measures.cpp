@@ -9,6 +9,7 @@
 #include <span>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "tod/measurement/target_change.h"
 #include "tod/measures/pixel_noise.h"
 #include "tod/measures/shading.h"
@@ -75,7 +76,7 @@ class Run {
     Result<void> (Run::*take)(CameraMeasures& measures);
   };
 
-  /// All measures in their order. MTF and CTF come last, because the plate changes.
+  /// All measures in their order. Those with a plate of their own come last.
   static std::span<const Step> steps() {
     using Options = CameraMeasuresOptions;
     static constexpr std::array table{
@@ -85,7 +86,9 @@ class Run {
         Step{"response time", [](const Options& o) { return o.response.has_value(); }, &Run::time_response},
         Step{"smallest triangles", [](const Options& o) { return !o.triangles_k.empty(); }, &Run::show_triangles},
         Step{"MTF", [](const Options& o) { return o.mtf_plate.has_value(); }, &Run::measure_mtf},
-        Step{"CTF", [](const Options& o) { return o.ctf_plate.has_value(); }, &Run::measure_ctf}};
+        Step{"CTF", [](const Options& o) { return o.ctf_plate.has_value(); }, &Run::measure_ctf},
+        Step{"size-of-source effect", [](const Options& o) { return o.source_plate.has_value(); },
+             &Run::measure_source}};
     return table;
   }
 
@@ -263,6 +266,33 @@ class Run {
     ctf.frequency_per_pitch = options_.ctf_frequency_per_pitch;
     ctf.bars = *std::move(found);
     measures.ctf = std::move(ctf);
+    return {};
+  }
+
+  /// The source plate at a contrast: the target's report and the mean picture.
+  struct Shown {
+    double said_delta_t_k = 0;
+    cv::Mat1d picture;
+  };
+  Result<Shown> source_at(double delta_t_k) {
+    TODBENCH_TRY(const PresentedTarget shown, show(options_.source_plate->name, delta_t_k));
+    TODBENCH_TRY(const AveragedPicture picture, taker_.average(options_.source_frames, stop_));
+    return Shown{shown.state.delta_t_k, picture.kelvin.clone()};
+  }
+
+  Result<void> measure_source(CameraMeasures& measures) {
+    TODBENCH_TRY(const Shown before, source_at(0));
+    TODBENCH_TRY(const Shown lit, source_at(options_.source_delta_t_k));
+    TODBENCH_TRY(const Shown after, source_at(0));
+    TODBENCH_TRY(SourceSize effect,
+                 source_size({before.picture, lit.picture, after.picture}, *options_.source_plate, where_));
+    measures.source =
+        SourceSizeMeasure{.plate = options_.source_plate->name,
+                          .frames = options_.source_frames,
+                          .set_delta_t_k = options_.source_delta_t_k,
+                          .said_delta_t_k = lit.said_delta_t_k - 0.5 * (before.said_delta_t_k + after.said_delta_t_k),
+                          .stated_px = options_.source_size_px,
+                          .effect = std::move(effect)};
     return {};
   }
 
@@ -478,6 +508,24 @@ std::optional<double> PlatePicture::residual_over_noise() const {
 
 double TransferMeasure::slope_half_width() const {
   return quantile(distribution::StudentsT(line.degrees_of_freedom), 0.975) * line.slope_u;
+}
+
+Estimate SourceSizeMeasure::slope() const {
+  const double slope = effect.reference_k / said_delta_t_k;
+  const double half = std::abs(1.96 * effect.reference_u_k / said_delta_t_k);
+  return {slope, slope - half, slope + half};
+}
+
+std::optional<Estimate> CameraMeasures::netd_extended_k() const {
+  if (!noise || !source || !(source->slope().value > 0)) return std::nullopt;
+  if (noise->noise_counts && *noise->noise_counts < least_measurable_noise_counts) return std::nullopt;
+  const ComponentEstimate variance = *temporal_variance_k2();
+  if (!(variance.variance > 0)) return std::nullopt;
+  const Estimate slope = source->slope();
+  const double netd = std::sqrt(variance.variance) / slope.value;
+  const double half = netd * std::hypot(0.25 * (variance.high - variance.low) / variance.variance,
+                                        (slope.high - slope.low) / (2 * slope.value));
+  return Estimate{netd, netd - half, netd + half};
 }
 
 std::optional<double> CameraMeasures::netd_k() const {

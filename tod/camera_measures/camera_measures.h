@@ -15,6 +15,7 @@
 #include "tod/camera_measures/pixel_measure.h"
 #include "tod/camera_measures/plate_geometry.h"
 #include "tod/camera_measures/response_measure.h"
+#include "tod/camera_measures/source_size.h"
 #include "tod/camera_measures/triangle_strip.h"
 #include "tod/measurement/measurement.h"
 #include "tod/measures/signal_transfer.h"
@@ -40,6 +41,10 @@ struct CameraMeasuresOptions {
   double ctf_delta_t_k = 10;                  ///< contrast at which it is shown
   int ctf_frames = 64;                        ///< averaged, at least 1
   double ctf_frequency_per_pitch = 0.4;       ///< the nearest group is stated
+  std::optional<TargetPlate> source_plate{};  ///< in identity mounting; empty: no size-of-source effect
+  double source_delta_t_k = 10;               ///< contrast at which it is shown
+  int source_frames = 64;                     ///< averaged, at least 1; without contrast twice as many
+  double source_size_px = 10;                 ///< side of the square source whose loss is stated
   /// Plates, frames to average, corrections, timeouts and integrity as in the TOD measurement. The first plate is shown
   /// in identity mounting.
   MeasurementOptions measurement;
@@ -111,6 +116,20 @@ struct CtfMeasure {
   [[nodiscard]] const BarsCtf* stated(EdgeAxis axis) const;
 };
 
+struct SourceSizeMeasure {
+  std::string plate;
+  int frames = 0;
+  double set_delta_t_k = 0;
+  double said_delta_t_k = 0;  ///< reported by the target, minus its report without contrast
+  double stated_px = 0;       ///< side of the square source whose loss is stated
+  SourceSize effect;
+  std::optional<double> model_loss{};  ///< at `stated_px`, of a simulated sensor
+
+  /// Signal of the reference aperture over the contrast that the target reports: slope of the signal transfer on an
+  /// extended source. The interval contains the noise only.
+  [[nodiscard]] Estimate slope() const;
+};
+
 /// Mean picture of the first plate at the contrast that shows it best.
 struct PlateView {
   int frames = 0;
@@ -144,6 +163,7 @@ struct CameraMeasures {
   std::optional<ResponseMeasure> response{};
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
+  std::optional<SourceSizeMeasure> source{};
   std::vector<TriangleStrip> triangles{};     ///< by contrast
   std::optional<double> netd_model_k{};       ///< closed form, of a simulated sensor
   std::optional<double> response_model_ms{};  ///< time constant of a simulated sensor
@@ -156,6 +176,8 @@ struct CameraMeasures {
   /// Temporal noise over the slope of the signal transfer. Empty if one of them is absent, or if the noise is below
   /// half a count and cannot be measured.
   [[nodiscard]] std::optional<double> netd_k() const;
+  /// Same with the slope on an extended source, SourceSizeMeasure::slope(), with the 95 % interval.
+  [[nodiscard]] std::optional<Estimate> netd_extended_k() const;
   /// Relative half-width of its 95 % interval: root of the sum of squares of those of noise and slope.
   [[nodiscard]] std::optional<double> netd_relative_half_width() const;
 };

@@ -9,6 +9,7 @@
 #include "tests/bench/run/bars_coverage.h"
 #include "tests/bench/run/edge_coverage.h"
 #include "tests/bench/run/pixel_coverage.h"
+#include "tests/bench/run/source_size_coverage.h"
 
 namespace todbench {
 namespace {
@@ -33,6 +34,30 @@ TEST(PlateEdgesStudy, HoldTheMtfOfTheSensorModel) {
     }
     std::fflush(stdout);
     EXPECT_EQ(coverage->single_sided, 0);
+  }
+}
+
+// TODBENCH_STUDY_RUNS: seeds of each design (200 without it).
+TEST(SourceSizeStudy, HoldsTheClosedFormOfHalos) {
+  const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
+  const int seeds = asked != nullptr ? std::atoi(asked) : 200;
+  struct Design {
+    testing::SourceHalo halo;
+    double f_number = 1, noise = 0.0015;
+  };
+  for (const Design& design :
+       {Design{{0, 1}}, Design{{0.01, 3}}, Design{{0.05, 10}}, Design{{0.1, 4}}, Design{{0.03, 20}}, Design{{0.1, 50}},
+        Design{{0.05, 10}, 2}, Design{{0.05, 10}, 1, 0.006}}) {
+    const auto found = testing::source_size_coverage(design.halo, design.f_number, design.noise, seeds);
+    ASSERT_TRUE(found) << found.error().message;
+    for (std::size_t k = 0; k < found->sides_px.size(); ++k) {
+      fmt::print("| {:g} % / {:g} px | {:g} | {:g} | {:g} | {:.4f} | {:+.4f} | {:.4f} | {:.3f} | {:.3f} |\n",
+                 100 * design.halo.share, design.halo.sigma_px, design.f_number, design.noise, found->sides_px[k],
+                 found->truth[k], found->mean_error[k], found->half_width[k], found->within[k], found->point_within[k]);
+      EXPECT_GT(found->within[k], 0.93 - 4 * std::sqrt(0.05 * 0.95 / found->runs));
+    }
+    fmt::print("consistent in {:.3f} of {} runs\n", found->consistent, found->runs);
+    std::fflush(stdout);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "tests/bench/run/bars_coverage.h"
 #include "tests/bench/run/edge_coverage.h"
 #include "tests/bench/run/measures_plan.h"
+#include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -61,6 +62,38 @@ TEST(PhysicalMeasures, FindTheMtfOfTheSensorModelAndJudgeIt) {
   const std::string page = render_report(*report_data(*session, "session"));
   EXPECT_THAT(page, HasSubstr("MTF along y"));
   EXPECT_THAT(page, HasSubstr("mtf-xsquare"));
+}
+
+TEST(PhysicalMeasures, FindTheHaloOfTheSensorAndJudgeIt) {
+  const TemporaryFolder folder;
+  const std::string sensor = testing::content_of(source_file("sim_devices/sensors/sc2000.toml"));
+  folder.write("hazy.toml", sensor + "halo_share = 0.05\nhalo_sigma_pitch = 10\n");
+  Plan plan = plan_of_one(&MeasuresPlan::source_size);
+  plan.camera.id = "sim:" + (folder.path() / "hazy.toml").string();
+  plan.measures.noise = true;
+  plan.limits.measures = {{"source_size_loss", std::nullopt, 0.03}};
+
+  const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
+
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_FALSE(outcome->ended_by) << outcome->ended_by->message;
+  ASSERT_TRUE(outcome->measures && outcome->measures->source && outcome->twin_measures->source);
+  // The camera has the halo, the twin has none: 0.0486 and 0.0065 in closed form
+  // (SourceSize.HoldsTheClosedFormOfAHalo).
+  const Estimate camera = outcome->measures->source->effect.loss(10),
+                 twin = outcome->twin_measures->source->effect.loss(10);
+  EXPECT_LE(camera.low, 0.0486);
+  EXPECT_GE(camera.high, 0.0486);
+  EXPECT_NEAR(*outcome->twin_measures->source->model_loss, 0.0065, 1e-4);
+  EXPECT_LE(twin.low, 0.0065);
+  EXPECT_GE(twin.high, 0.0065);
+  EXPECT_NEAR(outcome->measures->netd_extended_k().value().value, 0.07, 0.007);
+  const auto session = open_session(folder.path() / "session", {});
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_EQ(session->measures->main->source->effect.points.size(), 5u);
+  ASSERT_NE(line_of(session->measures->twin, "source_size_loss_model"), nullptr);
+  EXPECT_EQ(outcome->verdict.demands.back().decision, VerdictKind::fail);
+  EXPECT_THAT(render_report(*report_data(*session, "session")), HasSubstr("Size-of-source effect"));
 }
 
 TEST(PhysicalMeasures, FindTheCtfOfTheSensorModelAndJudgeIt) {
