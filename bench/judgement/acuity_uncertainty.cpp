@@ -56,6 +56,18 @@ std::optional<BudgetRow> row_of_air(const UncertaintyPlan& plan, std::span<const
                    .enters = BudgetInput::air_path};
 }
 
+/// Returns a row for the light that the camera scatters away from the triangles that measure its contrast.
+BudgetRow row_of_source(double loss) {
+  return {.name = std::string(source_loss_row),
+          .value = std::abs(loss),
+          .distribution = BudgetDistribution::rectangular,
+          .unit = "1",
+          .source =
+              "measured loss of a source as small as the triangles that measure the contrast, beyond that of the "
+              "twin",
+          .enters = BudgetInput::contrast};
+}
+
 /// Values for the conversion of the rows at a point.
 struct Conversion {
   double distance_m = 0;
@@ -77,9 +89,9 @@ double sensitivity_of(const BudgetRow& row, const Conversion& at) {
 
 /// Returns the rows of plan and run with their sensitivities.
 std::vector<BudgetRow> rows_at(const UncertaintyPlan& plan, const TodPoint& point, const Conversion& at,
-                               const std::optional<double>& deviation_k, const std::optional<BudgetRow>& air) {
+                               const std::optional<double>& deviation_k, std::span<const BudgetRow> of_run) {
   std::vector<BudgetRow> rows = plan.rows;
-  if (air) rows.push_back(*air);
+  rows.insert(rows.end(), of_run.begin(), of_run.end());
   if (point.delta_t_se_k > 0 && std::isfinite(point.delta_t_se_k)) {
     rows.push_back({.name = std::string(seen_contrast_row),
                     .value = point.delta_t_se_k,
@@ -259,13 +271,17 @@ Interval deciding_interval(const TodPoint& point) {
 
 Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, const TodCurve& curve,
                                                           std::span<const Presentation> presentations,
-                                                          const std::optional<Comparison>& comparison) {
+                                                          const std::optional<Comparison>& comparison,
+                                                          const std::optional<double>& source_loss) {
   if (!plan.uncertainty.stated()) return std::nullopt;
   CurveUncertainty out;
   out.u_scale = relative_u_of_scale(plan);
   out.u_camera_scale = relative_u_of_camera_scale(plan);
   out.u_distance = relative_u_of_distance(plan);
   const auto air = row_of_air(plan.uncertainty, presentations);
+  std::vector<BudgetRow> of_run;
+  if (air) of_run.push_back(*air);
+  if (source_loss) of_run.push_back(row_of_source(*source_loss));
   for (const BudgetInput input : not_stated(plan.uncertainty)) {
     if (input != BudgetInput::air_path || !air) out.not_stated.emplace_back(to_string(input));
   }
@@ -286,7 +302,7 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
                                                  .size_m = size_mrad * 1e-3 * distance_m,
                                                  .contrast_k = contrast_seen_k(point),
                                                  .slope = slopes[i]},
-                                                deviation_k, air);
+                                                deviation_k, of_run);
     if (auto expanded = expand(found, point, rows, plan.uncertainty.rows.size(), plan.seed); !expanded)
       return tl::unexpected(with_context("[uncertainty]", expanded.error()));
     if (comparison)

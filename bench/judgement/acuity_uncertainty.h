@@ -66,10 +66,12 @@ struct CurveUncertainty {
 /// instead of a maximum.
 [[nodiscard]] Interval deciding_interval(const TodPoint& point);
 
-/// Returns the expanded intervals; empty if the plan has no budget. `plan.seed` seeds the Monte Carlo check. Errors:
-/// combined().
+/// Returns the expanded intervals; empty if the plan has no budget. `plan.seed` seeds the Monte Carlo check.
+/// `source_loss`: share of the contrast that the size-of-source effect takes from the triangles that measure it; empty:
+/// not measured. Errors: combined().
 [[nodiscard]] Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, const TodCurve& curve,
                                                                         std::span<const Presentation> presentations,
-                                                                        const std::optional<Comparison>& comparison);
+                                                                        const std::optional<Comparison>& comparison,
+                                                                        const std::optional<double>& source_loss = {});
 
 }  // namespace todbench

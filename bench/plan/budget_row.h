@@ -130,6 +130,9 @@ inline constexpr std::string_view finite_trials_row = "finite trials";
 inline constexpr std::string_view seen_contrast_row = "contrast as the camera saw it";
 /// Added if the plan states the air of the bench and has no row for the air path.
 inline constexpr std::string_view air_path_row = "air path";
+/// Added if the size-of-source effect was measured: the large triangles of the plate show less than the target's
+/// contrast.
+inline constexpr std::string_view source_loss_row = "size-of-source";
 inline constexpr std::string_view read_back_row = "target read-back against contrast seen";
 
 }  // namespace todbench

@@ -156,6 +156,35 @@ constexpr std::array table{
         .at_least = {"ifov_y_at_least", "IFOV along y at least "},
         .at_most = {"ifov_y_at_most", "IFOV along y at most "},
         .stated = StatedUncertainty::distance},
+    Quantity{.name = "field_of_view_x",
+             .unit = "deg",
+             .title = "Field of view along x",
+             .definition =
+                 "Angle between the outer borders of the first and the last pixel along x, through the middle "
+                 "of the picture: IFOV and distortion, continued beyond the plate (OIML R 141:2008, 2.7, known "
+                 "from its contents).",
+             .measure = "geometry",
+             .at_least = {"field_of_view_x_at_least", "field of view along x at least "},
+             .at_most = {"field_of_view_x_at_most", "field of view along x at most "},
+             .stated = StatedUncertainty::distance},
+    Quantity{.name = "field_of_view_y",
+             .unit = "deg",
+             .title = "Field of view along y",
+             .definition =
+                 "Angle between the outer borders of the first and the last pixel along y, through the middle "
+                 "of the picture: IFOV and distortion, continued beyond the plate (OIML R 141:2008, 2.7, known "
+                 "from its contents).",
+             .measure = "geometry",
+             .at_least = {"field_of_view_y_at_least", "field of view along y at least "},
+             .at_most = {"field_of_view_y_at_most", "field of view along y at most "},
+             .stated = StatedUncertainty::distance},
+    Quantity{.name = "aspect_ratio",
+             .unit = "1",
+             .title = "Aspect ratio of a pixel",
+             .definition = "IFOV along x over IFOV along y.",
+             .measure = "geometry",
+             .at_least = {"aspect_ratio_at_least", "aspect ratio of a pixel at least "},
+             .at_most = {"aspect_ratio_at_most", "aspect ratio of a pixel at most "}},
     Quantity{.name = "distortion",
              .unit = "%",
              .title = "Radial distortion at the corner of the picture",

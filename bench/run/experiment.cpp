@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 #include "acquisition/recording/frame_stream.h"
@@ -27,6 +28,7 @@
 #include "bench/run/twin_shapes.h"
 #include "bench/text/text.h"
 #include "tod/adequacy/adequacy.h"
+#include "tod/adequacy/orientation.h"
 #include "tod/measurement/contrast_error.h"
 #include "tod/measurement/measurement.h"
 
@@ -137,6 +139,17 @@ Trials trials_of(const MeasurementResult& result) {
   return result.ended_by ? Trials::ended_early : Trials::all;
 }
 
+/// Compares the directions of the triangles at the contrasts that were fitted with the function of the twin.
+void compare_orientations(TodCurve& curve, std::span<const Trial> trials) {
+  for (TodPoint& point : curve.points) {
+    if (!point.fit.twin_shape) continue;
+    std::vector<Trial> of_point;
+    std::ranges::copy_if(trials, std::back_inserter(of_point),
+                         [&](const Trial& trial) { return trial.set_delta_t_k == point.set_delta_t_k; });
+    point.orientations = orientations(of_point, point.fit.twin_shape->table);
+  }
+}
+
 /// Fits a curve with the functions of its simulated sensor, if the plan requests it. `known`: of fit_twin_shapes().
 TwinShapesOutcome take_shape(TodCurve& curve, std::span<const Trial> trials, Trials made, const Plan& plan,
                              const ExperimentInputs& inputs, const std::map<double, double>& shown_delta_t_k,
@@ -153,6 +166,7 @@ TwinShapesOutcome take_shape(TodCurve& curve, std::span<const Trial> trials, Tri
                               direct_options(curve, inputs, shown_delta_t_k, plan.seed, std::move(stop)), known);
   }
   fit_right_and_wrong(curve, trials, fit_options(plan));
+  compare_orientations(curve, trials);
   return outcome;
 }
 

@@ -172,8 +172,12 @@ Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan, const 
   return with_words(plan, open, [&] {
     auto made = measures_of_bench(plan, options, inputs, bench, std::move(stop));
     if (!made || !*made) return made;
-    for (const ChangedSetting& changed : changed_settings(*bench.camera, bench.camera->info()))
-      (*made)->reasons.push_back("a setting changed during the physical measures: " + sentence(changed));
+    const std::vector<ChangedSetting> changed = changed_settings(*bench.camera, bench.camera->info());
+    // Counts of two scales are mixed in the numbers: none is stated.
+    if (std::ranges::any_of(changed, [](const ChangedSetting& one) { return scales_counts(one.feature); }))
+      **made = CameraMeasures{};
+    for (const ChangedSetting& one : changed)
+      (*made)->reasons.push_back("a setting changed before the end of the physical measures: " + sentence(one));
     return made;
   });
 }

@@ -55,6 +55,17 @@ Provenance ended(Provenance provenance, const SessionClock& clock, const std::op
   return provenance;
 }
 
+/// Share of the contrast that the size-of-source effect takes from the smallest triangles that measure contrasts,
+/// beyond that of the twin, whose response is corrected. Empty: not measured, or contrasts in grey levels.
+std::optional<double> loss_of_triangles(const ExperimentOutcome& outcome, const Plan& plan) {
+  if (plan.camera.contrast != ContrastUnit::kelvin || !outcome.measures || !outcome.measures->source)
+    return std::nullopt;
+  const auto loss_in = [&](const std::optional<CameraMeasures>& measures) {
+    return measures && measures->source ? measures->source->effect.loss(plan.measurement.min_reference_px).value : 0;
+  };
+  return loss_in(outcome.measures) - loss_in(outcome.twin_measures);
+}
+
 }  // namespace
 
 Result<void> close_session(const OpenSession& open, const Provenance& provenance, const Verdict& verdict,
@@ -121,7 +132,8 @@ ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const O
                             const Provenance& provenance) {
   Refusals refused;
   free_ending_room(open.folder.path(), EndingRoom::results);
-  auto uncertainty = curve_uncertainty(plan, outcome.curve, outcome.presentations, outcome.comparison);
+  auto uncertainty = curve_uncertainty(plan, outcome.curve, outcome.presentations, outcome.comparison,
+                                       loss_of_triangles(outcome, plan));
   if (uncertainty)
     outcome.uncertainty = *std::move(uncertainty);
   else if (!outcome.ended_by)

@@ -91,6 +91,21 @@ void level_fields(JsonFields& json, Level& level) {
   json.value("cluster", level.cluster);
 }
 
+void direction_fields(JsonFields& json, DirectionAnswers& one) {
+  json.value("trials", one.trials);
+  json.value("correct", one.correct);
+  json.value("percent", one.percent);
+}
+
+void orientation_fields(JsonFields& json, Orientations& found) {
+  for (const Apex apex : all_apexes)
+    json.value(std::string(to_string(apex)), found.directions[static_cast<std::size_t>(apex)], direction_fields);
+  json.value("axes_percent", found.axes_percent);
+  json.value("axes_se_percent", found.axes_se_percent);
+  json.value("set_ups", found.set_ups);
+  json.value("p", found.p);
+}
+
 /// The error of the contrast and its degrees of freedom, as they are used.
 void contrast_fields(JsonFields& json, TodPoint& point) {
   std::optional<double> error = contrast_se_k(point), freedom = freedom_of_contrast(point);
@@ -126,6 +141,7 @@ void curve_point_fields(JsonFields& json, TodPoint& point) {
   json.later("saturated_share", point.saturated_share);
   json.later("noise_counts", point.noise_counts);
   json.later("lag1_correlation", point.lag1_correlation);
+  json.if_any("orientations", point.orientations, orientation_fields);
   json.value("levels", point.levels, level_fields);
 }
 

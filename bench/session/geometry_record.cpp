@@ -36,6 +36,13 @@ void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
     if (measure.distance_relative_u) line.expanded = joined(ifov, *measure.distance_relative_u);
     out.lines.push_back(std::move(line));
   }
+  for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
+    const Estimate field = measure.field_of_view_deg(axis);
+    MeasureLine line = measure_line("field_of_view_" + std::string(to_string(axis)), field.value, field.interval(),
+                                    distance + "; distortion continued to the border of the picture");
+    if (measure.distance_relative_u) line.expanded = joined(field, *measure.distance_relative_u);
+    out.lines.push_back(std::move(line));
+  }
   const auto exact = [&](const char* name, double value, const char* what) {
     out.lines.push_back(measure_line(name, value, {value, value}, what));
   };
@@ -44,6 +51,7 @@ void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
   const auto line = [&](const char* name, const Estimate& value) {
     out.lines.push_back(measure_line(name, value.value, value.interval(), conditions));
   };
+  line("aspect_ratio", measure.aspect_ratio());
   line("plate_rotation", found.rotation_deg);
   line("keystone_x", found.keystone_x_percent);
   line("keystone_y", found.keystone_y_percent);

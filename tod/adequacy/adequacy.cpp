@@ -10,6 +10,7 @@
 #include "tod/adequacy/alternatives.h"
 #include "tod/adequacy/guessing.h"
 #include "tod/adequacy/model_test.h"
+#include "tod/adequacy/orientation.h"
 #include "tod/adequacy/twin_scatter.h"
 #include "tod/psychometric/psychometric_model.h"
 
@@ -212,6 +213,9 @@ class Examination {
   }
 
   void examine_frames() {
+    if (point_.orientations) {
+      if (auto finding = orientation_finding(*point_.orientations)) findings_.push_back(*std::move(finding));
+    }
     if (point_.saturated_share > 0) {
       add(FindingKind::clipping, point_.saturated_share, 0,
           fmt::format("in {} of the trials, pixels in the window of the triangle are saturated: the observer did not "

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "acquisition/base/distributions.h"
@@ -485,6 +486,29 @@ class Run {
 Estimate GeometryMeasure::ifov_mrad(EdgeAxis axis) const {
   const Estimate& mm = axis == EdgeAxis::x ? geometry.mm_per_px_x : geometry.mm_per_px_y;
   return {mm.value / distance_m, mm.low / distance_m, mm.high / distance_m};
+}
+
+Estimate GeometryMeasure::field_of_view_deg(EdgeAxis axis) const {
+  const double half_px = 0.5 * (axis == EdgeAxis::x ? picture.width : picture.height);
+  const auto angle_deg = [&](double mrad_per_px, double distortion_percent) {
+    // Place without distortion that the lens moves to the border: r (1 + k (r / R)^2) = half_px.
+    double r = half_px;
+    constexpr int rounds = 50;  // the distortion of a lens converges in ten
+    for (int i = 0; i < rounds; ++i)
+      r = half_px / (1 + 0.01 * distortion_percent * std::pow(r / geometry.corner_px, 2));
+    return 2 * std::atan(1e-3 * mrad_per_px * r) * 180 / std::numbers::pi;
+  };
+  const Estimate ifov = ifov_mrad(axis), &k = geometry.distortion_percent;
+  const double value = angle_deg(ifov.value, k.value);
+  return {value, value - std::hypot(value - angle_deg(ifov.low, k.value), value - angle_deg(ifov.value, k.high)),
+          value + std::hypot(angle_deg(ifov.high, k.value) - value, angle_deg(ifov.value, k.low) - value)};
+}
+
+Estimate GeometryMeasure::aspect_ratio() const {
+  const Estimate &x = geometry.mm_per_px_x, &y = geometry.mm_per_px_y;
+  const double value = x.value / y.value;
+  return {value, value * (1 - std::hypot(1 - x.low / x.value, y.high / y.value - 1)),
+          value * (1 + std::hypot(x.high / x.value - 1, 1 - y.low / y.value))};
 }
 
 const BarsCtf* CtfMeasure::stated(EdgeAxis axis) const {

@@ -93,6 +93,11 @@ struct GeometryMeasure {
 
   /// IFOV along x or y; the interval contains the errors of the picture only.
   [[nodiscard]] Estimate ifov_mrad(EdgeAxis axis) const;
+  /// Field of view between the outer borders of the first and the last pixel, through the middle of the picture: the
+  /// IFOV and the fitted distortion, continued beyond the plate. The interval contains the errors of the picture only.
+  [[nodiscard]] Estimate field_of_view_deg(EdgeAxis axis) const;
+  /// IFOV along x over that along y. The distance cancels.
+  [[nodiscard]] Estimate aspect_ratio() const;
 };
 
 struct MtfMeasure {

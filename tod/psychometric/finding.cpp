@@ -41,6 +41,8 @@ std::string_view to_string(FindingKind kind) {
       return "picture_residue";
     case FindingKind::setting_change:
       return "setting_change";
+    case FindingKind::orientation:
+      return "orientation";
   }
   return "unknown";
 }

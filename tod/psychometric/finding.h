@@ -31,6 +31,7 @@ enum class FindingKind {
   correlation_change,  ///< of successive frames during the run; difference of correlations
   picture_residue,     ///< pictures still changed while they were measured; percent of the change
   setting_change,      ///< a setting of the camera changed during the run; no figures
+  orientation,         ///< thresholds of upright and level triangles differ; percent, limit
 };
 inline constexpr std::array all_finding_kinds{FindingKind::deviance,           FindingKind::lapse,
                                               FindingKind::overdispersion,     FindingKind::underdispersion,
@@ -40,7 +41,8 @@ inline constexpr std::array all_finding_kinds{FindingKind::deviance,           F
                                               FindingKind::identity,           FindingKind::contrast_deviation,
                                               FindingKind::transfer_change,    FindingKind::noise_change,
                                               FindingKind::correlation_change, FindingKind::picture_residue,
-                                              FindingKind::setting_change,     FindingKind::surrogate};
+                                              FindingKind::setting_change,     FindingKind::surrogate,
+                                              FindingKind::orientation};
 [[nodiscard]] std::string_view to_string(FindingKind kind);
 
 /// One finding against a number.

@@ -46,6 +46,22 @@ struct AnswersTaken {
   bool operator==(const AnswersTaken&) const = default;
 };
 
+/// Answers to the triangles of one direction.
+struct DirectionAnswers {
+  int trials = 0;
+  double correct = 0;  ///< sum of the probabilities, or number of right answers
+  double percent = 0;  ///< threshold over that of all directions, minus 1, to first order
+};
+
+/// Thresholds by the direction of the triangles in the picture (tod/adequacy/orientation.h).
+struct Orientations {
+  std::array<DirectionAnswers, all_apexes.size()> directions{};  ///< in the order of all_apexes
+  double axes_percent = 0;     ///< threshold of up and down over that of left and right, minus 1
+  double axes_se_percent = 0;  ///< standard error, from the scatter over plates and mountings
+  int set_ups = 0;             ///< number of plates and mountings
+  double p = 1;                ///< of a larger difference by chance
+};
+
 /// One contrast of a TOD curve.
 struct TodPoint {
   double set_delta_t_k = 0;  ///< set contrast: points are paired by it
@@ -74,7 +90,8 @@ struct TodPoint {
   double saturated_share = 0;
   /// Temporal noise of a pixel in counts; empty: not known, or not counted in whole numbers.
   std::optional<double> noise_counts;
-  std::optional<double> lag1_correlation;  ///< of a pixel's noise between successive frames
+  std::optional<double> lag1_correlation;      ///< of a pixel's noise between successive frames
+  std::optional<Orientations> orientations{};  ///< empty: not compared
 };
 
 /// A measured or simulated TOD curve. Acuity is 1 / S75.

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "bench/plan/descriptions.h"
 #include "bench/report/report.h"
@@ -120,9 +121,20 @@ TEST(PhysicalMeasures, FindTheDistortionOfTheSensorAndOfItsTwin) {
   EXPECT_EQ(line_of(session->measures->twin, "distortion_model")->value, -3);
 }
 
+/// Field of view along the rows in degrees, by bisection for the ray that the lens shows at the border.
+double field_of_view_deg(const SensorSpec& sensor) {
+  const double half = 0.5 * sensor.width, corner = 0.5 * std::hypot(sensor.width, sensor.height);
+  double low = 0, high = 2 * half;
+  for (int i = 0; i < 60; ++i) {
+    const double r = 0.5 * (low + high), seen = r * (1 + 0.01 * sensor.distortion_percent * std::pow(r / corner, 2));
+    (seen < half ? low : high) = r;
+  }
+  return 2 * std::atan(low * 1e-3 * sensor.ifov_mrad()) * 180 / std::numbers::pi;
+}
+
 TEST(PhysicalMeasures, HoldTheDistortionOfTheSensorInTheirInterval) {
   constexpr std::uint64_t seeds = 20;
-  int within = 0;
+  int within = 0, field_within = 0, square = 0;
   double half = 0, error = 0;
   const TargetPlate plate = *load_plate("tcat-a");
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
@@ -138,6 +150,12 @@ TEST(PhysicalMeasures, HoldTheDistortionOfTheSensorInTheirInterval) {
     ASSERT_TRUE(measures->geometry);
     const Estimate& found = measures->geometry->geometry.distortion_percent;
     within += found.low <= sensor.distortion_percent && sensor.distortion_percent <= found.high ? 1 : 0;
+    const GeometryMeasure& geometry = *measures->geometry;
+    const Estimate field = geometry.field_of_view_deg(EdgeAxis::x), aspect = geometry.aspect_ratio();
+    const double true_field = field_of_view_deg(sensor);
+    field_within += field.low <= true_field && true_field <= field.high ? 1 : 0;
+    square += aspect.low <= 1 && 1 <= aspect.high ? 1 : 0;
+    EXPECT_NEAR(field.value, true_field, 0.02 * true_field);
     half += 0.5 * (found.high - found.low) / seeds;
     error += (found.value - sensor.distortion_percent) / seeds;
   }
@@ -145,6 +163,8 @@ TEST(PhysicalMeasures, HoldTheDistortionOfTheSensorInTheirInterval) {
   RecordProperty("mean_error_percent", std::to_string(error));
   // 20 seeds at 95 %: fewer than 16 come by chance once in 390.
   EXPECT_GE(within, 16) << half << ' ' << error;
+  EXPECT_GE(field_within, 16);
+  EXPECT_GE(square, 16);
   EXPECT_LT(half, 1.5);
 }
 

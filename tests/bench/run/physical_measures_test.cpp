@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 
+#include "acquisition/core/forwarding_source.h"
 #include "bench/plan/descriptions.h"
 #include "bench/report/report.h"
 #include "bench/run/experiment.h"
@@ -31,6 +32,43 @@ using testing::line_of;
 using testing::measures_plan;
 using testing::plan_of_one;
 using testing::TemporaryFolder;
+
+/// A camera with one feature, which reads back otherwise than at the start.
+class SwitchedCamera final : public ForwardingSource {
+ public:
+  SwitchedCamera(std::unique_ptr<FrameSource> camera, std::string feature)
+      : ForwardingSource(std::move(camera)), info_(ForwardingSource::info()), feature_(std::move(feature)) {
+    info_.settings = {{feature_, "HighGain"}};
+  }
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] Result<std::string> get(const std::string& feature) override {
+    return feature == feature_ ? Result<std::string>("LowGain") : ForwardingSource::get(feature);
+  }
+
+ private:
+  SourceInfo info_;
+  std::string feature_;
+};
+
+TEST(PhysicalMeasures, OfACameraWhoseScaleChangedAreNotStated) {
+  for (const std::string feature : {"SensorGainMode", "FanSpeed"}) {
+    const TemporaryFolder folder;
+    const LoadedPlan loaded = LoadedPlan::load(measures_plan()).value();
+    EffectPlanner planner;
+    const ExperimentInputs inputs = experiment_inputs(loaded, planner).value();
+    OpenedBench bench = open_bench(loaded, {}, {}, {}, {}).value();
+    bench.camera = std::make_unique<SwitchedCamera>(std::move(bench.camera), feature);
+
+    const auto outcome =
+        measure_on_bench(loaded, inputs, std::move(bench), {.folder = folder.path() / "session"}, {}, {});
+
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    ASSERT_TRUE(outcome->measures);
+    EXPECT_EQ(outcome->measures->noise.has_value(), feature == "FanSpeed");
+    ASSERT_FALSE(outcome->measures->reasons.empty());
+    EXPECT_THAT(outcome->measures->reasons.back(), HasSubstr(feature + " was HighGain at the start"));
+  }
+}
 
 TEST(PhysicalMeasures, FindTheNoiseAndTheScaleOfTheSimulatedSensor) {
   const TemporaryFolder folder;

@@ -72,6 +72,7 @@ TEST(PhysicalMeasures, FindTheHaloOfTheSensorAndJudgeIt) {
   plan.camera.id = "sim:" + (folder.path() / "hazy.toml").string();
   plan.measures.noise = true;
   plan.limits.measures = {{"source_size_loss", std::nullopt, 0.03}};
+  plan.uncertainty.rows = {{.name = "distance", .value = 0.001, .unit = "1"}};
 
   const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
 
@@ -88,6 +89,13 @@ TEST(PhysicalMeasures, FindTheHaloOfTheSensorAndJudgeIt) {
   EXPECT_LE(twin.low, 0.0065);
   EXPECT_GE(twin.high, 0.0065);
   EXPECT_NEAR(outcome->measures->netd_extended_k().value().value, 0.07, 0.007);
+  ASSERT_TRUE(outcome->uncertainty);
+  const auto& rows = outcome->uncertainty->points.front().rows;
+  const auto of_source =
+      std::ranges::find_if(rows, [](const AppliedRow& at) { return at.row.name == source_loss_row; });
+  ASSERT_NE(of_source, rows.end());
+  // The loss of a square of 4 px against one of 61 px, beyond that of the twin: 5 % of nearly all of the halo's light.
+  EXPECT_NEAR(of_source->row.value, 0.047, 0.003);
   const auto session = open_session(folder.path() / "session", {});
   ASSERT_TRUE(session) << session.error().message;
   EXPECT_EQ(session->measures->main->source->effect.points.size(), 5u);
