@@ -256,6 +256,24 @@ Table answers_table(const std::string& caption, const TodCurve& curve) {
   return rows;
 }
 
+/// Thresholds by the direction of the triangles; without rows if no point compares them.
+Table directions_table(const std::string& caption, const TodCurve& curve) {
+  Table rows;
+  rows.caption = caption;
+  rows.header = {"Set ΔT (K)"};
+  for (const Apex apex : all_apexes) rows.header.push_back(std::string(to_string(apex)) + " (%)");
+  rows.header.emplace_back("up and down over left and right (%)");
+  for (const TodPoint& point : curve.points) {
+    if (!point.orientations) continue;
+    rows.rows.push_back({plain(stated(point.set_delta_t_k))});
+    for (const DirectionAnswers& one : point.orientations->directions)
+      rows.rows.back().push_back(plain(fmt::format("{:+.1f}", one.percent)));
+    rows.rows.back().push_back(unbroken(
+        fmt::format("{:+.1f} ± {:.1f}", point.orientations->axes_percent, point.orientations->axes_se_percent)));
+  }
+  return rows;
+}
+
 struct Headline {
   std::string word, sentence;
   Mood mood = Mood::open;
@@ -505,7 +523,19 @@ std::optional<Section> answers_section(const ReportData& data) {
   if (data.measured) pairs.tables.emplace_back(answers_table("Measured", *data.measured));
   if (data.simulated) pairs.tables.emplace_back(answers_table("Simulated", *data.simulated));
   if (pairs.tables.empty()) return {};
-  return Section{"Appendix: answers by size", {std::move(pairs)}};
+  Section section{"Appendix: answers by size", {std::move(pairs)}};
+  TablePairs directions;
+  for (const auto& [caption, curve] :
+       {std::pair("Measured", &data.measured), std::pair("Simulated", &data.simulated)}) {
+    Table table = *curve ? directions_table(std::string(caption) +
+                                                ", 75 % size by the direction of the triangles in "
+                                                "the picture, over that of all directions; ±: standard error",
+                                            **curve)
+                         : Table{};
+    if (!table.rows.empty()) directions.tables.push_back(std::move(table));
+  }
+  if (!directions.tables.empty()) section.blocks.emplace_back(std::move(directions));
+  return section;
 }
 
 }  // namespace todbench
