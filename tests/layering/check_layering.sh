@@ -56,6 +56,7 @@ BEGIN {
   may["bench/judgement"] = science " bench/text bench/plan"
   may["bench/session"] = core " " science " bench/text bench/picture_files bench/plan bench/judgement"
   may["bench/report"] = core " " science " bench/text bench/plan bench/judgement bench/session"
+  may["bench/plate_drawing"] = hvs " tod/plate"
   devices = "acquisition/recording acquisition/aravis acquisition/v4l2 acquisition/usb tod/instruments sim_devices/lab"
   may["bench/reference_set"] = science " acquisition/recording bench/text bench/plan bench/judgement bench/session"
   may["bench/selftest"] = science " bench/judgement bench/reference_set"
@@ -70,7 +71,7 @@ BEGIN {
   may["bench/moving_target"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
   may["bench/scene_dependence"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
   may["bench/model_comparison"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
-  bench = "bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/selftest bench/run bench/serve bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history"
+  bench = "bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/selftest bench/plate_drawing bench/run bench/serve bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history"
   may["bench/cli"] = core " " science " acquisition/recording tod/instruments bench/doctor " bench
   may["bench/gui/presenters"] = core " " science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"
