@@ -167,7 +167,7 @@ void Console::phase(std::string_view name) {
   end_progress();
   picture_lines_ = 0;
   phase_ = one_line(name);
-  phase_start_ = std::chrono::steady_clock::now();
+  time_left_.begin(std::chrono::steady_clock::now());
   last_draw_ = {};
   if (options_.quiet) return;
   if (!terminal_) {
@@ -182,13 +182,17 @@ void Console::phase(std::string_view name) {
 
 void Console::progress(std::size_t done, std::size_t planned) {
   const auto now = std::chrono::steady_clock::now();
-  if (options_.quiet || !terminal_ || planned == 0 ||
-      (now - last_draw_ < std::chrono::milliseconds(100) && done < planned))
-    return;
-  last_draw_ = now;
+  if (options_.quiet || planned == 0) return;
   const double share = static_cast<double>(done) / static_cast<double>(planned);
-  const double elapsed = std::chrono::duration<double>(now - phase_start_).count();
-  const std::string left = done > 0 ? duration(elapsed / share - elapsed) + " left" : "";
+  const auto left_s = time_left_.progress(now, share);
+  const std::string left = left_s ? duration(*left_s) + " left" : "";
+  if (!terminal_) {
+    if (time_left_.line_is_due(now))
+      std::fputs(fmt::format("{}: {:.0f} %, {}\n", phase_, 100 * share, left).c_str(), stderr);
+    return;
+  }
+  if (now - last_draw_ < std::chrono::milliseconds(100) && done < planned) return;
+  last_draw_ = now;
   // A line longer than the terminal could not be drawn over: the bar is shortened first, then the name.
   constexpr std::size_t longest_bar = 30, shortest_bar = 5;
   const std::string figures = fmt::format(" {:3.0f} %  {}", 100 * share, left);
@@ -203,6 +207,10 @@ void Console::progress(std::size_t done, std::size_t planned) {
   std::fputs(("\r\033[K" + text).c_str(), stderr);
   std::fflush(stderr);
   bar_shown_ = true;
+}
+
+void Console::stands_still() {
+  time_left_.stand_still(std::chrono::steady_clock::now());
 }
 
 void Console::end_progress() {

@@ -11,6 +11,7 @@
 
 #include "acquisition/base/result.h"
 #include "bench/session/json_output.h"
+#include "bench/text/time_left.h"
 
 namespace todbench {
 
@@ -41,9 +42,12 @@ class Console {
   void warning(std::string_view sentence);
   /// Writes an error to standard error on one line, also with --quiet.
   void error(std::string_view sentence);
-  /// Starts a phase of work; progress() then draws a bar with the remaining time if standard error is a terminal.
+  /// Starts a phase of work; progress() then shows the remaining time: in a bar if standard error is a terminal,
+  /// otherwise as a line a minute.
   void phase(std::string_view name);
   void progress(std::size_t done, std::size_t planned);
+  /// The work stands still until the next progress(): this time does not count for the remaining time.
+  void stands_still();
   /// Shows the reason of a wait: in place of the bar on a terminal, otherwise as an occasional line.
   void waiting(std::string_view sentence);
   /// Draws lines, over the previous ones if no other output came in between; terminals only.
@@ -64,7 +68,7 @@ class Console {
   std::size_t picture_lines_ = 0;  ///< directly above the line of the cursor
   std::chrono::steady_clock::time_point last_waiting_;
   std::string phase_;
-  std::chrono::steady_clock::time_point phase_start_;
+  TimeLeft time_left_;
   std::chrono::steady_clock::time_point last_draw_;
 };
 

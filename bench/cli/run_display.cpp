@@ -16,6 +16,7 @@ ExperimentListener listener_of(Console& console) {
   ExperimentListener out;
   out.on_phase = [&console](std::string_view phase) { console.phase(phase); };
   out.on_progress = [&console](std::size_t done, std::size_t planned) { console.progress(done, planned); };
+  out.on_lost = [&console](const SourceInfo&, std::chrono::milliseconds) { console.stands_still(); };
   out.on_note = [&console](std::string_view sentence) { console.note(sentence); };
   out.on_wait = [&console](const std::optional<TargetWait>& wait) {
     if (wait) {

@@ -254,6 +254,7 @@ void MeasurePresenter::collect() {
   if (away_) {
     if (back) {
       away_.reset();
+      in_phase_.invalidate();  // the time of the absence does not count for the time left
       bench_.report_health(DeviceHealth::in_use);
     }
     emit updated();  // the time left
@@ -352,7 +353,8 @@ QString MeasurePresenter::next_step() const {
 }
 
 QString MeasurePresenter::time_left() const {
-  if (state_ != RunState::running || !in_phase_.isValid() || done_ <= done_at_start_ + 2 || planned_ < done_) return {};
+  if (state_ != RunState::running || away_ || !in_phase_.isValid() || done_ <= done_at_start_ + 2 || planned_ < done_)
+    return {};
   const double per_presentation = in_phase_.elapsed() / 1000.0 / static_cast<double>(done_ - done_at_start_);
   const int seconds = static_cast<int>(std::lround(per_presentation * static_cast<double>(planned_ - done_)));
   return seconds < 60 ? QString("%1 s left").arg(seconds)

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Remaining time of a phase of work, without the time in which the camera was away.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+namespace todbench {
+
+/// Extrapolates the elapsed time of a phase. The clock is an argument.
+class TimeLeft {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// Starts a phase.
+  void begin(Time now);
+  /// The work stands still, for example because the camera is lost, until the next progress().
+  void stand_still(Time now);
+  /// Returns the remaining time in seconds; `share` of the work is done, 0 to 1. Empty if `share` is not above 0.
+  [[nodiscard]] std::optional<double> progress(Time now, double share);
+  /// Returns whether a minute passed since the phase or the last line began, and then begins a new minute.
+  [[nodiscard]] bool line_is_due(Time now);
+
+ private:
+  Time begin_{}, last_line_{};
+  std::optional<Time> still_since_;
+};
+
+}  // namespace todbench
