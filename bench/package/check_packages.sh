@@ -25,6 +25,8 @@ check() {
 check desktop-file-validate "$here/todbench-gui.desktop"
 check appstreamcli validate --no-net "$build/package/org.todbench.todbench.metainfo.xml"
 check bash -n "$here/todbench.bash"
+check zsh -n "$here/todbench.zsh"
+check fish --no-execute "$here/todbench.fish"
 unpacked=$(mktemp -d)
 trap 'rm -rf "$unpacked"' EXIT
 if command -v mandoc >/dev/null; then

@@ -24,6 +24,33 @@ is "nothing typed" "$(offered | wc -w)" "$(offered '' | wc -w)"
 case " $(offered fit --) " in *" --lapse "*) ;; *) is "options of a command" "$(offered fit --)" "... --lapse ..." ;; esac
 case " $(offered '') " in *" manual "* | *" complete "*) is "what help does not list" yes no ;; esac
 
+# Zsh and fish, where they are installed. The stubs of zsh print what its completion would add.
+if command -v zsh >/dev/null; then
+  zsh_offers() {
+    (cd "$source" && PATH=$(dirname "$program"):$PATH zsh -f -c '
+      compadd() { shift; print -rl -- "$@"; }
+      _files() { print FILES; }
+      _todbench() { source bench/package/todbench.zsh; }
+      words=("$@") CURRENT=$# PREFIX=${@[-1]}
+      _todbench' zsh "$@" | tr '\n' ' ')
+  }
+  is "zsh: words" "$(zsh_offers todbench fit --form '')" "size acuity "
+  is "zsh: files" "$(zsh_offers todbench compare a '')" "FILES "
+  case " $(zsh_offers todbench '') " in *" judge "*) ;; *) is "zsh: commands" no yes ;; esac
+else
+  echo "skipped: zsh is not installed"
+fi
+if command -v fish >/dev/null; then
+  fish_offers() {
+    (cd "$source" && PATH=$(dirname "$program"):$PATH HOME=$(mktemp -d) fish -c 'source bench/package/todbench.fish; complete -C $argv[1]' "$1" | cut -f 1 | tr '\n' ' ')
+  }
+  is "fish: commands" "$(fish_offers 'todbench mea')" "measure "
+  is "fish: words" "$(fish_offers 'todbench render --apex l')" "left "
+  is "fish: files" "$(fish_offers 'todbench verify CHANGE')" "CHANGELOG.md "
+else
+  echo "skipped: fish is not installed"
+fi
+
 bash_completion=/usr/share/bash-completion/bash_completion
 [ $failed -eq 0 ] || exit 1
 [ -e $bash_completion ] || { echo "skipped: bash-completion is not installed"; exit 77; }
