@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/devices.h"
 
+#include <algorithm>
+
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/control_text.h"
 #include "acquisition/recording/recording_backend.h"
@@ -77,6 +79,21 @@ class RemappedTarget final : public Target {
   std::map<double, double> shown_;
 };
 
+/// The plates of a plan in their mountings, at the extreme contrasts.
+std::vector<TargetState> requested_states(const LoadedPlan& loaded) {
+  const TargetPlan& target = loaded.plan().target;
+  std::vector<TargetState> states;
+  const auto [least, most] = std::ranges::minmax(target.delta_t_k);
+  for (const TargetPlate& plate : loaded.plates()) {
+    for (const Mounting mounting : target.mountings) {
+      for (const double delta_t_k : {least, most}) states.push_back({plate.name, mounting, delta_t_k, {0, 0}});
+    }
+  }
+  for (const TargetPlate& plate : loaded.shown_plates())
+    states.push_back({plate.name, target.mountings.front(), 0, {0, 0}});
+  return states;
+}
+
 Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_token stop,
                                             const AskOperator& ask_operator, const OnTargetWait& on_wait) {
   const Plan& plan = loaded.plan();
@@ -101,6 +118,7 @@ Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_
   options.settle_timeout = std::chrono::milliseconds(static_cast<long>(plan.target.settle_timeout_s * 1000));
   options.poll_interval = std::chrono::milliseconds(10);
   options.on_wait = on_wait;
+  options.requested = requested_states(loaded);
   return open_scpi_target(options, stop);
 }
 

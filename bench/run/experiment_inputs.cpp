@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/experiment_inputs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "bench/plan/bench_air.h"
 #include "bench/plan/plan_options.h"
@@ -15,6 +19,19 @@
 namespace todbench {
 namespace {
 
+constexpr double thousand = 1000;
+
+/// Asks whether the distance is in other units, if every size fits at a distance of another power of a thousand.
+std::string distance_hint(MeasurementOptions options, TemplateObserver& observer, cv::Size picture) {
+  const double stated_m = options.distance_m;
+  for (const auto& [factor, unit] : {std::pair(1 / thousand, "mm"), std::pair(thousand, "km")}) {
+    options.distance_m = stated_m * factor;
+    const auto misfits = find_misfits(options, observer, picture);
+    if (misfits && misfits->empty()) return std::string("; is distance_m in ") + unit + "?";
+  }
+  return "";
+}
+
 /// Names a few sizes that do not fit, before anything is computed or moved.
 Result<void> check_geometry(const MeasurementOptions& options, const ExperimentInputs& inputs, cv::Size picture) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
@@ -23,13 +40,34 @@ Result<void> check_geometry(const MeasurementOptions& options, const ExperimentI
   if (misfits->empty()) return {};
   constexpr std::size_t named = 3;
   const std::string distance = number_text(options.distance_m) + " m";
-  const std::string what = sentences(*misfits, named);
+  const std::string what = sentences(*misfits, named) + distance_hint(options, observer, picture);
   return tl::unexpected(Error{ErrorCode::invalid_input,
                               "not measurable at " + distance + " ([target] distance_m): " + what,
                               ErrorKey{"target.distance_m", "not measurable at " + distance + ": " + what}});
 }
 
 }  // namespace
+
+Result<std::string> check_ifov(const Plan& plan, const SensorSpec& sensor) {
+  const double stated = plan.camera.ifov_mrad;
+  if (!(stated > 0) || plan.camera.id.empty()) return std::string();
+  // A camera that scans may send its samples as pixels.
+  const double ratio = stated / sensor.ifov_mrad();
+  const double of_samples = ratio * sensor.samples_per_pitch();
+  const double nearest = std::abs(std::log(of_samples)) < std::abs(std::log(ratio)) ? of_samples : ratio;
+  const std::string twin = fmt::format("{:.4g}", sensor.ifov_mrad()) + " mrad (pitch " + number_text(sensor.pitch_um) +
+                           " um / focal length " + number_text(sensor.focal_length_mm) + " mm of " + sensor.name + ")";
+  const std::string words = number_text(stated) + " mrad, but that of the simulated sensor is " + twin;
+  for (const auto& [factor, unit] : {std::pair(thousand, "rad"), std::pair(1 / thousand, "urad")}) {
+    constexpr double closeness = 1.5;
+    if (std::abs(std::log(nearest * factor)) > std::log(closeness)) continue;
+    return fail_at(ErrorCode::invalid_input, "camera.ifov_mrad",
+                   "[camera] ifov_mrad is " + words + "; is the value in " + unit + "?");
+  }
+  constexpr double noted_from = 0.01;
+  if (std::abs(nearest - 1) < noted_from) return std::string();
+  return "the plan states an IFOV of " + words + ": acuities of camera and simulated sensor refer to these angles";
+}
 
 Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor, const TemplateObserverSpec& observer,
                                    EffectPlanner& planner) {
@@ -49,6 +87,8 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
   inputs.stated_noise_counts = noise_in_counts(loaded.sensor());
+  auto ifov = check_ifov(plan, loaded.sensor());
+  if (!ifov) return tl::unexpected(ifov.error());
   if (has_modules(plan, loaded.sensor())) {
     if (chosen_estimator(plan, loaded.sensor()).estimator == FitEstimator::twin_shape)
       return fail(
@@ -76,6 +116,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
     auto accuracy = accuracy_of(plan);
     if (!accuracy) return tl::unexpected(accuracy.error());
     inputs.accuracy = *accuracy;
+    if (!ifov->empty()) inputs.warnings.push_back(*std::move(ifov));
     return inputs;
   }
   auto effects = planned_effects(plan, loaded.sensor(), inputs.observer, planner);
@@ -93,6 +134,8 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   auto accuracy = accuracy_of(plan);
   if (!accuracy) return tl::unexpected(accuracy.error());
   inputs.accuracy = *accuracy;
+  // Behind the warnings of the planner, of which the first is the reason of a run without a threshold.
+  if (!ifov->empty()) inputs.warnings.push_back(*std::move(ifov));
   return inputs;
 }
 

@@ -36,6 +36,11 @@ struct ExperimentInputs {
 [[nodiscard]] Result<EffectPlan> planned_effects(const Plan& plan, const SensorSpec& sensor,
                                                  const TemplateObserverSpec& observer, EffectPlanner& planner);
 
+/// Compares the stated IFOV of the camera with pitch over focal length of the simulated sensor. Returns a sentence if
+/// they differ by 1 % or more; empty otherwise, and without a camera. Errors: `invalid_input` about the key if the
+/// value is off by a thousand.
+[[nodiscard]] Result<std::string> check_ifov(const Plan& plan, const SensorSpec& sensor);
+
 /// Loads the inputs and asks the planner once. If no contrast has a threshold, every effect is simulated and a warning
 /// says so. With modules, every effect is simulated without asking the planner.
 [[nodiscard]] Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlanner& planner);

@@ -91,6 +91,9 @@ Result<void> ScpiTarget::open(const std::stop_token& stop) {
   travel_ = std::move(*travel);
   capabilities_.description = black_body_.name() + "; " + stage_.name();
   capabilities_.sets_shift = plates().position.has_value();
+  for (const TargetState& state : options_.requested) {
+    if (auto possible = check_within_limits(state); !possible) return possible;
+  }
   return {};
 }
 

@@ -25,12 +25,15 @@ struct ScpiTargetOptions {
   std::chrono::milliseconds poll_interval{100};
   std::chrono::milliseconds report_interval{500};  ///< interval of on_wait, by `now`, also before the first call
   OnTargetWait on_wait{};
+  /// States that a run will request: checked against the limits and the plates of the instruments when they are opened.
+  std::vector<TargetState> requested{};
   ScpiClientOptions connection;
   /// Time base of settle_timeout and settling_s.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
-/// Connects to both instruments, identifies them and reads their limits. Errors: those of ScpiClient::connect().
+/// Connects to both instruments, identifies them and reads their limits. Errors: those of ScpiClient::connect(), and
+/// `invalid_input` for a requested state beyond the limits.
 ///
 /// present() reads the set-points of each instrument and commands only those that differ, so that manual changes are
 /// corrected; an instrument without set-points is commanded each time. It returns when both instruments report that
