@@ -10,6 +10,7 @@
 #include "bench/cli/findings.h"
 #include "bench/cli/key_options.h"
 #include "bench/cli/run_display.h"
+#include "bench/cli/run_results.h"
 #include "bench/cli/session_argument.h"
 #include "bench/cli/simulation_plan.h"
 #include "bench/cli/watch.h"
@@ -221,6 +222,32 @@ int finish(Console& console, const ExperimentOutcome& outcome) {
   return exit_code(outcome.verdict.decision);
 }
 
+}  // namespace
+
+int show_measured(Console& console, const ExperimentOutcome& outcome) {
+  if (console.json()) {
+    Json json = curve_json(outcome.curve, outcome.effects, outcome.figures);
+    if (outcome.uncertainty) add_uncertainty(json, *outcome.uncertainty);
+    add_verdict(json, outcome.verdict);
+    json["bill"] = bill_json(bill_of(outcome));
+    add_measures(json, outcome);
+    console.object(json);
+  } else {
+    print_curve(console, outcome.curve);
+    if (outcome.comparison) {
+      console.text("");
+      print_comparison(console, outcome);
+    }
+    print_uncertainty(console, outcome);
+    print_measures(console, outcome);
+    print_bill(console, outcome);
+    print_verdict(console, outcome);
+  }
+  return finish(console, outcome);
+}
+
+namespace {
+
 /// Returns the plan with the overrides of the command line.
 Result<Plan> with_options(Plan plan, const RunArguments& arguments, const Program& program) {
   if (program.common.seed_given) plan.seed = program.common.seed;
@@ -285,25 +312,7 @@ int run_measure(Console& console, const MeasureArguments& asked, const Program& 
                                });
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
-  if (console.json()) {
-    Json json = curve_json(outcome->curve, outcome->effects, outcome->figures);
-    if (outcome->uncertainty) add_uncertainty(json, *outcome->uncertainty);
-    add_verdict(json, outcome->verdict);
-    json["bill"] = bill_json(bill_of(*outcome));
-    add_measures(json, *outcome);
-    console.object(json);
-  } else {
-    print_curve(console, outcome->curve);
-    if (outcome->comparison) {
-      console.text("");
-      print_comparison(console, *outcome);
-    }
-    print_uncertainty(console, *outcome);
-    print_measures(console, *outcome);
-    print_bill(console, *outcome);
-    print_verdict(console, *outcome);
-  }
-  return finish(console, *outcome);
+  return show_measured(console, *outcome);
 }
 
 int run_simulate(Console& console, SimulateArguments arguments, const Program& program) {

@@ -21,6 +21,7 @@
 #include "bench/run/recorded_bench.h"
 #include "bench/run/simulated_responses.h"
 #include "bench/run/simulated_set_up.h"
+#include "sim_devices/sensor/effect_quantisation.h"
 #include "tod/adequacy/adequacy.h"
 #include "tod/plate/test_pattern.h"
 
@@ -30,23 +31,6 @@ namespace {
 constexpr std::size_t most_error_lines = 100;
 /// Within the frames averaged for the registration, after slow filters have settled.
 constexpr std::size_t picture_frame = 30;
-
-/// Simulates every effect: one that is negligible for the sensor alone may matter behind a filter.
-Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded) {
-  const Plan& plan = loaded.plan();
-  auto accuracy = accuracy_of(plan);
-  if (!accuracy) return tl::unexpected(accuracy.error());
-  if (auto possible = check_sensor_module(loaded.sensor(), plan.simulation.motion); !possible)
-    return tl::unexpected(possible.error());
-  ExperimentInputs inputs;
-  inputs.plates = loaded.plates();
-  inputs.observer = loaded.observer();
-  inputs.motion = plan.simulation.motion;
-  inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
-  inputs.sensor = as_planned(loaded.sensor(), inputs.effects);
-  inputs.accuracy = *accuracy;
-  return inputs;
-}
 
 int longest_memory(const std::vector<EnhancementPackage>& packages) {
   int longest = 0;
@@ -244,6 +228,23 @@ PairedRatio ratio_at(std::span<const Trial> with, std::span<const Trial> without
 }
 
 }  // namespace
+
+Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded) {
+  const Plan& plan = loaded.plan();
+  auto accuracy = accuracy_of(plan);
+  if (!accuracy) return tl::unexpected(accuracy.error());
+  if (auto possible = check_sensor_module(loaded.sensor(), plan.simulation.motion); !possible)
+    return tl::unexpected(possible.error());
+  ExperimentInputs inputs;
+  inputs.plates = loaded.plates();
+  inputs.observer = loaded.observer();
+  inputs.motion = plan.simulation.motion;
+  inputs.stated_noise_counts = noise_in_counts(loaded.sensor());
+  inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
+  inputs.sensor = as_planned(loaded.sensor(), inputs.effects);
+  inputs.accuracy = *accuracy;
+  return inputs;
+}
 
 PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackage* package, int settle_frames,
                                const EnhancementOptions& options, std::stop_token stop) {

@@ -11,6 +11,7 @@
 
 #include "bench/enhance/package_file.h"
 #include "bench/plan/loaded_plan.h"
+#include "bench/run/experiment_inputs.h"
 #include "bench/session/open_session.h"
 #include "tod/measurement/judged_contrast.h"
 #include "tod/psychometric/tod_curve.h"
@@ -73,6 +74,9 @@ struct EnhancementOptions {
                                                             const std::vector<EnhancementPackage>& packages,
                                                             const EnhancementOptions& options, std::stop_token stop);
 
+/// Returns the inputs with every effect simulated: one that is negligible for the sensor alone may matter behind a
+/// package. Errors: `invalid_input`.
+[[nodiscard]] Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded);
 /// Simulates one chain with every effect: sensor, its own modules, the stages of the package (null: none). Errors are
 /// in the result.
 [[nodiscard]] PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackage* package,

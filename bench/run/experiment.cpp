@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/experiment.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -21,6 +23,7 @@
 #include "bench/run/observed_source.h"
 #include "bench/run/paired_comparison.h"
 #include "bench/run/physical_measures.h"
+#include "bench/run/processed_source.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/session_end.h"
 #include "bench/run/simulated_responses.h"
@@ -41,11 +44,27 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Returns a sentence if the scale of the picture differs by 0.2 % or more from that of distance and IFOV: a distance
+/// that is wrong by a share changes the acuity by the same share.
+std::string scale_sentence(const SetUpRecord& set_up, double distance_m) {
+  constexpr double noted_from = 0.002;
+  const double deviation = set_up.registration.scale_deviation;
+  if (std::abs(deviation) < noted_from) return "";
+  return fmt::format(
+      "plate {} is {:.2f} % {} in the picture than at {:g} m with the stated IFOV: check distance_m and ifov_mrad. If "
+      "the distance is wrong, the acuity is wrong by the same share",
+      set_up.plate, 100 * std::abs(deviation), deviation > 0 ? "larger" : "smaller", distance_m);
+}
+
 /// One run of the measurement into its files of trials and presentations.
 class Recorder {
  public:
-  Recorder(SessionFolder& folder, const ExperimentListener& listener, std::stop_token stop)
-      : folder_(folder), listener_(listener), forward_(std::move(stop), [this] { halt_.request_stop(); }) {}
+  Recorder(SessionFolder& folder, const ExperimentListener& listener, std::stop_token stop,
+           AnswerKind answers = AnswerKind::graded)
+      : folder_(folder),
+        listener_(listener),
+        answers_(answers),
+        forward_(std::move(stop), [this] { halt_.request_stop(); }) {}
 
   /// Writes trials and presentations to the disk one by one. A disk error stops the run with `io`; then the data on the
   /// disk count.
@@ -66,6 +85,7 @@ class Recorder {
     // A simulated exposure has no host time: its files do not depend on when it is made.
     events.on_trial = [&](Trial trial) {
       if (bench.simulated) trial.host_time_ns = trial.device_time_ns;
+      if (answers_ == AnswerKind::binary) trial = binary(std::move(trial));
       if (!write_error) keep(writer->append(trial));
       if (!write_error) ++on_disk;
     };
@@ -76,7 +96,13 @@ class Recorder {
     events.on_patch = [&](const Trial& trial, const Patch& patch) {
       if (listener_.on_trial && !write_error) listener_.on_trial(which, trial, patch);
     };
+    std::vector<std::string> scale_notes;
     events.on_set_up = [&](const SetUpRecord& set_up) {
+      if (auto sentence = scale_sentence(set_up, options.distance_m);
+          !sentence.empty() && which == SessionCurve::main) {
+        note(folder_, listener_, sentence);
+        scale_notes.push_back(std::move(sentence));
+      }
       if (listener_.on_set_up) listener_.on_set_up(which, set_up);
     };
     events.on_progress = listener_.on_progress;
@@ -89,6 +115,10 @@ class Recorder {
     events.on_lost = [&](const Error&) { say_that_camera_is_awaited(bench); };
     auto result =
         measure(*bench.camera, *bench.target, observer, schedule, options, *bench.host, events, halt_.get_token());
+    if (result && answers_ == AnswerKind::binary) {
+      for (Trial& trial : result->trials) trial = binary(std::move(trial));
+    }
+    if (result) result->notes.insert(result->notes.end(), scale_notes.begin(), scale_notes.end());
     keep(writer->sync());
     keep(targets->sync());
     if (write_error) {
@@ -100,6 +130,12 @@ class Recorder {
   }
 
  private:
+  /// The answer to the first frame, which is that of a run without graded answers.
+  static Trial binary(Trial trial) {
+    trial.probability_correct.reset();
+    trial.frames = 1;
+    return trial;
+  }
   void say_that_camera_is_awaited(const OpenedBench& bench) {
     const SourceInfo& info = bench.camera->info();
     const auto patience_s = std::chrono::duration<double>(bench.patience).count();
@@ -113,6 +149,7 @@ class Recorder {
 
   SessionFolder& folder_;
   const ExperimentListener& listener_;
+  AnswerKind answers_;  ///< binary: graded answers are reduced
   std::stop_source halt_;
   std::stop_callback<std::function<void()>> forward_;
 };
@@ -123,6 +160,15 @@ ModuleLine module_log(SessionFolder& folder) {
   return [&folder, lines = std::make_shared<int>(0)](std::string_view line) {
     if (++*lines <= most_lines) (void)folder.log("module: " + one_line(std::string(line)));
   };
+}
+
+/// Passes the frames of a bench through the modules, then through the added stages.
+void put_behind(OpenedBench& bench, const std::vector<ModulePlan>& modules, const AddedStages& added,
+                const ModuleLine& log_line, MeasurementOptions& options) {
+  auto stages = module_stages(modules, log_line);
+  if (added.make) std::ranges::move(added.make(log_line), std::back_inserter(stages));
+  options.judged_samples_per_pixel = samples_per_pixel(stages);
+  put_stages_behind(bench, std::move(stages));
 }
 
 /// The plan's own trial design on the simulated sensor.
@@ -203,9 +249,9 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
   if (!set_up) return tl::unexpected(set_up.error());
   set_up->bench.host = bench_host({.pause = host.pause});
   const auto modules = picture_modules(plan, inputs.sensor, Side::simulated);
-  put_modules_behind(set_up->bench, modules, log_line);
-  if (!modules.empty()) {
-    set_up->options.frames_after_change = settle_frames(modules);
+  put_behind(set_up->bench, modules, host.added, log_line, set_up->options);
+  if (!modules.empty() || host.added.make) {
+    set_up->options.frames_after_change = settle_frames(modules) + host.added.memory_frames;
     set_up->options.integrity.reject_frozen = false;
   }
   const auto observer = observer_of(plan, inputs, log_line);
@@ -233,8 +279,9 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
       take_shape(run.curve, run.result.trials, trials_of(run.result), plan, inputs, shown_delta_t_k,
                  stopped_by.points.empty() ? camera.functions : &stopped_by, stop);
   keep_shape(run.result, shaped, {folder, listener});
-  if (!run.result.ended_by && has_modules(plan, inputs.sensor)) {
-    const std::string sentence = "no direct estimate: it would not include the modules";
+  if (!run.result.ended_by && (has_modules(plan, inputs.sensor) || host.added.make)) {
+    const std::string sentence =
+        std::string("no direct estimate: it would not include the ") + (host.added.make ? "package" : "modules");
     note(folder, listener, sentence);
     run.result.notes.push_back(sentence);
   } else if (!run.result.ended_by) {
@@ -338,15 +385,16 @@ Result<std::map<std::string, double>> responses_of_camera(const Plan& plan, cons
 
 /// Measures with the camera of the plan, into the session.
 Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& inputs, CameraSurrogate& surrogate,
-                                 OpenedBench& bench, SessionFolder& folder, const ExperimentListener& listener,
-                                 std::stop_token stop) {
+                                 OpenedBench& bench, SessionFolder& folder, const AddedStages& added,
+                                 const ExperimentListener& listener, std::stop_token stop) {
   const SourceInfo at_start = bench.camera->info();
   const auto modules = picture_modules(plan, inputs.sensor, Side::measured);
   const ModuleLine log_line = module_log(folder);
-  put_modules_behind(bench, modules, log_line);
-  const auto observer = observer_of(plan, inputs, log_line);
   MeasurementOptions options = camera_options(plan, inputs.plates);
+  put_behind(bench, modules, added, log_line, options);
+  const auto observer = observer_of(plan, inputs, log_line);
   take_answers(options, plan, inputs);
+  if (added.as_recorded) added.as_recorded(options);
   options.max_contrast_error = gross_contrast_deviations(plan);
   options.contrast_response = surrogate.responses();
   options.learn_response = [&surrogate](const SetUpPicture& found) { return surrogate.learn(found); };
@@ -359,7 +407,8 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
   if (!functions) return tl::unexpected(functions.error());
   const auto schedule = make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured,
                                       RandomStream(plan.seed, "schedule"), *functions);
-  auto result = Recorder(folder, listener, stop).run(bench, *observer, *schedule, options, SessionCurve::main);
+  const AnswerKind kept = added.as_recorded ? AnswerKind::binary : AnswerKind::graded;
+  auto result = Recorder(folder, listener, stop, kept).run(bench, *observer, *schedule, options, SessionCurve::main);
   if (!result) return tl::unexpected(result.error());
   options.contrast_response = surrogate.responses();
   options.learn_response = {};
@@ -613,6 +662,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   provenance.modules = module_records(plan, inputs.sensor, Side::simulated);
   provenance.camera = camera_record(info);
   provenance.target = bench.target->capabilities().description;
+  provenance.origin = options.origin;
   auto folder = begin_session(*chosen, options, provenance);
   if (!folder) return tl::unexpected(folder.error());
   const OpenSession open{*folder, listener};
@@ -629,7 +679,9 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   }
 
   std::string forecast;
-  if (const auto prediction = predict_plan(plan, inputs)) forecast = comparison_forecast(plan, *prediction).sentence;
+  // The prediction does not include a package.
+  if (const auto prediction = predict_plan(plan, inputs); prediction && !options.host.added.make)
+    forecast = comparison_forecast(plan, *prediction).sentence;
   if (!forecast.empty()) note(*folder, listener, forecast);
 
   const auto begin = Clock::now();
@@ -640,7 +692,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   if (plan.schedule.kind == ScheduleKind::constant) functions.emplace(plan, inputs);
   BackgroundMeasures twin_measures(loaded, inputs);
   CameraSurrogate surrogate(*chosen, inputs, *responses);
-  auto measured = run_measured(plan, inputs, surrogate, bench, *folder, listener, stop);
+  auto measured = run_measured(plan, inputs, surrogate, bench, *folder, options.host.added, listener, stop);
   if (!measured) return abandon(open, plan, provenance, with_context("measuring", measured.error()));
   MeasurementResult& result = measured->result;
   result.notes.insert(result.notes.end(), inputs.warnings.begin(), inputs.warnings.end());

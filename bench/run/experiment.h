@@ -19,6 +19,7 @@
 #include "bench/run/experiment_host.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/session/json_output.h"
+#include "bench/session/provenance.h"
 #include "bench/session/session_folder.h"
 #include "tod/camera_measures/camera_measures.h"
 
@@ -46,7 +47,8 @@ struct ExperimentListener {
 struct ExperimentOptions {
   std::filesystem::path folder;
   ExistingFolder existing = ExistingFolder::refuse;
-  ExperimentHost host{};  ///< controls the run
+  ExperimentHost host{};                 ///< controls the run
+  std::optional<OriginRecord> origin{};  ///< of a run on the recorded frames of another session
 };
 
 /// Result of a run. The session folder contains the same.

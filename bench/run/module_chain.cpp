@@ -92,8 +92,11 @@ int settle_frames(const std::vector<ModulePlan>& modules) {
 }
 
 void put_modules_behind(OpenedBench& bench, const std::vector<ModulePlan>& modules, const ModuleLine& on_error_line) {
-  if (modules.empty()) return;
-  auto stages = module_stages(modules, on_error_line);
+  put_stages_behind(bench, module_stages(modules, on_error_line));
+}
+
+void put_stages_behind(OpenedBench& bench, std::vector<std::unique_ptr<ChainStage>> stages) {
+  if (stages.empty()) return;
   constexpr std::size_t no_picture = std::numeric_limits<std::size_t>::max();
   bench.camera = processed_source(std::move(bench.camera), std::move(stages), ProcessedAs::judged, no_picture,
                                   std::make_shared<ProcessingRecord>());

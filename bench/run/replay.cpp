@@ -74,54 +74,65 @@ Result<bool> comparable_fits(const std::filesystem::path& session, const TodCurv
 
 }  // namespace
 
+Result<RecordedRun> open_recorded_run(const std::filesystem::path& session, const Pause* pause, const Opening& opening,
+                                      RunModules modules) {
+  // Frames and plan have to be those of the run.
+  auto recorded = open_session(session, opening);
+  if (!recorded) return tl::unexpected(recorded.error());
+  auto recording = open_recorded_bench(session, pause);
+  if (!recording) return tl::unexpected(recording.error());
+  RecordedRun run{*std::move(recorded), *std::move(recording), {}, {}};
+  run.plan = run.session.plan;
+  // The author of a session chooses the programs that would run here.
+  if (has_modules(run.plan, run.session.parts.sensor) && modules != RunModules::yes) {
+    return fail(
+        ErrorCode::invalid_input,
+        session.string() + ": the session has a [[module]], and its program would run. Use --run-modules to allow it");
+  }
+  run.plan.measurement.record_frames = false;
+  // The trials are repeated: physical measures are not taken again, so nothing could be held against their limits.
+  const bool limits_left_out = !run.plan.limits.measures.empty() || !run.plan.limits.zones.empty();
+  run.plan.measures = {};
+  run.plan.limits.measures.clear();
+  run.plan.limits.zones.clear();
+  for (const std::string& file : run.session.accepted_changes)
+    run.warnings.push_back("replayed from a session that was changed after its end: " + file);
+  if (limits_left_out)
+    run.warnings.emplace_back("limits on physical measures are left out: a replay repeats the trials");
+  return run;
+}
+
 Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const ExperimentOptions& options,
                                      const ExperimentListener& listener, std::stop_token stop, const Opening& opening,
                                      RunModules modules) {
-  // Frames and plan have to be those of the run.
-  auto recorded = open_session(session, {.accept_changed = opening.accept_changed, .accept_cut_off = true});
+  auto recorded = open_recorded_run(session, options.host.pause,
+                                    {.accept_changed = opening.accept_changed, .accept_cut_off = true}, modules);
   if (!recorded) return tl::unexpected(recorded.error());
-  auto recording = open_recorded_bench(session, options.host.pause);
-  if (!recording) return tl::unexpected(recording.error());
-  Plan plan = recorded->plan;
-  // The author of a session chooses the programs that would run here.
-  if (has_modules(plan, recorded->parts.sensor) && modules != RunModules::yes) {
-    return fail(
-        ErrorCode::invalid_input,
-        session.string() +
-            ": the session has a [[module]], and the replay would run its program. Use --run-modules to allow it");
-  }
-  plan.measurement.record_frames = false;
-  // A replay repeats the trials: physical measures are not taken again, so nothing could be held against their limits.
-  const bool limits_left_out = !plan.limits.measures.empty() || !plan.limits.zones.empty();
-  plan.measures = {};
-  plan.limits.measures.clear();
-  plan.limits.zones.clear();
-  const auto loaded = LoadedPlan::of(std::move(plan), recorded->parts);
+  const Session& then = recorded->session;
+  const auto loaded = LoadedPlan::of(recorded->plan, then.parts);
   if (!loaded) return tl::unexpected(loaded.error());
   EffectPlanner planner;
   auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
-  for (const std::string& file : recorded->accepted_changes)
-    inputs->warnings.push_back("replayed from a session that was changed after its end: " + file);
-  if (limits_left_out)
-    inputs->warnings.emplace_back("limits on physical measures are left out: a replay repeats the trials");
-  auto run = measure_on_bench(*loaded, *inputs, std::move(recording->bench), options, listener, std::move(stop));
+  inputs->warnings.insert(inputs->warnings.end(), recorded->warnings.begin(), recorded->warnings.end());
+  auto run =
+      measure_on_bench(*loaded, *inputs, std::move(recorded->recording.bench), options, listener, std::move(stop));
   // A measurement that asked other questions is not a replay.
-  if (auto agreed = recording->answers->agreed(); !agreed) return tl::unexpected(agreed.error());
+  if (auto agreed = recorded->recording.answers->agreed(); !agreed) return tl::unexpected(agreed.error());
   if (!run) return tl::unexpected(run.error());
 
-  const bool cut_off = recorded->cut_off;
+  const bool cut_off = then.cut_off;
   auto trials = same_trials(session, run->folder, cut_off);
   if (!trials) return tl::unexpected(trials.error());
   ReplayOutcome outcome{.run = *std::move(run), .same_trials = *trials, .same_fits = std::nullopt};
-  outcome.accepted_changes = recorded->accepted_changes;
-  if (!recorded->curve) return outcome;
-  const auto comparable = comparable_fits(session, *recorded->curve);
+  outcome.accepted_changes = then.accepted_changes;
+  if (!then.curve) return outcome;
+  const auto comparable = comparable_fits(session, *then.curve);
   if (!comparable) return tl::unexpected(comparable.error());
   if (!*comparable) return outcome;
-  const auto then = fits_of(*recorded->curve), now = fits_of(outcome.run.curve);
-  if (!then || !now) return tl::unexpected(then ? now.error() : then.error());
-  outcome.same_fits = *then == *now;
+  const auto fits_then = fits_of(*then.curve), fits_now = fits_of(outcome.run.curve);
+  if (!fits_then || !fits_now) return tl::unexpected(fits_then ? fits_now.error() : fits_then.error());
+  outcome.same_fits = *fits_then == *fits_now;
   return outcome;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/run/experiment.h"
+#include "bench/run/recorded_bench.h"
 #include "bench/session/open_session.h"
 
 namespace todbench {
@@ -22,6 +23,19 @@ struct ReplayOutcome {
 
 /// Whether to start the programs that a session names.
 enum class RunModules { no, yes };
+
+/// A recorded session that is ready to be measured again.
+struct RecordedRun {
+  Session session;
+  RecordedBench recording;
+  /// Of the session, without recording, physical measures and their limits: the frames are those of the trials.
+  Plan plan;
+  std::vector<std::string> warnings;
+};
+/// Opens a recorded session. `pause`: as open_recorded_bench(). Errors: `invalid_input` (not a session, no recording,
+/// changed files that `opening` does not accept, modules that may not run).
+[[nodiscard]] Result<RecordedRun> open_recorded_run(const std::filesystem::path& session, const Pause* pause,
+                                                    const Opening& opening, RunModules modules);
 
 /// Measures again with the plan and the frames of the session, simulates the twin again, and compares trials and fits
 /// byte for byte. An interrupted session is replayed to the end of its frames and compared to the end of its trials.

@@ -37,6 +37,21 @@ void add_provenance(ReportData& data, const Provenance& provenance) {
                                                                 : "not recorded for this program on this computer");
   for (const auto& [name, seed] : provenance.seeds)
     data.provenance.emplace_back("Seed of the " + name, std::to_string(seed));
+  if (provenance.origin) {
+    const OriginRecord& origin = *provenance.origin;
+    const auto words = [](const JudgedBy& judged) {
+      return judged.observer + (judged.package.empty() ? ", no package" : ", package " + judged.package);
+    };
+    const std::string from = session_name(origin.session);
+    data.conditions.emplace_back("Recorded frames", "of session " + from + ", judged again");
+    data.provenance.emplace_back("Origin of the frames",
+                                 from + ", manifest SHA-256 " +
+                                     (origin.manifest_sha256.empty() ? "none" : origin.manifest_sha256) +
+                                     (origin.signed_by.empty() ? "" : ", signed by key SHA-256 " + origin.signed_by));
+    data.provenance.emplace_back("Judged then", words(origin.then));
+    data.provenance.emplace_back("Judged now", words(origin.now));
+    if (!origin.now.package_sha256.empty()) data.provenance.emplace_back("Package SHA-256", origin.now.package_sha256);
+  }
   for (const auto& module : provenance.modules) {
     std::string text = module.command;
     if (!module.version.empty()) text += "; " + module.version;

@@ -111,6 +111,21 @@ void optics_fields(JsonFields& json, CameraOpticsRecord& optics) {
   json.value("contrast_response", optics.contrast_response);
 }
 
+void judged_by_fields(JsonFields& json, JudgedBy& judged) {
+  json.value("observer", judged.observer);
+  json.value("observer_sha256", judged.observer_sha256);
+  json.value("package", judged.package);
+  json.value("package_sha256", judged.package_sha256);
+}
+
+void origin_fields(JsonFields& json, OriginRecord& origin) {
+  json.value("session", origin.session);
+  json.value("manifest_sha256", origin.manifest_sha256);
+  json.value("signed_by", origin.signed_by);
+  json.value("then", origin.then, judged_by_fields);
+  json.value("now", origin.now, judged_by_fields);
+}
+
 void provenance_fields(JsonFields& json, Provenance& provenance) {
   json.derived("schema", "todbench-provenance-1");
   json.value("state", provenance.state, states);
@@ -134,6 +149,7 @@ void provenance_fields(JsonFields& json, Provenance& provenance) {
   json.value("twin_run", provenance.twin_run, run_fields);
   json.if_any("camera_optics", provenance.camera_optics, optics_fields);
   json.if_any("selftest", provenance.selftest, selftest_fields);
+  json.if_any("origin", provenance.origin, origin_fields);
 }
 
 }  // namespace

@@ -63,6 +63,24 @@ struct CameraOpticsRecord {
   bool operator==(const CameraOpticsRecord&) const = default;
 };
 
+/// Who judged the frames of a session, and through which enhancement package.
+struct JudgedBy {
+  std::string observer;         ///< name
+  std::string observer_sha256;  ///< of its description
+  std::string package;          ///< name; empty: none
+  std::string package_sha256;   ///< of its file
+  bool operator==(const JudgedBy&) const = default;
+};
+
+/// Origin of a session that judged recorded frames again.
+struct OriginRecord {
+  std::string session;          ///< folder of the recorded session
+  std::string manifest_sha256;  ///< digest of its manifest; empty: it has none
+  std::string signed_by;        ///< SHA-256 of the key of its valid signature; empty: not signed
+  JudgedBy then, now;
+  bool operator==(const OriginRecord&) const = default;
+};
+
 struct Provenance {
   std::string program_version, git_commit, compiler;
   std::string host;
@@ -82,6 +100,8 @@ struct Provenance {
   std::optional<CameraOpticsRecord> camera_optics{};
   /// The last self-test of this program on this computer; empty: none.
   std::optional<SelftestRecord> selftest{};
+  /// Present if the frames are those of another session.
+  std::optional<OriginRecord> origin{};
 };
 
 /// Returns the number of parts between camera losses; 1: the camera was never lost.

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Judges the recorded frames of a session again, by another observer or through an enhancement package.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "bench/enhance/package_file.h"
+#include "bench/run/experiment.h"
+#include "bench/run/replay.h"
+
+namespace todbench {
+
+/// What judges the frames. An empty member leaves that of the session.
+struct JudgeRequest {
+  std::string observer{};                       ///< name or file
+  std::optional<EnhancementPackage> package{};  ///< behind the camera and its twin
+  std::optional<ViewedDisplay> display{};       ///< for an observer with an eye
+};
+
+/// Runs the plan of the session on its recorded frames, simulates the twin, compares and judges, into a new session
+/// that names its origin. The same observer without a package gives the same trials and the same curve. With a package
+/// the answers are right or wrong and fitted with a Weibull function, because the functions of the sensor do not
+/// include it. Manifest and signature of the session are verified first. Errors: those of open_recorded_run() and
+/// measure_on_bench(); `invalid_input` for an adaptive schedule, whose frames follow from the answers, for grey levels
+/// with a package, for a display that the observer needs, and for an invalid signature; `not_found` if the program that
+/// verifies the signature is missing.
+[[nodiscard]] Result<ExperimentOutcome> judge_again(const std::filesystem::path& session, const JudgeRequest& request,
+                                                    ExperimentOptions options, const ExperimentListener& listener,
+                                                    std::stop_token stop, const Opening& opening = {},
+                                                    RunModules modules = RunModules::no);
+
+}  // namespace todbench
