@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/cli/commands.h"
@@ -14,6 +15,15 @@ namespace todbench {
 
 /// Returns the commands that help lists, in the order they were added; commands for builds and shells have no group.
 [[nodiscard]] std::vector<const CLI::App*> visible_commands(const CLI::App& app);
+
+/// A command line that works, and its effect.
+struct CommandExample {
+  std::string line, effect;
+};
+/// Returns the examples of a command, "fit" or "history add".
+[[nodiscard]] std::vector<CommandExample> examples_of(std::string_view command);
+/// Adds the examples to the help of every command.
+void add_examples(CLI::App& app);
 
 /// Returns a page for the program, then one for each visible command.
 [[nodiscard]] std::vector<ManualPage> manual_pages(const CLI::App& app, const std::string& version,

@@ -8,10 +8,12 @@
 #include "bench/cli/command_dynamic.h"
 #include "bench/cli/command_enhance.h"
 #include "bench/cli/command_identify.h"
+#include "bench/cli/command_judge.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/command_module.h"
 #include "bench/cli/command_mrtd.h"
 #include "bench/cli/command_picture.h"
+#include "bench/cli/command_plate.h"
 #include "bench/cli/command_scene_dependence.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/large_stack.h"
@@ -34,9 +36,10 @@ void add_group(CLI::App& app, Program& program, const std::string& heading,
 void add_commands(CLI::App& app, Program& program) {
   add_group(app, program, "Measure",
             {add_demo_command, add_devices_command, add_doctor_command, add_emulate_command, add_measure_command,
-             add_record_command, add_replay_command});
+             add_record_command, add_replay_command, add_judge_command});
   add_group(app, program, "Simulate and plan",
-            {add_simulate_command, add_plan_command, add_cost_command, add_render_command, add_mtf_command});
+            {add_simulate_command, add_plan_command, add_cost_command, add_render_command, add_mtf_command,
+             add_plate_command});
   add_group(app, program, "Judge, report and sign",
             {add_compare_command, add_report_command, add_verify_command, add_sign_command, add_conformity_command,
              add_budget_command});

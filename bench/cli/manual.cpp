@@ -70,6 +70,12 @@ void add_arguments(ManualPage& page, const CLI::App& command, const std::string&
   page.sections.push_back({.title = "Options" + of, .text = "", .terms = terms_of(command, false)});
 }
 
+void add_example_section(ManualPage& page, const std::string& command) {
+  ManualSection section{.title = "Examples of " + command, .text = "", .terms = {}};
+  for (const CommandExample& example : examples_of(command)) section.terms.push_back({example.line, example.effect});
+  if (!section.terms.empty()) page.sections.push_back(std::move(section));
+}
+
 ManualPage command_page(const CLI::App& app, const CLI::App& command) {
   ManualPage page{.name = page_name(app, command),
                   .sentence = command.get_description(),
@@ -80,12 +86,14 @@ ManualPage command_page(const CLI::App& app, const CLI::App& command) {
                   .see_also = {app.get_name()}};
   page.synopsis = {usage_of(app.get_name(), command)};
   add_arguments(page, command, "");
+  add_example_section(page, command.get_name());
   for (const CLI::App* below : visible_commands(command)) {
     const std::string called = app.get_name() + " " + command.get_name();
     page.synopsis.push_back(usage_of(called, *below));
     const std::string name = command.get_name() + " " + below->get_name();
     page.sections.push_back({.title = name, .text = below->get_description() + ".", .terms = {}});
     add_arguments(page, *below, " of " + name);
+    add_example_section(page, name);
   }
   page.sections.push_back(exit_status());
   return page;

@@ -181,6 +181,13 @@ int run(int argc, char** argv, void (*add_commands)(CLI::App&, Program&)) {
   const BuildInfo info = build_info();
   app.set_version_flag("--version", "todbench " + std::string(info.version) + " (" + std::string(info.commit) + ")");
   add_commands(app, program);
+  add_examples(app);
+  // For tests of the examples: `todbench parse WORDS...` only parses them.
+  const bool only_parsed = argc > 1 && std::string_view(argv[1]) == "parse";
+  if (only_parsed) {
+    --argc;
+    ++argv;
+  }
   if (argc > 1 && std::string_view(argv[1]) == "complete") {
     print_completions(app, {argv + 2, argv + argc});
     return 0;
@@ -203,6 +210,7 @@ int run(int argc, char** argv, void (*add_commands)(CLI::App&, Program&)) {
     std::fputs(broken_for(STDERR_FILENO, "todbench: " + usage_sentence(app, error, words)).c_str(), stderr);
     return exit_code(ErrorCode::invalid_input);
   }
+  if (only_parsed) return 0;
   const int code = program.chosen();
   if (auto written = finish_output(); !written) {
     std::fprintf(stderr, "todbench: %s\n", one_line(written.error().message).c_str());
