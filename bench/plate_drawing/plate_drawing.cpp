@@ -74,7 +74,7 @@ std::string mm(double value) {
 
 /// Returns place and height of the number of a cut-out: right of a triangle, in a rectangle, at the end of a bar.
 std::pair<cv::Point2d, double> number_place(const CutOutRow& row) {
-  if (row.shape == "rectangle") return {row.position_mm, text_mm};
+  if (row.shape == "rectangle") return {row.position_mm + cv::Point2d(2, -2), text_mm};
   if (row.shape != "bar") return {row.position_mm + cv::Point2d(row.side_mm / 2 + 1.5, 1), text_mm};
   const double angle = row.angle_deg * std::numbers::pi / 180;
   constexpr double height = 1.5, beyond = 2.5;

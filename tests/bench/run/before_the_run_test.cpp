@@ -23,8 +23,9 @@ class BeforeTheRun : public MeasuredSession {
     return experiment_inputs(*loaded, planner);
   }
   [[nodiscard]] std::string notes(const std::string& session) const {
+    const auto read = read_session(at(session)).value();
     std::string all;
-    for (const std::string& note : read_session(at(session))->provenance.run->notes) all += note + "\n";
+    for (const std::string& note : read.provenance.run->notes) all += note + "\n";
     return all;
   }
 };
