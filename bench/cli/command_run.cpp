@@ -21,6 +21,7 @@
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
+#include "bench/run/resumed_run.h"
 #include "bench/run/terminal_operator.h"
 #include "bench/serve/live_run.h"
 #include "bench/session/fit_record.h"
@@ -51,6 +52,9 @@ struct ServeArguments {
 struct MeasureArguments {
   RunArguments run{};
   ServeArguments serve{};
+  std::string resumed{};  ///< session folder; empty: a new run
+  Opening opening{};
+  bool run_modules = false;
 };
 
 struct DemoArguments {
@@ -315,6 +319,33 @@ int run_measure(Console& console, const MeasureArguments& asked, const Program& 
   return show_measured(console, *outcome);
 }
 
+/// Returns the name of a session folder for a session made from another one.
+Plan named_after(const std::string& session, const std::string& suffix) {
+  auto name = std::filesystem::path(session).lexically_normal();
+  if (name.filename().empty()) name = name.parent_path();
+  Plan named;
+  named.name = name.filename().string() + suffix;
+  return named;
+}
+
+int run_resume(Console& console, const MeasureArguments& asked, const Program& program) {
+  if (!asked.run.keys.given.empty() || program.common.seed_given)
+    return report_error(
+        console, {ErrorCode::invalid_input, "--resume uses the plan of the session, so no option may change the plan"});
+  const auto session =
+      open_session(asked.resumed, {.accept_changed = asked.opening.accept_changed, .accept_cut_off = true});
+  if (!session) return report_error(console, session.error());
+  auto outcome =
+      measure_shown(console, session->plan, folder_of(asked.run, named_after(asked.resumed, "-resumed")), asked.serve,
+                    [&](const ExperimentOptions& options, const ExperimentListener& listener) {
+                      return resume_session(asked.resumed, options, listener, program.stop->token(), asked.opening,
+                                            asked.run_modules ? RunModules::yes : RunModules::no);
+                    });
+  console.end_progress();
+  if (!outcome) return report_error(console, outcome.error());
+  return show_measured(console, *outcome);
+}
+
 int run_simulate(Console& console, SimulateArguments arguments, const Program& program) {
   if (program.common.seed_given) arguments.overrides.seed = program.common.seed;
   const auto loaded = simulation_plan(arguments.overrides, program.stop->token());
@@ -430,11 +461,7 @@ struct ReplayArguments {
 
 int run_replay(Console& console, const ReplayArguments& asked, const Program& program) {
   const auto& [arguments, session, opening, run_modules] = asked;
-  auto name = std::filesystem::path(session).lexically_normal();
-  if (name.filename().empty()) name = name.parent_path();
-  Plan named;
-  named.name = name.filename().string() + "-replay";
-  const ExperimentOptions options = folder_of(arguments, named);
+  const ExperimentOptions options = folder_of(arguments, named_after(session, "-replay"));
   auto outcome = replay_session(session, options, listener_of(console), program.stop->token(), opening,
                                 run_modules ? RunModules::yes : RunModules::no);
   console.end_progress();
@@ -489,14 +516,23 @@ void add_measure_command(CLI::App& app, Program& program) {
           "--watch", *watched,
           "shows the curve of a session that another process is measuring, until it ends; measures nothing itself")
       ->excludes(plan);
+  command
+      ->add_option("--resume", a->resumed,
+                   "goes on with an interrupted session with recorded frames: same plan, same camera, a new session")
+      ->excludes(plan);
+  command->add_flag("--run-modules", a->run_modules,
+                    "with --resume: starts the programs that the session names in [[module]]");
+  add_accept_changed(*command, a->opening.accept_changed);
   add_folder_options(*command, a->run);
   command->add_flag("--force", a->run.overwrite, "overwrites the session in an existing folder");
   add_serve_options(*command, a->serve);
   add_key_options(*command, OptionOf::measurements, a->run.keys);
   finish_command(*command, program, [a, plan, watched, &program](Console& console) {
     if (!watched->empty()) return watch_session(console, *watched, program.stop->token());
+    if (!a->resumed.empty()) return run_resume(console, *a, program);
     if (plan->count() == 0)
-      return report_error(console, {ErrorCode::invalid_input, "measure: PLAN.toml is required (or --watch DIR)"});
+      return report_error(
+          console, {ErrorCode::invalid_input, "measure: PLAN.toml is required (or --watch DIR, or --resume DIR)"});
     return run_measure(console, *a, program);
   });
 }

@@ -20,6 +20,8 @@ constexpr std::array example_rows{
     ExampleRow{"emulate", "todbench emulate --camera gige", "offers a camera to the plan of another terminal"},
     ExampleRow{"measure", "todbench measure acceptance --out unit-1 --record-frames",
                "measures by the shipped plan 'acceptance' and stores the frames"},
+    ExampleRow{"measure", "todbench measure --resume unit-1 --out unit-1-resumed",
+               "goes on with an interrupted session that recorded its frames"},
     ExampleRow{"record", "todbench record sim:sc2000 --frames 100 --out noise.todrec",
                "records 100 frames of the simulated camera"},
     ExampleRow{"replay", "todbench replay unit-1 --out unit-1-again", "needs a session with recorded frames"},

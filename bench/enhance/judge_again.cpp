@@ -22,15 +22,6 @@ Result<std::string> verified_signer(const std::filesystem::path& session) {
               session.string() + ": the signature of the session is not valid: " + signature->sentence);
 }
 
-JudgedBy judged_by(const LoadedPlan& loaded) {
-  const auto& sources = loaded.parts().sources;
-  const auto source = sources.find({ResourceKind::observer, loaded.plan().observer});
-  return {.observer = loaded.observer().name,
-          .observer_sha256 = source == sources.end() ? "" : sha256_of(source->second.text),
-          .package = "",
-          .package_sha256 = ""};
-}
-
 bool has_observer_module(const Plan& plan) {
   return std::ranges::any_of(plan.modules,
                              [](const ModulePlan& module) { return module.place == ModulePlace::observer; });

@@ -43,6 +43,8 @@ class RecordedAnswers {
   /// show another target.
   [[nodiscard]] Result<PresentedTarget> target(const TargetState& set);
 
+  /// Returns whether every recorded answer was given.
+  [[nodiscard]] bool at_end() const { return next_ == readings_.size(); }
   /// Succeeds if all questions so far were the recorded ones.
   [[nodiscard]] Result<void> agreed() const;
 

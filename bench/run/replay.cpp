@@ -74,6 +74,15 @@ Result<bool> comparable_fits(const std::filesystem::path& session, const TodCurv
 
 }  // namespace
 
+JudgedBy judged_by(const LoadedPlan& loaded) {
+  const auto& sources = loaded.parts().sources;
+  const auto source = sources.find({ResourceKind::observer, loaded.plan().observer});
+  return {.observer = loaded.observer().name,
+          .observer_sha256 = source == sources.end() ? "" : sha256_of(source->second.text),
+          .package = "",
+          .package_sha256 = ""};
+}
+
 Result<RecordedRun> open_recorded_run(const std::filesystem::path& session, const Pause* pause, const Opening& opening,
                                       RunModules modules) {
   // Frames and plan have to be those of the run.

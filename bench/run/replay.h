@@ -24,6 +24,9 @@ struct ReplayOutcome {
 /// Whether to start the programs that a session names.
 enum class RunModules { no, yes };
 
+/// Returns the observer of a plan for the record, without a package.
+[[nodiscard]] JudgedBy judged_by(const LoadedPlan& loaded);
+
 /// A recorded session that is ready to be measured again.
 struct RecordedRun {
   Session session;

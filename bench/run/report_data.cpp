@@ -43,13 +43,17 @@ void add_provenance(ReportData& data, const Provenance& provenance) {
       return judged.observer + (judged.package.empty() ? ", no package" : ", package " + judged.package);
     };
     const std::string from = session_name(origin.session);
-    data.conditions.emplace_back("Recorded frames", "of session " + from + ", judged again");
+    data.conditions.emplace_back(origin.resumed ? "Resumed" : "Recorded frames",
+                                 origin.resumed ? "the first part is session " + from
+                                                : "of session " + from + ", judged again by " + words(origin.now));
     data.provenance.emplace_back("Origin of the frames",
                                  from + ", manifest SHA-256 " +
                                      (origin.manifest_sha256.empty() ? "none" : origin.manifest_sha256) +
                                      (origin.signed_by.empty() ? "" : ", signed by key SHA-256 " + origin.signed_by));
-    data.provenance.emplace_back("Judged then", words(origin.then));
-    data.provenance.emplace_back("Judged now", words(origin.now));
+    if (!origin.resumed) {
+      data.provenance.emplace_back("Judged then", words(origin.then));
+      data.provenance.emplace_back("Judged now", words(origin.now));
+    }
     if (!origin.now.package_sha256.empty()) data.provenance.emplace_back("Package SHA-256", origin.now.package_sha256);
   }
   for (const auto& module : provenance.modules) {

@@ -124,6 +124,7 @@ void origin_fields(JsonFields& json, OriginRecord& origin) {
   json.value("signed_by", origin.signed_by);
   json.value("then", origin.then, judged_by_fields);
   json.value("now", origin.now, judged_by_fields);
+  json.value("resumed", origin.resumed);
 }
 
 void provenance_fields(JsonFields& json, Provenance& provenance) {

@@ -78,6 +78,7 @@ struct OriginRecord {
   std::string manifest_sha256;  ///< digest of its manifest; empty: it has none
   std::string signed_by;        ///< SHA-256 of the key of its valid signature; empty: not signed
   JudgedBy then, now;
+  bool resumed = false;  ///< the frames are those of the session to its interruption, then those of the camera
   bool operator==(const OriginRecord&) const = default;
 };
 
