@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "acquisition/base/distributions.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/conformity.h"
 #include "bench/judgement/uncertainty_budget.h"
@@ -37,9 +36,7 @@ double guard_band_of(const ConformityArguments& a) {
   if (a.guard_band) return *a.guard_band;
   if (a.risk) return guard_band_for_risk(*a.risk, a.measured);
   if (a.coverage_factor) return *a.coverage_factor * a.measured.u;
-  // 95.45 %: factor 2 if u is well known, otherwise Student's t.
-  if (a.measured.degrees_of_freedom) return guard_band_for_risk(distribution::tail_above(2, std::nullopt), a.measured);
-  return 2 * a.measured.u;
+  return usual_guard_band(a.measured);
 }
 
 int exit_code_of(ConformityDecision decision) {

@@ -374,26 +374,12 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   return finish(console, *outcome);
 }
 
-#ifdef TODBENCH_WITH_ARAVIS
-/// Returns the plan 'acceptance'. Without `full`, only the parts that need hardly any frames of their own: budget,
-/// noise, geometry and pictures.
-Result<Plan> demonstration_plan(bool full) {
-  auto acceptance = load_plan("acceptance");
-  if (full || !acceptance) return acceptance;
-  auto plan = load_plan("demo");
-  if (!plan) return plan;
-  plan->uncertainty = std::move(acceptance->uncertainty);
-  plan->measures.noise = plan->measures.geometry = plan->measures.triangles = true;
-  return plan;
-}
-#endif
-
 int run_demo(Console& console, const DemoArguments& asked, const Program& program) {
 #ifdef TODBENCH_WITH_ARAVIS
   const RunArguments& arguments = asked.measure.run;
   const std::string& camera = asked.camera;
   enter_emulation(camera);
-  const auto shipped = demonstration_plan(asked.full);
+  const auto shipped = demonstration_plan(asked.full ? DemonstrationLength::full : DemonstrationLength::quick);
   if (!shipped) return report_error(console, shipped.error());
   auto plan = with_options(*shipped, arguments, program);
   if (!plan) return report_error(console, plan.error());

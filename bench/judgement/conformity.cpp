@@ -137,6 +137,12 @@ double guard_band_for_risk(double risk, const MeasuredValue& measured) {
   return measured.u * distribution::quantile_above(risk, measured.degrees_of_freedom);
 }
 
+double usual_guard_band(const MeasuredValue& measured) {
+  // 95.45 %: factor 2 if u is well known, otherwise Student's t.
+  if (measured.degrees_of_freedom) return guard_band_for_risk(distribution::tail_above(2, std::nullopt), measured);
+  return 2 * measured.u;
+}
+
 Result<GlobalRisks> global_risks(const Fleet& fleet, const MeasurementError& error, const ToleranceLimits& tolerance,
                                  const ToleranceLimits& acceptance) {
   const double u = error.u;

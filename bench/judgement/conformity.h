@@ -47,6 +47,9 @@ struct Conformity {
 /// limit; t instead of z for finite degrees of freedom. Precondition: 0 < risk <= 0.5, u > 0.
 [[nodiscard]] double guard_band_for_risk(double risk, const MeasuredValue& measured);
 
+/// Returns the guard band of 2 u, and with finite degrees of freedom that with the same risk by Student's t.
+[[nodiscard]] double usual_guard_band(const MeasuredValue& measured);
+
 /// Normal distribution of true values over a fleet.
 struct Fleet {
   double mean = 0, sd = 0;

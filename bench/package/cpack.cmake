@@ -13,6 +13,9 @@ set(CPACK_COMPONENTS_ALL program development documentation)
 if(TODBENCH_WITH_GUI)
   list(APPEND CPACK_COMPONENTS_ALL window)
 endif()
+if(TODBENCH_WITH_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -66,5 +69,19 @@ set(CPACK_DEBIAN_DOCUMENTATION_DESCRIPTION "method, formats and examples of todb
 Documents of todbench: method of measurement, models of observer and
 sensor, uncertainties, files of a session, cameras and troubleshooting.
 Example programs and example plans are included.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-todbench)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+# The module is for one minor version of the interpreter.
+math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+  "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "todbench, todbench-doc, python3-matplotlib")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "test bench for thermal cameras, Python module
+The Python module todbench: model observers, simulated sensors, plates,
+registration, psychometric fits, comparison of curves, physical measures,
+uncertainty budgets, plans, runs, sessions, and the frames of cameras and
+recordings as numpy arrays. The numbers are those of the program.")
 
 include(CPack)

@@ -101,6 +101,16 @@ void enter_emulation(const std::string& camera) {
 #endif
 }
 
+Result<Plan> demonstration_plan(DemonstrationLength length) {
+  auto acceptance = load_plan("acceptance");
+  if (length == DemonstrationLength::full || !acceptance) return acceptance;
+  auto plan = load_plan("demo");
+  if (!plan) return plan;
+  plan->uncertainty = std::move(acceptance->uncertainty);
+  plan->measures.noise = plan->measures.geometry = plan->measures.triangles = true;
+  return plan;
+}
+
 EmulationArguments emulation_for(const Plan& plan) {
   EmulationArguments arguments;
   arguments.sensor = plan.simulation.sensor;

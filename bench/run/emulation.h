@@ -48,6 +48,14 @@ struct EmulationArguments {
 /// Returns the laboratory for a plan: its sensor, plates and distance, on ports that the system chooses.
 [[nodiscard]] EmulationArguments emulation_for(const Plan& plan);
 
+enum class DemonstrationLength {
+  quick,  ///< without the parts of the plan 'acceptance' that need many frames of their own
+  full,   ///< the plan 'acceptance'
+};
+/// Returns the plan of `todbench demo`; quick: the plan 'demo' with the budget, noise, geometry and pictures of
+/// 'acceptance'.
+[[nodiscard]] Result<Plan> demonstration_plan(DemonstrationLength length);
+
 #ifdef TODBENCH_WITH_ARAVIS
 /// Options of start_laboratory(). Errors: those of sensor and plates.
 [[nodiscard]] Result<LaboratoryOptions> laboratory_options(const EmulationArguments& arguments);

@@ -73,6 +73,7 @@ BEGIN {
   may["bench/model_comparison"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
   bench = "bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/selftest bench/plate_drawing bench/run bench/serve bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history"
   may["bench/cli"] = core " " science " acquisition/recording tod/instruments bench/doctor " bench
+  may["bench/python"] = core " " science " acquisition/recording " bench
   may["bench/gui/presenters"] = core " " science " " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"
   may["bench/gui"] = science " " bench " bench/gui/presenters bench/gui/views"
@@ -83,6 +84,7 @@ BEGIN {
   home["^umockdev.h"] = "^sim_devices/lab/(device_nodes|video|usb)/"
   home["^libusb"] = "^acquisition/(aravis|usb)/"
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
+  home["^(pybind11/|Python.h|numpy/)"] = "^bench/python/"
   home["^toml\\+\\+/"] = "^bench/(plan|sweep)/"
   home["^httplib.h"] = "^bench/serve/"
   home["^sqlite3.h"] = "^bench/(history|sweep)/"

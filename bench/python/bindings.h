@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts of the Python module. Each unit adds the classes and functions of a few rooms; nothing is computed here.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "bench/python/casters.h"
+
+namespace todbench {
+
+namespace py = pybind11;
+
+/// The numbers of an argument, in place if they are doubles one after the other.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Returns the comment of a declaration ("PsychometricFit::threshold", "fit_psychometric") as the build read it from
+/// the headers; empty if there is none.
+[[nodiscard]] const char* doc(std::string_view name);
+
+// NOLINTBEGIN(cppcoreguidelines-macro-usage)
+/// A member with the comment of its declaration: read only, or readable and writable.
+#define TODBENCH_READ(Type, member) .def_readonly(#member, &Type::member, doc(#Type "::" #member))
+#define TODBENCH_WRITE(Type, member) .def_readwrite(#member, &Type::member, doc(#Type "::" #member))
+// NOLINTEND(cppcoreguidelines-macro-usage)
+
+/// Constructor whose keyword arguments set members: SensorSpec(netd_k=0.05). An unknown name raises AttributeError.
+template <typename T>
+auto from_keywords() {
+  return py::init([](const py::kwargs& values) {
+    auto made = std::make_unique<T>();
+    const py::object view = py::cast(made.get(), py::return_value_policy::reference);
+    for (const auto& [name, value] : values) py::setattr(view, name, value);
+    return made;
+  });
+}
+
+/// Returns a document of the bench as dictionaries, lists and numbers.
+[[nodiscard]] py::object python_of(const Json& json);
+
+/// Pictures of an array of three dimensions, or of a sequence of pictures, in place where they have the type. `kept`
+/// holds the arrays.
+template <typename Pixel>
+struct GivenPictures {
+  std::vector<py::object> kept;
+  std::vector<cv::Mat_<Pixel>> pictures;
+};
+template <typename Pixel>
+GivenPictures<Pixel> given_pictures(const py::sequence& frames) {
+  GivenPictures<Pixel> given;
+  for (const py::handle frame : frames) {
+    using Array = py::array_t<Pixel, py::array::c_style | py::array::forcecast>;
+    auto array = Array::ensure(frame);
+    if (!array || array.ndim() != 2) {
+      PyErr_Clear();
+      throw RaisedError{Error{ErrorCode::invalid_input, "expected pictures: arrays of two dimensions of numbers"}};
+    }
+    given.pictures.emplace_back(static_cast<int>(array.shape(0)), static_cast<int>(array.shape(1)),
+                                const_cast<Pixel*>(array.data()));
+    given.kept.push_back(std::move(array));
+  }
+  return given;
+}
+
+/// In this order: a signature names classes that are already known.
+void add_observers(py::module_& module);
+void add_plates(py::module_& module);
+void add_sensors(py::module_& module);
+void add_fits(py::module_& module);
+void add_measures(py::module_& module);
+void add_judgement(py::module_& module);
+void add_plans(py::module_& module);
+void add_cameras(py::module_& module);
+void add_runs(py::module_& module);
+
+}  // namespace todbench
