@@ -77,6 +77,8 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
   "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
+# Compiled files of the interpreter come and go with the package.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/python/postinst;${CMAKE_CURRENT_LIST_DIR}/python/prerm")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "todbench, todbench-doc, python3-matplotlib")
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "test bench for thermal cameras, Python module
 The Python module todbench: model observers, simulated sensors, plates,

@@ -11,7 +11,8 @@ skip() {
 }
 command -v mmdebstrap >/dev/null || skip "mmdebstrap is not installed"
 [ "$(id -u)" -eq 0 ] || skip "this test needs root"
-set -- "$packages"/todbench_*.deb "$packages"/todbench-gui_*.deb "$packages"/libtodbench-dev_*.deb "$packages"/todbench-doc_*.deb
+set -- "$packages"/todbench_*.deb "$packages"/todbench-gui_*.deb "$packages"/libtodbench-dev_*.deb "$packages"/todbench-doc_*.deb \
+  "$packages"/python3-todbench_*.deb
 for file in "$@"; do [ -e "$file" ] || skip "no packages in $packages: make them with ./run package"; done
 
 root=$(mktemp -d /tmp/todbench-debian.XXXXXX)
@@ -60,8 +61,21 @@ inside todbench-gui --report /root/demo >/dev/null
 [ -s "$root/root/demo/report.pdf" ]
 inside test -e /usr/share/man/man1/todbench-measure.1.gz -o -e /etc/dpkg/dpkg.cfg.d/docker
 
+stage "Python package"
+cat >"$root/root/fit.py" <<'EOF'
+import numpy as np
+import todbench as tb
+
+fit = tb.fit_psychometric(*tb.read_levels("/usr/share/doc/todbench-doc/docs/examples/trials.csv"))
+assert fit.verdict == "ok" and f"{fit.threshold:.4f}" == "2.8161", fit.to_dict()
+frame = next(iter(tb.open_camera("sim:sc2000")))
+assert frame.counts.shape == (240, 320) and np.shares_memory(frame.counts, frame.counts)
+assert tb.open_session("/root/demo").verdict == "pass"
+EOF
+inside python3 /root/fit.py
+
 stage "removal"
-apt purge todbench todbench-gui libtodbench-dev todbench-doc
+apt purge todbench todbench-gui libtodbench-dev todbench-doc python3-todbench
 left=$(inside find /usr /etc /var/lib -path /usr/share/mime -prune -o -name '*todbench*' -print | grep -v '^/var/lib/apt\|^/var/lib/dpkg' || true)
 [ -z "$left" ] || { printf 'files left after the removal:\n%s\n' "$left"; exit 1; }
 stage "passed"

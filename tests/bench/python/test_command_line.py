@@ -100,3 +100,15 @@ def test_a_session_reads_back_and_compares(program, small_outcome, small_plan, t
     assert a.judgement == json.loads(json.dumps(small_outcome.judgement))
     refitted = tb.tod_curve(tb.read_trials(small_outcome.folder / "trials.csv"))
     assert [point.set_delta_t_k for point in refitted.points] == [point.set_delta_t_k for point in a.curve.points]
+
+
+def test_noise_components_are_equal(program, tmp_path):
+    rng = np.random.default_rng(6)
+    frames = np.round(7000 + rng.normal(0, 8, (40, 60, 80)) + rng.normal(0, 3, (1, 60, 80)) + rng.normal(0, 2, (40, 60, 1)))
+    frames.astype("<u2").tofile(tmp_path / "noise.raw")
+    _, told = program("noise", f"file:{tmp_path / 'noise.raw'}?width=80&height=60", "--components-only")
+
+    found = tb.noise_components(frames)
+
+    assert told["variances"] == {name: one.variance for name, one in found.items()}
+    assert told["intervals"] == {name: list(one.ci95) for name, one in found.items()}
