@@ -50,7 +50,9 @@ struct GivenPictures {
 template <typename Pixel>
 GivenPictures<Pixel> given_pictures(const py::sequence& frames) {
   GivenPictures<Pixel> given;
-  for (const py::handle frame : frames) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    // A sequence may make its elements when asked.
+    const py::object frame = frames[i];
     using Array = py::array_t<Pixel, py::array::c_style | py::array::forcecast>;
     auto array = Array::ensure(frame);
     if (!array || array.ndim() != 2) {

@@ -30,18 +30,17 @@ KeyAt key_at(const std::string& path) {
 std::string plain_word(const py::handle& value) {
   if (value.is_none()) return "";
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "yes" : "no";
-  // repr() of a float has all its digits.
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-  return py::cast<std::string>(py::str(py::isinstance<py::float_>(value)
-                                           ? py::repr(py::float_(py::reinterpret_borrow<py::object>(value)))
-                                           : py::str(value)));
+  // repr() of a float has all its digits.
+  if (py::isinstance<py::float_>(value)) return py::repr(py::float_(value.cast<double>()));
+  return py::str(value);
 }
 
 KeyValue key_value(const KeyAt& at, const std::string& path, const py::handle& value) {
   if (py::isinstance<py::dict>(value)) return value.cast<std::map<std::string, std::string>>();
   std::string text;
   if (py::isinstance<py::sequence>(value) && !py::isinstance<py::str>(value)) {
-    for (const py::handle element : py::reinterpret_borrow<py::sequence>(value))
+    for (const py::handle element : py::list(py::reinterpret_borrow<py::object>(value)))
       text += (text.empty() ? "" : ",") + plain_word(element);
   } else {
     text = plain_word(value);
