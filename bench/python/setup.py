@@ -39,5 +39,8 @@ class CMakeBuild(build_ext):
 
 
 version = re.search(r"project\(todbench VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
-setup(version=version, packages=["todbench"], package_dir={"todbench": "bench/python/todbench"}, package_data={"todbench": ["py.typed"]},
-      ext_modules=[Extension("todbench._core", sources=[])], cmdclass={"build_ext": CMakeBuild})
+(ROOT / "build").mkdir(exist_ok=True)
+# What setuptools writes beside the wheel goes where the build is.
+options = {"egg_info": {"egg_base": "build"}, "build": {"build_base": "build/python-package"}}
+setup(version=version, options=options, packages=["todbench"], package_dir={"todbench": "bench/python/todbench"},
+      package_data={"todbench": ["py.typed"]}, ext_modules=[Extension("todbench._core", sources=[])], cmdclass={"build_ext": CMakeBuild})

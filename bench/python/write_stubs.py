@@ -23,11 +23,11 @@ SPELLINGS = (
     (r"Annotated\[(.*?), FixedSize\(\d+\)\]", r"\1"),
     (r"List\[(\w+)\[\d+\]\]", r"List[\1]"),
     (r"(List\[\w+)\[\d+\]\]", r"\1]"),
-    (r"\bobject\b|\bhandle\b", "Any"),
+    (r"(?<=: )(?:object|handle)\b|(?<=> )object\b", "Any"),
     (r"os\.PathLike", "Union[str, os.PathLike]"),
     (r"\*args\b", "*args: Any"),
     (r"\*\*kwargs\b", "**kwargs: Any"),
-    (r"\bsequence\b", "Sequence[Any]"),
+    (r"(?<=: )sequence\b", "Sequence[Any]"),
     (r"= <[^>]*>", "= ..."),
     (r"= PosixPath\([^)]*\)", "= ..."),
 )

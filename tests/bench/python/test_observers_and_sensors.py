@@ -90,4 +90,5 @@ def test_a_plate_is_found_where_the_scene_has_it():
 
     expected = tb.scene_pixel(scene, (0.0, 0.0), spec.ifov_mrad, spec.width, spec.height)
     np.testing.assert_allclose(found.pixel((0.0, 0.0)), expected, atol=0.05)
-    assert tb.effective_contrast(picture, plate, found, 8.0).value == pytest.approx(20, rel=0.01)
+    # The wings of diffraction beyond two pixels have 2 wavelength f-number / (pi^2 r) = 2 % of the light at f/1.
+    assert tb.effective_contrast(picture, plate, found, 8.0).value == pytest.approx(20, rel=0.02)
