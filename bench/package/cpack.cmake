@@ -70,20 +70,22 @@ Documents of todbench: method of measurement, models of observer and
 sensor, uncertainties, files of a session, cameras and troubleshooting.
 Example programs and example plans are included.")
 
-set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-todbench)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-# The module is for one minor version of the interpreter.
-math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-  "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
-# Compiled files of the interpreter come and go with the package.
-set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/python/postinst;${CMAKE_CURRENT_LIST_DIR}/python/prerm")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "todbench, todbench-doc, python3-matplotlib")
-set(CPACK_DEBIAN_PYTHON_DESCRIPTION "test bench for thermal cameras, Python module
+if(TODBENCH_WITH_PYTHON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-todbench)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  # The module is for one minor version of the interpreter.
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
+  # Compiled files of the interpreter come and go with the package.
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/python/postinst;${CMAKE_CURRENT_LIST_DIR}/python/prerm")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "todbench, todbench-doc, python3-matplotlib")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "test bench for thermal cameras, Python module
 The Python module todbench: model observers, simulated sensors, plates,
 registration, psychometric fits, comparison of curves, physical measures,
 uncertainty budgets, plans, runs, sessions, and the frames of cameras and
 recordings as numpy arrays. The numbers are those of the program.")
+endif()
 
 include(CPack)
