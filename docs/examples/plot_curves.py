@@ -19,6 +19,7 @@ def main(folder, out):
             x = np.geomspace(levels[0], levels[-1], 200)
             answers.plot(x, tb.psychometric(x, point.fit.threshold, point.fit.slope), color=f"C{colour}")
     answers.set(xscale="log", xlabel="size [mrad]", ylabel="proportion correct", ylim=(0.2, 1.02))
+    answers.xaxis.set_minor_formatter("{x:g}")
     answers.legend()
     for curve, name, style in ((session.curve, "measured", "o-"), (session.twin, "simulated", "s--")):
         points = [point for point in curve.points if point.fit.usable] if curve else []
