@@ -28,6 +28,8 @@ py::class_<SensorSpec> sensor_spec(py::module_& module) {
       TODBENCH_WRITE(SensorSpec, turbulence_correlation_ms)
       TODBENCH_WRITE(SensorSpec, optics_transmission)
       TODBENCH_WRITE(SensorSpec, aberration_sigma_pitch)
+      TODBENCH_WRITE(SensorSpec, halo_share)
+      TODBENCH_WRITE(SensorSpec, halo_sigma_pitch)
       TODBENCH_WRITE(SensorSpec, distortion_percent)
       TODBENCH_WRITE(SensorSpec, distortion_r4_percent)
       TODBENCH_WRITE(SensorSpec, netd_k)
