@@ -4,23 +4,41 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/findings.h"
+#include "bench/cli/plan_decisions.h"
 #include "bench/cli/simulation_plan.h"
 #include "bench/judgement/verdict.h"
 #include "bench/run/acuity_limits.h"
+#include "bench/run/bill_forecast.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/limit_forecast.h"
 #include "bench/run/prediction.h"
+#include "bench/text/files.h"
 
 namespace todbench {
 namespace {
 
-void print_plan(const Console& console, const ExperimentInputs& inputs, const PlanPrediction& prediction) {
-  std::vector<TableRow> effects;
-  for (const auto& d : inputs.effects.decisions) {
-    effects.push_back({std::string(to_string(d.effect)), d.decision == Decision::simulate ? "simulate" : "skip",
-                       fixed(d.predicted_change_percent, 3), d.reason});
+enum class NeutralEffects { folded, with_reasons };
+
+/// Prints the decisions; effects that are neutral in the sensor in one line, or with their reasons.
+void print_effect_table(const Console& console, const SensorPlan& plan, NeutralEffects neutral_effects) {
+  std::vector<TableRow> effects, last;
+  std::string neutral;
+  for (const auto& d : plan.decisions) {
+    TableRow row{std::string(to_string(d.effect)), d.decision == Decision::simulate ? "simulate" : "skip",
+                 fixed(d.predicted_change_percent, 3), d.reason};
+    (d.changes_nothing() ? last : effects).push_back(std::move(row));
+    if (d.changes_nothing()) neutral += (neutral.empty() ? "" : ", ") + std::string(to_string(d.effect));
   }
+  const bool folded = neutral_effects == NeutralEffects::folded;
+  if (!folded) effects.insert(effects.end(), last.begin(), last.end());
   console.table({"effect", "decision", "change if skipped [%]", "reason"}, effects);
+  if (folded && !neutral.empty())
+    console.text("neutral in this sensor, so skipped without a change (--why states each reason): " + neutral);
+}
+
+void print_plan(const Console& console, const ExperimentInputs& inputs, const PlanPrediction& prediction,
+                NeutralEffects neutral_effects) {
+  print_effect_table(console, inputs.effects, neutral_effects);
   console.text("");
   std::vector<TableRow> contrasts;
   for (const auto& c : prediction.contrasts)
@@ -32,6 +50,16 @@ void print_plan(const Console& console, const ExperimentInputs& inputs, const Pl
                "; uncertainty of S75 (95 %): " + fixed(prediction.figures.predicted_uncertainty_percent, 1) +
                " %; time to simulate on one core of this machine: " + fixed(prediction.figures.predicted_s, 1) + " s" +
                (measured_s ? "; time to measure with the camera: " + fixed(measured_s, 0) + " s" : ""));
+}
+
+void print_bill_forecast(const Console& console, const AccuracyBill& bill) {
+  std::vector<TableRow> rows;
+  for (const BillRow& row : bill.rows) rows.push_back({row.part, fixed(row.seconds, 1), row.bought});
+  rows.push_back({"total", fixed(bill.total_s, 1), ""});
+  console.text("");
+  console.text("forecast of the bill of the run, without computing:");
+  console.table({"part of the run", "time [s]", "result"}, rows);
+  for (const std::string& sentence : bill.sentences) console.text(sentence);
 }
 
 Json fleet_json(const FleetForecast& fleet) {
@@ -94,7 +122,33 @@ Json acuity_limits_json(const std::vector<AcuityLimits>& limits) {
   return json;
 }
 
-int run_plan(Console& console, SimulationOverrides overrides, bool what_limits, const Program& program) {
+struct PlanArguments {
+  SimulationOverrides overrides;
+  bool what_limits = false, decide = false, optimise = false, why = false;
+  std::optional<double> half_width_percent;
+  std::string out;
+};
+
+/// `plan --optimise`.
+int run_optimise(Console& console, const PlanArguments& asked, const Plan& plan, const ExperimentInputs& inputs,
+                 const Program& program) {
+  const auto found = best_design(plan, inputs, {.half_width_percent = asked.half_width_percent, .decide = asked.decide},
+                                 program.stop->token());
+  if (!found) return report_error(console, found.error());
+  if (!asked.out.empty()) {
+    if (auto written = write_file_atomically(asked.out, design_toml(*found)); !written)
+      return report_error(console, written.error());
+  }
+  if (console.json()) {
+    console.object(best_design_json(*found));
+  } else {
+    print_design(console, *found);
+  }
+  return 0;
+}
+
+int run_plan(Console& console, const PlanArguments& asked, const Program& program) {
+  SimulationOverrides overrides = asked.overrides;
   if (program.common.seed_given) overrides.seed = program.common.seed;
   const auto loaded = simulation_plan(overrides, program.stop->token());
   if (!loaded) return report_error(console, loaded.error());
@@ -102,6 +156,7 @@ int run_plan(Console& console, SimulationOverrides overrides, bool what_limits, 
   EffectPlanner planner;
   const auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return report_error(console, inputs.error());
+  if (asked.optimise) return run_optimise(console, asked, plan, *inputs, program);
   auto prediction = predict_plan(plan, *inputs);
   if (!prediction) return report_error(console, prediction.error());
   if (auto timed = predict_times(plan, *inputs, *prediction, program.stop->token()); !timed) {
@@ -118,10 +173,22 @@ int run_plan(Console& console, SimulationOverrides overrides, bool what_limits, 
   const auto measure_limits = measure_forecasts(plan.limits);
   if (!measure_limits) return report_error(console, measure_limits.error());
   std::vector<AcuityLimits> acuity;
-  if (what_limits || inputs->observer.eye) {
+  if (asked.what_limits || inputs->observer.eye) {
     auto found = acuity_limits(*inputs, plan.target.delta_t_k, program.stop->token());
     if (!found) return report_error(console, found.error());
     acuity = *std::move(found);
+  }
+  std::optional<AccuracyBill> bill;
+  if (!plan.camera.id.empty() && plan.target.kind != TargetKind::scene) {
+    auto found = bill_forecast(plan, *inputs);
+    if (!found) return report_error(console, found.error());
+    bill = *std::move(found);
+  }
+  std::vector<DecisionForecast> decisions;
+  if (asked.decide) {
+    auto found = decision_forecasts(plan, *inputs);
+    if (!found) return report_error(console, found.error());
+    decisions = *std::move(found);
   }
   if (console.json()) {
     Json json = plan_json(inputs->effects, prediction->figures);
@@ -129,13 +196,17 @@ int run_plan(Console& console, SimulationOverrides overrides, bool what_limits, 
     if (!measure_limits->empty()) json["measure_limits"] = measure_limits_json(*measure_limits);
     if (!acuity.empty()) json["acuity_limits"] = acuity_limits_json(acuity);
     if (frontier) json["frontier"] = frontier_json(*frontier);
+    if (bill) json["bill"] = bill_json(*bill);
+    if (asked.decide) json["decide"] = decisions_json(decisions);
     console.object(json);
   } else {
-    print_plan(console, *inputs, *prediction);
+    print_plan(console, *inputs, *prediction, asked.why ? NeutralEffects::with_reasons : NeutralEffects::folded);
     if (frontier) print_frontier(console, *frontier);
+    if (bill) print_bill_forecast(console, *bill);
     for (const AcuityLimits& at : acuity) console.text(in_words(at));
     for (const LimitForecast& limit : *limits) console.text("limit at " + in_words(limit));
     for (const MeasureForecast& limit : *measure_limits) console.text("limit on " + in_words(limit));
+    if (asked.decide) print_decisions(console, decisions);
   }
   for (const auto& warning : prediction->warnings) console.note(warning);
   if (inputs->observer.display) {
@@ -156,14 +227,30 @@ void add_plan_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand("plan",
                                      "shows which effects are simulated or skipped and why, the number of trials, and "
                                      "the predicted time and uncertainty");
-  auto o = std::make_shared<SimulationOverrides>();
-  command->add_option("PLAN.toml", o->plan, "plan: name or file")->required();
-  add_key_options(*command, OptionOf::simulations, o->keys);
-  auto what_limits = std::make_shared<bool>(false);
-  command->add_flag("--what-limits", *what_limits,
+  auto a = std::make_shared<PlanArguments>();
+  command->add_option("PLAN.toml", a->overrides.plan, "plan: name or file")->required();
+  add_key_options(*command, OptionOf::simulations, a->overrides.keys);
+  command->add_flag("--what-limits", a->what_limits,
                     "state what limits the acuity at each contrast; always stated for an observer with an eye");
-  finish_command(*command, program,
-                 [o, what_limits, &program](Console& console) { return run_plan(console, *o, *what_limits, program); });
+  command->add_flag("--why", a->why,
+                    "state the reason for every effect, also for those that are neutral in the sensor");
+  command->add_flag("--decide", a->decide,
+                    "state, for each limit on an acuity, bench time against the probability of each decision, and the "
+                    "smallest half-width that matters beside the budget");
+  auto* optimise =
+      command->add_flag("--optimise", a->optimise,
+                        "search the design of least bench time: mountings of each plate, phases, frames of "
+                        "each contrast");
+  auto* half_width =
+      command
+          ->add_option("--half-width", a->half_width_percent,
+                       "with --optimise: largest half-width of the 95 % interval of S75 at every contrast, in %; "
+                       "default: that of the plan")
+          ->check(number_in(0.01, 100))
+          ->needs(optimise);
+  command->get_option("--decide")->excludes(half_width);
+  command->add_option("--out", a->out, "with --optimise: write the design to this plan file")->needs(optimise);
+  finish_command(*command, program, [a, &program](Console& console) { return run_plan(console, *a, program); });
 }
 
 }  // namespace todbench

@@ -18,6 +18,7 @@
 #include "bench/judgement/verdict_record.h"
 #include "bench/plan/resources.h"
 #include "bench/report/accuracy_bill.h"
+#include "bench/run/bill_forecast.h"
 #include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
@@ -190,23 +191,33 @@ void print_uncertainty(const Console& console, const ExperimentOutcome& outcome)
   if (!missing.empty()) console.text("not stated in the budget: " + missing);
 }
 
-AccuracyBill bill_of(const ExperimentOutcome& outcome) {
-  return accuracy_bill({.presentations = outcome.presentations,
-                        .curve = outcome.curve,
-                        .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
-                        .verdict = &outcome.verdict,
-                        .effects = outcome.effects,
-                        .wall_s = outcome.figures.wall_s});
+/// The bill of a run, with the forecast of its plan if there is one.
+AccuracyBill bill_of(const ExperimentOutcome& outcome, const LoadedPlan* loaded = nullptr) {
+  AccuracyBill bill = accuracy_bill({.presentations = outcome.presentations,
+                                     .curve = outcome.curve,
+                                     .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
+                                     .verdict = &outcome.verdict,
+                                     .effects = outcome.effects,
+                                     .wall_s = outcome.figures.wall_s});
+  if (loaded == nullptr) return bill;
+  if (const auto forecast = bill_forecast(*loaded)) add_forecast(bill, *forecast);
+  return bill;
 }
 
 /// Prints what the time of the run bought.
-void print_bill(const Console& console, const ExperimentOutcome& outcome) {
-  const AccuracyBill bill = bill_of(outcome);
+void print_bill(const Console& console, const ExperimentOutcome& outcome, const LoadedPlan* loaded = nullptr) {
+  const AccuracyBill bill = bill_of(outcome, loaded);
+  const bool forecast = std::ranges::any_of(bill.rows, [](const BillRow& row) { return row.forecast_s.has_value(); });
   std::vector<TableRow> rows;
-  for (const BillRow& row : bill.rows) rows.push_back({row.part, fixed(row.seconds, 1), row.bought});
+  for (const BillRow& row : bill.rows) {
+    rows.push_back({row.part, fixed(row.seconds, 1), row.bought});
+    if (forecast) rows.back().insert(rows.back().begin() + 2, row.forecast_s ? fixed(row.forecast_s, 1) : "");
+  }
   rows.push_back({"total", fixed(bill.total_s, 1), ""});
+  TableRow header{"part of the run", "time [s]", "result"};
+  if (forecast) header.insert(header.begin() + 2, "forecast [s]");
   console.text("");
-  console.table({"part of the run", "time [s]", "result"}, rows);
+  console.table(header, rows);
   for (const std::string& sentence : bill.sentences) console.text(sentence);
 }
 
@@ -228,12 +239,12 @@ int finish(Console& console, const ExperimentOutcome& outcome) {
 
 }  // namespace
 
-int show_measured(Console& console, const ExperimentOutcome& outcome) {
+int show_measured(Console& console, const ExperimentOutcome& outcome, const LoadedPlan* loaded) {
   if (console.json()) {
     Json json = curve_json(outcome.curve, outcome.effects, outcome.figures);
     if (outcome.uncertainty) add_uncertainty(json, *outcome.uncertainty);
     add_verdict(json, outcome.verdict);
-    json["bill"] = bill_json(bill_of(outcome));
+    json["bill"] = bill_json(bill_of(outcome, loaded));
     add_measures(json, outcome);
     console.object(json);
   } else {
@@ -244,7 +255,7 @@ int show_measured(Console& console, const ExperimentOutcome& outcome) {
     }
     print_uncertainty(console, outcome);
     print_measures(console, outcome);
-    print_bill(console, outcome);
+    print_bill(console, outcome, loaded);
     print_verdict(console, outcome);
   }
   return finish(console, outcome);
@@ -316,7 +327,7 @@ int run_measure(Console& console, const MeasureArguments& asked, const Program& 
                                });
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
-  return show_measured(console, *outcome);
+  return show_measured(console, *outcome, &*loaded);
 }
 
 /// Returns the name of a session folder for a session made from another one.

@@ -8,7 +8,7 @@
 namespace todbench {
 
 /// Prints curve, comparison, uncertainty, measures, bill and verdict of a measured run, or its JSON object, and returns
-/// the exit code.
-[[nodiscard]] int show_measured(Console& console, const ExperimentOutcome& outcome);
+/// the exit code. `loaded`: plan whose forecast the bill compares with the run; null: none.
+[[nodiscard]] int show_measured(Console& console, const ExperimentOutcome& outcome, const LoadedPlan* loaded = nullptr);
 
 }  // namespace todbench

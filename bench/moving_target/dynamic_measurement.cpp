@@ -141,6 +141,8 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const Dynam
                                    .frames = plan.motion.frames,
                                    .lead_frames = plan.motion.lead_frames,
                                    .places = plan.motion.places};
+  for (std::size_t i = 0; i < loaded.plates().size(); ++i)
+    options.mountings_per_plate.push_back(mountings_of(plan.target, i));
   std::erase(options.speeds_mrad_s, 0.0);
   options.speeds_mrad_s.insert(options.speeds_mrad_s.begin(), 0);
   if (plan.camera.id.empty()) {

@@ -241,6 +241,13 @@ PlanSection target_section() {
            .sentence = "Mountings in which each plate is shown",
            .place = of(&TargetPlan::mountings),
            .form = {"Mountings", "planMountings"}},
+          {.name = "mountings_per_plate",
+           .type = WholesKey{{0, static_cast<std::int64_t>(all_mountings.size())}},
+           .sentence = "How many of the mountings, from the first one on, show a plate: one number, or one for each of "
+                       "plates; 0: all of them",
+           .place = of(&TargetPlan::mountings_per_plate),
+           .check = check_mountings_per_plate,
+           .written_at_default = false},
           {.name = "delta_t_k",
            .type = NumbersKey{NumberRange::between(-500, 500), "contrast"},
            .unit = "K",

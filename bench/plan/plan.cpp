@@ -73,6 +73,18 @@ std::string_view to_string(ConformityRule rule) {
   return "";
 }
 
+std::size_t mountings_of(const TargetPlan& target, std::size_t plate) {
+  const std::vector<int>& counts = target.mountings_per_plate;
+  const int count = counts.size() == 1 ? counts[0] : plate < counts.size() ? counts[plate] : 0;
+  return count > 0 ? std::min(static_cast<std::size_t>(count), target.mountings.size()) : target.mountings.size();
+}
+
+std::size_t set_ups_of(const TargetPlan& target) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < target.plates.size(); ++i) count += mountings_of(target, i);
+  return count;
+}
+
 bool MeasuresPlan::any() const {
   return std::any_of(measure_keys.begin(), measure_keys.end(),
                      [&](const MeasureKey& key) { return this->*key.requested; });

@@ -68,6 +68,9 @@ struct TargetPlan {
   double distance_m = 2;                        ///< entrance pupil to plate; required in a file
   std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
   std::vector<Mounting> mountings{all_mountings.begin(), all_mountings.end()};
+  /// How many of `mountings`, the first ones, show a plate: one number for all plates, or one for each of `plates` in
+  /// its order; 0: all.
+  std::vector<int> mountings_per_plate{0};
   std::vector<double> delta_t_k{16.9, 1.93, 0.23};  ///< set contrasts, never 0; the sign is the polarity
   int phases = 16;                                  ///< sub-pixel shifts per plate, mounting and contrast
   /// Largest error of an observed shift of the plate; a larger one ends the run. 0: shifts are not checked.
@@ -82,6 +85,11 @@ struct TargetPlan {
   double plate_change_s = 60, mounting_change_s = 30, contrast_change_s = 20, shift_change_s = 0.1;
   bool operator==(const TargetPlan&) const = default;
 };
+
+/// Returns the number of mountings in which the plate of this index is shown.
+[[nodiscard]] std::size_t mountings_of(const TargetPlan& target, std::size_t plate);
+/// Returns the number of set-ups: plates in their mountings.
+[[nodiscard]] std::size_t set_ups_of(const TargetPlan& target);
 
 /// Section [simulation]: the twin.
 struct SimulationPlan {

@@ -122,6 +122,23 @@ ValueMistakes check_force(const Plan& plan, std::size_t /*row*/) {
   return mistakes;
 }
 
+ValueMistakes check_mountings_per_plate(const Plan& plan, std::size_t /*row*/) {
+  const TargetPlan& target = plan.target;
+  const std::vector<int>& counts = target.mountings_per_plate;
+  if (counts.size() > 1 && counts.size() != target.plates.size()) {
+    return {{std::nullopt, "expected one number, or one for each of the " + std::to_string(target.plates.size()) +
+                               " plates, found " + std::to_string(counts.size())}};
+  }
+  ValueMistakes mistakes;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] > static_cast<int>(target.mountings.size())) {
+      mistakes.push_back({i, "expected at most " + std::to_string(target.mountings.size()) +
+                                 ", the number of mountings, found " + std::to_string(counts[i])});
+    }
+  }
+  return mistakes;
+}
+
 ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t /*row*/) {
   const std::vector<int>& frames = plan.schedule.frames_per_presentation;
   if (frames.size() > 1 && frames.size() != plan.target.delta_t_k.size()) {

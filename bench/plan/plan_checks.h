@@ -29,6 +29,8 @@ using ValueMistakes = std::vector<ValueMistake>;
 /// Above 0 for kind display, and at least the largest contrast.
 [[nodiscard]] ValueMistakes check_display_span(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_display_luminance(const Plan& plan, std::size_t row);
+/// One number, or one for each plate; at most the number of mountings.
+[[nodiscard]] ValueMistakes check_mountings_per_plate(const Plan& plan, std::size_t row);
 /// No contrast of 0 K, no duplicates.
 [[nodiscard]] ValueMistakes check_contrasts(const Plan& plan, std::size_t row);
 /// No effect that is also skipped.

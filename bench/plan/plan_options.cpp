@@ -48,6 +48,7 @@ ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<Targe
   for (const TargetPlate& plate : plates) options.plates.push_back(plate.name);
   options.drawings = plates;
   options.mountings = plan.target.mountings;
+  for (std::size_t i = 0; i < plates.size(); ++i) options.mountings_per_plate.push_back(mountings_of(plan.target, i));
   options.delta_t_k = plan.target.delta_t_k;
   options.phases = side == Side::measured ? plan.target.phases : plan.simulation.phases;
   options.pixel_mm = ifov_mrad * plan.target.distance_m;  // mrad times m
@@ -95,8 +96,7 @@ std::size_t presentations_of_contrast(const Plan& plan) {
   if (plan.schedule.kind == ScheduleKind::adaptive)
     return static_cast<std::size_t>(plan.schedule.max_presentations) /
            std::max<std::size_t>(1, plan.target.delta_t_k.size());
-  return plan.target.plates.size() * plan.target.mountings.size() *
-         static_cast<std::size_t>(std::min(plan.target.phases, plan.simulation.phases));
+  return set_ups_of(plan.target) * static_cast<std::size_t>(std::min(plan.target.phases, plan.simulation.phases));
 }
 
 }  // namespace

@@ -121,8 +121,8 @@ void add_rows(AccuracyBill& bill, const BillInput& input) {
   const auto times = times_of(input.presentations);
   double known_s = 0;
   if (times) {
-    bill.rows.push_back({"Changes of the target", times->changes_s, changes_bought(input)});
-    bill.rows.push_back({"Location of the plate, contrasts", times->looking_s, contrast_bought(input.curve)});
+    bill.rows.push_back({std::string(changes_part), times->changes_s, changes_bought(input)});
+    bill.rows.push_back({std::string(location_part), times->looking_s, contrast_bought(input.curve)});
     known_s = times->changes_s + times->looking_s;
   }
   for (const TodPoint& point : input.curve.points) {
@@ -132,8 +132,7 @@ void add_rows(AccuracyBill& bill, const BillInput& input) {
       if (found != times->presentations_s.end()) seconds = found->second;
     }
     known_s += seconds.value_or(0);
-    bill.rows.push_back(
-        {"Presentations at " + stated(point.set_delta_t_k) + " K", seconds, presentations_bought(input, point)});
+    bill.rows.push_back({presentations_part(point.set_delta_t_k), seconds, presentations_bought(input, point)});
   }
   bill.rows.push_back(
       times ? BillRow{"Rest of the run", std::max(0.0, input.wall_s - known_s), "start, physical measures, fits"}
@@ -216,10 +215,23 @@ AccuracyBill accuracy_bill(const BillInput& input) {
   return bill;
 }
 
+std::string presentations_part(double set_delta_t_k) {
+  return "Presentations at " + stated(set_delta_t_k) + " K";
+}
+
+void add_forecast(AccuracyBill& bill, const AccuracyBill& forecast) {
+  for (BillRow& row : bill.rows) {
+    const auto found = std::ranges::find(forecast.rows, row.part, &BillRow::part);
+    if (found != forecast.rows.end()) row.forecast_s = found->seconds;
+  }
+}
+
 Json bill_json(const AccuracyBill& bill) {
   Json rows = Json::array();
-  for (const BillRow& row : bill.rows)
+  for (const BillRow& row : bill.rows) {
     rows.push_back({{"part", row.part}, {"seconds", json_number(row.seconds)}, {"bought", row.bought}});
+    if (row.forecast_s) rows.back()["forecast_s"] = json_number(row.forecast_s);
+  }
   return {{"total_s", json_number(bill.total_s)}, {"rows", rows}, {"sentences", bill.sentences}};
 }
 

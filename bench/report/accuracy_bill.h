@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/judgement/verdict.h"
@@ -18,8 +19,9 @@ namespace todbench {
 /// Part of the time of a run.
 struct BillRow {
   std::string part;
-  std::optional<double> seconds{};  ///< empty: cannot be separated from the others
-  std::string bought{};             ///< words with numbers
+  std::optional<double> seconds{};     ///< empty: cannot be separated from the others
+  std::string bought{};                ///< words with numbers
+  std::optional<double> forecast_s{};  ///< by the plan before the run; empty: not forecast
 };
 
 struct AccuracyBill {
@@ -45,7 +47,16 @@ struct BillInput {
 /// least one presentation of each set-up.
 [[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);
 
-/// Returns {"total_s", "rows": [{"part", "seconds", "bought"}], "sentences": [...]}.
+/// Names of the parts that a plan forecasts too.
+inline constexpr std::string_view changes_part = "Changes of the target";
+inline constexpr std::string_view location_part = "Location of the plate, contrasts";
+[[nodiscard]] std::string presentations_part(double set_delta_t_k);
+
+/// Adds the times of a forecast to the rows of the same parts.
+void add_forecast(AccuracyBill& bill, const AccuracyBill& forecast);
+
+/// Returns {"total_s", "rows": [{"part", "seconds", "bought"}], "sentences": [...]}; a row that was forecast also has
+/// "forecast_s".
 [[nodiscard]] Json bill_json(const AccuracyBill& bill);
 /// Returns the section of the report.
 [[nodiscard]] Section bill_section(const AccuracyBill& bill);

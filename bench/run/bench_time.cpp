@@ -88,12 +88,14 @@ class Walk {
   void take_frames(bool new_set_up, bool new_contrast, double delta_t_k) {
     const MeasurementPlan& measurement = plan_.measurement;
     // The camera is predicted without the modules of the sensor.
-    int frames = measurement.frames_after_change + chosen_answers(plan_, {}, delta_t_k).frames;
-    if (new_set_up) frames += measurement.registration_frames;
-    if (new_set_up || new_contrast) frames += measurement.contrast_frames;
+    const int frames = measurement.frames_after_change + chosen_answers(plan_, {}, delta_t_k).frames;
+    int looking = new_set_up ? measurement.registration_frames : 0;
+    if (new_set_up || new_contrast) looking += measurement.contrast_frames;
     // After the operator has moved the plate, it is located again.
-    if (!new_set_up && plan_.target.kind == TargetKind::prompt) frames += measurement.contrast_frames;
-    time_.frames += static_cast<std::uint64_t>(frames);
+    if (!new_set_up && plan_.target.kind == TargetKind::prompt) looking += measurement.contrast_frames;
+    time_.looking_frames += static_cast<std::uint64_t>(looking);
+    time_.presentation_frames[delta_t_k] += static_cast<std::uint64_t>(frames);
+    time_.frames += static_cast<std::uint64_t>(frames + looking);
   }
 
   const Plan& plan_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct BenchTime {
   double changes_s = 0;  ///< including those of the physical measures
   /// For registration, contrast, answers and physical measures, including frames discarded after a change.
   std::uint64_t frames = 0;
+  /// Of `frames`: those that locate the plate and measure contrasts, and those of the presentations by set contrast.
+  std::uint64_t looking_frames = 0;
+  std::map<double, std::uint64_t> presentation_frames{};
   double frames_s = 0;
   double corrections_s = 0;  ///< waiting time after commanded corrections of the camera
   [[nodiscard]] double total_s() const { return changes_s + frames_s + corrections_s; }

@@ -86,7 +86,7 @@ void CameraSurrogate::add_to_fit(const SetUpPicture& found) {
                                .min_size_px = camera_options(loaded_.plan(), inputs_.plates).min_reference_px,
                                .averaged_noise_k = averaged});
   if (!added) return;
-  const double looks = static_cast<double>(inputs_.plates.size() * loaded_.plan().target.mountings.size());
+  const double looks = static_cast<double>(set_ups_of(loaded_.plan().target));
   optics_differ_ = optics_differ_ || fit_.result()->differs(false_alarm / std::max(1.0, looks));
 }
 

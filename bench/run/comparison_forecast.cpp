@@ -40,10 +40,13 @@ ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& p
       return {std::nullopt, "the comparison with the twin cannot be decided at " + number_text(contrast.delta_t_k) +
                                 " K: the expected threshold is outside the sizes of the plates"};
     }
-    const double se_b = std::log1p(*contrast.uncertainty_percent / 100) / 1.96;
+    const double unpaired = std::log1p(*contrast.uncertainty_percent / 100) / 1.96;
+    // The twin sees the presentations of the camera: the whole ratio depends on their number.
+    const double half_of_pair = contrast.paired_se_ln_ratio.value_or(0) / std::sqrt(2 * share);
+    const bool paired = contrast.paired_se_ln_ratio.has_value();
     contrasts.push_back({.delta_t_k = contrast.delta_t_k,
-                         .se_ln_a = se_b / std::sqrt(share),
-                         .se_ln_b = se_b,
+                         .se_ln_a = paired ? half_of_pair : unpaired / std::sqrt(share),
+                         .se_ln_b = paired ? half_of_pair : unpaired,
                          .trials_a = contrast.trials * share,
                          .trials_b = contrast.trials});
     planned = std::max(planned, contrast.trials * share);

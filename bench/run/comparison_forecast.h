@@ -17,8 +17,9 @@ struct ComparisonForecast {
   std::string sentence;                      ///< begins with "warning" if the power is below 80 %
 };
 
-/// Forecasts the comparison of camera and twin. Standard errors: the predicted uncertainty of the simulated design, for
-/// the camera scaled to its own number of phases.
+/// Forecasts the comparison of camera and twin. Standard errors: those of the ratio by common phases if the plan makes
+/// pairs, because it decides then; otherwise the predicted uncertainty of the simulated design. Both are scaled to the
+/// camera's own number of phases.
 [[nodiscard]] ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction);
 
 /// Forecasts the comparison of two curves at its contrasts. Standard errors: from their intervals, clusters included.

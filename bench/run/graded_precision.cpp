@@ -12,11 +12,6 @@ namespace {
 
 constexpr int cancelling_set_ups = 5;  // clustered_variance.h: least_set_ups
 
-double graded_freedom(const GradedDesignFigures& design) {
-  if (design.set_ups >= cancelling_set_ups) return design.set_ups - 1;
-  return std::max(3.0, 0.5 * design.presentations - 1);
-}
-
 /// Share of the variance of an answer at the threshold due to noise with this share of the deciding noise.
 double part_of_answers(double share) {
   constexpr double p = 0.75, seen = 2.0 / 3;  // p = 1/4 + 3/4 seen
@@ -86,6 +81,14 @@ double graded_variance_ratio(const GradedDesignFigures& design) {
          of_other_presentations(design);
 }
 
+double paired_variance_ratio(const GradedDesignFigures& design, int twin_draws) {
+  const double of_sensor = part_of_answers(design.sensor_share), of_pattern = part_of_answers(design.pattern_share);
+  const double frames = design.frames, draws = design.draws;
+  const double camera = of_own_frames(design) + (1 - of_sensor) / (frames * draws) +
+                        of_pattern * answers_of_a_pattern(design) + of_other_presentations(design);
+  return camera + (of_sensor + (1 - of_sensor) / draws) / twin_draws;
+}
+
 double pattern_inflation(const GradedDesignFigures& design) {
   GradedDesignFigures single = design;
   single.frames = 1;
@@ -104,11 +107,20 @@ int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s)
   return frame_choices[static_cast<std::size_t>(first - prices.begin())];
 }
 
-double graded_interval_factor(const GradedDesignFigures& design) {
+double graded_freedom(const GradedDesignFigures& design) {
+  if (design.set_ups >= cancelling_set_ups) return design.set_ups - 1;
+  return std::max(3.0, 0.5 * design.presentations - 1);
+}
+
+double graded_likely_excess(const GradedDesignFigures& design) {
   const double freedom = graded_freedom(design);
-  const double t = distribution::quantile(distribution::StudentsT(freedom), 0.975);
+  return std::sqrt(distribution::quantile(distribution::ChiSquared(freedom), 0.95) / freedom);
+}
+
+double graded_interval_factor(const GradedDesignFigures& design) {
+  const double t = distribution::quantile(distribution::StudentsT(graded_freedom(design)), 0.975);
   const double of_shared_detectors = design.set_ups >= cancelling_set_ups ? 1.06 : 1;
-  return of_shared_detectors * t * std::sqrt(distribution::quantile(distribution::ChiSquared(freedom), 0.95) / freedom);
+  return of_shared_detectors * t * graded_likely_excess(design);
 }
 
 }  // namespace todbench

@@ -45,6 +45,12 @@ struct GradedDesignFigures {
 /// 1 + g (n s - 1), plus the covariances of successive presentations.
 [[nodiscard]] double pattern_inflation(const GradedDesignFigures& design);
 
+/// Returns the variance of ln of the ratio of camera and twin by common phases, over the variance of as many binary
+/// answers. The phases are common and cancel. What remains is the noise of the camera's frames with its fixed pattern,
+/// the observer's noise, and the noise of the twin's answers, each the mean of `twin_draws` own frames. It does not
+/// contain the scatter of the effective contrast.
+[[nodiscard]] double paired_variance_ratio(const GradedDesignFigures& design, int twin_draws);
+
 /// Frames per presentation that are compared and chosen from.
 inline constexpr std::array frame_choices{1, 2, 4, 8};
 
@@ -57,5 +63,9 @@ inline constexpr std::array frame_choices{1, 2, 4, 8};
 /// 95 % of runs stay below: a variance from few set-ups scatters as chi-square over its degrees of freedom. From five
 /// set-ups on it includes 1.06, the root of the chance share of detectors common to set-ups (clustered_variance.h).
 [[nodiscard]] double graded_interval_factor(const GradedDesignFigures& design);
+/// Returns the part of graded_interval_factor() that 19 of 20 runs stay below: the half-width over its mean square.
+[[nodiscard]] double graded_likely_excess(const GradedDesignFigures& design);
+/// Returns the degrees of freedom of the variance of graded answers.
+[[nodiscard]] double graded_freedom(const GradedDesignFigures& design);
 
 }  // namespace todbench

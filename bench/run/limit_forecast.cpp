@@ -15,23 +15,6 @@
 namespace todbench {
 namespace {
 
-/// The expected curve, with the data that a budget needs.
-TodCurve expected_curve(const PlanPrediction& prediction) {
-  TodCurve curve;
-  for (const ContrastPrediction& contrast : prediction.contrasts) {
-    TodPoint point;
-    point.set_delta_t_k = point.delta_t_k = contrast.delta_t_k;
-    point.fit.verdict = FitVerdict::ok;
-    point.fit.threshold = contrast.s75_mrad;
-    if (contrast.s75_mrad && contrast.uncertainty_percent) {
-      const double half = std::log1p(*contrast.uncertainty_percent / 100);
-      point.fit.ci95 = {*contrast.s75_mrad * std::exp(-half), *contrast.s75_mrad * std::exp(half)};
-    }
-    curve.points.push_back(std::move(point));
-  }
-  return curve;
-}
-
 /// Guard band over standard uncertainty.
 double guard_of(const LimitsPlan& limits) {
   if (limits.rule == ConformityRule::simple) return 0;
@@ -78,6 +61,22 @@ std::string words_of_fleet(const FleetForecast& now, const FleetForecast& better
 }
 
 }  // namespace
+
+TodCurve expected_curve(const PlanPrediction& prediction) {
+  TodCurve curve;
+  for (const ContrastPrediction& contrast : prediction.contrasts) {
+    TodPoint point;
+    point.set_delta_t_k = point.delta_t_k = contrast.delta_t_k;
+    point.fit.verdict = FitVerdict::ok;
+    point.fit.threshold = contrast.s75_mrad;
+    if (contrast.s75_mrad && contrast.uncertainty_percent) {
+      const double half = std::log1p(*contrast.uncertainty_percent / 100);
+      point.fit.ci95 = {*contrast.s75_mrad * std::exp(-half), *contrast.s75_mrad * std::exp(half)};
+    }
+    curve.points.push_back(std::move(point));
+  }
+  return curve;
+}
 
 Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanPrediction& prediction) {
   std::vector<LimitForecast> forecasts;

@@ -11,6 +11,7 @@
 #include "bench/judgement/fleet_prior.h"
 #include "bench/plan/plan.h"
 #include "bench/run/prediction.h"
+#include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 
@@ -31,6 +32,9 @@ struct LimitForecast {
   double expected_acuity_per_mrad = 0;  ///< of the simulated sensor
   LimitOutlook planned, fourfold;       ///< as planned, and with four times the presentations
 };
+
+/// Returns the expected curve, with the data that a budget needs.
+[[nodiscard]] TodCurve expected_curve(const PlanPrediction& prediction);
 
 /// Forecasts every limit on acuity at whose contrast a threshold is expected. Errors: those of curve_uncertainty().
 [[nodiscard]] Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanPrediction& prediction);

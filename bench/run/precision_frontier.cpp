@@ -7,6 +7,7 @@
 
 #include "bench/plan/plan_options.h"
 #include "bench/run/bench_time.h"
+#include "bench/run/decision_forecast.h"
 #include "bench/run/graded_precision.h"
 #include "bench/run/time_prediction.h"
 
@@ -36,9 +37,18 @@ double bench_s(const Plan& plan, const ExperimentInputs& inputs, const std::vect
   return bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations).total_s();
 }
 
-void recommend(std::vector<PrecisionChoice>& choices) {
-  const auto price = [](const PrecisionChoice& choice) {
-    return std::pow(std::log1p(*choice.half_width_percent / 100), 2) * std::max(choice.seconds, 1e-3);
+/// Largest half-width over the contrasts with the rows of the budget (`floors`, in ln acuity), which frames do not
+/// reduce.
+double deciding_ln(const PrecisionChoice& choice, const std::vector<double>& floors) {
+  double largest = 0;
+  for (std::size_t i = 0; i < choice.contrasts.size(); ++i)
+    largest = std::max(largest, std::hypot(std::log1p(*choice.contrasts[i].uncertainty_percent / 100), floors[i]));
+  return largest;
+}
+
+void recommend(std::vector<PrecisionChoice>& choices, const std::vector<double>& floors) {
+  const auto price = [&](const PrecisionChoice& choice) {
+    return std::pow(deciding_ln(choice, floors), 2) * std::max(choice.seconds, 1e-3);
   };
   PrecisionChoice* best = nullptr;
   for (PrecisionChoice& choice : choices) {
@@ -92,7 +102,9 @@ Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const 
     if (auto added = add(AnswerKind::graded, count, *one_s + (mean - 1) * frame_s); !added)
       return tl::unexpected(added.error());
   }
-  recommend(choices);
+  const auto floors = floors_ln(plan, {.figures = {}, .contrasts = choices.front().contrasts, .warnings = {}});
+  if (!floors) return tl::unexpected(floors.error());
+  recommend(choices, *floors);
   return choices;
 }
 

@@ -16,9 +16,11 @@ struct PrecisionChoice {
   std::vector<int> frames{1};  ///< per presentation: of every contrast, or one number for each
   std::vector<ContrastPrediction> contrasts{};
   std::optional<double> half_width_percent{};  ///< half the 95 % interval of S75, the largest over the contrasts
-  double seconds = 0;        ///< of the measurement with the camera, or of the simulation if the plan has no camera
-  bool planned = false;      ///< the choice of the plan
-  bool recommended = false;  ///< the graded choice with the smallest squared half-width times seconds
+  double seconds = 0;    ///< of the measurement with the camera, or of the simulation if the plan has no camera
+  bool planned = false;  ///< the choice of the plan
+  /// The graded choice with the smallest squared half-width times seconds. The half-width contains the rows of the
+  /// budget, which frames do not reduce.
+  bool recommended = false;
 };
 
 /// Returns the plan with the camera's number of phases for the simulation, if there is a camera: predict_plan() then

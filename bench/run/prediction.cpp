@@ -5,10 +5,12 @@
 #include <cmath>
 #include <map>
 
+#include "acquisition/base/normal.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/bench_time.h"
 #include "bench/run/graded_precision.h"
 #include "bench/run/module_chain.h"
+#include "bench/run/paired_comparison.h"
 #include "bench/run/time_prediction.h"
 #include "bench/run/twin_shapes.h"
 #include "bench/text/text.h"
@@ -25,15 +27,15 @@ constexpr double flattest = 2.5, steepest = 6;
 
 // Intervals of runs over that of the expected counts: 1.03 +- 0.07, because answers scatter and trials of one
 // presentation or place are slightly dependent. 95 % of runs stay below 1.2 (asked_uncertainty_study).
-constexpr double likely_excess = 1.2;
+constexpr double likely_excess = 1.2, mean_excess = 1.03;
 
 /// Trials per size at one contrast.
 std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& plates) {
   std::map<double, double> totals;
-  for (const auto& plate : plates) {
-    for (const auto& t : plate.triangles)
+  for (std::size_t i = 0; i < plates.size(); ++i) {
+    for (const auto& t : plates[i].triangles)
       totals[t.size_mm / plan.target.distance_m] +=
-          static_cast<double>(plan.target.mountings.size()) * plan.simulation.phases;
+          static_cast<double>(mountings_of(plan.target, i)) * plan.simulation.phases;
   }
   std::vector<Level> levels;
   for (const auto& [size, total] : totals)
@@ -66,7 +68,7 @@ double se_of_shape(const Accuracy& accuracy, double q_eff, std::optional<double>
 GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
                                   int frames) {
   const NoiseShares shares = noise_shares(inputs, outlook);
-  const auto set_ups = static_cast<int>(inputs.plates.size() * plan.target.mountings.size());
+  const auto set_ups = static_cast<int>(set_ups_of(plan.target));
   // A simulated scene changes between two frames.
   const double change_s = plan.target.kind == TargetKind::scene ? 0 : plan.target.shift_change_s;
   return {.sensor_share = shares.sensor,
@@ -80,37 +82,45 @@ GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inpu
           .frames_between = change_s * inputs.sensor.frame_rate_hz};
 }
 
-/// Half-width of the interval of ln S75 of graded answers, from the standard error of as many binary ones.
-double graded_half_width(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
-                         double binary_se) {
+/// Sets the interval of ln S75 of graded answers, from the standard error of as many binary ones.
+void predict_graded(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
+                    const ContrastOutlook& outlook, double binary_se) {
   const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
   const double q_eff = outlook.q_eff;
   const GradedDesignFigures design = graded_design(plan, inputs, outlook, frames);
   const double se = std::hypot(binary_se * std::sqrt(graded_variance_ratio(design)),
                                se_of_shape(inputs.accuracy, q_eff, std::nullopt));
-  return graded_interval_factor(design) * se;
+  const double factor = graded_interval_factor(design);
+  point.uncertainty_percent = 100 * std::expm1(factor * se);
+  point.se_ln_s75 = se;
+  point.degrees_of_freedom = graded_freedom(design);
+  point.interval_factor = factor / graded_likely_excess(design);
+  if (!pairs_asked(plan, inputs.sensor)) return;
+  point.paired_se_ln_ratio =
+      factor / normal_z95 * binary_se * std::sqrt(paired_variance_ratio(design, PairedTwinOptions::default_draws));
 }
 
 /// The same for binary answers.
-double binary_half_width(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
-                         double binary_se) {
+void predict_binary(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
+                    const ContrastOutlook& outlook, double binary_se) {
   const bool by_twin = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
   const double of_shape = by_twin ? se_of_shape(inputs.accuracy, outlook.q_eff, binary_se) : 0;
   const double inflation = pattern_inflation(graded_design(plan, inputs, outlook, 1));
-  return likely_excess * 1.96 * std::hypot(binary_se * std::sqrt(inflation), of_shape);
+  const double se = std::hypot(binary_se * std::sqrt(inflation), of_shape);
+  point.uncertainty_percent = 100 * std::expm1(likely_excess * 1.96 * se);
+  point.se_ln_s75 = se;
+  point.interval_factor = mean_excess * 1.96;
 }
 
-std::optional<double> uncertainty_percent(const Plan& plan, const ExperimentInputs& inputs,
-                                          const std::vector<Level>& levels, const ContrastOutlook& outlook) {
+void predict_interval(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
+                      const std::vector<Level>& levels, const ContrastOutlook& outlook) {
   const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
   const auto design = design_at(levels, plan.fit.form, s75_mrad, std::clamp(outlook.weibull_slope, flattest, steepest),
                                 plan.fit.lapse.value_or(0.01));
   const auto fit = expected_fit(design, fit_options(plan));
-  if (!fit) return std::nullopt;
+  if (!fit) return;
   const bool graded = chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded;
-  const double half = graded ? graded_half_width(plan, inputs, outlook, fit->se_ln_threshold)
-                             : binary_half_width(plan, inputs, outlook, fit->se_ln_threshold);
-  return 100 * std::expm1(half);
+  (graded ? predict_graded : predict_binary)(point, plan, inputs, outlook, fit->se_ln_threshold);
 }
 
 /// Adapts the prediction of constant stimuli to an adaptive schedule: as many trials as the requested interval needs,
@@ -127,6 +137,8 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
   // Below the cap the schedule continues until the interval itself is narrow enough.
   const double reached = needed <= cap ? asked : constant * std::sqrt(point.trials / cap);
   point.uncertainty_percent = 100 * std::expm1(reached);
+  point.se_ln_s75 *= reached / constant;
+  if (point.paired_se_ln_ratio) *point.paired_se_ln_ratio *= reached / constant;
   point.trials = std::round(std::min(needed, cap));
 }
 
@@ -207,7 +219,7 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
     for (const auto& outlook : inputs.outlooks) {
       if (outlook.delta_t_k != delta_t_k) continue;
       point.s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
-      point.uncertainty_percent = uncertainty_percent(plan, inputs, levels, outlook);
+      predict_interval(point, plan, inputs, levels, outlook);
     }
     adapt(point, plan, inputs.plates);
     trials += point.trials;

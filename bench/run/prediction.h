@@ -21,6 +21,15 @@ struct ContrastPrediction {
   /// identified.
   std::optional<double> uncertainty_percent;
   double trials = 0;  ///< of the simulation
+  /// Expected standard error of ln S75, without the margin for unlucky runs of `uncertainty_percent`; 0: not
+  /// identified.
+  double se_ln_s75 = 0;
+  /// Half-width of the 95 % interval of ln S75 over its own standard error.
+  double interval_factor = 0;
+  std::optional<double> degrees_of_freedom{};  ///< of that standard error; empty: infinite
+  /// Standard error of ln of the ratio of camera and twin by common phases, with the same margin as
+  /// `uncertainty_percent`; empty: the plan makes no pairs.
+  std::optional<double> paired_se_ln_ratio{};
 };
 
 struct PlanPrediction {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
 #include "bench/run/paired_comparison.h"
@@ -137,8 +138,9 @@ double frames_of(const Plan& plan, const Counts& counts, double frames_per_prese
          counts.presentations * frames_per_presentation;
 }
 
-Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {
-  Counts counts{.set_ups = static_cast<double>(plan.target.mountings.size()),
+/// Counts of the plate of this index.
+Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, std::size_t plate, int phases) {
+  Counts counts{.set_ups = static_cast<double>(mountings_of(plan.target, plate)),
                 .presentations = 0,
                 .contrasts = static_cast<double>(plan.target.delta_t_k.size())};
   counts.presentations = counts.set_ups * counts.contrasts * phases;
@@ -151,11 +153,13 @@ Counts counts_of(const Plan& plan, const ExperimentInputs& inputs, int phases) {
 }
 
 /// Standard error of ln S75 for binary answers at sizes within a factor of two around it; empty for graded ones.
-std::optional<double> expected_error(const Plan& plan, const ExperimentInputs& inputs, const Counts& counts) {
+std::optional<double> expected_error(const Plan& plan, const ExperimentInputs& inputs) {
   if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded) return std::nullopt;
   double trials = 0;
-  for (const auto& plate : inputs.plates)
-    trials += static_cast<double>(plate.triangles.size()) * counts.presentations / counts.contrasts;
+  for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
+    const Counts counts = counts_of(plan, inputs, i, plan.simulation.phases);
+    trials += static_cast<double>(inputs.plates[i].triangles.size()) * counts.presentations / counts.contrasts;
+  }
   return 0.65 / std::sqrt(std::max(trials, 1.0));
 }
 
@@ -167,15 +171,29 @@ double needed_draws(const Accuracy& accuracy, double q_eff) {
   return std::max<double>(accuracy.noise_draws, needed);
 }
 
+Result<double> predict_estimate_s(const ExperimentInputs& inputs, std::stop_token stop) {
+  double sum = 0;
+  for (const auto& outlook : inputs.outlooks) {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    const double draws = std::min<double>(needed_draws(inputs.accuracy, outlook.q_eff), Accuracy::max_noise_draws);
+    TODBENCH_TRY(const double seconds,
+                 measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
+                                         outlook.s75_pitch, draws, inputs.accuracy, inputs.motion));
+    sum += seconds;
+  }
+  return sum;
+}
+
 Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& inputs, std::stop_token stop) {
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
   const MeasurementOptions options = simulated_options(plan, inputs);
   const double frames = mean_frames(options);
-  const Counts simulated = counts_of(plan, inputs, plan.simulation.phases);
-  const Counts measured = counts_of(plan, inputs, plan.target.phases);
   TimePrediction out;
-  for (const auto& plate : inputs.plates) {
+  for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
+    const TargetPlate& plate = inputs.plates[i];
+    const Counts simulated = counts_of(plan, inputs, i, plan.simulation.phases);
+    const Counts measured = counts_of(plan, inputs, i, plan.target.phases);
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     const auto speed = speed_on(plate, model, observer, options, inputs, stop);
     if (!speed) return fail("timing plate " + plate.name, speed.error());
@@ -188,7 +206,7 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
       out.measuring_s += measured.presentations * PairedTwinOptions::default_draws * speed->answers;
     if (plan.target.kind == TargetKind::scene) out.measuring_s += measured.presentations * speed->draw;
   }
-  out.simulation_s += simulated.contrasts * fit_s;
+  out.simulation_s += static_cast<double>(plan.target.delta_t_k.size()) * fit_s;
   const bool shaped = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
   for (const auto& outlook : inputs.outlooks) {
     const double draws = std::min<double>(needed_draws(inputs.accuracy, outlook.q_eff), Accuracy::max_noise_draws);
@@ -201,7 +219,7 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
     out.simulation_s += *seconds;
     if (!shaped) continue;
     // Function of the curve, and again for a separate camera: the same draws for every tolerance.
-    const auto table_s = seconds_with(draws_of_twin_shape(expected_error(plan, inputs, simulated), inputs.accuracy));
+    const auto table_s = seconds_with(draws_of_twin_shape(expected_error(plan, inputs), inputs.accuracy));
     if (!table_s) return tl::unexpected(table_s.error());
     out.simulation_s += sizes_of_shape * *table_s;
     out.measuring_s += sizes_of_shape * *table_s;

@@ -21,6 +21,10 @@ struct TimePrediction {
 [[nodiscard]] Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& inputs,
                                                   std::stop_token stop = {});
 
+/// Predicts the computing time of the direct estimate alone, in s. Errors: an observer that cannot be prepared;
+/// `interrupted`.
+[[nodiscard]] Result<double> predict_estimate_s(const ExperimentInputs& inputs, std::stop_token stop);
+
 /// Returns the draws per size for which the direct estimate meets the requested standard error, which is about (0.046 +
 /// 0.285 q) / sqrt(draws) of S75. Not capped.
 [[nodiscard]] double needed_draws(const Accuracy& accuracy, double q_eff);

@@ -79,8 +79,9 @@ std::vector<CostTrials> trials_of(const Plan& plan, const ExperimentInputs& inpu
   for (const int phases : doublings(1, plan.simulation.phases)) {
     varied.simulation.phases = phases;
     double trials = 0;
-    for (const auto& plate : inputs.plates) trials += static_cast<double>(plate.triangles.size());
-    trials *= static_cast<double>(plan.target.mountings.size()) * static_cast<double>(plan.target.delta_t_k.size());
+    for (std::size_t i = 0; i < inputs.plates.size(); ++i)
+      trials += static_cast<double>(inputs.plates[i].triangles.size() * mountings_of(plan.target, i));
+    trials *= static_cast<double>(plan.target.delta_t_k.size());
     trials *= phases;
     add(varied, number_text(trials), phases);
   }

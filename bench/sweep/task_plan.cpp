@@ -182,17 +182,36 @@ Json estimate_json(const LoadedPlan& plan, const std::vector<DirectPoint>& point
   return {{"points", list}};
 }
 
-Result<Json> estimated(const LoadedPlan& plan, std::stop_token stop) {
+/// Returns whether the base or an axis of a task states the tolerance.
+bool states_tolerance(const RunnableSweep& runnable, const SweepTask& task) {
+  const auto is_tolerance = [](const SweepParameter& parameter) {
+    return plan_path(parameter.key) == "simulation.tolerance_percent";
+  };
+  return std::ranges::any_of(runnable.base, is_tolerance) || std::ranges::any_of(task.parameters, is_tolerance);
+}
+
+/// Inputs of the direct estimate of a task. If the sweep states a tolerance, effects that the scene does not call for
+/// are skipped; otherwise every effect is simulated, so that tasks differ by their parameters alone.
+Result<ExperimentInputs> estimate_inputs(const RunnableSweep& runnable, const SweepTask& task, const LoadedPlan& plan) {
   if (auto none = refuse_modules(plan.plan(), plan.sensor()); !none) return tl::unexpected(none.error());
-  const auto& simulation = plan.plan().simulation;
-  TODBENCH_TRY(const auto accuracy, accuracy_of(plan.plan()));
-  TemplateObserver observer(plan.observer(), triangle_alternatives());
-  const SensorPlan effects = full_plan(plan.sensor(), simulation.skip, simulation.force, simulation.motion);
+  EffectPlanner planner;
+  TODBENCH_TRY(auto inputs, experiment_inputs(plan, planner));
+  if (states_tolerance(runnable, task)) return inputs;
+  const SimulationPlan& simulation = plan.plan().simulation;
+  inputs.effects = full_plan(plan.sensor(), simulation.skip, simulation.force, simulation.motion);
+  inputs.sensor = plan.sensor();
+  return inputs;
+}
+
+Result<Json> estimated(const RunnableSweep& runnable, const SweepTask& task, const LoadedPlan& plan,
+                       std::stop_token stop) {
+  TODBENCH_TRY(const auto inputs, estimate_inputs(runnable, task, plan));
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
   TODBENCH_TRY(
       const auto points,
       direct_estimate(
-          plan.sensor(), effects, observer, plan.plan().target.delta_t_k,
-          {.motion = simulation.motion, .accuracy = accuracy, .seed = plan.plan().seed, .stop = std::move(stop)}));
+          inputs.sensor, inputs.effects, observer, plan.plan().target.delta_t_k,
+          {.motion = inputs.motion, .accuracy = inputs.accuracy, .seed = plan.plan().seed, .stop = std::move(stop)}));
   return estimate_json(plan, points);
 }
 
@@ -259,11 +278,16 @@ Result<LoadedPlan> task_plan(const RunnableSweep& runnable, const SweepTask& tas
 Result<Json> run_task(const RunnableSweep& runnable, const SweepTask& task, const std::filesystem::path& scratch,
                       std::stop_token stop) {
   TODBENCH_TRY(const auto plan, task_plan(runnable, task, stop));
-  return runnable.sweep.file().kind == TaskKind::estimate ? estimated(plan, stop) : simulated(plan, scratch, stop);
+  return runnable.sweep.file().kind == TaskKind::estimate ? estimated(runnable, task, plan, stop)
+                                                          : simulated(plan, scratch, stop);
 }
 
 Result<double> predicted_task_s(const RunnableSweep& runnable, const SweepTask& task, std::stop_token stop) {
   TODBENCH_TRY(const auto plan, task_plan(runnable, task, stop));
+  if (runnable.sweep.file().kind == TaskKind::estimate) {
+    TODBENCH_TRY(const auto estimate, estimate_inputs(runnable, task, plan));
+    return predict_estimate_s(estimate, stop);
+  }
   EffectPlanner planner;
   TODBENCH_TRY(const auto inputs, experiment_inputs(plan, planner));
   TODBENCH_TRY(const auto time, predict_time(plan.plan(), inputs, stop));

@@ -166,5 +166,88 @@ TEST_F(Planning, NumbersOfFramesGoWithTheirContrasts) {
   EXPECT_EQ(planned, 1);
 }
 
+/// A simulated camera on a bench with the default times; both plates, all mountings.
+std::string plan_of_a_bench(const std::string& more) {
+  return "[target]\ndistance_m = 2\ndelta_t_k = [16.9, 1.93]\nphases = 8\n[simulation]\naccuracy = \"draft\"\n" + more;
+}
+
+TEST_F(Planning, DecideShowsBenchTimeAgainstTheProbabilityOfEachDecision) {
+  write("plan.toml", plan_of_a_bench("[limits]\nfleet_sd_percent = 4\n[[limits.acuity]]\ndelta_t_k = 1.93\n"
+                                     "least_acuity_per_mrad = 0.46\n[[uncertainty.component]]\nname = \"distance\"\n"
+                                     "value = 10\nunit = \"mm\"\n"));
+
+  const Ended ended = run({"plan", "./plan.toml", "--decide", "--json"});
+  const Ended text = run({"plan", "./plan.toml", "--decide"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json decide = one_object(ended)["decide"];
+  ASSERT_EQ(decide.size(), 1U);
+  EXPECT_EQ(decide[0]["delta_t_k"], 1.93);
+  // 10 mm of 2 m: 0.5 %, 0.98 % at 95 %; 0.32 of it is the smallest half-width that matters.
+  EXPECT_NEAR(decide[0]["budget_half_width_percent"].get<double>(), 0.98, 0.01);
+  EXPECT_NEAR(decide[0]["smallest_half_width_percent"].get<double>(), 0.314, 0.01);
+  EXPECT_EQ(decide[0]["rows"][0]["name"], "distance");
+  int planned = 0;
+  for (const Json& design : decide[0]["designs"]) {
+    EXPECT_GT(design["bench_s"].get<double>(), 300);
+    planned += design["planned"] ? 1 : 0;
+    ASSERT_EQ(design["cameras"].size(), 21U);
+    for (const Json& camera : design["cameras"]) {
+      EXPECT_NEAR(
+          camera["p_pass"].get<double>() + camera["p_fail"].get<double>() + camera["p_inconclusive"].get<double>(), 1,
+          1e-9);
+    }
+    EXPECT_LT(design["consumer_risk"].get<double>(), 0.025);
+  }
+  EXPECT_EQ(planned, 1);
+  EXPECT_THAT(text.out, AllOf(HasSubstr("The smallest half-width of the trials that matters is 0.31 %"),
+                              HasSubstr("decisions of the planned design")));
+}
+
+TEST_F(Planning, OptimiseWritesAFasterPlanThatPlanAndSimulateTake) {
+  write("plan.toml", plan_of_a_bench(""));
+
+  const Ended found = run({"plan", "./plan.toml", "--optimise", "--half-width", "8", "--out", "best.toml", "--json"});
+  const Ended planned = run({"plan", "./best.toml", "--json"});
+  const Ended simulated = run({"simulate", "./best.toml", "--out", "s", "--json"});
+
+  ASSERT_EQ(found.code, 0) << found.err;
+  const Json json = one_object(found);
+  EXPECT_LT(json["bench_s"], json["as_planned"]["bench_s"]);
+  EXPECT_EQ(json["bench_s"], json["optimised"]["bench_s"]);
+  EXPECT_EQ(json["set_ups"], 5);
+  EXPECT_EQ(json["optimised"]["mountings_per_plate"].size(), 2U);
+  ASSERT_EQ(planned.code, 0) << planned.err;
+  EXPECT_LE(one_object(planned)["predicted_uncertainty_percent"].get<double>(), 8);
+  ASSERT_TRUE(completed(simulated));
+  std::set<std::string> set_ups;
+  for (const std::string& line : lines_of(content_of(at("s") / "targets.csv"))) {
+    for (const char* plate : {"tcat-a", "tcat-b"}) {
+      for (const char* mounting : {"identity", "rotated_180", "mirrored_horizontally", "mirrored_vertically"}) {
+        if (line.find(plate) != std::string::npos && line.find(mounting) != std::string::npos)
+          set_ups.insert(std::string(plate) + mounting);
+      }
+    }
+  }
+  EXPECT_EQ(set_ups.size(), 5U);
+}
+
+TEST_F(Planning, OptimiseRejectsAHalfWidthThatNoDesignHas) {
+  write("plan.toml", plan_of_a_bench(""));
+
+  expect_refused(run({"plan", "./plan.toml", "--optimise", "--half-width", "0.02"}), 2, "at best");
+}
+
+TEST_F(Planning, NeutralEffectsShareALineAndStateTheirReasonsOnRequest) {
+  write("plan.toml", small_plan(8));
+
+  const Ended folded = run({"plan", "./plan.toml"});
+  const Ended why = run({"plan", "./plan.toml", "--why"});
+
+  EXPECT_THAT(folded.out,
+              AllOf(HasSubstr("neutral in this sensor, so skipped"), Not(HasSubstr("frames_averaged is 1"))));
+  EXPECT_THAT(why.out, HasSubstr("frames_averaged is 1"));
+}
+
 }  // namespace
 }  // namespace todbench::testing

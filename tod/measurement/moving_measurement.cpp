@@ -126,8 +126,11 @@ class MovingRun {
     std::vector<double> contrasts = options_.delta_t_k;
     std::stable_sort(contrasts.begin(), contrasts.end(), [](double a, double b) { return std::abs(a) > std::abs(b); });
     largest_k_ = contrasts.front();
-    for (const TargetPlate& plate : at_rest().plates) {
-      for (const Mounting mounting : options_.mountings) {
+    for (std::size_t p = 0; p < at_rest().plates.size(); ++p) {
+      const TargetPlate& plate = at_rest().plates[p];
+      for (std::size_t m = 0; m < options_.mountings.size(); ++m) {
+        if (!options_.mountings_per_plate.empty() && m >= options_.mountings_per_plate[p]) break;
+        const Mounting mounting = options_.mountings[m];
         MovingSetUp set_up{.plate = mounted(plate, mounting), .name = plate.name, .mounting = mounting, .base = {}};
         if (auto found = locate(set_up, contrasts.front()); !found) return found;
         if (auto prepared = prepare(set_up); !prepared) return prepared;

@@ -19,6 +19,8 @@ struct MovingMeasurementOptions {
   /// As for a plate at rest; schedule, answers and corrections are ignored.
   MeasurementOptions measurement;
   std::vector<Mounting> mountings;
+  /// Number of `mountings`, the first ones, that show each plate of `measurement`; empty: all of them.
+  std::vector<std::size_t> mountings_per_plate{};
   std::vector<double> delta_t_k;      ///< not 0; the plate is registered at the largest
   std::vector<double> speeds_mrad_s;  ///< 0 or more
   int passes = 4;                     ///< of every plate, mounting, contrast and speed, right and left in turn

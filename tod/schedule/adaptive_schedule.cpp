@@ -50,6 +50,7 @@ AdaptiveSchedule::AdaptiveSchedule(AdaptiveOptions options, const RandomStream& 
   for (std::size_t p = 0; p < options_.plates.size(); ++p) {
     std::vector<PhasedTriangle> triangles;
     for (std::size_t m = 0; m < options_.stimuli.mountings.size(); ++m) {
+      if (!options_.stimuli.shows(p, m)) continue;
       const Mounting mounting = options_.stimuli.mountings[m];
       set_ups_.push_back({.plate = p, .mounting = mounting, .group = m});
       const auto more = phased_triangles(options_.plates[p], mounting, options_.stimuli.pixel_mm, m);

@@ -60,6 +60,7 @@ class Nesting {
       const auto drawing = std::ranges::find(options_.drawings, options_.plates[p], &TargetPlate::name);
       if (drawing == options_.drawings.end() || !(options_.pixel_mm > 0)) continue;
       for (std::size_t m = 0; m < options_.mountings.size(); ++m) {
+        if (!options_.shows(p, m)) continue;
         const auto more =
             phased_triangles(*drawing, options_.mountings[m], options_.pixel_mm, outside(mounting_dimension) ? m : 0);
         all.insert(all.end(), more.begin(), more.end());
@@ -91,7 +92,7 @@ class Nesting {
 
   void descend(std::size_t depth) {
     if (depth == dimensions) {
-      states_.push_back(state_);
+      if (options_.shows(index_[plate_dimension], index_[mounting_dimension])) states_.push_back(state_);
       return;
     }
     const std::size_t dimension = order_[depth];

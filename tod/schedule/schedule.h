@@ -27,17 +27,23 @@ class TrialSchedule {
   virtual void observe(std::span<const Trial> trials);
 };
 
-/// The method of constant stimuli on plates: every plate in every mounting at every contrast in every phase.
+/// The method of constant stimuli on plates: every plate in its mountings at every contrast in every phase.
 struct ConstantStimuliOptions {
   std::vector<std::string> plates;
   /// Drawings of the plates, by name, from which the phases of their triangles are chosen together. A plate without one
   /// counts as one triangle in its middle.
   std::vector<TargetPlate> drawings{};
   std::vector<Mounting> mountings;
+  /// Number of `mountings`, the first ones, that show each of `plates`; empty: all of them.
+  std::vector<std::size_t> mountings_per_plate{};
   std::vector<double> delta_t_k;
   int phases = 16;                              ///< sub-pixel shifts per plate, mounting and contrast
   double pixel_mm = 1;                          ///< one pixel on the plate; shifts are spread over one pixel in x and y
   double change_cost_s[4] = {60, 30, 20, 0.1};  ///< plate, mounting, contrast, shift
+  /// Returns whether the plate is shown in the mounting, by their indices.
+  [[nodiscard]] bool shows(std::size_t plate, std::size_t mounting) const {
+    return mountings_per_plate.empty() || mounting < mountings_per_plate[plate];
+  }
 };
 
 /// The first `count` points of the additive recurrence with the plastic number (Roberts 2018) in [0, 1)^2, from the

@@ -36,6 +36,49 @@ RunnableSweep quick_sweep(const TemporaryFolder& folder, const std::string& more
   return *sweep;
 }
 
+/// A sweep of a small aberration, which a tolerance of 5 % leaves out and one of 0.01 % does not.
+RunnableSweep sweep_of_tolerance(const TemporaryFolder& folder, const std::string& tolerance,
+                                 const std::string& sigma = "0.05") {
+  folder.write("t.toml", "kind = \"estimate\"\n[base]\naccuracy = \"draft\"\ndelta_t_k = [16.9]\n" + tolerance +
+                             "[grid]\naberration_sigma_pitch = [" + sigma + "]\n");
+  auto sweep = load_sweep(folder.path() / "t.toml");
+  EXPECT_TRUE(sweep) << sweep.error().message;
+  return *sweep;
+}
+
+TEST(SweepRun, AnEstimateSkipsWhatItsStatedToleranceAllows) {
+  const TemporaryFolder folder;
+  const auto acuity_with = [&](const std::string& tolerance, const std::string& sigma) {
+    const RunnableSweep sweep = sweep_of_tolerance(folder, tolerance, sigma);
+    const auto result = run_task(sweep, sweep.sweep.task(0), folder.path() / "scratch", {});
+    EXPECT_TRUE(result) << result.error().message;
+    return (*result)["points"][0]["acuity_per_mrad"].get<double>();
+  };
+  const std::string fine = "tolerance_percent = 0.01\n", coarse = "tolerance_percent = 5\n";
+
+  EXPECT_NE(acuity_with("", "0.05"), acuity_with("", "0"));  // not stated: every effect
+  EXPECT_NE(acuity_with(fine, "0.05"), acuity_with(fine, "0"));
+  EXPECT_EQ(acuity_with(coarse, "0.05"), acuity_with(coarse, "0"));
+  EXPECT_NEAR(acuity_with(coarse, "0.05") / acuity_with("", "0.05"), 1, 0.05);  // the tolerance
+}
+
+TEST(SweepRun, PredictsTheTimeOfTheEstimateWithoutTrials) {
+  const TemporaryFolder folder;
+  const RunnableSweep estimate = sweep_of_tolerance(folder, "");
+  RunnableSweep trials = estimate;
+  folder.write("u.toml",
+               "kind = \"simulate\"\n[base]\naccuracy = \"draft\"\ndelta_t_k = [16.9]\n[grid]\n"
+               "aberration_sigma_pitch = [0.05]\n");
+  trials = load_sweep(folder.path() / "u.toml").value();
+
+  const auto of_estimate = predicted_task_s(estimate, estimate.sweep.task(0), {});
+  const auto of_trials = predicted_task_s(trials, trials.sweep.task(0), {});
+
+  ASSERT_TRUE(of_estimate && of_trials);
+  EXPECT_GT(*of_estimate, 0);
+  EXPECT_LT(*of_estimate, 0.5 * *of_trials);
+}
+
 TEST(SweepRun, IsIdempotentAndTheTableIsTheSameInAnyOrder) {
   const TemporaryFolder one, two;
   const RunnableSweep forwards = quick_sweep(one), backwards = quick_sweep(two);
