@@ -123,6 +123,7 @@ Json priced_json(const PricedDesign& design) {
           {"half_width_percent", json_number(design.half_width_percent)},
           {"mountings_per_plate", mountings},
           {"phases", plan.target.phases},
+          {"registration_frames", plan.measurement.registration_frames},
           {"frames_per_presentation", plan.schedule.frames_per_presentation},
           {"contrasts", std::move(contrasts)}};
 }

@@ -165,10 +165,12 @@ std::optional<DecisionDesign> design_of(const Plan& plan, const ContrastPredicti
   LimitsPlan two_sided = plan.limits;
   two_sided.rule = ConformityRule::guarded_acceptance_and_rejection;
   two_sided.guard_band_risk.reset();
+  ExpectedUncertainty trials = *expected;
+  trials.stated = {};
   DecisionDesign design{.frames = plan.schedule.frames_per_presentation,
                         .phases = plan.target.phases,
                         .bench_s = bench_s,
-                        .half_width_percent = percent_of_ln(expected->interval_factor * expected->se),
+                        .half_width_percent = percent_of_ln(ChancesOf(trials, two_sided).mean_half_ln()),
                         .deciding_percent = percent_of_ln(ChancesOf(*expected, two_sided).mean_half_ln())};
   for (int over = -largest_camera_percent; over <= largest_camera_percent; over += camera_step_percent)
     design.cameras.push_back({static_cast<double>(over), chances.at(std::log1p(over / 100.0))});
@@ -271,9 +273,10 @@ std::string in_words(const DecisionForecast& forecast) {
       "half-width of the trials that matters is {:.2g} %: below it the deciding interval shrinks by less than 5 %",
       forecast.floor_percent, forecast.rows.front().name, forecast.rows.front().half_width_percent,
       forecast.smallest_half_width_percent);
-  text += forecast.enough_bench_s ? fmt::format(". {:.0f} s of bench time are enough for it; more frames buy nothing",
-                                                *forecast.enough_bench_s)
-                                  : std::string(". None of these designs is that precise");
+  text +=
+      forecast.enough_bench_s
+          ? fmt::format(". {:.0f} s of bench time are enough for it; more frames buy nothing", *forecast.enough_bench_s)
+          : std::string(". None of these designs is that precise: more frames still narrow the interval");
   return text;
 }
 

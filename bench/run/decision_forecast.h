@@ -54,12 +54,12 @@ struct CameraChance {
 
 /// One number of frames or phases of the plan.
 struct DecisionDesign {
-  std::vector<int> frames{};          ///< per presentation, of every contrast or for each
-  int phases = 0;                     ///< per set-up and contrast
-  double bench_s = 0;                 ///< of the whole plan (laboratory_time())
-  double half_width_percent = 0;      ///< of the trials at the contrast of the limit, expected
-  double deciding_percent = 0;        ///< the same with the stated rows
-  bool planned = false;               ///< the choice of the plan
+  std::vector<int> frames{};            ///< per presentation, of every contrast or for each
+  int phases = 0;                       ///< per set-up and contrast
+  double bench_s = 0;                   ///< of the whole plan (laboratory_time())
+  double half_width_percent = 0;        ///< of the trials at the contrast of the limit, expected
+  double deciding_percent = 0;          ///< the same with the stated rows
+  bool planned = false;                 ///< the choice of the plan
   std::vector<CameraChance> cameras{};  ///< -10 to +10 % in steps of 1 %
   /// Of a unit of the fleet, if the plan states it: accepted and below the limit, not accepted and above it.
   std::optional<double> consumer_risk{}, producer_risk{};

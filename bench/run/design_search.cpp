@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
@@ -20,7 +21,7 @@ namespace todbench {
 namespace {
 
 constexpr std::size_t least_set_ups = 5;  // clustered_variance.h
-constexpr std::array phase_choices{3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128};
+constexpr std::array phase_choices{3, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128};
 constexpr int most_frames = 256;
 constexpr double decided = 0.95, coarsest_percent = 10;
 
@@ -160,6 +161,18 @@ Result<PricedDesign> priced(Plan plan, const ExperimentInputs& inputs) {
   return design;
 }
 
+/// Fewest frames that locate the plate as well as 8 frames of the demonstration do, which is studied: noise of their
+/// mean of 0.15 % of the highest contrast. At most those of the plan.
+int registration_frames(const Plan& plan, const SensorSpec& sensor) {
+  constexpr double noise_share = 0.0015;
+  constexpr int fewest = 8;
+  double highest_k = 0;
+  for (const double delta_t_k : plan.target.delta_t_k) highest_k = std::max(highest_k, std::abs(delta_t_k));
+  const double needed = std::ceil(std::pow(sensor.netd_k / (noise_share * highest_k), 2));
+  const int planned = plan.measurement.registration_frames;
+  return needed >= planned ? planned : std::min(planned, std::max(fewest, static_cast<int>(needed)));
+}
+
 /// The plan of a candidate, with one frame.
 Plan candidate(Plan plan, const std::vector<int>& mountings, int phases) {
   const bool all = std::ranges::all_of(
@@ -190,6 +203,8 @@ class Search {
   Search(const Plan& plan, const ExperimentInputs& inputs, const Criterion& criterion)
       : plan_(plan), inputs_(inputs), criterion_(criterion) {}
 
+  /// Keeps the candidate if it is faster than the best one with the same mountings, and faster by half a percent than
+  /// those before: a smaller gain is not worth a less even share of the plates.
   Result<void> examine(const std::vector<int>& mountings, int phases) {
     const Plan single = candidate(plan_, mountings, phases);
     const std::size_t presentations = set_ups_of(single.target) * static_cast<std::size_t>(phases);
@@ -197,13 +212,14 @@ class Search {
     const double single_s = laboratory_time(single, inputs_, std::nullopt);
     least_s = std::min(least_s, single_s);
     if (best && single_s >= best->bench_s) return {};
+    const bool same_set_ups = best && best->plan.target.mountings_per_plate == single.target.mountings_per_plate;
     TODBENCH_TRY(const auto frames, fewest_frames(single, inputs_, criterion_));
     if (!frames) return note_precision(single);
     Plan found = single;
-    const bool same = std::ranges::all_of(*frames, [&](int count) { return count == frames->front(); });
-    found.schedule.frames_per_presentation = same ? std::vector<int>{frames->front()} : *frames;
+    const bool alike = std::ranges::all_of(*frames, [&](int count) { return count == frames->front(); });
+    found.schedule.frames_per_presentation = alike ? std::vector<int>{frames->front()} : *frames;
     TODBENCH_TRY(auto design, priced(std::move(found), inputs_));
-    if (!best || design.bench_s < best->bench_s) best = std::move(design);
+    if (!best || design.bench_s < (same_set_ups ? 1 : 0.995) * best->bench_s) best = std::move(design);
     return {};
   }
 
@@ -258,13 +274,16 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
   std::erase_if(plan.target.delta_t_k, [&](double delta_t_k) {
     return std::ranges::find(found.dropped_contrasts_k, delta_t_k) != found.dropped_contrasts_k.end();
   });
+  plan.measurement.registration_frames = registration_frames(plan, inputs.sensor);
   const Criterion criterion(plan, request, half_width_percent, rows);
   Search search(plan, inputs, criterion);
   const std::size_t set_ups = std::min(least_set_ups, set_ups_of(plan.target));
   auto choices = mounting_choices(plan.target.plates.size(), static_cast<int>(plan.target.mountings.size()), set_ups);
-  // Few set-ups first: their designs exclude most of the others by their time.
-  std::ranges::stable_sort(
-      choices, {}, [&](const std::vector<int>& counts) { return set_ups_of(candidate(plan, counts, 1).target); });
+  // Few set-ups first: their designs exclude most of the others by their time. Of as many set-ups the even ones first.
+  std::ranges::stable_sort(choices, {}, [&](const std::vector<int>& counts) {
+    return std::pair(set_ups_of(candidate(plan, counts, 1).target),
+                     std::ranges::max(counts) - std::ranges::min(counts));
+  });
   for (const std::vector<int>& mountings : choices) {
     for (const int phases : phase_choices) {
       if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");

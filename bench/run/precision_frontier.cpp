@@ -50,12 +50,21 @@ void recommend(std::vector<PrecisionChoice>& choices, const std::vector<double>&
   const auto price = [&](const PrecisionChoice& choice) {
     return std::pow(deciding_ln(choice, floors), 2) * std::max(choice.seconds, 1e-3);
   };
+  const auto comparable = [](const PrecisionChoice& choice) {
+    return choice.answers == AnswerKind::graded && choice.half_width_percent;
+  };
   PrecisionChoice* best = nullptr;
   for (PrecisionChoice& choice : choices) {
-    if (choice.answers != AnswerKind::graded || !choice.half_width_percent) continue;
-    if (best == nullptr || price(choice) < price(*best)) best = &choice;
+    if (comparable(choice) && (best == nullptr || price(choice) < price(*best))) best = &choice;
   }
-  if (best != nullptr) best->recommended = true;
+  if (best == nullptr) return;
+  // With a budget the price is flat, and the faster of nearly equal choices gives away nothing.
+  constexpr double nearly = 1.05;
+  const double most = price(*best) * (std::ranges::any_of(floors, [](double floor) { return floor > 0; }) ? nearly : 1);
+  for (PrecisionChoice& choice : choices) {
+    if (comparable(choice) && price(choice) <= most && choice.seconds < best->seconds) best = &choice;
+  }
+  best->recommended = true;
 }
 
 }  // namespace

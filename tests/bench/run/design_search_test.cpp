@@ -72,7 +72,7 @@ TEST(DesignSearch, WritesAPlanThatReadsBackAndShowsTheSetUps) {
 TEST(DesignSearch, TakesNoMoreTimeForALargerHalfWidth) {
   const SearchedBench bench = bench_of(plan_of_defaults());
   double before_s = 1e9;
-  for (const double percent : {1.0, 2.0, 4.0, 8.0}) {
+  for (const double percent : {1.0, 4.0}) {
     const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = percent}, {});
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_LE(*found->best.half_width_percent, percent);
@@ -120,8 +120,8 @@ TEST(ConstantStimuli, ShowEachPlateInItsNumberOfMountings) {
     int of_a = 0, of_b = 0;
     for (const TargetState& state : constant_stimuli(options, RandomStream(1, "test"))) {
       (state.plate == "a" ? of_a : of_b) += 1;
-      if (state.plate == "b")
-        EXPECT_TRUE(state.mounting == Mounting::identity || state.mounting == Mounting::rotated_180);
+      if (state.plate != "b") continue;
+      EXPECT_TRUE(state.mounting == Mounting::identity || state.mounting == Mounting::rotated_180);
     }
     EXPECT_EQ(of_a, 3 * 2 * 2);
     EXPECT_EQ(of_b, 2 * 2 * 2);
