@@ -21,7 +21,7 @@ namespace todbench {
 namespace {
 
 constexpr std::size_t least_set_ups = 5;  // clustered_variance.h
-constexpr std::array phase_choices{3, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128};
+constexpr std::array phase_choices{3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 20, 24, 32, 48, 64, 96, 128};
 constexpr int most_frames = 256;
 constexpr double decided = 0.95, coarsest_percent = 10;
 
@@ -162,13 +162,16 @@ Result<PricedDesign> priced(Plan plan, const ExperimentInputs& inputs) {
 }
 
 /// Fewest frames that locate the plate as well as 8 frames of the demonstration do, which is studied: noise of their
-/// mean of 0.15 % of the highest contrast. At most those of the plan.
+/// mean of 0.15 % of the contrast. At most those of the plan. If contrasts change most slowly, set-ups are located at
+/// every contrast, otherwise at the highest.
 int registration_frames(const Plan& plan, const SensorSpec& sensor) {
   constexpr double noise_share = 0.0015;
   constexpr int fewest = 8;
-  double highest_k = 0;
-  for (const double delta_t_k : plan.target.delta_t_k) highest_k = std::max(highest_k, std::abs(delta_t_k));
-  const double needed = std::ceil(std::pow(sensor.netd_k / (noise_share * highest_k), 2));
+  const TargetPlan& target = plan.target;
+  const bool at_every = target.contrast_change_s > std::min(target.plate_change_s, target.mounting_change_s);
+  const auto [lowest, highest] =
+      std::ranges::minmax_element(target.delta_t_k, {}, [](double delta_t_k) { return std::abs(delta_t_k); });
+  const double needed = std::ceil(std::pow(sensor.netd_k / (noise_share * std::abs(at_every ? *lowest : *highest)), 2));
   const int planned = plan.measurement.registration_frames;
   return needed >= planned ? planned : std::min(planned, std::max(fewest, static_cast<int>(needed)));
 }
@@ -315,6 +318,13 @@ std::vector<std::string> in_words(const BestDesign& found) {
                     : fmt::format("{} set-ups, each with its counterpart rotated by 180 degrees: an error that changes "
                                   "its sign with this rotation cancels",
                                   found.set_ups));
+  const bool by_presentations = std::ranges::any_of(best.contrasts, [&](const ContrastPrediction& contrast) {
+    return contrast.degrees_of_freedom && *contrast.degrees_of_freedom != found.set_ups - 1;
+  });
+  if (by_presentations)
+    out.emplace_back(
+        "the set-ups have unequal shares of the information and count as fewer than five: the intervals come from "
+        "presentations and places. They are safe, and longer than those of set-ups");
   for (const double delta_t_k : found.dropped_contrasts_k)
     out.push_back("the contrast of " + number_text(delta_t_k) + " K is left out, because no limit names it");
   return out;

@@ -12,6 +12,12 @@ namespace {
 
 constexpr int cancelling_set_ups = 5;  // clustered_variance.h: least_set_ups
 
+/// Whether set-ups are the clusters of the interval, so that the mountings cancel the phases.
+bool by_set_ups(const GradedDesignFigures& design) {
+  const double set_ups = design.informative_set_ups > 0 ? design.informative_set_ups : design.set_ups;
+  return set_ups >= cancelling_set_ups;
+}
+
 /// Share of the variance of an answer at the threshold due to noise with this share of the deciding noise.
 double part_of_answers(double share) {
   constexpr double p = 0.75, seen = 2.0 / 3;  // p = 1/4 + 3/4 seen
@@ -75,7 +81,7 @@ double of_other_presentations(const GradedDesignFigures& design) {
 double graded_variance_ratio(const GradedDesignFigures& design) {
   const double of_sensor = part_of_answers(design.sensor_share), of_pattern = part_of_answers(design.pattern_share);
   // The variance left by evenly spread phases falls with the square of their number, that of answers with their number.
-  const double left = design.set_ups >= cancelling_set_ups ? std::min(0.15, 0.048 / phases_of(design)) : 0.15;
+  const double left = by_set_ups(design) ? std::min(0.15, 0.048 / phases_of(design)) : 0.15;
   const double frames = design.frames, draws = design.draws;
   return of_own_frames(design) + (1 - of_sensor) / (frames * draws) + left + of_pattern * answers_of_a_pattern(design) +
          of_other_presentations(design);
@@ -108,7 +114,7 @@ int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s)
 }
 
 double graded_freedom(const GradedDesignFigures& design) {
-  if (design.set_ups >= cancelling_set_ups) return design.set_ups - 1;
+  if (by_set_ups(design)) return design.set_ups - 1;
   return std::max(3.0, 0.5 * design.presentations - 1);
 }
 
@@ -119,7 +125,7 @@ double graded_likely_excess(const GradedDesignFigures& design) {
 
 double graded_interval_factor(const GradedDesignFigures& design) {
   const double t = distribution::quantile(distribution::StudentsT(graded_freedom(design)), 0.975);
-  const double of_shared_detectors = design.set_ups >= cancelling_set_ups ? 1.06 : 1;
+  const double of_shared_detectors = by_set_ups(design) ? 1.06 : 1;
   return of_shared_detectors * t * graded_likely_excess(design);
 }
 

@@ -10,11 +10,14 @@ namespace todbench {
 struct GradedDesignFigures {
   /// Share of the sensor in the variance of the noise that decides an answer; the rest is the observer's.
   double sensor_share = 0;
-  double pattern_share = 0;      ///< share of the sensor's fixed pattern in the same variance, part of sensor_share
-  double size_pitch = 4;         ///< at the threshold
-  int frames = 1;                ///< per presentation
-  int draws = 32;                ///< of the observer's noise, per frame
-  int set_ups = 8;               ///< plates times mountings
+  double pattern_share = 0;  ///< share of the sensor's fixed pattern in the same variance, part of sensor_share
+  double size_pitch = 4;     ///< at the threshold
+  int frames = 1;            ///< per presentation
+  int draws = 32;            ///< of the observer's noise, per frame
+  int set_ups = 8;           ///< plates times mountings
+  /// Number of set-ups by their shares of the information, (sum)^2 / sum of squares; 0: all alike. It decides whether
+  /// set-ups are the clusters of the interval (clustered_variance.h).
+  double informative_set_ups = 0;
   int presentations = 96;        ///< per contrast
   double noise_correlation = 0;  ///< lag-1 correlation of the sensor's temporal noise, 0 to 1
   double frames_between = 0;     ///< frames between two presentations

@@ -65,6 +65,34 @@ double se_of_shape(const Accuracy& accuracy, double q_eff, std::optional<double>
   return (0.046 + 0.285 * q_eff) / std::sqrt(draws_of_twin_shape(se_ln_threshold, accuracy));
 }
 
+/// Information about the threshold of a trial of this size, in any unit.
+double information(double size, double threshold, double slope, double lapse, PsychometricForm form) {
+  const Level level{.size = size, .correct = 0, .total = 1, .cluster = -1};
+  const auto at = [&](double stretched) {
+    return design_at({&level, 1}, form, stretched, slope, lapse).front().proportion_correct;
+  };
+  constexpr double step = 1e-3;
+  const double p = at(threshold), change = at(threshold * (1 + step)) - p;
+  return p > 0 && p < 1 ? change * change / (p * (1 - p)) : 0;
+}
+
+/// Number of set-ups by their shares of the information at this contrast.
+double informative_set_ups(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook) {
+  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+  const double slope = std::clamp(outlook.weibull_slope, flattest, steepest);
+  double sum = 0, squares = 0;
+  for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
+    double of_plate = 0;
+    for (const auto& t : inputs.plates[i].triangles)
+      of_plate += information(t.size_mm / plan.target.distance_m, s75_mrad, slope, plan.fit.lapse.value_or(0.01),
+                              plan.fit.form);
+    const auto mountings = static_cast<double>(mountings_of(plan.target, i));
+    sum += mountings * of_plate;
+    squares += mountings * of_plate * of_plate;
+  }
+  return squares > 0 ? sum * sum / squares : 0;
+}
+
 GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
                                   int frames) {
   const NoiseShares shares = noise_shares(inputs, outlook);
@@ -77,6 +105,7 @@ GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inpu
           .frames = frames,
           .draws = MeasurementOptions::graded_draws,
           .set_ups = set_ups,
+          .informative_set_ups = informative_set_ups(plan, inputs, outlook),
           .presentations = set_ups * plan.simulation.phases,
           .noise_correlation = inputs.sensor.noise_correlation,
           .frames_between = change_s * inputs.sensor.frame_rate_hz};

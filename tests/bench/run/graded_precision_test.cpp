@@ -32,6 +32,17 @@ TEST(GradedPrecision, KeepsMoreOfFewPhases) {
   EXPECT_NEAR(graded_variance_ratio({.frames = 4, .presentations = 8}), of_noise + 0.048, 1e-12);
 }
 
+TEST(GradedPrecision, OfUnequalSetUpsKeepsThePhasesInItsInterval) {
+  // Five set-ups whose shares of the information count as 4.8: presentations and places are the clusters.
+  const GradedDesignFigures unequal{.frames = 4, .set_ups = 5, .informative_set_ups = 4.8, .presentations = 30};
+  EXPECT_NEAR(graded_variance_ratio(unequal), 1.0 / 128 + 0.15, 1e-12);
+  EXPECT_NEAR(graded_freedom(unequal), 14, 1e-12);
+  GradedDesignFigures equal = unequal;
+  equal.informative_set_ups = 5;
+  EXPECT_NEAR(graded_variance_ratio(equal), 1.0 / 128 + 0.048 / 6, 1e-12);
+  EXPECT_NEAR(graded_freedom(equal), 4, 1e-12);
+}
+
 TEST(GradedPrecision, KeepsAFixedPatternWhateverTheFrames) {
   // All noise is a fixed pattern: two thirds of an answer, in 12 phases that see the same one, and nothing else.
   const double alike = 12 * 1.5 * std::exp(-std::pow(1.9 / 4, 2));
