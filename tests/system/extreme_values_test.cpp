@@ -63,6 +63,7 @@ TEST(ExtremeValues, OfOptionsAreRefused) {
       {{"render"}, {"--sensor", "sc2000", "--size-pitch", "3"}},
       {{"mtf"}, {"--sensor", "sc2000", "--frequency-per-pitch", "0.1"}},
       {{"noise"}, {"no.todrec"}},
+      {{"plate"}, {"tcat-a", "--svg", "p.svg"}},
       {{"pattern"}, {"tod", "--pixels", "64", "64", "--out", "p.tiff", "--format", "tiff"}},
       {{"picture"}, {"vehicle-in-field", "--sensor", "sc2000", "--range-m", "1000", "--out", "o"}},
       {{"identify"}, {"vehicles", "--sensor", "sc2000", "--ranges", "1000"}},
