@@ -7,9 +7,13 @@
 #include "bench/cli/scene_files.h"
 #include "bench/judgement/verdict.h"
 #include "bench/picture_files/encoded_picture.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/resources.h"
+#include "bench/report/html.h"
 #include "bench/report/picture_page.h"
 #include "bench/studies/eo_vista.h"
 #include "bench/studies/eo_vista_craft.h"
+#include "bench/studies/vision.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/text.h"
@@ -19,7 +23,7 @@ namespace {
 
 struct ReproduceArguments {
   std::string experiment;
-  std::string out = "reproduction-eo-vista";
+  std::string out{};  ///< empty: reproduction-EXPERIMENT
   std::string accuracy = "normal";
   bool overwrite = false;
 };
@@ -89,7 +93,7 @@ Json craft_json(const std::vector<CraftPicture>& craft) {
 
 /// Returns a new folder, an empty one, or one that may be overwritten.
 Result<std::filesystem::path> folder_for(const ReproduceArguments& arguments) {
-  const std::filesystem::path folder = arguments.out;
+  const std::filesystem::path folder = arguments.out.empty() ? "reproduction-" + arguments.experiment : arguments.out;
   std::error_code error;
   if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
     return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
@@ -100,12 +104,7 @@ Result<std::filesystem::path> folder_for(const ReproduceArguments& arguments) {
   return folder;
 }
 
-int run_reproduce(Console& console, const ReproduceArguments& arguments, const Program& program) {
-  if (arguments.experiment != "eo-vista") {
-    return report_error(console,
-                        {ErrorCode::invalid_input,
-                         "reproduce: unknown experiment '" + one_line(arguments.experiment) + "', expected eo-vista"});
-  }
+int run_eo_vista(Console& console, const ReproduceArguments& arguments, const Program& program) {
   EoVistaOptions options;
   const auto accuracy = Accuracy::named(arguments.accuracy);
   if (!accuracy) return report_error(console, accuracy.error());
@@ -147,14 +146,106 @@ int run_reproduce(Console& console, const ReproduceArguments& arguments, const P
   return 0;
 }
 
+Json vision_json(const VisionComparison& comparison) {
+  Json kinds = Json::array(), failures = Json::array(), outside = Json::array(), settings = Json::object();
+  for (const VisionKind& kind : comparison.kinds) {
+    Json points = Json::array();
+    for (const VisionPoint& point : kind.points) {
+      points.push_back({{"condition", point.condition},
+                        {"people", json_number(point.people)},
+                        {"model", json_number(point.model)},
+                        {"error", json_number(error_of(kind, point))}});
+    }
+    const VisionErrors errors = errors_of(kind);
+    kinds.push_back({{"name", kind.name},
+                     {"title", kind.title},
+                     {"quantity", kind.quantity},
+                     {"error_unit", to_string(kind.error)},
+                     {"mean_error", json_number(errors.mean)},
+                     {"rms_error", json_number(errors.rms)},
+                     {"largest_error", json_number(errors.largest)},
+                     {"role", to_string(kind.role)},
+                     {"failure", kind.failure.empty() ? Json() : Json(kind.failure)},
+                     {"source", kind.source},
+                     {"remark", kind.remark},
+                     {"points", points}});
+    if (!kind.failure.empty()) failures.push_back(kind.name);
+  }
+  for (const VisionOutside& figure : comparison.not_comparable) {
+    outside.push_back(
+        {{"quantity", figure.quantity}, {"published", figure.published}, {"value", Json()}, {"reason", figure.reason}});
+  }
+  for (const auto& [name, value] : comparison.settings) settings[name] = value;
+  return {{"experiment", "vision"},
+          {"observer", comparison.observer},
+          {"statement", comparison.statement},
+          {"failures", failures},
+          {"kinds", kinds},
+          {"not_comparable", outside},
+          {"settings", settings}};
+}
+
+void print_vision(const Console& console, const VisionComparison& comparison, const std::filesystem::path& page) {
+  console.text(comparison.statement);
+  std::vector<TableRow> rows;
+  for (const VisionKind& kind : comparison.kinds) {
+    const VisionErrors errors = errors_of(kind);
+    const int decimals = kind.error == VisionError::log10 ? 3 : 1;
+    rows.push_back({kind.title, std::to_string(kind.points.size()), std::string(to_string(kind.error)),
+                    fixed(errors.mean, decimals), fixed(errors.rms, decimals), fixed(errors.largest, decimals),
+                    kind.failure.empty() ? std::string(to_string(kind.role)) : "fails: " + kind.failure});
+  }
+  console.table({"figures of people", "number", "error in", "mean", "rms", "largest", ""}, rows);
+  for (const VisionOutside& figure : comparison.not_comparable)
+    console.text(figure.quantity + ", " + figure.published + ": " + figure.reason);
+  console.text("page: " + page.string());
+}
+
+int run_vision(Console& console, const ReproduceArguments& arguments, const Program& program) {
+  const auto accuracy = Accuracy::named(arguments.accuracy);
+  if (!accuracy) return report_error(console, accuracy.error());
+  const auto resource = find_resource(ResourceKind::observer, "hvs-2");
+  if (!resource) return report_error(console, resource.error());
+  const auto observer = parse_observer(*resource);
+  if (!observer) return report_error(console, observer.error());
+  const auto folder = folder_for(arguments);
+  if (!folder) return report_error(console, folder.error());
+  console.phase("comparing the observer with figures of people");
+  const auto found =
+      vision_comparison(*observer, {.accuracy = *accuracy, .seed = program.common.seed, .stop = program.stop->token()});
+  console.end_progress();
+  if (!found) return report_error(console, found.error());
+  const Json json = vision_json(*found);
+  const auto page = *folder / "vision.html";
+  if (auto written = write_file_atomically(page, render_html(vision_document(*found))); !written)
+    return report_error(console, written.error());
+  if (auto written = write_file_atomically(*folder / "vision.json", to_page(json)); !written)
+    return report_error(console, written.error());
+  if (console.json()) {
+    console.object(json);
+  } else {
+    print_vision(console, *found, page);
+  }
+  return 0;
+}
+
+int run_reproduce(Console& console, const ReproduceArguments& arguments, const Program& program) {
+  if (arguments.experiment == "eo-vista") return run_eo_vista(console, arguments, program);
+  if (arguments.experiment == "vision") return run_vision(console, arguments, program);
+  return report_error(
+      console, {ErrorCode::invalid_input,
+                "reproduce: unknown experiment '" + one_line(arguments.experiment) + "', expected eo-vista or vision"});
+}
+
 }  // namespace
 
 void add_reproduce_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand(
-      "reproduce", "repeats a published experiment and writes a page that compares published and reproduced values");
+      "reproduce",
+      "repeats a published experiment, or compares an observer with published figures of people, and writes a page");
   auto a = std::make_shared<ReproduceArguments>();
-  command->add_option("EXPERIMENT", a->experiment, "experiment: eo-vista")->required();
-  command->add_option("--out", a->out, "folder for the page")->capture_default_str();
+  command->add_option("EXPERIMENT", a->experiment, "experiment: eo-vista or vision")->required();
+  command->add_option("--out", a->out, "folder for the page (default: reproduction-EXPERIMENT)");
   command->add_option("--accuracy", a->accuracy, "numerical accuracy: draft, normal or reference")
       ->capture_default_str();
   command->add_flag("--force", a->overwrite, "overwrites the page in an existing folder");

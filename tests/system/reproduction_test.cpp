@@ -61,7 +61,30 @@ TEST(ReproduceCommand, WritesAPageWithThePublishedFiguresBesideOurs) {
     }
     EXPECT_EQ(text.find(outside), std::string::npos) << outside;
   }
-  expect_refused(todbench({"reproduce", "another"}, {.folder = folder.path()}), 2, "expected eo-vista");
+  expect_refused(todbench({"reproduce", "another"}, {.folder = folder.path()}), 2, "expected eo-vista or vision");
+}
+
+TEST(ReproduceCommand, HoldsTheObserverWithAnEyeAgainstPeopleFailuresFirst) {
+  const TemporaryFolder folder;
+
+  const Ended ended =
+      todbench({"reproduce", "vision", "--out", "v", "--accuracy", "draft", "--json"}, {.folder = folder.path()});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_THAT(keys_of(json), UnorderedElementsAre("experiment", "observer", "statement", "failures", "kinds",
+                                                  "not_comparable", "settings"));
+  ASSERT_EQ(json["failures"].size(), 4u);
+  for (std::size_t i = 0; i < json["failures"].size(); ++i) EXPECT_EQ(json["kinds"][i]["name"], json["failures"][i]);
+  for (const auto& kind : json["kinds"]) {
+    EXPECT_TRUE(kind["rms_error"].is_number()) << kind["name"];
+    for (const auto& point : kind["points"]) EXPECT_TRUE(point["error"].is_number()) << kind["name"] << point;
+  }
+  EXPECT_TRUE(json["not_comparable"][0]["value"].is_null());
+  EXPECT_EQ(Json::parse(content_of(folder.path() / "v/vision.json")), json);
+  const std::string page = content_of(folder.path() / "v/vision.html");
+  EXPECT_THAT(page, AllOf(HasSubstr("<svg"), HasSubstr("is not a validated model of people"),
+                          HasSubstr("Not comparable: another model")));
 }
 
 }  // namespace

@@ -35,11 +35,11 @@ TEST(Eye, SeesGaborPatternsAsTheBandOfTheirSpectrum) {
 TEST(Eye, NeedsMoreToDetectAmongManyChannels) {
   // Closed form for one channel: 84 % of 2AFC is sqrt(2) times the normal quantile 0.994458.
   EXPECT_NEAR(detection_d_prime(1), std::sqrt(2.0) * 0.9944578832, 1e-6);
-  // Quoted to two decimals (max rule, 84 % 2AFC). The quoted 3.70 at 500 channels does not lie on a smooth curve with
-  // the others; 0.04 is 0.09 dB of contrast.
-  EXPECT_NEAR(detection_d_prime(100), 3.25, 0.005);
-  EXPECT_NEAR(detection_d_prime(500), 3.70, 0.04);
-  EXPECT_NEAR(detection_d_prime(3000), 4.21, 0.005);
+  // The same probability integrated over the largest response without the pattern, by a second program. A prototype
+  // states 3.25, 3.70 and 4.21, of which 3.70 is 0.08 dB of contrast too low.
+  EXPECT_NEAR(detection_d_prime(100), 3.247315, 1e-5);
+  EXPECT_NEAR(detection_d_prime(500), 3.733307, 1e-5);
+  EXPECT_NEAR(detection_d_prime(3000), 4.210721, 1e-5);
 }
 
 TEST(Eye, HasAPupilBetweenTwoAndEightMillimetresThatLightCloses) {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An observer with an eye against every quoted figure of people: detection, acuity, reading, microscan.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+
+#include "acquisition/base/accuracy.h"
+#include "bench/report/vision_page.h"
+#include "hvs/observer/template_observer.h"
+
+namespace todbench {
+
+struct VisionOptions {
+  Accuracy accuracy;  ///< of the thresholds behind a simulated sensor
+  std::uint64_t seed = 1;
+  std::stop_token stop{};
+};
+
+/// Precondition: the observer has an eye. Errors: `interrupted`, and those of its parts.
+[[nodiscard]] Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer,
+                                                         const VisionOptions& options);
+
+/// Acuity of people for a Landolt ring in 1/arcmin of the gap (Ikeda, Noda and Yamaguchi, quoted by saecanet.com);
+/// people, criterion and range are not stated there.
+[[nodiscard]] double landolt_acuity_of_people(double luminance_cd_m2, double contrast_percent);
+
+}  // namespace todbench

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The observer with an eye against figures of people: the errors are those of a prototype in another language.
+#include "bench/studies/vision.h"
+
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <cmath>
+
+#include "bench/plan/descriptions.h"
+#include "bench/plan/resources.h"
+#include "bench/report/html.h"
+
+namespace todbench {
+namespace {
+
+const VisionComparison& compared() {
+  static const VisionComparison comparison = [] {
+    const auto spec = parse_observer(find_resource(ResourceKind::observer, "hvs-2").value()).value();
+    return vision_comparison(spec, {.accuracy = Accuracy::draft()}).value();
+  }();
+  return comparison;
+}
+
+const VisionKind& kind_named(const std::string& name) {
+  const auto& kinds = compared().kinds;
+  return *std::find_if(kinds.begin(), kinds.end(), [&](const VisionKind& kind) { return kind.name == name; });
+}
+
+TEST(Vision, HasTheErrorsOfThePrototype) {
+  const struct {
+    const char* name;
+    double mean, rms, tolerance;
+  } expected[] = {
+      // 24 points: +4.1 dB mean, 5.7 rms, stated to 0.1 dB.
+      {"other_laboratories", 4.1, 5.7, 0.06},
+      // Nine discs, 9.0 dB rms.
+      {"small_discs", -7.4, 9.0, 0.06},
+      // 3.5 dB for all of them; these are every third: 42 of 127 have an rms within 0.5 dB of it (95 %).
+      {"contrast_sensitivity", -0.5, 3.5, 0.5},
+      // The level of the surface: +0.00 and 0.075 at kappa 0, -0.01 and 0.070 at 0.05; hvs-2 has 0.03.
+      {"landolt", 0, 0.072, 0.01},
+  };
+  for (const auto& [name, mean, rms, tolerance] : expected) {
+    const VisionErrors errors = errors_of(kind_named(name));
+
+    EXPECT_NEAR(errors.mean, mean, tolerance) << name;
+    EXPECT_NEAR(errors.rms, rms, tolerance) << name;
+  }
+  for (const VisionPoint& point : kind_named("compact_patterns").points) {
+    const double error = error_of(kind_named("compact_patterns"), point);
+    EXPECT_LT(error, -0.6) << point.condition;
+    EXPECT_GT(error, -2.9) << point.condition;
+  }
+}
+
+TEST(Vision, StatesFailuresFirst) {
+  const auto& kinds = compared().kinds;
+  const auto failed = [](const VisionKind& kind) { return !kind.failure.empty(); };
+
+  EXPECT_TRUE(std::is_partitioned(kinds.begin(), kinds.end(), failed));
+  EXPECT_EQ(std::count_if(kinds.begin(), kinds.end(), failed), 4);
+  for (const VisionKind& kind : kinds) {
+    EXPECT_FALSE(kind.points.empty()) << kind.name;
+    EXPECT_FALSE(kind.source.empty()) << kind.name;
+    for (const VisionPoint& point : kind.points) EXPECT_TRUE(std::isfinite(error_of(kind, point))) << point.condition;
+  }
+}
+
+TEST(Vision, AcuityFallsTooSteeplyWithContrastAndLight) {
+  // The prototype: 0.19, 0.34 and 0.51 against 0.11, 0.21 and 0.34 of people.
+  const auto& reading = kind_named("reading");
+  const double prototype[] = {0.19, 0.34, 0.51};
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(-std::log10(reading.points[i].model), prototype[i], 0.015) << reading.points[i].condition;
+  // 3.5 against 3 in acuity, 0.047 log10 a doubling against 0.02.
+  const auto& light = kind_named("light");
+  EXPECT_NEAR(light.points[0].model, 3.5, 0.1);
+  EXPECT_NEAR(std::log10(light.points[2].model) / std::log2(15), 0.047, 0.005);
+}
+
+TEST(Vision, ReadsALandoltRingAtDaylightLikePeople) {
+  // The formula of people at two points, computed by hand.
+  EXPECT_NEAR(landolt_acuity_of_people(1, 10), 0.241, 5e-4);
+  EXPECT_NEAR(landolt_acuity_of_people(3000, 95), 2.234, 5e-4);
+}
+
+TEST(Vision, LeavesThePapersModelOutOfComparison) {
+  int other_model = 0;
+  for (const VisionOutside& figure : compared().not_comparable)
+    other_model += figure.reason.starts_with("Not comparable: another model") ? 1 : 0;
+
+  EXPECT_EQ(other_model, 2);
+  const std::string page = render_html(vision_document(compared()));
+  EXPECT_NE(page.find("is not a validated model of people"), std::string::npos);
+  EXPECT_NE(page.find("Not comparable: another model"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace todbench
