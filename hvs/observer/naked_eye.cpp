@@ -47,12 +47,14 @@ Polygon landolt_ring() {
 NakedEyeShape::NakedEyeShape(const Polygon& shape) : rule_(gauss_legendre(24)) {
   const Polygon unit = placed(shape, 1 / std::sqrt(area(shape)), {0, 0});
   for (double k = frequency_step / 2; k < most_frequency; k += frequency_step) {
-    // The products of two spectra have at most about 2 pi k 3.5 turns around the circle.
-    const int quarter = 12 + static_cast<int>(6 * k);
-    std::vector<std::complex<double>> spectrum;
-    for (int i = 0; i < 4 * quarter; ++i) {
+    // The products of two spectra have at most about 2 pi k 1.8 = 11 k turns around the circle.
+    const int quarter = 8 + static_cast<int>(3 * k);
+    std::vector<std::complex<double>> spectrum(static_cast<std::size_t>(4 * quarter));
+    for (int i = 0; i < 2 * quarter; ++i) {
       const double angle = std::numbers::pi / 2 * i / quarter;
-      spectrum.push_back(polygon_spectrum(unit, k * std::cos(angle), k * std::sin(angle)));
+      const auto here = static_cast<std::size_t>(i), opposite = static_cast<std::size_t>(i + 2 * quarter);
+      spectrum[here] = polygon_spectrum(unit, k * std::cos(angle), k * std::sin(angle));
+      spectrum[opposite] = std::conj(spectrum[here]);
     }
     std::array<double, 4> products{};
     for (int i = 0; i < 4 * quarter; ++i) {
