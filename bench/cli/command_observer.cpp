@@ -33,9 +33,9 @@ struct ObserverFitArguments {
   Opening opening{};
 };
 
-Result<std::array<bool, observer_key_count>> free_keys(const std::vector<std::string>& names) {
+Result<std::array<bool, observer_key_count>> free_keys(const std::vector<std::string>& names, FittedKind kind) {
   std::vector<std::string> known;
-  for (const ObserverKey key : all_observer_keys) known.emplace_back(to_string(key));
+  for (const ObserverKey key : all_observer_keys) known.emplace_back(parameter_name(key, kind));
   std::array<bool, observer_key_count> out{};
   for (const std::string& name : names) {
     const auto found = std::find(known.begin(), known.end(), name);
@@ -73,16 +73,15 @@ Result<std::string> name_for(const ObserverFitArguments& arguments) {
 
 Result<PeopleFitOptions> options_of(const ObserverFitArguments& arguments, const Program& program) {
   PeopleFitOptions options;
-  const auto free = free_keys(arguments.free);
-  if (!free) return tl::unexpected(free.error());
   const auto name = name_for(arguments);
   if (!name) return tl::unexpected(name.error());
   const auto from = find_resource(ResourceKind::observer, arguments.from);
   if (!from) return tl::unexpected(from.error());
   const auto spec = parse_observer(*from);
   if (!spec) return tl::unexpected(spec.error());
-  if (auto blind = refuse_eye(*spec, "observer fit"); !blind) return tl::unexpected(blind.error());
   options.from = *spec;
+  const auto free = free_keys(arguments.free, options.kind());
+  if (!free) return tl::unexpected(free.error());
   options.from_sha256 = sha256_of(from->text);
   options.name = *name;
   options.free = *free;
@@ -97,10 +96,16 @@ void print_fit(const Console& console, const PeopleFit& fit) {
   std::vector<TableRow> rows;
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     if (!fit.options.free[k]) continue;
-    rows.push_back({std::string(to_string(all_observer_keys[k])), fixed(fit.values[k], 4), range(fit.ci95[k], 4),
-                    fixed(fit.spread[k].between_sd, 3)});
+    rows.push_back(
+        {fit.options.parameter(k), fixed(fit.values[k], 4), range(fit.ci95[k], 4), fixed(fit.spread[k].between_sd, 3)});
   }
   console.table({"parameter", "value", "95 %", "between persons (sd of ln)"}, rows);
+  for (std::size_t k = 0; k < observer_key_count; ++k) {
+    if (const auto spreads = spreads_from_default(fit, k)) {
+      console.text(fit.options.parameter(k) + " lies " + fixed(std::abs(*spreads), 2) +
+                   (*spreads < 0 ? " spreads below " : " spreads above ") + fit.options.from.name);
+    }
+  }
   console.text("goodness of fit of the model: p = " + fixed(fit.least_p, 3) +
                (fit.accepted ? "" : ", the model is rejected"));
 }
@@ -236,9 +241,10 @@ void add_observer_command(CLI::App& app, Program& program) {
   command->add_option("SESSION", a->sessions, "session folders with the answers of a person")->required();
   command->add_option("--from", a->from, "observer from which the fit starts: name or file")->capture_default_str();
   command
-      ->add_option(
-          "--free", a->free,
-          "parameters to fit, separated by commas: blur_sigma_samples, internal_noise, sensor_noise_factor, lapse")
+      ->add_option("--free", a->free,
+                   "parameters to fit, separated by commas: blur_sigma_samples, internal_noise, sensor_noise_factor, "
+                   "lapse; with "
+                   "an eye: gain, contrast_noise, sensor_noise_factor, lapse")
       ->delimiter(',')
       ->required();
   command

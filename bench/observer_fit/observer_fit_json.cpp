@@ -6,29 +6,26 @@
 namespace todbench {
 namespace {
 
-std::string key_name(std::size_t k) {
-  return std::string(to_string(all_observer_keys[k]));
-}
-
-Json correlations_json(const PersonFit& fit) {
+Json correlations_json(const PeopleFitOptions& options, const PersonFit& fit) {
   Json out = Json::array();
   for (std::size_t a = 0; a < observer_key_count; ++a) {
     for (std::size_t b = a + 1; b < observer_key_count; ++b) {
       if (fit.free[a] && fit.free[b])
-        out.push_back({{"of", {key_name(a), key_name(b)}}, {"value", json_number(correlation(fit, a, b))}});
+        out.push_back(
+            {{"of", {options.parameter(a), options.parameter(b)}}, {"value", json_number(correlation(fit, a, b))}});
     }
   }
   return out;
 }
 
-Json estimates_json(const PersonFit& fit) {
+Json estimates_json(const PeopleFitOptions& options, const PersonFit& fit) {
   Json out = Json::object();
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     if (!fit.free[k]) continue;
-    out[key_name(k)] = {{"value", json_number(fit.values[k])},
-                        {"ci95", json_interval(fit.ci95[k])},
-                        {"standard_error", json_number(standard_error(fit, k))},
-                        {"at_limit", fit.at_limit[k]}};
+    out[options.parameter(k)] = {{"value", json_number(fit.values[k])},
+                                 {"ci95", json_interval(fit.ci95[k])},
+                                 {"standard_error", json_number(standard_error(fit, k))},
+                                 {"at_limit", fit.at_limit[k]}};
   }
   return out;
 }
@@ -62,12 +59,12 @@ Json spread_json(const PeopleFit& fit) {
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     if (!fit.options.free[k]) continue;
     const PeopleSpread& spread = fit.spread[k];
-    out[key_name(k)] = {{"persons", spread.persons},
-                        {"mean", json_number(spread.mean)},
-                        {"mean_ci95", json_interval(spread.mean_ci95)},
-                        {"between_sd", json_number(spread.between_sd)},
-                        {"between_sd_ci95", json_interval(spread.between_sd_ci95)},
-                        {"heterogeneity_p", json_number(spread.heterogeneity_p)}};
+    out[fit.options.parameter(k)] = {{"persons", spread.persons},
+                                     {"mean", json_number(spread.mean)},
+                                     {"mean_ci95", json_interval(spread.mean_ci95)},
+                                     {"between_sd", json_number(spread.between_sd)},
+                                     {"between_sd_ci95", json_interval(spread.between_sd_ci95)},
+                                     {"heterogeneity_p", json_number(spread.heterogeneity_p)}};
   }
   return out;
 }
@@ -78,16 +75,18 @@ Json people_fit_json(const PeopleFit& fit) {
   Json estimates = Json::object(), free = Json::array(), people = Json::array();
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     if (!fit.options.free[k]) continue;
-    free.push_back(key_name(k));
-    estimates[key_name(k)] = {{"value", json_number(fit.values[k])}, {"ci95", json_interval(fit.ci95[k])}};
+    free.push_back(fit.options.parameter(k));
+    estimates[fit.options.parameter(k)] = {{"value", json_number(fit.values[k])}, {"ci95", json_interval(fit.ci95[k])}};
+    if (const auto spreads = spreads_from_default(fit, k))
+      estimates[fit.options.parameter(k)]["spreads_from_default"] = json_number(*spreads);
   }
   for (const FittedPerson& person : fit.people) {
     Json sessions = Json::array();
     for (const std::size_t s : person.sessions) sessions.push_back(fit.sessions[s].folder);
     people.push_back({{"sessions", std::move(sessions)},
                       {"answers", person.fit.answers},
-                      {"estimates", estimates_json(person.fit)},
-                      {"correlations", correlations_json(person.fit)},
+                      {"estimates", estimates_json(fit.options, person.fit)},
+                      {"correlations", correlations_json(fit.options, person.fit)},
                       {"log_likelihood", json_number(person.fit.log_likelihood)},
                       {"goodness", goodness_json(person)}});
   }
@@ -96,7 +95,7 @@ Json people_fit_json(const PeopleFit& fit) {
           {"from", fit.options.from.name},
           {"free", std::move(free)},
           {"estimates", std::move(estimates)},
-          {"correlations", alone ? correlations_json(fit.people.front().fit) : Json(nullptr)},
+          {"correlations", alone ? correlations_json(fit.options, fit.people.front().fit) : Json(nullptr)},
           {"goodness", {{"p", json_number(fit.least_p)}, {"limit", json_number(fit.options.least_p)}}},
           {"accepted", fit.accepted},
           {"not_identified", fit.not_identified},

@@ -38,19 +38,28 @@ Section parameters(const PeopleFit& fit) {
   table.header = {"Parameter", "Before", fit.people.size() == 1 ? "Fitted, 95 %" : "Mean over people, 95 %"};
   const bool several = fit.people.size() > 1;
   if (several) table.header.insert(table.header.end(), {"Between people, 95 %", "Heterogeneity: p"});
-  const ObserverValues before{fit.options.from.blur_sigma_samples, fit.options.from.internal_noise,
-                              fit.options.from.sensor_noise_factor, 0};
+  const ObserverValues before = start_values(fit.options.from);
+  const bool eye = fit.options.kind() == FittedKind::eye;
+  if (eye) table.header.emplace_back("Distance from the default, in spreads");
   for (std::size_t k = 0; k < observer_key_count; ++k) {
-    std::vector<RichText> row{plain(to_string(all_observer_keys[k])), plain(stated(before[k])),
+    std::vector<RichText> row{plain(fit.options.parameter(k)), plain(stated(before[k])),
                               fit.options.free[k] ? estimate(fit.values[k], fit.ci95[k]) : missing("not free")};
     if (several) {
       const PeopleSpread& spread = fit.spread[k];
       row.push_back(estimate(spread.between_sd, spread.between_sd_ci95));
       row.push_back(spread.heterogeneity_p ? plain(probability(*spread.heterogeneity_p)) : missing("not free"));
     }
+    if (eye) {
+      const auto spreads = spreads_from_default(fit, k);
+      row.push_back(spreads ? plain(shown(*spreads, 2)) : missing("not an open parameter"));
+    }
     table.rows.push_back(std::move(row));
   }
   Section out{"Parameters", {std::move(table)}};
+  if (eye) {
+    out.blocks.emplace_back(
+        note(plain("A spread is half of the range over which public data leave a parameter of the eye open.")));
+  }
   if (several)
     out.blocks.emplace_back(
         note(plain("Between people: standard deviation of the logarithm of the parameter; for the lapse rate, of the "
@@ -177,15 +186,13 @@ Section person_section(const PeopleFit& fit, std::size_t index) {
                                               std::to_string(fit.sessions[s].human.trials.size()) + " answers")});
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     if (person.fit.free[k])
-      values.values.push_back(
-          {std::string(to_string(all_observer_keys[k])), estimate(person.fit.values[k], person.fit.ci95[k])});
+      values.values.push_back({fit.options.parameter(k), estimate(person.fit.values[k], person.fit.ci95[k])});
   }
   for (std::size_t a = 0; a < observer_key_count; ++a) {
     for (std::size_t b = a + 1; b < observer_key_count; ++b) {
       if (const auto r = correlation(person.fit, a, b))
-        values.values.push_back({"Correlation of " + std::string(to_string(all_observer_keys[a])) + " and " +
-                                     std::string(to_string(all_observer_keys[b])),
-                                 plain(shown(*r, 2))});
+        values.values.push_back(
+            {"Correlation of " + fit.options.parameter(a) + " and " + fit.options.parameter(b), plain(shown(*r, 2))});
     }
   }
   return {"Person " + std::to_string(index + 1),

@@ -10,6 +10,7 @@
 
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "hvs/observer/open_parameters.h"
 
 namespace todbench {
 namespace {
@@ -58,16 +59,33 @@ std::string folders_of(const std::vector<AnsweredSession>& sessions, const std::
   return text;
 }
 
+/// The observer at the display of these sessions, which must be one.
+Result<TemplateObserverSpec> seen_by(const std::vector<AnsweredSession>& sessions, const std::vector<std::size_t>& own,
+                                     TemplateObserverSpec observer) {
+  if (!observer.eye) return observer;
+  for (const std::size_t s : own) {
+    const auto refuse = [&](const std::string& why) {
+      return fail(ErrorCode::invalid_input, sessions[s].folder + ": " + why);
+    };
+    if (!sessions[s].display)
+      return refuse("the plan has no section [display], which observer " + observer.name + " needs");
+    if (observer.display && *observer.display != *sessions[s].display)
+      return refuse("the person viewed another display than in the sessions before");
+    observer.display = sessions[s].display;
+  }
+  return observer;
+}
+
 Result<FittedPerson> fitted_person(const std::vector<AnsweredSession>& sessions, std::vector<std::size_t> own,
                                    const PeopleFitOptions& options, std::stop_token stop) {
   PersonQuestion question = question_of(sessions, own);
-  auto lattice = AnswerLattice::create(options.from, triangle_alternatives(), std::move(question.patches),
+  auto seeing = seen_by(sessions, own, options.from);
+  if (!seeing) return tl::unexpected(seeing.error());
+  auto lattice = AnswerLattice::create(*seeing, triangle_alternatives(), std::move(question.patches),
                                        {.draws = options.draws, .seed = options.seed});
   const std::string where = folders_of(sessions, own) + ": shown_human.csv";
   if (!lattice) return fail(where, lattice.error());
-  const PersonFitOptions how{
-      .start = {options.from.blur_sigma_samples, options.from.internal_noise, options.from.sensor_noise_factor, 0},
-      .free = options.free};
+  const PersonFitOptions how{.start = start_values(options.from), .free = options.free};
   auto fit = fit_person(*lattice, question.answers, how);
   if (!fit) return fail(where, fit.error());
   auto goodness = goodness_of(*lattice, question.answers, *fit,
@@ -77,11 +95,11 @@ Result<FittedPerson> fitted_person(const std::vector<AnsweredSession>& sessions,
 }
 
 /// Returns a sentence if the answers of one person do not determine a parameter.
-std::optional<std::string> left_open(const PersonFit& fit, std::size_t k) {
+std::optional<std::string> left_open(const PeopleFitOptions& options, const PersonFit& fit, std::size_t k) {
   if (!fit.free[k]) return std::nullopt;
-  const std::string name(to_string(all_observer_keys[k]));
+  const std::string name = options.parameter(k);
   if (!fit.ci95[k].low && !fit.ci95[k].high) return "the answers do not determine " + name;
-  const bool harmless = fit.values[k] <= least_values[k] * 1.0001 && fit.ci95[k].high &&
+  const bool harmless = fit.values[k] <= observer_limits(options.kind()).least[k] * 1.0001 && fit.ci95[k].high &&
                         all_observer_keys[k] != ObserverKey::blur_sigma_samples;
   if (fit.at_limit[k] && !harmless) return name + " lies at the end of its search range, " + number_text(fit.values[k]);
   if (!fit.ci95[k].high) return "the interval of " + name + " has no upper limit";
@@ -92,7 +110,7 @@ void find_left_open(PeopleFit& out) {
   for (const FittedPerson& person : out.people) {
     const std::string who = folders_of(out.sessions, person.sessions) + ": ";
     for (std::size_t k = 0; k < observer_key_count; ++k) {
-      if (const auto open = left_open(person.fit, k)) out.not_identified.push_back(who + *open);
+      if (const auto open = left_open(out.options, person.fit, k)) out.not_identified.push_back(who + *open);
     }
     const auto free = static_cast<std::size_t>(std::count(person.fit.free.begin(), person.fit.free.end(), true));
     if (!person.fit.covariance) out.not_identified.push_back(who + "the answers do not separate the parameters");
@@ -116,11 +134,11 @@ void put_together(PeopleFit& out) {
     if (!out.options.free[k]) continue;
     out.spread[k] = people_spread(fits, k);
     if (!out.spread[k].mean) {
-      out.not_identified.push_back(std::string(to_string(all_observer_keys[k])) +
-                                   ": fewer than two people have a standard error");
+      out.not_identified.push_back(out.options.parameter(k) + ": fewer than two people have a standard error");
       continue;
     }
-    out.values[k] = std::clamp(*out.spread[k].mean, least_values[k], most_values[k]);
+    const ObserverLimits limits = observer_limits(out.options.kind());
+    out.values[k] = std::clamp(*out.spread[k].mean, limits.least[k], limits.most[k]);
     out.ci95[k] = out.spread[k].mean_ci95;
   }
 }
@@ -145,6 +163,7 @@ Result<AnsweredSession> answered_session(const std::filesystem::path& folder, co
                          .shown_sha256 = *std::move(sum),
                          .samples_per_pitch = sensor.samples_per_pitch(),
                          .noise_k = session.provenance.run ? session.provenance.run->temporal_noise_k : 0,
+                         .display = has_display(session.plan) ? std::optional(session.plan.display) : std::nullopt,
                          .human = **std::move(human)};
 }
 
@@ -177,12 +196,40 @@ Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const People
   return out;
 }
 
+ObserverValues start_values(const TemplateObserverSpec& from) {
+  if (from.eye) return {1, from.eye->contrast_noise, from.sensor_noise_factor, 0};
+  return {from.blur_sigma_samples, from.internal_noise, from.sensor_noise_factor, 0};
+}
+
+std::optional<double> spreads_from_default(const PeopleFit& fit, std::size_t key) {
+  const auto range = open_parameter_range(fit.options.from);
+  if (!range || !fit.options.free[key]) return std::nullopt;
+  const double value = fit.values[key], before = start_values(fit.options.from)[key];
+  switch (all_observer_keys[key]) {
+    case ObserverKey::blur_sigma_samples:  // the gain
+      return 2 * std::log(value) / std::log(range->best.eye->sensitivity / range->worst.eye->sensitivity);
+    case ObserverKey::internal_noise:  // the contrast noise
+      return 2 * (value - before) / (range->worst.eye->contrast_noise - range->best.eye->contrast_noise);
+    case ObserverKey::sensor_noise_factor:
+      return 2 * std::log(value / before) /
+             std::log(range->worst.sensor_noise_factor / range->best.sensor_noise_factor);
+    case ObserverKey::lapse:
+      break;
+  }
+  return std::nullopt;
+}
+
 TemplateObserverSpec fitted_observer(const PeopleFit& fit) {
   TemplateObserverSpec spec = fit.options.from;
   spec.name = fit.options.name;
+  spec.sensor_noise_factor = fit.values[2];
+  if (spec.eye) {
+    spec.eye->sensitivity *= fit.values[0];
+    spec.eye->contrast_noise = fit.values[1];
+    return spec;
+  }
   spec.blur_sigma_samples = fit.values[0];
   spec.internal_noise = fit.values[1];
-  spec.sensor_noise_factor = fit.values[2];
   return spec;
 }
 

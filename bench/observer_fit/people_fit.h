@@ -24,7 +24,8 @@ struct AnsweredSession {
   std::string manifest_sha256;  ///< empty: no manifest
   std::string shown_sha256;     ///< of shown_human.csv
   int samples_per_pitch = 1;
-  double noise_k = 0;  ///< temporal noise of the run, for answers that do not state theirs
+  double noise_k = 0;                      ///< temporal noise of the run, for answers that do not state theirs
+  std::optional<ViewedDisplay> display{};  ///< of the plan, for an observer with an eye
   HumanRecord human;
 };
 /// Reads the answers of an opened session. `invalid_input`: it has no answers, or the shown pictures were not stored.
@@ -47,6 +48,12 @@ struct PeopleFitOptions {
   /// The model is rejected if its p is at most this, divided by the number of people (Bonferroni).
   double least_p = 0.01;
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
+
+  [[nodiscard]] FittedKind kind() const { return from.eye ? FittedKind::eye : FittedKind::blurred; }
+  /// Name of a parameter, by ObserverKey.
+  [[nodiscard]] std::string parameter(std::size_t key) const {
+    return std::string(parameter_name(all_observer_keys[key], kind()));
+  }
 };
 
 /// Contrast and size of a cell, in the order of the cells.
@@ -79,6 +86,14 @@ struct PeopleFit {
 /// parameter outside the range of the fit), `interrupted`.
 [[nodiscard]] Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const PeopleFitOptions& options,
                                            std::stop_token stop);
+
+/// Values of an observer before the fit, by ObserverKey.
+[[nodiscard]] ObserverValues start_values(const TemplateObserverSpec& from);
+
+/// Distance of a fitted value from that of `from`, in units of the spread of hvs-2: half of the range over which public
+/// data leave the parameter open (gain +-4 dB, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2; decibels and
+/// factors by logarithms). Empty for other parameters, and for an observer without an eye.
+[[nodiscard]] std::optional<double> spreads_from_default(const PeopleFit& fit, std::size_t key);
 
 /// Returns the fitted observer.
 [[nodiscard]] TemplateObserverSpec fitted_observer(const PeopleFit& fit);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "acquisition/base/multiversion.h"
+#include "hvs/observer/eye_noise.h"
 #include "hvs/observer/steffen.h"
 #include "hvs/observer/template_bank.h"
 
@@ -133,6 +134,15 @@ std::vector<float> scaled(const AnsweredPatch& patch, int window) {
   return out;
 }
 
+/// The same for an observer with an eye, whose background is that of the outermost samples.
+std::vector<float> scaled_for_eye(const TemplateObserverSpec& spec, const AnsweredPatch& patch, int window) {
+  const int margin = (patch.kelvin.rows - window) / 2;
+  const Patch middle{.kelvin = cv::Mat1d(patch.kelvin(cv::Rect(margin, margin, window, window))), .phase = {}};
+  std::vector<float> out(middle.kelvin.total()), room(out.size());
+  seen_patch(spec, middle, patch.contrast_k, RandomStream(0, "none"), out, room);  // no noise_k: no noise
+  return out;
+}
+
 int node_count(double low, double high, double step) {
   return static_cast<int>(std::ceil(std::log(high / low) / step - 1e-9)) + 1;
 }
@@ -178,7 +188,9 @@ struct AnswerLattice::Content {
   std::vector<std::size_t> group_of;
   int sigmas = node_count(least_sigma, most_sigma, sigma_step);
   int noises = node_count(least_noise, most_noise, noise_step);
-  /// [sigma][group], [sigma][patch]
+  /// Of each group; only with an eye, whose templates do not depend on a coordinate.
+  std::vector<std::shared_ptr<const TemplateBank>> banks;
+  /// [sigma][group], [sigma][patch]; with an eye [ratio of the noises] instead of [sigma]
   std::vector<std::vector<Noise>> noise;
   std::vector<std::vector<Scores>> scores;
   std::size_t row = 0;
@@ -226,7 +238,74 @@ struct AnswerLattice::Content {
     return index / row * static_cast<std::size_t>(bank.places()) + index % row;
   }
 
+  /// The shares of both noises of an observer with an eye at one node of their ratio.
+  struct Mixture {
+    float eye = 0, white = 0;
+    explicit Mixture(double ratio)
+        : eye(static_cast<float>(ratio / std::hypot(1, ratio))), white(static_cast<float>(1 / std::hypot(1, ratio))) {}
+  };
+
+  /// Covariances of the scores of one template with those of all, in the order of the bank.
+  [[nodiscard]] static std::vector<float> covariances(const TemplateBank& bank, std::size_t index,
+                                                      const Mixture& mixture) {
+    const auto side = static_cast<std::size_t>(bank.window_samples());
+    std::vector<float> samples(side * side), products(bank.padded_templates()), numbers;
+    bank.copy_template(index, samples);
+    bank.project(samples, products);
+    for (float& product : products) product *= mixture.white * mixture.white;
+    for (const auto& column : bank.eye()->columns()) numbers.push_back(static_cast<float>(column[index]));
+    bank.eye()->add(numbers, mixture.eye * mixture.eye, products);
+    return products;
+  }
+
+  void prepare_eye(std::size_t ratio, std::size_t g) {
+    const Group& group = groups[g];
+    const TemplateBank& bank_of_group = *banks[g];
+    const EyeNoise& eye = *bank_of_group.eye();
+    const Mixture mixture(std::exp(noise_step * (static_cast<double>(ratio) - (noises - 1))));
+    const auto side = static_cast<std::size_t>(bank_of_group.window_samples());
+    std::vector<float> samples(side * side), products(bank_of_group.padded_templates()), numbers(eye.rank());
+    const RandomStream stream = RandomStream(options.seed, "observer.fit").sub(side);
+    Noise& own = noise[ratio][g];
+    for (int k = 0; k < options.draws / 2; ++k) {
+      const RandomStream draw = stream.sub(static_cast<std::uint64_t>(k));
+      draw.fill_normal(samples);
+      draw.sub(1).fill_normal(numbers);
+      bank_of_group.project(samples, products);
+      for (float& product : products) product *= mixture.white;
+      eye.add(numbers, mixture.eye, products);
+      own.draws.push_back(in_rows(bank_of_group, products, 0));
+    }
+    std::vector<float> variances(static_cast<std::size_t>(bank_of_group.templates()));
+    for (std::size_t t = 0; t < variances.size(); ++t)
+      variances[t] =
+          mixture.eye * mixture.eye + mixture.white * mixture.white * static_cast<float>(bank_of_group.square(t));
+    for (const std::size_t i : group.members) {
+      Scores& at = scores[ratio][i];
+      bank_of_group.project(scaled_for_eye(spec, patches[i], bank_of_group.window_samples()), products);
+      at.signal = in_rows(bank_of_group, products, never);
+      at.values.assign(static_cast<std::size_t>(noises), std::nullopt);
+      find_best(at);
+      const std::size_t first = in_bank(at.first, bank_of_group), second = in_bank(at.second, bank_of_group);
+      std::vector<float> of_first = covariances(bank_of_group, first, mixture);
+      const std::vector<float> of_second = covariances(bank_of_group, second, mixture);
+      const float square = of_first[first] + of_second[second] - 2 * of_first[second];
+      at.distance = std::sqrt(std::max(0.0, static_cast<double>(square)));
+      std::vector<float> along(of_first.size(), 0.0F);
+      for (std::size_t t = 0; t < along.size() && at.distance > 0; ++t)
+        along[t] = static_cast<float>(static_cast<double>(of_first[t] - of_second[t]) / at.distance);
+      at.along = in_rows(bank_of_group, along, 0);
+      for (std::size_t t = 0; t < variances.size(); ++t)
+        of_first[t] = 1 - (variances[first] + variances[t] - 2 * of_first[t]) / 2;
+      at.likeness = in_rows(bank_of_group, of_first, 0);
+    }
+  }
+
   void prepare(std::size_t sigma, std::size_t g) {
+    if (spec.eye) {
+      prepare_eye(sigma, g);
+      return;
+    }
     const Group& group = groups[g];
     // create() has built this bank with the same parameters except the blur, on which no limit depends.
     const Result<TemplateBank> built = bank(group, least_sigma * std::exp(sigma_step * static_cast<double>(sigma)));
@@ -323,11 +402,15 @@ struct AnswerLattice::Content {
   const Values& value(std::size_t patch, int sigma, int sd) {
     const auto a = static_cast<std::size_t>(std::clamp(sigma, 0, sigmas - 1));
     const auto j = static_cast<std::size_t>(std::clamp(sd, 0, noises - 1));
-    Scores& at = scores[a][patch];
-    if (at.values.empty()) prepare(a, group_of[patch]);
-    if (!at.values[j])
-      at.values[j] =
-          computed(at, noise[a][group_of[patch]], least_noise * std::exp(noise_step * static_cast<double>(j)));
+    // Noises of the eye and white ones with one difference of nodes have one ratio.
+    const std::size_t slot = spec.eye ? a + static_cast<std::size_t>(noises - 1) - j : a;
+    const double white = least_noise * std::exp(noise_step * static_cast<double>(j));
+    Scores& at = scores[slot][patch];
+    if (at.values.empty()) prepare(slot, group_of[patch]);
+    if (!at.values[j]) {
+      const double eye = least_noise * std::exp(noise_step * static_cast<double>(a));
+      at.values[j] = computed(at, noise[slot][group_of[patch]], spec.eye ? std::hypot(eye, white) : white);
+    }
     return *at.values[j];
   }
 };
@@ -372,11 +455,13 @@ Result<AnswerLattice> AnswerLattice::create(const TemplateObserverSpec& spec, co
                     " needs at least " + std::to_string(bank->window_samples()));
     }
     content->row = (static_cast<std::size_t>(bank->places()) + block - 1) / block * block;
+    if (spec.eye && added) content->banks.push_back(std::make_shared<const TemplateBank>(*bank));
   }
   content->patches = std::move(patches);
-  content->noise.assign(static_cast<std::size_t>(content->sigmas), std::vector<Content::Noise>(content->groups.size()));
-  content->scores.assign(static_cast<std::size_t>(content->sigmas),
-                         std::vector<Content::Scores>(content->patches.size()));
+  if (spec.eye) content->sigmas = content->noises;
+  const auto slots = static_cast<std::size_t>(spec.eye ? 2 * content->noises - 1 : content->sigmas);
+  content->noise.assign(slots, std::vector<Content::Noise>(content->groups.size()));
+  content->scores.assign(slots, std::vector<Content::Scores>(content->patches.size()));
   return AnswerLattice(std::move(content));
 }
 
@@ -390,9 +475,19 @@ const AnsweredPatch& AnswerLattice::patch(std::size_t index) const {
   return content_->patches[index];
 }
 
-AnswerLogProbabilities AnswerLattice::log_probabilities(std::size_t patch, double sigma_samples, double noise) {
-  CV_Assert(patch < patches() && sigma_samples > 0 && noise > 0);
-  const Between sigma = between_nodes(sigma_samples, least_sigma, sigma_step, content_->sigmas);
+bool AnswerLattice::has_eye() const {
+  return content_->spec.eye.has_value();
+}
+
+double AnswerLattice::eye_noise(std::size_t patch, double gain, double contrast_noise) const {
+  const auto& bank = content_->banks[content_->group_of[patch]];
+  return bank->eye()->sd(content_->patches[patch].contrast_k, gain, contrast_noise);
+}
+
+AnswerLogProbabilities AnswerLattice::log_probabilities(std::size_t patch, double first, double noise) {
+  CV_Assert(patch < patches() && first > 0 && noise > 0);
+  const Between sigma = has_eye() ? between_nodes(first, least_noise, noise_step, content_->sigmas)
+                                  : between_nodes(first, least_sigma, sigma_step, content_->sigmas);
   const Between sd = between_nodes(noise, least_noise, noise_step, content_->noises);
   std::array<std::array<const Content::Values*, 4>, 4> nodes{};
   for (int a = 0; a < 4; ++a) {

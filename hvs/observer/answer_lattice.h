@@ -42,6 +42,10 @@ struct AnswerLogProbabilities {
 /// probability is 0. Between the nodes ln p is interpolated by monotone cubics (Steffen 1990), along s, then along
 /// sigma; the probabilities are then normalised to sum to 1.
 ///
+/// With an eye the two coordinates are the standard deviations of both noises of the observer instead: the noise of the
+/// eye in a score (EyeNoise::sd()) and white noise per sample. Scores of both noises together have one covariance at
+/// each ratio of the two, and the same computation.
+///
 /// Nodes are computed on first use. One thread at a time.
 class AnswerLattice {
  public:
@@ -65,8 +69,12 @@ class AnswerLattice {
   [[nodiscard]] int alternatives() const;
   [[nodiscard]] const AnsweredPatch& patch(std::size_t index) const;
 
-  /// ln p of each alternative of a patch. Outside the domain: the value at its edge.
-  [[nodiscard]] AnswerLogProbabilities log_probabilities(std::size_t patch, double sigma_samples, double noise);
+  /// ln p of each alternative of a patch. Outside the domain: the value at its edge. `first`: sigma of the blur in
+  /// samples, or with an eye the noise of the eye in a score.
+  [[nodiscard]] AnswerLogProbabilities log_probabilities(std::size_t patch, double first, double noise);
+  [[nodiscard]] bool has_eye() const;
+  /// Noise of the eye in a score of this patch, for an eye of `gain` times the sensitivity. Precondition: has_eye().
+  [[nodiscard]] double eye_noise(std::size_t patch, double gain, double contrast_noise) const;
 
  private:
   struct Content;

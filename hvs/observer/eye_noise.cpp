@@ -148,6 +148,13 @@ double EyeNoise::sd(double contrast_k) const {
   return std::sqrt(energy_ * (1 + in_proportion * in_proportion * energy_)) / (contrast * templates_.template_scale);
 }
 
+double EyeNoise::sd(double contrast_k, double gain, double contrast_noise) const {
+  // Products of the templates grow with the square of the sensitivity, and so does the scale of the bank.
+  const double contrast = shown_contrast(templates_.display, contrast_k);
+  const double fixed = energy_ / std::pow(gain * contrast, 2);
+  return std::sqrt(fixed + std::pow(contrast_noise * energy_, 2)) / templates_.template_scale;
+}
+
 void EyeNoise::add(std::span<const float> numbers, float sd, std::span<float> scores) const {
   float sums[eye_block];
   for (std::size_t first = 0; first < scores.size(); first += eye_block) {

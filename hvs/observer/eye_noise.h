@@ -42,6 +42,8 @@ class EyeNoise {
   [[nodiscard]] double energy() const { return energy_; }
   /// Standard deviation of the noise in a score of the bank, in units of the contrast, for a target of `contrast_k`.
   [[nodiscard]] double sd(double contrast_k) const;
+  /// The same for an eye of `gain` times the sensitivity and another noise in proportion to the contrast.
+  [[nodiscard]] double sd(double contrast_k, double gain, double contrast_noise) const;
   /// Number of independent normal numbers in one draw.
   [[nodiscard]] std::size_t rank() const { return columns_.size(); }
   /// Columns of the factor of the covariance relative to energy(): one value for each template.

@@ -143,7 +143,7 @@ TEST_F(ObserverFitCommand, RefusesAnObserverThatItCannotReadOrFit) {
   };
 
   expect_refused(from("./bad.toml"), 2, "blur_sigma_samples");
-  expect_refused(from("hvs-2"), 2, "eye");
+  expect_refused(from("hvs-2"), 2, "contrast_noise");  // a parameter of an observer with an eye
 }
 
 }  // namespace

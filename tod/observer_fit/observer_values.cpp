@@ -25,9 +25,16 @@ std::string_view to_string(ObserverKey key) {
   return "";
 }
 
-ObserverPlace place_of(const ObserverValues& values) {
+std::string_view parameter_name(ObserverKey key, FittedKind kind) {
+  if (kind == FittedKind::eye && key == ObserverKey::blur_sigma_samples) return "gain";
+  if (kind == FittedKind::eye && key == ObserverKey::internal_noise) return "contrast_noise";
+  return to_string(key);
+}
+
+ObserverPlace place_of(const ObserverValues& values, FittedKind kind) {
+  const ObserverValues least = observer_limits(kind).least;
   ObserverPlace place = values;
-  for (const std::size_t k : {blur, internal, factor}) place[k] = std::log(std::max(values[k], least_values[k]));
+  for (const std::size_t k : {blur, internal, factor}) place[k] = std::log(std::max(values[k], least[k]));
   return place;
 }
 

@@ -10,24 +10,38 @@
 
 namespace todbench {
 
-/// Fitted parameters. Lapse is the share of answers that do not depend on the patch and are spread evenly over the
-/// alternatives; it is not a parameter of the template observer.
+/// Kind of the fitted observer, which decides about its first two parameters.
+enum class FittedKind {
+  blurred,  ///< blur_sigma_samples and internal_noise
+  eye,      ///< gain on the sensitivity of the eye, and its contrast_noise
+};
+
+/// Fitted parameters, with the names of a blurred observer. Lapse is the share of answers that do not depend on the
+/// patch and are spread evenly over the alternatives; it is not a parameter of the template observer.
 enum class ObserverKey { blur_sigma_samples, internal_noise, sensor_noise_factor, lapse };
 inline constexpr std::array all_observer_keys{ObserverKey::blur_sigma_samples, ObserverKey::internal_noise,
                                               ObserverKey::sensor_noise_factor, ObserverKey::lapse};
 [[nodiscard]] std::string_view to_string(ObserverKey key);
 inline constexpr std::size_t observer_key_count = all_observer_keys.size();
+/// Name of a parameter of this kind of observer.
+[[nodiscard]] std::string_view parameter_name(ObserverKey key, FittedKind kind);
 
 /// By ObserverKey.
 using ObserverValues = std::array<double, observer_key_count>;
 
 /// Limits of the search, by ObserverKey.
-inline constexpr ObserverValues least_values{AnswerLattice::least_sigma, AnswerLattice::least_noise, 1, 0};
-inline constexpr ObserverValues most_values{AnswerLattice::most_sigma, 5, 10, 0.5};
+struct ObserverLimits {
+  ObserverValues least{}, most{};
+};
+[[nodiscard]] constexpr ObserverLimits observer_limits(FittedKind kind) {
+  if (kind == FittedKind::eye) return {{0.05, 1e-3, 1, 0}, {20, 1, 10, 0.5}};
+  return {{AnswerLattice::least_sigma, AnswerLattice::least_noise, 1, 0}, {AnswerLattice::most_sigma, 5, 10, 0.5}};
+}
 
 /// Coordinates of the search: logarithms of the first three parameters, the lapse itself.
 using ObserverPlace = std::array<double, observer_key_count>;
-[[nodiscard]] ObserverPlace place_of(const ObserverValues& values);
+/// Values below the limits are taken as the limits.
+[[nodiscard]] ObserverPlace place_of(const ObserverValues& values, FittedKind kind = FittedKind::blurred);
 [[nodiscard]] ObserverValues values_at(const ObserverPlace& place);
 
 /// An answer to a patch of the lattice.

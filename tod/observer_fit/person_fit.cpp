@@ -18,10 +18,11 @@ using Matrix = std::array<std::array<double, observer_key_count>, observer_key_c
 /// sqrt of the 95 % quantile of chi-squared with one degree of freedom.
 constexpr double root_95 = 1.959964;
 
-ParameterBox<observer_key_count> domain(const PersonFitOptions& options) {
-  const ObserverPlace start = place_of(options.start);
+ParameterBox<observer_key_count> domain(const PersonFitOptions& options, FittedKind kind) {
+  const ObserverPlace start = place_of(options.start, kind);
   ParameterBox<observer_key_count> box{start, start};
-  const ObserverPlace least = place_of(least_values), most = place_of(most_values);
+  const ObserverPlace least = place_of(observer_limits(kind).least, kind);
+  const ObserverPlace most = place_of(observer_limits(kind).most, kind);
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     if (!options.free[k]) continue;
     box.lower[k] = least[k];
@@ -136,7 +137,8 @@ std::optional<double> side(const std::optional<double>& bound, std::size_t key, 
   if (bound) return logarithmic ? std::exp(*bound) : *bound;
   const bool hard = key == static_cast<std::size_t>(ObserverKey::sensor_noise_factor) ||
                     key == static_cast<std::size_t>(ObserverKey::lapse);
-  return hard && direction < 0 ? std::optional(least_values[key]) : std::nullopt;
+  // A natural limit of both kinds of observers.
+  return hard && direction < 0 ? std::optional(observer_limits(FittedKind::blurred).least[key]) : std::nullopt;
 }
 
 /// Starts around the given one: more blur and less noise, and the opposite.
@@ -171,20 +173,22 @@ Result<PersonFit> fit_person(AnswerLattice& lattice, std::span<const PersonAnswe
   if (answers.empty()) return fail(ErrorCode::invalid_input, "there are no answers to fit");
   if (std::none_of(options.free.begin(), options.free.end(), [](bool free) { return free; }))
     return fail(ErrorCode::invalid_input, "no parameter is free");
+  const FittedKind kind = lattice.has_eye() ? FittedKind::eye : FittedKind::blurred;
+  const ObserverLimits limits = observer_limits(kind);
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     // An observer without noise answers as with the least noise of the lattice.
     const bool least = k == static_cast<std::size_t>(ObserverKey::internal_noise);
-    if (options.start[k] <= most_values[k] && (least ? options.start[k] >= 0 : options.start[k] >= least_values[k]))
+    if (options.start[k] <= limits.most[k] && (least ? options.start[k] >= 0 : options.start[k] >= limits.least[k]))
       continue;
-    return fail(ErrorCode::invalid_input, std::string(to_string(all_observer_keys[k])) +
+    return fail(ErrorCode::invalid_input, std::string(parameter_name(all_observer_keys[k], kind)) +
                                               " of the starting observer is outside the range of the fit");
   }
   const auto likelihood = [&](const ObserverPlace& place) { return person_likelihood(lattice, answers, place); };
-  const ParameterBox<observer_key_count> box = domain(options);
+  const ParameterBox<observer_key_count> box = domain(options, kind);
   std::optional<Top> top;
   const bool only_here = options.intervals == PersonFitOptions::Intervals::none;
-  const auto starts =
-      only_here ? std::vector{place_of(options.start)} : starts_round(place_of(options.start), options.free);
+  const auto starts = only_here ? std::vector{place_of(options.start, kind)}
+                                : starts_round(place_of(options.start, kind), options.free);
   for (const ObserverPlace& start : starts) {
     const Top found = only_here ? few_steps(lattice, answers, start, box) : climb(likelihood, start, box);
     if (!top || found.expansion.value > top->expansion.value) top = found;

@@ -21,6 +21,26 @@ std::array<double, alternatives> observer_shares(AnswerLattice& lattice, std::si
   return out;
 }
 
+/// Both noises of an observer with an eye for a patch, and their slopes.
+struct EyeNoises {
+  double eye = 0, white = 0;
+  double by_gain = 0, by_contrast_noise = 0, by_factor = 0;  ///< d ln eye / d ln of the first two, d ln white / d ln f
+};
+EyeNoises eye_noises(const AnswerLattice& lattice, std::size_t patch, const ObserverValues& values) {
+  EyeNoises out;
+  const double whole = lattice.eye_noise(patch, values[blur], values[internal]);
+  const double fixed = lattice.eye_noise(patch, values[blur], 0);
+  const double seen = lattice.patch(patch).noise_k / lattice.patch(patch).contrast_k;
+  const double added = std::sqrt(std::max(0.0, values[factor] * values[factor] - 1)) * std::abs(seen);
+  out.eye = std::max(whole, AnswerLattice::least_noise);
+  out.white = std::max(added, AnswerLattice::least_noise);
+  // eye^2 = fixed^2 + (contrast_noise B)^2, and fixed is proportional to 1 / gain.
+  out.by_gain = -std::pow(fixed / out.eye, 2);
+  out.by_contrast_noise = (whole * whole - fixed * fixed) / (out.eye * out.eye);
+  out.by_factor = std::pow(values[factor] * seen / out.white, 2);
+  return out;
+}
+
 double inside(double value, double low, double high) {
   return std::clamp(value, low, high);
 }
@@ -47,14 +67,45 @@ double own_noise(const AnsweredPatch& patch, const ObserverValues& values) {
 }
 
 std::array<double, 4> answer_shares(AnswerLattice& lattice, std::size_t patch, const ObserverValues& values) {
-  auto shares = observer_shares(lattice, patch, values[blur],
-                                std::max(own_noise(lattice.patch(patch), values), AnswerLattice::least_noise));
+  std::array<double, 4> shares{};
+  if (lattice.has_eye()) {
+    const EyeNoises noises = eye_noises(lattice, patch, values);
+    shares = observer_shares(lattice, patch, noises.eye, noises.white);
+  } else {
+    shares = observer_shares(lattice, patch, values[blur],
+                             std::max(own_noise(lattice.patch(patch), values), AnswerLattice::least_noise));
+  }
   for (double& share : shares) share = values[lapse] / alternatives + (1 - values[lapse]) * share;
   return shares;
 }
 
+namespace {
+
+AnswerExpansion eye_expansion(AnswerLattice& lattice, std::size_t patch, const ObserverValues& values) {
+  const EyeNoises noises = eye_noises(lattice, patch, values);
+  const auto own = observer_shares(lattice, patch, noises.eye, noises.white);
+  const double low = AnswerLattice::least_noise, high = AnswerLattice::most_noise;
+  const auto by_eye =
+      difference([&](double x) { return lattice.log_probabilities(patch, x, noises.white); }, noises.eye, low, high);
+  const auto by_white =
+      difference([&](double x) { return lattice.log_probabilities(patch, noises.eye, x); }, noises.white, low, high);
+  AnswerExpansion out;
+  const double kept = 1 - values[lapse];
+  for (std::size_t o = 0; o < alternatives; ++o) {
+    out.probability[o] = values[lapse] / alternatives + kept * own[o];
+    out.slope[blur][o] = kept * by_eye[o] * noises.by_gain;
+    out.slope[internal][o] = kept * by_eye[o] * noises.by_contrast_noise;
+    out.slope[factor][o] = kept * by_white[o] * noises.by_factor;
+    out.slope[lapse][o] = 1.0 / alternatives - own[o];
+  }
+  return out;
+}
+
+}  // namespace
+
 AnswerExpansion answer_expansion(AnswerLattice& lattice, std::size_t patch, const ObserverPlace& place) {
   const ObserverValues values = values_at(place);
+  if (lattice.has_eye()) return eye_expansion(lattice, patch, values);
   const double noise = own_noise(lattice.patch(patch), values);
   const double sd = std::max(noise, AnswerLattice::least_noise);
   const auto own = observer_shares(lattice, patch, values[blur], sd);

@@ -43,6 +43,36 @@ TEST(ObserverFitStudy, IntervalsHoldTheValuesOfAHundredPeople) {
   }
 }
 
+TEST(ObserverFitStudy, IntervalsHoldTheEyesOfAHundredPeople) {
+  const ShownSession session = shown_session(contrasts_for_an_eye(), 12, 3);
+  AnswerLattice lattice =
+      std::move(*AnswerLattice::create(eye_at_display(), triangle_alternatives(), session.patches, {}));
+  constexpr int persons = 100;
+  std::array<int, 3> held{};
+  std::array<double, 3> sum{}, square{}, variance{};
+  for (std::uint64_t person = 0; person < persons; ++person) {
+    // Spread over the open parameters of hvs-2: sensitivity +-4 dB, contrast noise, efficiency.
+    const RandomStream own(person, "study.eyes");
+    const ObserverValues truth{std::exp(0.46 * (2 * own.uniform(0) - 1)), 0.02 + 0.05 * own.uniform(1),
+                               1.3 + 1.5 * own.uniform(2), 0};
+    const auto fit = *fit_person(lattice, answers_of(truth, session, 1000 + person, FittedKind::eye),
+                                 {.start = {1, 0.03, 1.75, 0}, .free = {true, true, true, false}});
+    for (std::size_t k = 0; k < 3; ++k) {
+      held[k] += fit.ci95[k].low.value_or(0) <= truth[k] && fit.ci95[k].high.value_or(1e9) >= truth[k] ? 1 : 0;
+      const double off = std::log(fit.values[k] / truth[k]);
+      sum[k] += off;
+      square[k] += off * off;
+      variance[k] += std::pow(standard_error(fit, k).value_or(0), 2);
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::printf("%s: held %d of %d, mean error of ln %+.3f, scatter %.3f, stated %.3f\n",
+                std::string(parameter_name(all_observer_keys[k], FittedKind::eye)).c_str(), held[k], persons,
+                sum[k] / persons, std::sqrt(square[k] / persons), std::sqrt(variance[k] / persons));
+    EXPECT_GE(held[k], 90);
+  }
+}
+
 /// Changes the answers of the model.
 using Change = void (*)(PersonAnswer& answer, const RandomStream& own);
 

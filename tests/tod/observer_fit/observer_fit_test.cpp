@@ -56,6 +56,40 @@ TEST(AnswerLattice, SaysWhatTheObserverItselfSays) {
   }
 }
 
+/// 48 patches at two contrasts, for an eye.
+ShownSession short_session_for_an_eye(int per_size) {
+  return shown_session({{3, {1.0, 1.4, 2.0}}, {0.5, {1.8, 2.6, 3.6}}}, per_size, 3);
+}
+
+TEST(AnswerLattice, SaysWhatTheObserverWithAnEyeItselfSays) {
+  const ShownSession session = short_session_for_an_eye(4);
+  AnswerLattice lattice = std::move(
+      *AnswerLattice::create(eye_at_display(), triangle_alternatives(), session.patches, {.draws = 384, .seed = 1}));
+  for (const ObserverValues& person :
+       {ObserverValues{1, 0.03, 1.75, 0}, ObserverValues{0.7, 0.06, 1.2, 0}, ObserverValues{1.5, 0.01, 2.5, 0}}) {
+    TemplateObserver observer(person_of(person, FittedKind::eye), triangle_alternatives());
+    double square = 0, bias = 0;
+    for (std::size_t i = 0; i < session.patches.size(); ++i) {
+      const AnsweredPatch& shown = session.patches[i];
+      const auto prepared = *observer.prepare(shown.size_samples, 1);
+
+      const auto judged = prepared->judge({.kelvin = cv::Mat1d(shown.kelvin), .phase = {}, .noise_k = shown.noise_k},
+                                          shown.contrast_k, RandomStream(5, i), 4000);
+      const auto shares = answer_shares(lattice, i, person);
+
+      for (std::size_t o = 0; o < 4; ++o) {
+        const double off = shares[o] - judged.answers.probability[o];
+        square += off * off;
+        if (static_cast<int>(o) == session.truths[i]) bias += off;
+      }
+    }
+    const auto patches = static_cast<double>(session.patches.size());
+    // As for the blurred observer: draws of 384, shared by the patches of a size.
+    EXPECT_LT(std::sqrt(square / (4 * patches)), 0.02) << person[0];
+    EXPECT_NEAR(bias / patches, 0, 4 * 0.02 / std::sqrt(6.0)) << person[0];
+  }
+}
+
 TEST(AnswerLattice, RefusesWhatNobodyCanJudge) {
   const ShownSession session = short_session(1);
   const auto refused = [&](auto&& change) {
@@ -117,6 +151,25 @@ TEST(ObserverFit, IntervalsHoldTheValuesOfSimulatedPeople) {
   // Of 8 intervals of 95 % fewer than 6 hold with probability 0.006.
   EXPECT_GE(held[0], 6);
   EXPECT_GE(held[1], 6);
+}
+
+TEST(ObserverFit, IntervalsHoldTheGainAndTheNoiseFactorOfSimulatedEyes) {
+  const ShownSession session = short_session_for_an_eye(8);
+  AnswerLattice lattice = std::move(
+      *AnswerLattice::create(eye_at_display(), triangle_alternatives(), session.patches, {.draws = 32, .seed = 1}));
+  const ObserverValues eye{0.8, 0.03, 2, 0};
+  std::array<int, 3> held{};
+  constexpr int persons = 8;
+  for (std::uint64_t person = 0; person < persons; ++person) {
+    const auto fit = *fit_person(lattice, answers_of(eye, session, 100 + person, FittedKind::eye),
+                                 {.start = {1, 0.03, 1.75, 0}, .free = {true, false, true, false}});
+    for (const std::size_t k : {0u, 2u})
+      held[k] += fit.ci95[k].low.value_or(0) <= eye[k] && fit.ci95[k].high.value_or(1e9) >= eye[k] ? 1 : 0;
+    EXPECT_EQ(fit.values[1], 0.03);
+  }
+  // Of 8 intervals of 95 % fewer than 6 hold with probability 0.006.
+  EXPECT_GE(held[0], 6);
+  EXPECT_GE(held[2], 6);
 }
 
 TEST(ObserverFit, RefusesSomebodyWhoseWrongAnswersAreAllUpAndTakesTheModelItself) {

@@ -75,14 +75,45 @@ inline ShownSession shown_session(const std::vector<ShownContrast>& contrasts, i
   return out;
 }
 
+/// hvs-2 at a display of 3 arcmin a sample with a fixed gain, so that contrasts differ in luminance.
+inline TemplateObserverSpec eye_at_display() {
+  return {.name = "hvs-2",
+          .internal_noise = 0,
+          .sensor_noise_factor = 1.75,
+          .eye = EyeParameters{},
+          .window_margin_arcmin = 6,
+          .display = ViewedDisplay{.pixel_pitch_mm = 2000 * std::tan(3.0 / 120 * std::numbers::pi / 180),
+                                   .viewing_distance_m = 1,
+                                   .luminance_white_cd_m2 = 100,
+                                   .span_k = 12}};
+}
+
+/// Contrasts and sizes about the threshold for eye_at_display().
+inline std::vector<ShownContrast> contrasts_for_an_eye() {
+  return {{3, {0.9, 1.1, 1.3, 1.5, 1.7, 2.0, 2.4, 3.0}},
+          {1, {1.1, 1.3, 1.6, 1.9, 2.2, 2.6, 3.1, 3.8}},
+          {0.35, {1.6, 2.0, 2.5, 3.0, 3.6, 4.3, 5.2, 6.2}}};
+}
+
+/// A person with these values.
+inline TemplateObserverSpec person_of(const ObserverValues& person, FittedKind kind) {
+  if (kind == FittedKind::blurred) {
+    return {.name = "person",
+            .blur_sigma_samples = person[0],
+            .internal_noise = person[1],
+            .sensor_noise_factor = person[2]};
+  }
+  TemplateObserverSpec spec = eye_at_display();
+  spec.eye->sensitivity *= person[0];
+  spec.eye->contrast_noise = person[1];
+  spec.sensor_noise_factor = person[2];
+  return spec;
+}
+
 /// The answers of an observer with these values: choose() itself, no table of probabilities.
 inline std::vector<PersonAnswer> answers_of(const ObserverValues& person, const ShownSession& session,
-                                            std::uint64_t seed) {
-  TemplateObserver observer({.name = "person",
-                             .blur_sigma_samples = person[0],
-                             .internal_noise = person[1],
-                             .sensor_noise_factor = person[2]},
-                            triangle_alternatives());
+                                            std::uint64_t seed, FittedKind kind = FittedKind::blurred) {
+  TemplateObserver observer(person_of(person, kind), triangle_alternatives());
   std::vector<PersonAnswer> out;
   const RandomStream all(seed, "test.answers");
   for (std::size_t i = 0; i < session.patches.size(); ++i) {
