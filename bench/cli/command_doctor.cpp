@@ -4,22 +4,54 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/simulation_plan.h"
 #include "bench/doctor/doctor.h"
+#include "bench/run/acuity_limits.h"
 
 namespace todbench {
 namespace {
 
 struct DoctorArguments {
-  std::string root = "/", folder = ".";
+  std::string root = "/", folder = ".", plan;
   DoctorDemand demand;
 };
 
+/// What limits the acuity of the plan's simulated sensor at each contrast.
+Result<std::vector<AcuityLimits>> limits_of_plan(const std::string& plan, const std::stop_token& stop) {
+  const auto loaded = simulation_plan({.plan = plan, .seed = {}, .keys = {}}, stop);
+  if (!loaded) return tl::unexpected(loaded.error());
+  EffectPlanner planner;
+  const auto inputs = experiment_inputs(*loaded, planner);
+  if (!inputs) return tl::unexpected(inputs.error());
+  return acuity_limits(*inputs, loaded->plan().target.delta_t_k, stop);
+}
+
+/// A warning where display, eye or light limit the acuity most: then the test is not one of the camera.
+DoctorCheck check_acuity(const AcuityLimits& limits) {
+  const bool camera = limits.costs.empty() || limits.costs.front().factor == LimitingFactor::sampling ||
+                      limits.costs.front().factor == LimitingFactor::sensor_noise;
+  return {.name = "acuity",
+          .finding = camera ? Finding::ok : Finding::warning,
+          .found = in_words(limits),
+          .explanation =
+              "Display, eye or light should not limit a test of a camera: a larger zoom, a shorter distance "
+              "or more light lets the camera limit it.",
+          .command = {}};
+}
+
 /// Returns 0 if no problem prevents a run, otherwise 1.
-int run_doctor(Console& console, const DoctorArguments& arguments) {
+int run_doctor(Console& console, const DoctorArguments& arguments, const Program& program) {
   SystemFacts facts = live_facts(arguments.folder);
   // The firewall rules of this system do not apply to another root.
   if (arguments.root != "/") facts.firewall_rules.reset();
-  const auto checks = examine(arguments.root, facts, arguments.demand);
+  auto checks = examine(arguments.root, facts, arguments.demand);
+  std::vector<AcuityLimits> limits;
+  if (!arguments.plan.empty()) {
+    auto found = limits_of_plan(arguments.plan, program.stop->token());
+    if (!found) return report_error(console, found.error());
+    limits = *std::move(found);
+    for (const AcuityLimits& at : limits) checks.push_back(check_acuity(at));
+  }
   const bool trouble =
       std::any_of(checks.begin(), checks.end(), [](const auto& c) { return c.finding == Finding::problem; });
   if (console.json()) {
@@ -31,7 +63,9 @@ int run_doctor(Console& console, const DoctorArguments& arguments) {
                       {"explanation", c.explanation},
                       {"command", c.command.empty() ? Json() : Json(c.command)}});
     }
-    console.object({{"checks", list}, {"verdict", trouble ? "problem" : "ok"}});
+    Json json{{"checks", list}, {"verdict", trouble ? "problem" : "ok"}};
+    if (!arguments.plan.empty()) json["acuity_limits"] = acuity_limits_json(limits);
+    console.object(json);
     return trouble ? 1 : 0;
   }
   std::vector<TableRow> rows;
@@ -74,7 +108,8 @@ void add_doctor_command(CLI::App& app, Program& program) {
   command->add_option("--root", a->root, "reads the system files below this folder")
       ->check(CLI::ExistingDirectory)
       ->capture_default_str();
-  finish_command(*command, program, [a](Console& console) { return run_doctor(console, *a); });
+  command->add_option("--plan", a->plan, "also states what limits the acuity at each contrast of this plan");
+  finish_command(*command, program, [a, &program](Console& console) { return run_doctor(console, *a, program); });
 }
 
 }  // namespace todbench

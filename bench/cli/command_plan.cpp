@@ -109,19 +109,6 @@ Json limits_json(const std::vector<LimitForecast>& forecasts) {
   return limits;
 }
 
-Json acuity_limits_json(const std::vector<AcuityLimits>& limits) {
-  Json json = Json::array();
-  for (const AcuityLimits& at : limits) {
-    Json costs = Json::object();
-    for (const FactorCost& cost : at.costs) costs[std::string(to_string(cost.factor))] = json_number(cost.percent);
-    json.push_back({{"delta_t_k", at.delta_t_k},
-                    {"s75_mrad", json_number(at.s75_mrad)},
-                    {"limited_by", at.costs.empty() ? Json(nullptr) : Json(to_string(at.costs.front().factor))},
-                    {"cost_percent", std::move(costs)}});
-  }
-  return json;
-}
-
 struct PlanArguments {
   SimulationOverrides overrides;
   bool what_limits = false, decide = false, optimise = false, why = false;

@@ -31,6 +31,8 @@
 #include "bench/session/measures_record.h"
 #include "bench/session/provenance.h"
 #include "bench/session/uncertainty_record.h"
+#include "bench/text/json_fields.h"
+#include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 #include "tod/psychometric/contrast_slope.h"
 
@@ -146,6 +148,21 @@ void print_verdict(const Console& console, const ExperimentOutcome& outcome) {
 }
 
 /// Adds physical measures, if the plan requests them.
+/// Adds what stands beside the results for an observer with an eye.
+void add_display(Json& json, const ExperimentOutcome& outcome) {
+  if (!outcome.at_display) return;
+  if (auto record = json_of(*outcome.at_display, display_fields)) json["at_display"] = *std::move(record);
+}
+
+void print_display(const Console& console, const ExperimentOutcome& outcome) {
+  if (!outcome.at_display) return;
+  for (const DisplayedPoint& point : outcome.at_display->points) {
+    console.text(outcome.at_display->observer + " at the display, " + number_text(point.delta_t_k) + " K: S75 " +
+                 fixed(point.s75_mrad, 4) + " mrad");
+  }
+  for (const AcuityLimits& limits : outcome.at_display->limits) console.text(in_words(limits));
+}
+
 void add_measures(Json& json, const ExperimentOutcome& outcome) {
   if (!outcome.measures && !outcome.twin_measures) return;
   Json measures = measures_json(outcome.measures, outcome.twin_measures);
@@ -246,6 +263,7 @@ int show_measured(Console& console, const ExperimentOutcome& outcome, const Load
     add_verdict(json, outcome.verdict);
     json["bill"] = bill_json(bill_of(outcome, loaded));
     add_measures(json, outcome);
+    add_display(json, outcome);
     console.object(json);
   } else {
     print_curve(console, outcome.curve);
@@ -255,6 +273,7 @@ int show_measured(Console& console, const ExperimentOutcome& outcome, const Load
     }
     print_uncertainty(console, outcome);
     print_measures(console, outcome);
+    print_display(console, outcome);
     print_bill(console, outcome, loaded);
     print_verdict(console, outcome);
   }
@@ -372,6 +391,7 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
     add_verdict(json, outcome->verdict);
     json["bill"] = bill_json(bill_of(*outcome));
     add_measures(json, *outcome);
+    add_display(json, *outcome);
     console.object(json);
   } else {
     print_curve(console, outcome->curve);
@@ -379,6 +399,7 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
     print_effects(console, outcome->effects);
     print_uncertainty(console, *outcome);
     print_measures(console, *outcome);
+    print_display(console, *outcome);
     print_bill(console, *outcome);
     print_verdict(console, *outcome);
   }
@@ -420,6 +441,7 @@ int run_demo(Console& console, const DemoArguments& asked, const Program& progra
     if (outcome->comparison) print_comparison(console, *outcome);
     print_uncertainty(console, *outcome);
     print_measures(console, *outcome);
+    print_display(console, *outcome);
     print_bill(console, *outcome);
     print_verdict(console, *outcome);
     console.text("report: " + (outcome->folder / "report.html").string());

@@ -13,7 +13,6 @@
 
 #include "acquisition/base/distributions.h"
 #include "bench/enhance/decidable.h"
-#include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/module_chain.h"
@@ -343,7 +342,6 @@ Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector
                                      const EnhancementOptions& options, std::stop_token stop) {
   const Plan& plan = loaded.plan();
   if (auto paired = check_paired_plan(plan); !paired) return tl::unexpected(paired.error());
-  if (auto blind = refuse_eye(loaded.observer(), "enhance"); !blind) return tl::unexpected(blind.error());
   if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
   if (auto same = check_scans(packages, options.dither); !same) return tl::unexpected(same.error());
   // The noise of a pixel comes from successive frames, whose edges are at other places with dither.

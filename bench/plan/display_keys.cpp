@@ -95,6 +95,15 @@ PlanSection display_section() {
                  &ViewedDisplay::contrast),
           number("span_k", "K", "Temperature span from black to white at a fixed gain, in place of contrast; 0: none",
                  &ViewedDisplay::span_k),
+          {.name = "as_operator",
+           .type = FlagKey{},
+           .sentence = "Whether the report states the thresholds of hvs-2 at this display beside those of the observer",
+           .place = in_plan(&Plan::display_as_operator),
+           .check = [](const Plan& plan, std::size_t) -> std::vector<ValueMistake> {
+             if (!plan.display_as_operator || has_display(plan)) return {};
+             return {{std::nullopt, "state the display: pixel pitch, viewing distance and luminance"}};
+           },
+           .written_at_default = false},
       }};
 }
 

@@ -337,6 +337,8 @@ struct Plan {
   std::string observer = "hvs-1";  ///< name or file; key `name` of [observer]
   /// Section [display]: the display of the operator, for an observer with an eye. All defaults: not stated.
   ViewedDisplay display;
+  /// States the thresholds of hvs-2 at the display beside those of the observer; key `as_operator` of [display].
+  bool display_as_operator = false;
   SimulationPlan simulation;
   SchedulePlan schedule;
   FitPlan fit;

@@ -84,6 +84,7 @@ Document report_document(const ReportData& data) {
   add(uncertainty_section(data));
   add(psychometric_section(data));
   add(human_section(data));
+  add(viewing_section(data));
   if (curve) add(comparison_section(data));
   add(measures_section(data));
   add(set_up_section(data));

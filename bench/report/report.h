@@ -15,6 +15,7 @@
 #include "bench/plan/letterhead.h"
 #include "bench/report/document.h"
 #include "bench/report/plot.h"
+#include "bench/session/display_record.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/signature.h"
 #include "sim_devices/prediction/cost_frontier.h"
@@ -65,6 +66,8 @@ struct ReportData {
   std::optional<Comparison> comparison;  ///< A is measured, B is simulated
 
   std::optional<SessionMeasures> measures;  ///< physical measures; empty: not requested
+
+  std::optional<DisplayRecord> at_display;  ///< beside the results, never in the verdict
 
   std::optional<CurveUncertainty> uncertainty;  ///< of the measured curve, or of the simulated one alone
 

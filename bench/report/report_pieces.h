@@ -33,6 +33,8 @@ namespace todbench {
 [[nodiscard]] Section curve_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> psychometric_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> human_section(const ReportData& data);
+/// Returns what limits the acuity, and the thresholds of an operator at the display.
+[[nodiscard]] std::optional<Section> viewing_section(const ReportData& data);
 [[nodiscard]] Section comparison_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> answers_section(const ReportData& data);
 

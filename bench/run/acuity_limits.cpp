@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/run/acuity_limits.h"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "bench/plan/descriptions.h"
+#include "bench/plan/resources.h"
+#include "bench/run/direct_results.h"
+#include "bench/run/module_chain.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"
 
@@ -103,22 +106,6 @@ Result<double> s75_of(const ViewedSensor& viewed, double delta_t_k) {
 
 }  // namespace
 
-std::string_view to_string(LimitingFactor factor) {
-  switch (factor) {
-    case LimitingFactor::sampling:
-      return "sampling";
-    case LimitingFactor::sensor_noise:
-      return "sensor_noise";
-    case LimitingFactor::display:
-      return "display";
-    case LimitingFactor::eye:
-      return "eye";
-    case LimitingFactor::light:
-      return "light";
-  }
-  return "";
-}
-
 Result<std::vector<AcuityLimits>> acuity_limits(const ExperimentInputs& inputs, const std::vector<double>& delta_t_k,
                                                 std::stop_token stop) {
   ViewedSensor all{inputs.sensor, inputs.effects, inputs.observer, {}};
@@ -144,20 +131,35 @@ Result<std::vector<AcuityLimits>> acuity_limits(const ExperimentInputs& inputs, 
   return found;
 }
 
-std::string in_words(const AcuityLimits& limits) {
-  const auto name = [](LimitingFactor factor) -> std::string_view {
-    return factor == LimitingFactor::sensor_noise ? "sensor noise" : to_string(factor);
-  };
-  std::string text = fmt::format("at {:g} K", limits.delta_t_k);
-  if (limits.costs.empty()) return text + " nothing that can be left out limits the acuity";
-  text += fmt::format(" the {} limits the acuity most; S75 is larger than without it by: ",
-                      name(limits.costs.front().factor));
-  for (std::size_t i = 0; i < limits.costs.size(); ++i) {
-    // Adding 0 turns a rounded -0 into 0.
-    text += fmt::format("{}{} {:.0f} %", i == 0 ? "" : ", ", name(limits.costs[i].factor),
-                        std::round(limits.costs[i].percent) + 0.0);
+Result<std::optional<DisplayRecord>> at_display(const TodCurve& curve, const ExperimentInputs& inputs, const Plan& plan,
+                                                std::stop_token stop) {
+  if (has_modules(plan, inputs.sensor) || !(inputs.observer.eye || plan.display_as_operator)) return std::nullopt;
+  ExperimentInputs viewed = inputs;
+  DisplayRecord record;
+  if (!inputs.observer.eye) {
+    const auto resource = find_resource(ResourceKind::observer, "hvs-2");
+    if (!resource) return tl::unexpected(resource.error());
+    auto person = parse_observer(*resource);
+    if (!person) return tl::unexpected(person.error());
+    viewed.observer = *std::move(person);
+    viewed.observer.display = plan.display;
+    const DirectResults direct = direct_results(curve, viewed, {}, plan.seed, stop);
+    if (direct.ended_by) return tl::unexpected(*direct.ended_by);
+    const double ifov_mrad = inputs.sensor.ifov_mrad();
+    for (const auto& [contrast, point] : direct.points) {
+      DisplayedPoint shown{.delta_t_k = contrast, .s75_mrad = point.s75_pitch * ifov_mrad};
+      if (const auto spread = direct.spread_pitch.find(contrast); spread != direct.spread_pitch.end())
+        shown.spread_mrad = {spread->second.first * ifov_mrad, spread->second.second * ifov_mrad};
+      record.points.push_back(shown);
+    }
   }
-  return text;
+  record.observer = viewed.observer.name;
+  std::vector<double> contrasts;
+  for (const TodPoint& point : curve.points) contrasts.push_back(point.delta_t_k);
+  auto limits = acuity_limits(viewed, contrasts, std::move(stop));
+  if (!limits) return tl::unexpected(limits.error());
+  record.limits = *std::move(limits);
+  return record;
 }
 
 }  // namespace todbench

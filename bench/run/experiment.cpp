@@ -11,6 +11,7 @@
 
 #include "acquisition/recording/frame_stream.h"
 #include "bench/judgement/run_findings.h"
+#include "bench/run/acuity_limits.h"
 #include "bench/run/background_twin_functions.h"
 #include "bench/run/bench_host.h"
 #include "bench/run/camera_settings.h"
@@ -560,6 +561,21 @@ void add_twin(ExperimentOutcome& outcome, Provenance& provenance, const FromCame
     outcome.ended_by = with_context("the simulated twin", measures.error());
 }
 
+/// Adds what stands beside the results for an observer with an eye. Without it the session is complete, too.
+void add_display(ExperimentOutcome& outcome, Provenance& provenance, const Plan& plan, const ExperimentInputs& inputs,
+                 const OpenSession& open, const std::stop_token& stop) {
+  if (outcome.ended_by || !(inputs.observer.eye || plan.display_as_operator)) return;
+  phase(open.folder, open.listener, "estimating what limits the acuity");
+  auto found = at_display(outcome.curve, inputs, plan, stop);
+  if (found) {
+    outcome.at_display = provenance.at_display = *std::move(found);
+  } else if (found.error().code == ErrorCode::interrupted) {
+    outcome.ended_by = found.error();
+  } else {
+    note(open.folder, open.listener, "no limits of the acuity: " + found.error().message);
+  }
+}
+
 }  // namespace
 
 Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,
@@ -609,17 +625,18 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
   }
   run->result.notes.insert(run->result.notes.end(), inputs->warnings.begin(), inputs->warnings.end());
   provenance.run = run_record(run->result, run->wall_s);
-  return concluded({.folder = folder->path(),
-                    .curve = std::move(run->curve),
-                    .twin = std::nullopt,
-                    .comparison = std::nullopt,
-                    .verdict = {},
-                    .measures = std::move(measures),
-                    .effects = inputs->effects,
-                    .figures = figures_of(*provenance.run),
-                    .ended_by = run->result.ended_by,
-                    .presentations = std::move(run->result.presentations)},
-                   plan, open, provenance);
+  ExperimentOutcome outcome{.folder = folder->path(),
+                            .curve = std::move(run->curve),
+                            .twin = std::nullopt,
+                            .comparison = std::nullopt,
+                            .verdict = {},
+                            .measures = std::move(measures),
+                            .effects = inputs->effects,
+                            .figures = figures_of(*provenance.run),
+                            .ended_by = run->result.ended_by,
+                            .presentations = std::move(run->result.presentations)};
+  add_display(outcome, provenance, plan, *inputs, open, stop);
+  return concluded(std::move(outcome), plan, open, provenance);
 }
 
 Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
@@ -741,6 +758,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
     if (plan.camera.contrast == ContrastUnit::kelvin) camera.responses = *responses;
     add_twin(outcome, provenance, camera, loaded, plan, inputs, {pairs.get(), twin_measures}, options.host, open, stop);
   }
+  add_display(outcome, provenance, plan, inputs, open, stop);
   return concluded(std::move(outcome), plan, open, provenance);
 }
 

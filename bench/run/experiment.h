@@ -18,6 +18,7 @@
 #include "bench/run/devices.h"
 #include "bench/run/experiment_host.h"
 #include "bench/run/experiment_inputs.h"
+#include "bench/session/display_record.h"
 #include "bench/session/json_output.h"
 #include "bench/session/provenance.h"
 #include "bench/session/session_folder.h"
@@ -61,6 +62,7 @@ struct ExperimentOutcome {
   std::optional<CameraMeasures> measures{};       ///< physical; of the camera or of the simulated sensor alone
   std::optional<CameraMeasures> twin_measures{};  ///< of the twin
   SensorPlan effects;                             ///< of the simulated sensor
+  std::optional<DisplayRecord> at_display{};      ///< beside the results; at_display()
   RunFigures figures;                             ///< of `curve`
   std::optional<Error> ended_by;                  ///< of an early stop; the folder is valid and marked interrupted
   std::vector<Presentation> presentations{};      ///< of `curve`

@@ -137,6 +137,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   }
   if (provenance.clock_jump_s != 0) data.notes.push_back(jump_sentence(provenance.clock_jump_s));
   add_provenance(data, provenance);
+  data.at_display = provenance.at_display;
   return data;
 }
 

@@ -151,6 +151,7 @@ void provenance_fields(JsonFields& json, Provenance& provenance) {
   json.if_any("camera_optics", provenance.camera_optics, optics_fields);
   json.if_any("selftest", provenance.selftest, selftest_fields);
   json.if_any("origin", provenance.origin, origin_fields);
+  json.if_any("at_display", provenance.at_display, display_fields);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "acquisition/core/frame_source.h"
 #include "bench/plan/plan_options.h"
+#include "bench/session/display_record.h"
 #include "bench/session/json_output.h"
 #include "bench/session/selftest_record.h"
 #include "tod/measurement/measurement.h"
@@ -103,6 +104,8 @@ struct Provenance {
   std::optional<SelftestRecord> selftest{};
   /// Present if the frames are those of another session.
   std::optional<OriginRecord> origin{};
+  /// Limits of the acuity, and thresholds of an operator at the display; empty: no observer with an eye.
+  std::optional<DisplayRecord> at_display{};
 };
 
 /// Returns the number of parts between camera losses; 1: the camera was never lost.

@@ -48,6 +48,28 @@ TEST(DoctorCommand, EndsWithZeroWhenNothingStandsInTheWay) {
   EXPECT_EQ(one_object(ended)["verdict"], "ok");
 }
 
+TEST(DoctorCommand, WarnsWhereTheDisplayOfAPlanLimitsTheAcuity) {
+  const TemporaryFolder folder;
+  folder.write("proc/sys/net/core/rmem_max", "16777216\n");
+  const std::string scene =
+      "[target]\nkind = \"scene\"\ndistance_m = 2\nplates = [\"tcat-a\"]\ndelta_t_k = [16.9]\n[simulation]\nsensor = "
+      "\"sc2000\"\n[observer]\nname = \"hvs-2\"\n[display]\npixel_pitch_mm = 0.25\nluminance_white_cd_m2 = 100\n";
+  folder.write("far.toml", scene + "viewing_distance_m = 2\n");
+  folder.write("near.toml", scene + "viewing_distance_m = 0.5\nzoom = 6\n");
+  const auto limits = [&](const std::string& plan) {
+    return one_object(
+        todbench({"doctor", "--root", folder.path().string(), "--plan", plan, "--json"}, {.folder = folder.path()}));
+  };
+
+  const Json far = limits("far.toml"), near = limits("near.toml");
+
+  EXPECT_EQ(far["checks"].back()["name"], "acuity");
+  EXPECT_EQ(far["checks"].back()["finding"], "warning");
+  EXPECT_THAT(far["acuity_limits"][0]["limited_by"].get<std::string>(), AnyOf("eye", "light", "display"));
+  EXPECT_EQ(near["checks"].back()["finding"], "ok");
+  EXPECT_EQ(near["acuity_limits"][0]["limited_by"], "sampling");
+}
+
 TEST(DoctorCommand, RefusesAFolderThatIsNotThere) {
   const TemporaryFolder folder;
 

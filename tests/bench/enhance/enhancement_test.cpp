@@ -117,6 +117,26 @@ TEST(Enhancement, ByARecursiveFilterIsThatOfLessNoise) {
   EXPECT_NEAR(std::log(*filtered_fit.threshold / *quiet_fit.threshold), 0, 4 * se);
 }
 
+TEST(Enhancement, IsSeenByAnObserverWithAnEyeAtTheDisplayOfThePlan) {
+  // A filter that is neutral changes nothing; one that blurs costs acuity where the eye does not limit it.
+  const auto plan = small_plan("16.9", 6,
+                               "[observer]\nname = \"hvs-2\"\n[display]\npixel_pitch_mm = 0.27\nviewing_distance_m = "
+                               "0.5\nzoom = 3\nluminance_white_cd_m2 = 200\n");
+  StagePlan neutral{.kind = StagePlan::Kind::sharpen, .amount = 0};
+  StagePlan blurred{.kind = StagePlan::Kind::kernel};
+  blurred.kernel.fill(1.0 / 9);
+
+  const auto found =
+      compare_packages(plan, {package_of({neutral}, "neutral"), package_of({blurred}, "blurred")}, {}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_EQ(found->results.size(), 3u);
+  for (const auto& ratio : found->results[1].ratios) EXPECT_EQ(ratio.ratio.value_or(1), 1);
+  ASSERT_EQ(found->results[2].ratios.size(), 1u);
+  // Few answers have no interval; the ratio is about a half.
+  EXPECT_LT(found->results[2].ratios[0].ratio.value_or(1), 0.8) << "a blurred picture shows less";
+}
+
 TEST(Enhancement, KeepsTheTrialsOfAPackageThatFailsAndGoesOn) {
   ::signal(SIGPIPE, SIG_IGN);
   const auto plan = small_plan("16.9", 2);
