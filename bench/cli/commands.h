@@ -65,6 +65,7 @@ void add_reference_set_command(CLI::App& app, Program& program);
 void add_observer_command(CLI::App& app, Program& program);
 void add_reproduce_command(CLI::App& app, Program& program);
 void add_selftest_command(CLI::App& app, Program& program);
+void add_serve_command(CLI::App& app, Program& program);
 void add_sweep_command(CLI::App& app, Program& program);
 void add_instrument_command(CLI::App& app, Program& program);
 

@@ -3,6 +3,7 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/resource.h>
@@ -10,8 +11,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
+#include <random>
 #include <utility>
 
 namespace todbench {
@@ -24,8 +27,31 @@ constexpr auto time_to_answer = std::chrono::seconds(3);
 /// Descriptors reserved for the run: session, recording, instruments, camera sockets.
 constexpr rlim_t reserved_descriptors = 64;
 
+/// Unread bytes that are awaited after an answer: a close with unread bytes resets the connection, and the client would
+/// lose the answer.
+constexpr std::size_t most_unread = std::size_t{1} << 20;
+constexpr auto time_to_drain = std::chrono::milliseconds(300);
+
 /// Set while a job of this thread must close its connection at once.
 thread_local bool is_one_too_many = false;
+/// Set by the handler of the request that this thread answers.
+thread_local std::function<void(int)> taker;
+thread_local std::chrono::milliseconds more_time{0};
+
+void drain(int socket) {
+  std::array<char, 4096> some{};
+  if (::recv(socket, some.data(), 1, MSG_PEEK | MSG_DONTWAIT) <= 0) return;
+  ::shutdown(socket, SHUT_WR);
+  const auto until = Clock::now() + time_to_drain;
+  for (std::size_t unread = 0; unread < most_unread;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
+    pollfd one{socket, POLLIN, 0};
+    if (left.count() <= 0 || ::poll(&one, 1, static_cast<int>(left.count())) <= 0) return;
+    const ssize_t got = ::recv(socket, some.data(), some.size(), MSG_DONTWAIT);
+    if (got <= 0) return;
+    unread += static_cast<std::size_t>(got);
+  }
+}
 
 bool takes_from_the_reserve(int descriptor) {
   rlimit limit{};
@@ -39,7 +65,10 @@ class TimedStream : public httplib::Stream {
  public:
   explicit TimedStream(int socket) : socket_(socket) {}
   [[nodiscard]] bool is_readable() const override { return is_ready(POLLIN, asked_by_); }
-  [[nodiscard]] bool is_writable() const override { return is_ready(POLLOUT, answered_by_); }
+  [[nodiscard]] bool is_writable() const override {
+    if (answered_by_ == Clock::time_point()) answered_by_ = Clock::now() + time_to_answer + more_time;
+    return is_ready(POLLOUT, answered_by_);
+  }
   ssize_t read(char* to, std::size_t bytes) override {
     return is_readable() ? ::recv(socket_, to, bytes, MSG_DONTWAIT) : -1;
   }
@@ -81,7 +110,7 @@ class TimedStream : public httplib::Stream {
 
   int socket_;
   Clock::time_point asked_by_ = Clock::now() + time_to_ask;
-  Clock::time_point answered_by_ = asked_by_ + time_to_answer;
+  mutable Clock::time_point answered_by_{};  ///< set by the first write: an answer may take time to find
 };
 
 }  // namespace
@@ -129,12 +158,82 @@ void BoundedQueue::work() {
   }
 }
 
+GuardedServer::GuardedServer() {
+  new_task_queue = [] { return new BoundedQueue; };
+  set_tcp_nodelay(true);
+  // SO_REUSEADDR instead of the library's SO_REUSEPORT, with which another program could listen on the same port.
+  set_socket_options([](socket_t socket) {
+    const int on = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  });
+}
+
+void GuardedServer::hand_over(std::function<void(int)> take) {
+  taker = std::move(take);
+}
+
+void GuardedServer::allow_more_time(std::chrono::milliseconds more) {
+  more_time = more;
+}
+
+namespace {
+
+void guard_with(httplib::Response& response, const char* policy) {
+  response.set_header("Content-Security-Policy", policy);
+  response.set_header("Referrer-Policy", "no-referrer");
+  response.set_header("X-Content-Type-Options", "nosniff");
+  response.set_header("Cache-Control", "no-store");
+}
+
+}  // namespace
+
+void guard(httplib::Response& response) {
+  guard_with(response,
+             "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+             "img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+}
+
+void guard_report(httplib::Response& response) {
+  guard_with(response,
+             "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; "
+             "frame-ancestors 'none'; sandbox");
+}
+
+std::string random_token() {
+  std::random_device device;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
+  return token;
+}
+
+Result<int> bind_to(GuardedServer& server, const ServeAddress& address) {
+  const int port = address.port == 0                                 ? server.bind_to_any_port(address.host)
+                   : server.bind_to_port(address.host, address.port) ? address.port
+                                                                     : -1;
+  if (port > 0) return port;
+  return fail(ErrorCode::io,
+              fmt::format("{}:{} cannot be used: the port is in use, or the address is not one of this computer",
+                          address.host, address.port));
+}
+
+std::string url_of(const ServeAddress& address, int port) {
+  const bool six = address.host.find(':') != std::string::npos;
+  return fmt::format("http://{}:{}/", six ? "[" + address.host + "]" : address.host, port);
+}
+
 bool GuardedServer::process_and_close_socket(socket_t socket) {
   bool done = false;
+  taker = nullptr;
+  more_time = {};
   if (!is_one_too_many && !takes_from_the_reserve(socket)) {
     TimedStream stream(socket);
     bool closed = false;
     done = process_request(stream, true, closed, nullptr);
+    if (const auto take = std::exchange(taker, nullptr); done && take) {
+      take(socket);
+      return true;
+    }
+    drain(socket);
   }
   ::shutdown(socket, SHUT_RDWR);
   ::close(socket);

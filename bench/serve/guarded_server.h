@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HTTP server that protects the run's file descriptors and time from its clients. Private to bench/serve.
+// HTTP server that protects the run's file descriptors and time from its clients. For bench/serve and
+// bench/run_control.
 #pragma once
 
 #include <httplib.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
+
+#include "acquisition/base/result.h"
+#include "bench/serve/serve_address.h"
 
 namespace todbench {
 
@@ -31,11 +37,33 @@ class BoundedQueue : public httplib::TaskQueue {
   std::vector<std::thread> workers_;
 };
 
-/// Server with one request per connection, which must arrive within one second and be answered within three. A
-/// connection is closed if its descriptor is among the last available to the process, because the run needs them.
+/// Server with one request per connection, which must arrive within one second and be sent within three from its first
+/// byte. A connection is closed if its descriptor is among the last available to the process, because the run needs
+/// them.
 class GuardedServer : public httplib::Server {
+ public:
+  GuardedServer();
+  /// For handlers: `take` gets the socket of this request, and owns it, once the answer is sent. Otherwise it is
+  /// closed.
+  static void hand_over(std::function<void(int socket)> take);
+  /// For handlers: time to send the answer beyond the three seconds, for large files.
+  static void allow_more_time(std::chrono::milliseconds more);
+
  private:
   bool process_and_close_socket(socket_t socket) override;
 };
+
+/// Sets headers that forbid external resources, embedding in frames, and a referrer with the token.
+void guard(httplib::Response& response);
+/// The same for a file of a session: a report has its style and pictures in itself, and runs no script.
+void guard_report(httplib::Response& response);
+/// Returns 128 random bits as text from the system's random source, not from the seed of the experiment: they must not
+/// be predictable.
+[[nodiscard]] std::string random_token();
+/// Binds to the address, port 0: any free one. Returns the port. Errors: `io` (port in use, or not an address of this
+/// computer).
+[[nodiscard]] Result<int> bind_to(GuardedServer& server, const ServeAddress& address);
+/// Returns "http://127.0.0.1:8080/".
+[[nodiscard]] std::string url_of(const ServeAddress& address, int port);
 
 }  // namespace todbench

@@ -78,7 +78,10 @@ std::string picture_of(const Frame& frame) {
 }
 
 LiveRun::LiveRun(LiveServer& server, const LiveCurve& curve, const Plan& plan)
-    : server_(server), curve_(curve), plan_(plan) {
+    : LiveRun([&server](std::shared_ptr<const LivePages> pages) { server.show(std::move(pages)); }, curve, plan) {}
+
+LiveRun::LiveRun(Show show, const LiveCurve& curve, const Plan& plan)
+    : show_(std::move(show)), curve_(curve), plan_(plan) {
   state_.name = plan.name;
   render();
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
@@ -179,7 +182,7 @@ void LiveRun::render() {
     state_.picture = picture_png_.empty() ? 0 : pictures_;
     state = to_json(state_);
   }
-  server_.show(std::make_shared<const LivePages>(LivePages{std::move(state), curve_svg_, picture_png_}));
+  show_(std::make_shared<const LivePages>(LivePages{std::move(state), curve_svg_, picture_png_}));
 }
 
 void LiveRun::work(const std::stop_token& stop) {

@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -51,7 +52,11 @@ struct LiveState {
 /// Draws and encodes on its own thread, about twice a second. The functions of the run only store values.
 class LiveRun {
  public:
-  /// `server` and `curve` must outlive this object.
+  /// Receives new content, on the thread of the drawing or of end().
+  using Show = std::function<void(std::shared_ptr<const LivePages>)>;
+  /// `curve` must outlive this object.
+  LiveRun(Show show, const LiveCurve& curve, const Plan& plan);
+  /// Shows on a server, which must outlive this object.
   LiveRun(LiveServer& server, const LiveCurve& curve, const Plan& plan);
 
   /// Returns a listener that calls `listener` and updates the page.
@@ -68,7 +73,7 @@ class LiveRun {
   /// Sets the most important current status. Requires the lock.
   void set_status();
 
-  LiveServer& server_;
+  Show show_;
   const LiveCurve& curve_;
   Plan plan_;
   std::mutex mutex_;

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/serve/live_server.h"
 
-#include <fmt/format.h>
 #include <httplib.h>
 
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
-#include <random>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -22,24 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t longest_request = 1024;
 constexpr auto somebody_looks = std::chrono::seconds(5);
-
-/// Returns a token from the system's random source, not from the seed of the experiment: it must not be predictable.
-std::string random_token() {
-  std::random_device device;
-  std::string token;
-  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
-  return token;
-}
-
-/// Sets headers that forbid external resources, embedding in frames, and a referrer with the token.
-void guard(httplib::Response& response) {
-  response.set_header("Content-Security-Policy",
-                      "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
-                      "img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
-  response.set_header("Referrer-Policy", "no-referrer");
-  response.set_header("X-Content-Type-Options", "nosniff");
-  response.set_header("Cache-Control", "no-store");
-}
 
 void answer(httplib::Response& response, std::string_view text, const char* type) {
   guard(response);
@@ -79,14 +59,7 @@ struct LiveServer::Serving {
   }
 
   void route(const std::string& token) {
-    server.new_task_queue = [] { return new BoundedQueue; };
     server.set_payload_max_length(longest_request);
-    server.set_tcp_nodelay(true);
-    // SO_REUSEADDR instead of the library's SO_REUSEPORT, with which another program could listen on the same port.
-    server.set_socket_options([](socket_t socket) {
-      const int on = 1;
-      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    });
     const auto at = [&token](const char* name) { return "/" + token + "/" + name; };
     using Request = httplib::Request;
     using Response = httplib::Response;
@@ -110,16 +83,9 @@ Result<std::unique_ptr<LiveServer>> LiveServer::start(const ServeAddress& addres
   const std::string token = random_token();
   Serving& serving = *out->serving_;
   serving.route(token);
-  const int port = address.port == 0 ? serving.server.bind_to_any_port(address.host)
-                   : serving.server.bind_to_port(address.host, address.port) ? address.port
-                                                                             : -1;
-  if (port <= 0) {
-    return fail(ErrorCode::io,
-                fmt::format("{}:{} cannot be used: the port is in use, or the address is not one of this computer",
-                            address.host, address.port));
-  }
-  const bool six = address.host.find(':') != std::string::npos;
-  out->url_ = fmt::format("http://{}:{}/{}/", six ? "[" + address.host + "]" : address.host, port, token);
+  const auto port = bind_to(serving.server, address);
+  if (!port) return tl::unexpected(port.error());
+  out->url_ = url_of(address, *port) + token + "/";
   serving.thread = std::thread([&serving] {
     serving.server.listen_after_bind();
     serving.ended = true;

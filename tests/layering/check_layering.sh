@@ -65,13 +65,14 @@ BEGIN {
   may["bench/studies"] = core " " science " sim_devices/lab bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/history"] = core " bench/text bench/plan bench/judgement bench/session"
   may["bench/serve"] = core " " science " bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/run"
+  may["bench/run_control"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/serve"
   may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/doctor"] = base " bench/text"
   may["bench/enhance"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run"
   may["bench/moving_target"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
   may["bench/scene_dependence"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
   may["bench/model_comparison"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
-  bench = "bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/selftest bench/plate_drawing bench/run bench/serve bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history"
+  bench = "bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/observer_fit bench/reference_set bench/selftest bench/plate_drawing bench/run bench/serve bench/run_control bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history"
   may["bench/cli"] = core " " science " acquisition/recording tod/instruments bench/doctor " bench
   may["bench/python"] = core " " science " acquisition/recording " bench
   may["bench/gui/presenters"] = core " " science " " bench
@@ -86,7 +87,7 @@ BEGIN {
   home["^(Q[A-Z]|qcustomplot.h)"] = "^bench/gui/"
   home["^(pybind11/|Python.h|numpy/)"] = "^bench/python/"
   home["^toml\\+\\+/"] = "^bench/(plan|sweep)/"
-  home["^httplib.h"] = "^bench/serve/"
+  home["^httplib.h"] = "^bench/(serve|run_control)/"
   home["^sqlite3.h"] = "^bench/(history|sweep)/"
   home["^CLI/"] = "^bench/cli/"
   home["^libxml/"] = "^acquisition/description/"
