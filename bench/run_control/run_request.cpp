@@ -56,9 +56,12 @@ Result<RequestedRun> requested_run(const RunRequest& request, const std::filesys
     plan.seed = *request.seed;
     TODBENCH_TRY(loaded, loaded.with(std::move(plan)));
   }
-  if (!loaded.plan().modules.empty() && programs == PlanPrograms::none) {
+  const bool starts_programs = !loaded.plan().modules.empty() || !loaded.parts().sensor.modules.empty() ||
+                               loaded.plan().target.kind == TargetKind::display;
+  if (starts_programs && programs == PlanPrograms::none) {
     return fail(ErrorCode::invalid_input,
-                "the plan starts programs with [[module]]: todbench serve runs it only with --allow-modules");
+                "the plan starts programs ([[module]] of the plan or its sensor, or a target of kind display): todbench "
+                "serve runs it only with --allow-modules");
   }
   const bool has_camera = !loaded.plan().camera.id.empty();
   const RunMode mode = request.mode.value_or(has_camera ? RunMode::measure : RunMode::simulate);

@@ -33,7 +33,7 @@ struct RunRequest {
 /// Programs that a plan may start.
 enum class PlanPrograms {
   none,
-  modules,  ///< those of [[module]]
+  modules,  ///< those of [[module]] in the plan or its sensor, and of a target of kind display
 };
 
 struct RequestedRun {
@@ -42,7 +42,7 @@ struct RequestedRun {
 };
 
 /// Reads the plan as the command line does. File names in the text of a plan are relative to `folder`. Errors:
-/// `invalid_input` about the plan, also for [[module]] with PlanPrograms::none.
+/// `invalid_input` about the plan, also for a plan that starts programs with PlanPrograms::none.
 [[nodiscard]] Result<RequestedRun> requested_run(const RunRequest& request, const std::filesystem::path& folder,
                                                  PlanPrograms programs);
 
