@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/cli/command_certificate.h"
 #include "bench/cli/command_compare_models.h"
 #include "bench/cli/command_dynamic.h"
 #include "bench/cli/command_enhance.h"
@@ -15,6 +16,7 @@
 #include "bench/cli/command_picture.h"
 #include "bench/cli/command_plate.h"
 #include "bench/cli/command_scene_dependence.h"
+#include "bench/cli/command_watch.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/large_stack.h"
 #include "bench/cli/program.h"
@@ -42,10 +44,10 @@ void add_commands(CLI::App& app, Program& program) {
              add_plate_command});
   add_group(app, program, "Judge, report and sign",
             {add_compare_command, add_report_command, add_verify_command, add_sign_command, add_conformity_command,
-             add_budget_command});
+             add_budget_command, add_certificate_command});
   add_group(app, program, "Single measures",
             {add_fit_command, add_noise_command, add_sfr_command, add_sitf_command, add_mrtd_command,
-             add_dynamic_command, add_pattern_command});
+             add_dynamic_command, add_pattern_command, add_watch_command});
   add_group(app, program, "Field", {add_range_command, add_identify_command, add_picture_command});
   add_group(app, program, "Studies",
             {add_sweep_command, add_enhance_command, add_compare_models_command, add_scene_dependence_command,

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A camera from its first image on: level, fixed pattern and noise against time and its own temperature.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "tod/measurement/frame_taker.h"
+#include "tod/measures/drift_law.h"
+
+namespace todbench {
+
+struct WarmUpOptions {
+  double duration_s = 600;         ///< of the observation, > 0
+  double start_s = 0;              ///< time of the first image since power-on; all times count from power-on
+  double frame_rate_hz = 0;        ///< stated by the camera; 0: not stated
+  double stable_k_per_min = 0.05;  ///< the level is stable when it drifts more slowly, > 0
+};
+
+/// Successive frames of a uniform scene, in kelvin of the camera's scale.
+struct WarmUpGroup {
+  double time_s = 0;  ///< mean
+  int frames = 0;
+  double mean_k = 0;
+  double pattern_k = 0;  ///< standard deviation over the pixels without shading and temporal noise
+  double noise_k = 0;    ///< temporal, of a pixel
+  std::optional<double> camera_temperature_c{};
+  bool corrected = false;  ///< a correction happened since the group before
+};
+
+/// Change of the level with the camera's own temperature, by least squares.
+struct TemperatureDrift {
+  double slope = 0, slope_u = 0;  ///< K of the picture per K of the camera, with standard uncertainty
+};
+
+struct WarmUp {
+  std::vector<WarmUpGroup> groups;
+  /// Of the longest time without a correction; empty with a reason.
+  std::optional<DriftLaw> law{};
+  /// Time from which the level drifts more slowly than the bound; empty: not within the observation, or no law.
+  std::optional<double> stable_s{};
+  std::optional<TemperatureDrift> by_temperature{};
+  std::vector<std::string> reasons;  ///< for absent values
+};
+
+/// Returns the temperature of the camera in degrees Celsius; empty: not reported.
+using ReadCameraTemperature = std::function<std::optional<double>()>;
+
+/// Observes in 40 groups of equal duration, of at most 64 frames each. Commands no correction. Errors: those of
+/// FrameTaker::average().
+[[nodiscard]] Result<WarmUp> measure_warm_up(FrameTaker& taker, const WarmUpOptions& options,
+                                             const ReadCameraTemperature& temperature, const std::stop_token& stop);
+
+/// Returns the time from which |d level / dt| stays below `k_per_min` by the law; empty if that is after the last
+/// group. For an approach A (1 - exp(-t / T)) it is T ln(A / (T rate)).
+[[nodiscard]] std::optional<double> stable_from(const DriftLaw& law, double k_per_min);
+
+}  // namespace todbench
