@@ -9,6 +9,7 @@ TEST(BestDesign, KeepsItsHalfWidthInThreeRuns) {
   TimedBench bench = default_bench();
   bench.asked_percent = 6;  // few frames: seconds
   bench.design.delta_t_k = {1.93, 0.23};
+  bench.design.frames = {4};  // one number for both contrasts, for the functions and the truth
   const auto found = design_of_bench(bench);
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_GE(found->set_ups, 5);
