@@ -59,6 +59,7 @@ TEST(ExtremeValues, OfOptionsAreRefused) {
       {{"emulate"}, {}},
       {{"cost"}, {"demo"}},
       {{"record"}, {"sim:sc2000"}},
+      {{"watch"}, {"sim:sc2000"}},
       {{"compare"}, {"a", "b"}},
       {{"render"}, {"--sensor", "sc2000", "--size-pitch", "3"}},
       {{"mtf"}, {"--sensor", "sc2000", "--frequency-per-pitch", "0.1"}},
