@@ -58,7 +58,8 @@ void add_serve_command(CLI::App& app, Program& program) {
                       "reads the token from this file and creates the file if it is absent; default: a new token");
   command->add_option("--sessions", a->sessions, "folder in which the session folders are created")
       ->capture_default_str();
-  command->add_flag("--allow-modules", a->modules, "also runs plans that start programs: [[module]], or a target of kind display");
+  command->add_flag("--allow-modules", a->modules,
+                    "also runs plans that start programs: [[module]], or a target of kind display");
   finish_command(*command, program, [a, &program](Console& console) { return run_serve(console, *a, *program.stop); });
 }
 

@@ -59,9 +59,10 @@ Result<RequestedRun> requested_run(const RunRequest& request, const std::filesys
   const bool starts_programs = !loaded.plan().modules.empty() || !loaded.parts().sensor.modules.empty() ||
                                loaded.plan().target.kind == TargetKind::display;
   if (starts_programs && programs == PlanPrograms::none) {
-    return fail(ErrorCode::invalid_input,
-                "the plan starts programs ([[module]] of the plan or its sensor, or a target of kind display): todbench "
-                "serve runs it only with --allow-modules");
+    return fail(
+        ErrorCode::invalid_input,
+        "the plan starts programs ([[module]] of the plan or its sensor, or a target of kind display): todbench "
+        "serve runs it only with --allow-modules");
   }
   const bool has_camera = !loaded.plan().camera.id.empty();
   const RunMode mode = request.mode.value_or(has_camera ? RunMode::measure : RunMode::simulate);

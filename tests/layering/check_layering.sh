@@ -30,7 +30,7 @@ BEGIN {
   may["tod/measurement"] = core " " hvs " tod/plate tod/presentation tod/psychometric tod/registration tod/schedule tod/measures"
   may["tod/camera_measures"] = core " " hvs " tod/plate tod/presentation tod/registration tod/schedule tod/measurement tod/measures tod/range"
   may["tod/comparison"] = base " tod/psychometric"
-  may["tod/adequacy"] = base " tod/psychometric"
+  may["tod/adequacy"] = base " tod/psychometric tod/presentation"
   may["tod/observer_fit"] = hvs " tod/plate tod/psychometric"
   may["tod/range"] = base " hvs/shape tod/psychometric"
   may["tod/measures"] = base
