@@ -16,6 +16,8 @@ constexpr int least_frames = 4, most_frames = 64;
 /// Frames of a group if the camera states no rate.
 constexpr int usual_frames = 8;
 constexpr double corrected_jitter_s = 0.5;
+/// Largest difference of the camera's clock from the host's: delay of a frame, and share of the time.
+constexpr double late_s = 0.5, clock_tolerance = 0.02;
 
 double pattern_of(const AveragedPicture& picture, int frames) {
   const Shading shading = shading_of(picture.kelvin);
@@ -24,13 +26,13 @@ double pattern_of(const AveragedPicture& picture, int frames) {
   return std::sqrt(std::max(0.0, sd[0] * sd[0] - picture.temporal_noise_k * picture.temporal_noise_k / frames));
 }
 
-/// Groups of the longest stretch without a correction.
+/// Groups of the longest stretch without a correction. A group with one may contain frames before and behind it.
 std::span<const DriftGroup> undisturbed(const std::vector<DriftGroup>& all, const std::vector<WarmUpGroup>& groups) {
   std::size_t best = 0, best_size = 0, first = 0;
   for (std::size_t i = 0; i <= all.size(); ++i) {
-    if (i < all.size() && (i == first || !groups[i].corrected)) continue;
+    if (i < all.size() && !groups[i].corrected) continue;
     if (i - first > best_size) best = first, best_size = i - first;
-    first = i;
+    first = i + 1;
   }
   return std::span(all).subspan(best, best_size);
 }
@@ -91,8 +93,14 @@ class WarmUpTaker {
 
  private:
   double seconds_of(const Frame& frame) {
-    if (!first_ns_) first_ns_ = frame.host_time_ns;
-    return last_s_ = 1e-9 * static_cast<double>(frame.host_time_ns - *first_ns_);
+    if (!first_) first_ = frame;
+    const auto since = [](std::int64_t from, std::int64_t to) { return 1e-9 * static_cast<double>(to - from); };
+    const double by_host_s = since(first_->host_time_ns, frame.host_time_ns);
+    const double by_camera_s = since(first_->device_time_ns, frame.device_time_ns);
+    // Frames arrive late on a busy host; the camera's clock gives the times of their exposures, if it is one.
+    const double tolerance_s = late_s + clock_tolerance * by_host_s;
+    const bool has_clock = frame.device_time_ns > 0 && std::abs(by_camera_s - by_host_s) <= tolerance_s;
+    return last_s_ = has_clock ? by_camera_s : by_host_s;
   }
   bool note_correction(const Frame& frame) {
     const double since_s = taker_.since_nuc_s(frame);
@@ -106,7 +114,7 @@ class WarmUpTaker {
   const WarmUpOptions& options_;
   const std::stop_token& stop_;
   int frames_ = usual_frames;
-  std::optional<std::int64_t> first_ns_;
+  std::optional<Frame> first_;
   double last_s_ = 0;
   std::optional<double> last_since_s_;
   bool corrected_between_ = false;

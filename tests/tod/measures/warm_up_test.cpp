@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "acquisition/base/random.h"
+#include "acquisition/base/rng.h"
 #include "tod/camera_measures/warm_up_measure.h"
 
 namespace todbench {
