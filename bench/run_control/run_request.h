@@ -21,8 +21,8 @@ enum class RunMode {
 [[nodiscard]] std::string_view to_string(RunMode mode);
 
 struct RunRequest {
-  std::string plan;               ///< name or file of this computer; empty if `plan_toml` is given
-  std::string plan_toml;          ///< text of a plan
+  std::string plan{};             ///< name or file of this computer; empty if `plan_toml` is given
+  std::string plan_toml{};        ///< text of a plan
   std::optional<RunMode> mode{};  ///< empty: measure if the plan names a camera
   std::optional<std::uint64_t> seed{};
 };

@@ -180,7 +180,9 @@ void compare_points(SourceSize& found, const PlateTails& tails, const std::vecto
     SourceSizePoint& point = found.points[i];
     point.fitted = lit(x, columns_at(tails, places[i])) / reference;
     const double apart = point.ratio.value - point.fitted;
-    found.chi2 += apart * apart / (u[i] * u[i]);
+    const Estimate of_fit = found.loss(point.size_px);
+    const double fit_u = 0.5 * (of_fit.high - of_fit.low) / two_sided;
+    found.chi2 += apart * apart / (u[i] * u[i] + fit_u * fit_u);
     farthest = std::max(farthest, std::abs(apart));
   }
   found.degrees_of_freedom = static_cast<int>(found.points.size());
