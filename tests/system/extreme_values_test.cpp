@@ -58,6 +58,7 @@ TEST(ExtremeValues, OfOptionsAreRefused) {
       {{"doctor"}, {}},
       {{"emulate"}, {}},
       {{"cost"}, {"demo"}},
+      {{"plan"}, {"demo", "--optimise"}},
       {{"record"}, {"sim:sc2000"}},
       {{"watch"}, {"sim:sc2000"}},
       {{"compare"}, {"a", "b"}},
