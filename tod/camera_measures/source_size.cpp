@@ -19,6 +19,8 @@ constexpr double least_curve_px = 4;
 constexpr double curve_ratio = 1.15;
 constexpr double least_p = 0.001;
 constexpr double two_sided = 1.96;
+constexpr double method =
+    0.001;  // of a ratio: sigmas of halos in steps, the core of the blur, pixels beside the middle
 
 /// A square in whose middle the signal is taken.
 struct Place {
@@ -276,7 +278,11 @@ Result<SourceSize> source_size(const SourcePictures& pictures, const TargetPlate
   }
   for (double side = least_curve_px; side < reference.size_px; side *= curve_ratio) found.size_px.push_back(side);
   found.size_px.push_back(reference.size_px);
-  for (const double side : found.size_px) found.ratio.push_back(curve_at(*tails, side, reference.size_px));
+  for (const double side : found.size_px) {
+    Estimate ratio = curve_at(*tails, side, reference.size_px);
+    if (side < reference.size_px) ratio.low -= method, ratio.high += method;
+    found.ratio.push_back(ratio);
+  }
   compare_points(found, *tails, places, u);
   return found;
 }

@@ -309,6 +309,14 @@ TEST(DemandKinds, EveryKindHasOneRowWithANameAndAUnit) {
     EXPECT_FALSE(row.kind.name.empty() || row.unit.empty());
   }
   EXPECT_EQ(names, (std::set<std::string_view>{"acuity",
+                                               "source_size_loss",
+                                               "netd_extended",
+                                               "field_of_view_x_at_least",
+                                               "field_of_view_x_at_most",
+                                               "field_of_view_y_at_least",
+                                               "field_of_view_y_at_most",
+                                               "aspect_ratio_at_least",
+                                               "aspect_ratio_at_most",
                                                "identified",
                                                "equivalence",
                                                "scene_dependence",

@@ -154,7 +154,8 @@ TEST(DecisionForecasts, ShowTimeAgainstTheProbabilityOfADecision) {
 TEST(Recommendation, OfFramesStopsWhereTheBudgetDecides) {
   Plan plan = *load_plan("acceptance");
   plan.limits = {};
-  plan.target.plate_change_s = plan.target.mounting_change_s = plan.target.contrast_change_s = 1;
+  plan.target.plate_change_s = 60, plan.target.mounting_change_s = 30, plan.target.contrast_change_s = 20;
+  plan.schedule.frames_per_presentation = {8};
   const auto recommended = [](const Plan& asked) {
     const LoadedPlan loaded = LoadedPlan::load(asked).value();
     EffectPlanner planner;
@@ -165,7 +166,8 @@ TEST(Recommendation, OfFramesStopsWhereTheBudgetDecides) {
   };
   Plan without = plan;
   without.uncertainty = {};
-  for (BudgetRow& row : plan.uncertainty.rows) row.value *= 5;
+  plan.uncertainty = {};
+  plan.uncertainty.rows = {{.name = "black-body-calibration", .value = 50, .unit = "mK"}};  // a fifth of 0.23 K
 
   EXPECT_GT(recommended(plan), recommended(without));
 }

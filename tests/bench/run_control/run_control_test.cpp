@@ -242,7 +242,7 @@ TEST_F(RunControl, RefusesWhatItWasNotBuiltFor) {
 }
 
 TEST_F(RunControl, StartsNoProgramThatAPlanNamesUnlessItMay) {
-  const std::string plan = controlled_plan("[[module]]\nplace = \"picture\"\ncommand = [\"/bin/false\"]\n");
+  const std::string plan = controlled_plan("[[module]]\nplace = \"picture\"\ncommand = \"/bin/false\"\n");
 
   const httplib::Response refused = post("/api/v1/runs", Json{{"plan_toml", plan}}.dump());
 
@@ -313,7 +313,8 @@ TEST_F(RunControl, IsDescribedPathForPathAndStatusForStatus) {
   wait_until_over(asking);
 
   std::set<std::string> keys;
-  for (const auto& [key, value] : run(id).items()) keys.insert(key);
+  const Json ended = run(id);
+  for (const auto& [key, value] : ended.items()) keys.insert(key);
   std::set<std::string> described_keys;
   for (const auto& [key, value] : description["components"]["schemas"]["Run"]["properties"].items())
     described_keys.insert(key);
