@@ -36,11 +36,12 @@ RunnableSweep quick_sweep(const TemporaryFolder& folder, const std::string& more
   return *sweep;
 }
 
-/// A sweep of a small aberration, which a tolerance of 5 % leaves out and one of 0.01 % does not.
+/// A sweep of a small aberration with the same random numbers, which a tolerance of 5 % leaves out and one of 0.01 %
+/// does not.
 RunnableSweep sweep_of_tolerance(const TemporaryFolder& folder, const std::string& tolerance,
                                  const std::string& sigma = "0.05") {
-  folder.write("t.toml", "kind = \"estimate\"\n[base]\naccuracy = \"draft\"\ndelta_t_k = [16.9]\n" + tolerance +
-                             "[grid]\naberration_sigma_pitch = [" + sigma + "]\n");
+  folder.write("t.toml", "kind = \"estimate\"\npaired = true\n[base]\naccuracy = \"draft\"\ndelta_t_k = [16.9]\n" +
+                             tolerance + "[grid]\naberration_sigma_pitch = [" + sigma + "]\n");
   auto sweep = load_sweep(folder.path() / "t.toml");
   EXPECT_TRUE(sweep) << sweep.error().message;
   return *sweep;
