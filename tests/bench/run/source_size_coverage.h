@@ -62,6 +62,12 @@ inline Result<SourceSizeCoverage> source_size_coverage(SourceHalo halo, double f
   where.plate_to_pixel = {scale, 0, (camera.width - 1) / 2.0 + 3, 0, scale, (camera.height - 1) / 2.0 - 2, 0, 0, 1};
   SourceSizeCoverage out;
   const SensorSpec sensor = sharp_sensor(f_number);
+  // The mean of the picture over a window round the middle of a rectangle; the other cut-outs light it, too.
+  const auto seen_at = [&](std::size_t rectangle, int window_px) {
+    const cv::Point2d at = where.pixel(scene.plate.rectangles[rectangle].position_mm) + cv::Point2d(-3, 2);
+    return cv::mean(unit(cv::Rect(static_cast<int>(std::lround(at.x)) - window_px / 2,
+                                  static_cast<int>(std::lround(at.y)) - window_px / 2, window_px, window_px)))[0];
+  };
   const double reference_px = 160 * scale, reference = middle_of_square(reference_px, sensor, halo);
   for (std::size_t k = 0; k < out.sides_px.size(); ++k)
     out.truth[k] = 1 - middle_of_square(out.sides_px[k], sensor, halo) / reference;
@@ -81,23 +87,19 @@ inline Result<SourceSizeCoverage> source_size_coverage(SourceHalo halo, double f
     if (!found) return tl::unexpected(found.error());
     ++out.runs;
     out.consistent += found->consistent ? 1 : 0;
-    out.slope_error += found->reference_k / reference - 1;
+    out.slope_error += found->reference_k / seen_at(0, 5) - 1;
     for (std::size_t k = 0; k < out.sides_px.size(); ++k) {
       const Estimate loss = found->loss(out.sides_px[k]);
       out.within[k] += loss.low <= out.truth[k] && out.truth[k] <= loss.high ? 1 : 0;
       out.mean_error[k] += loss.value - out.truth[k];
       out.half_width[k] += 0.5 * (loss.high - loss.low);
     }
-    // Apertures from small to large, whose middle the other cut-outs light, too.
+    // Apertures from small to large.
     constexpr std::array<std::size_t, 3> rectangles{3, 2, 1};
     constexpr std::array windows_px{1, 5, 5};
     for (std::size_t k = 0; k < rectangles.size(); ++k) {
-      const cv::Point2d at = where.pixel(scene.plate.rectangles[rectangles[k]].position_mm) + cv::Point2d(-3, 2);
-      const int half = windows_px[k] / 2;
-      const cv::Rect window(static_cast<int>(std::lround(at.x)) - half, static_cast<int>(std::lround(at.y)) - half,
-                            windows_px[k], windows_px[k]);
       const Estimate& ratio = found->points[k].ratio;
-      const double truth = cv::mean(unit(window))[0] / reference;
+      const double truth = seen_at(rectangles[k], windows_px[k]) / seen_at(0, 5);
       out.point_within[k] += ratio.low <= truth && truth <= ratio.high ? 1 : 0;
     }
   }
