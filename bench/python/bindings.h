@@ -13,7 +13,7 @@ namespace todbench {
 
 namespace py = pybind11;
 
-/// The numbers of an argument, in place if they are doubles one after the other.
+/// Numbers of an argument. A contiguous array of doubles is not copied.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// Returns the comment of a declaration ("PsychometricFit::threshold", "fit_psychometric") as the build read it from

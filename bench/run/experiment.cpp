@@ -32,7 +32,6 @@
 #include "bench/run/twin_shapes.h"
 #include "bench/text/text.h"
 #include "tod/adequacy/adequacy.h"
-#include "tod/adequacy/orientation.h"
 #include "tod/measurement/contrast_error.h"
 #include "tod/measurement/measurement.h"
 
@@ -184,17 +183,6 @@ enum class Trials { all, ended_early };
 
 Trials trials_of(const MeasurementResult& result) {
   return result.ended_by ? Trials::ended_early : Trials::all;
-}
-
-/// Compares the directions of the triangles at the contrasts that were fitted with the function of the twin.
-void compare_orientations(TodCurve& curve, std::span<const Trial> trials) {
-  for (TodPoint& point : curve.points) {
-    if (!point.fit.twin_shape) continue;
-    std::vector<Trial> of_point;
-    std::ranges::copy_if(trials, std::back_inserter(of_point),
-                         [&](const Trial& trial) { return trial.set_delta_t_k == point.set_delta_t_k; });
-    point.orientations = orientations(of_point, point.fit.twin_shape->table);
-  }
 }
 
 /// Fits a curve with the functions of its simulated sensor, if the plan requests it. `known`: of fit_twin_shapes().

@@ -7,6 +7,7 @@
 
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
+#include "tod/adequacy/orientation.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/twin_shape.h"
 
@@ -163,6 +164,13 @@ void fit_right_and_wrong(TodCurve& curve, std::span<const Trial> trials, const F
     point.free_lapse_fit = same->free_lapse_fit;
     point.lapse_warning = same->lapse_warning;
     point.answers = AnswersTaken{AnswerKind::binary, 1, AnswersReason::no_function};
+  }
+}
+
+void compare_orientations(TodCurve& curve, std::span<const Trial> trials) {
+  for (TodPoint& point : curve.points) {
+    if (point.fit.twin_shape)
+      point.orientations = orientations(trials_at(trials, point.set_delta_t_k), point.fit.twin_shape->table);
   }
 }
 

@@ -66,4 +66,7 @@ struct TwinShapesOutcome {
 /// Weibull function exceeds the interval of graded answers. TodPoint::answers states it.
 void fit_right_and_wrong(TodCurve& curve, std::span<const Trial> trials, const FitOptions& fit);
 
+/// Compares the directions of the triangles at the contrasts that were fitted with the function of the twin.
+void compare_orientations(TodCurve& curve, std::span<const Trial> trials);
+
 }  // namespace todbench

@@ -8,12 +8,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <fstream>
 #include <string_view>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include "acquisition/base/descriptor.h"
@@ -142,8 +140,6 @@ struct ControlServer::Serving {
   EventStreams streams;
   RunQueue queue;
   ControlApi api;
-  std::atomic<bool> ended = false;
-  std::thread thread;
 };
 
 Result<std::string> kept_token(const std::filesystem::path& file) {
@@ -177,20 +173,12 @@ Result<std::unique_ptr<ControlServer>> ControlServer::start(const ControlServerO
   const auto port = bind_to(serving.server, options.address);
   if (!port) return tl::unexpected(port.error());
   out->url_ = url_of(options.address, *port);
-  serving.thread = std::thread([&serving] {
-    serving.server.listen_after_bind();
-    serving.ended = true;
-  });
-  // A server that is not running yet cannot be stopped.
-  while (!serving.server.is_running() && !serving.ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  serving.server.start_listening();
   return out;
 }
 
 ControlServer::~ControlServer() {
-  if (serving_->thread.joinable()) {
-    serving_->server.stop();
-    serving_->thread.join();
-  }
+  serving_->server.stop_listening();
   serving_->streams.shut_down();
 }
 

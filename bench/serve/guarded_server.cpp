@@ -221,6 +221,21 @@ std::string url_of(const ServeAddress& address, int port) {
   return fmt::format("http://{}:{}/", six ? "[" + address.host + "]" : address.host, port);
 }
 
+void GuardedServer::start_listening() {
+  thread_ = std::thread([this] {
+    listen_after_bind();
+    ended_ = true;
+  });
+  // A server that is not running yet cannot be stopped, and the library has no signal for it.
+  while (!is_running() && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+void GuardedServer::stop_listening() {
+  if (!thread_.joinable()) return;
+  stop();
+  thread_.join();
+}
+
 bool GuardedServer::process_and_close_socket(socket_t socket) {
   bool done = false;
   taker = nullptr;

@@ -5,6 +5,7 @@
 
 #include <httplib.h>
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -48,9 +49,15 @@ class GuardedServer : public httplib::Server {
   static void hand_over(std::function<void(int socket)> take);
   /// For handlers: time to send the answer beyond the three seconds, for large files.
   static void allow_more_time(std::chrono::milliseconds more);
+  /// Listens in a thread of its own, after bind_to(). Returns when it can be stopped.
+  void start_listening();
+  /// Ends that thread; without one it has no effect. The owner calls it before anything that handlers use is destroyed.
+  void stop_listening();
 
  private:
   bool process_and_close_socket(socket_t socket) override;
+  std::atomic<bool> ended_ = false;
+  std::thread thread_;
 };
 
 /// Sets headers that forbid external resources, embedding in frames, and a referrer with the token.

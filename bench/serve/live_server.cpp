@@ -3,11 +3,9 @@
 
 #include <httplib.h>
 
-#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include "bench/serve/guarded_server.h"
@@ -39,8 +37,6 @@ struct LiveServer::Serving {
   std::shared_ptr<const LivePages> pages = std::make_shared<const LivePages>();
   bool seen = false;
   Clock::time_point last_asked{};
-  std::atomic<bool> ended = false;
-  std::thread thread;
 
   [[nodiscard]] std::shared_ptr<const LivePages> now() {
     const std::lock_guard lock(mutex);
@@ -86,19 +82,12 @@ Result<std::unique_ptr<LiveServer>> LiveServer::start(const ServeAddress& addres
   const auto port = bind_to(serving.server, address);
   if (!port) return tl::unexpected(port.error());
   out->url_ = url_of(address, *port) + token + "/";
-  serving.thread = std::thread([&serving] {
-    serving.server.listen_after_bind();
-    serving.ended = true;
-  });
-  // A server that is not running yet cannot be stopped.
-  while (!serving.server.is_running() && !serving.ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  serving.server.start_listening();
   return out;
 }
 
 LiveServer::~LiveServer() {
-  if (!serving_->thread.joinable()) return;
-  serving_->server.stop();
-  serving_->thread.join();
+  serving_->server.stop_listening();
 }
 
 void LiveServer::show(std::shared_ptr<const LivePages> pages) {

@@ -13,12 +13,6 @@
 namespace todbench {
 namespace {
 
-Estimate modulation_from(const JsonReader& found) {
-  const Interval interval = found.at("ci95").interval();
-  const double value = found.at("value").number();
-  return {value, interval.low.value_or(value), interval.high.value_or(value)};
-}
-
 void add_ctf_lines(MeasureLines& out, const CtfMeasure& ctf) {
   for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
     const BarsCtf* group = ctf.stated(axis);
@@ -88,9 +82,9 @@ CtfMeasure ctf_from(const JsonReader& ctf) {
     one.angle_deg = group.at("angle_deg").number();
     one.pixels = static_cast<int>(group.at("pixels").whole());
     one.noise_over_contrast = group.at("noise_over_contrast").number();
-    one.best = modulation_from(group.at("best"));
-    one.mean = modulation_from(group.at("mean"));
-    one.worst = modulation_from(group.at("worst"));
+    one.best = estimate_from(group.at("best"));
+    one.mean = estimate_from(group.at("mean"));
+    one.worst = estimate_from(group.at("worst"));
     one.bars_separated_at_best = static_cast<int>(group.at("bars_separated_at_best").whole());
     one.share_of_four = group.at("share_of_four").number();
     const JsonReader model = group.at("model");

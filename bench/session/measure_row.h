@@ -46,5 +46,7 @@ struct MeasureRow {
 
 /// Returns {"value", "ci95"}.
 [[nodiscard]] Json estimate_json(const Estimate& found);
+/// Reads the same; a missing end of the interval is the value.
+[[nodiscard]] Estimate estimate_from(const JsonReader& found);
 
 }  // namespace todbench

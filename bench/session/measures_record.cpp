@@ -163,6 +163,12 @@ Json estimate_json(const Estimate& found) {
   return {{"value", json_number(found.value)}, {"ci95", {json_number(found.low), json_number(found.high)}}};
 }
 
+Estimate estimate_from(const JsonReader& found) {
+  const Interval interval = found.at("ci95").interval();
+  const double value = found.at("value").number();
+  return {value, interval.low.value_or(value), interval.high.value_or(value)};
+}
+
 MeasureLines measure_lines(const CameraMeasures& measures) {
   MeasureLines found;
   for (const MeasureRow& row : measure_table()) row.add(found, measures);

@@ -64,12 +64,6 @@ Json source_json(const SourceSizeMeasure& source) {
           {"curve", curve}};
 }
 
-Estimate ratio_from(const JsonReader& found) {
-  const Interval interval = found.at("ci95").interval();
-  const double value = found.at("value").number();
-  return {value, interval.low.value_or(value), interval.high.value_or(value)};
-}
-
 SourceSizeMeasure source_from(const JsonReader& source) {
   SourceSizeMeasure out;
   out.stated_px = source.at("stated_px").number();
@@ -78,12 +72,12 @@ SourceSizeMeasure source_from(const JsonReader& source) {
     out.effect.points.push_back({.place = point.at("place").text(),
                                  .spot = point.at("method").text() == "inverse",
                                  .size_px = point.at("size_px").number(),
-                                 .ratio = ratio_from(point.at("ratio")),
+                                 .ratio = estimate_from(point.at("ratio")),
                                  .fitted = point.at("fitted").number()});
   }
   for (const JsonReader& place : source.at("curve").elements()) {
     out.effect.size_px.push_back(place.at("size_px").number());
-    out.effect.ratio.push_back(ratio_from(place.at("ratio")));
+    out.effect.ratio.push_back(estimate_from(place.at("ratio")));
   }
   return out;
 }

@@ -14,7 +14,7 @@ class TimeLeft {
 
   /// Starts a phase.
   void begin(Time now);
-  /// The work stands still, for example because the camera is lost, until the next progress().
+  /// The work stops, for example because the camera is lost, until the next progress().
   void stand_still(Time now);
   /// Returns the remaining time in seconds; `share` of the work is done, 0 to 1. Empty if `share` is not above 0.
   [[nodiscard]] std::optional<double> progress(Time now, double share);

@@ -29,8 +29,8 @@ class NakedEyeShape {
   /// without sign. `contrast_noise`: kappa.
   [[nodiscard]] double probability_correct(const EyeFilter& eye, double contrast_noise, double contrast,
                                            double size_deg) const;
-  /// Square root of area in degrees at which a share of the answers is correct (75 % for a TOD, 62.5 %, half way from
-  /// chance, in tests of acuity); empty if it is not between 0.001 and 3 degrees.
+  /// Size (square root of area) in degrees at which a share of the answers is correct; empty if it is not between 0.001
+  /// and 3 degrees. The share is 75 % for a TOD. Tests of acuity use 62.5 %, half way from chance.
   [[nodiscard]] std::optional<double> threshold_deg(const EyeFilter& eye, double contrast_noise, double contrast,
                                                     double share_correct) const;
   /// Contrast at which that share is correct for a shape of this size; empty if it is not between 1e-6 and 10.

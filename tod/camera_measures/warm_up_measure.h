@@ -39,7 +39,7 @@ struct TemperatureDrift {
 
 struct WarmUp {
   std::vector<WarmUpGroup> groups;
-  /// Of the longest time without a correction; empty with a reason.
+  /// Drift during the longest time without a correction; empty if it could not be fitted, then the reason is stated.
   std::optional<DriftLaw> law{};
   /// Time from which the level drifts more slowly than the bound; empty: not within the observation, or no law.
   std::optional<double> stable_s{};
