@@ -8,9 +8,11 @@
 #include <system_error>
 #include <vector>
 
+#include "bench/cli/command_naked_eye.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
+#include "bench/naked_eye/naked_eye_session.h"
 #include "bench/observer_fit/observer_file.h"
 #include "bench/observer_fit/observer_fit_json.h"
 #include "bench/observer_fit/observer_fit_page.h"
@@ -116,6 +118,12 @@ Result<Json> fitted(Console& console, const ObserverFitArguments& arguments, con
   std::vector<AnsweredSession> sessions;
   std::vector<std::string> accepted;
   for (const std::string& folder : arguments.sessions) {
+    if (is_naked_eye_session(folder)) {
+      auto answered = answered_naked_eye(folder);
+      if (!answered) return tl::unexpected(answered.error());
+      sessions.push_back(*std::move(answered));
+      continue;
+    }
     const auto session = opened(console, folder, arguments.opening);
     if (!session) return tl::unexpected(session.error());
     for (const std::string& file : session->accepted_changes)
@@ -235,6 +243,7 @@ void add_observer_command(CLI::App& app, Program& program) {
   auto* observer = app.add_subcommand("observer", "fits observers to the answers of people, and prints what they see");
   observer->require_subcommand(1);
   add_sensitivity_command(*observer, program);
+  add_naked_eye_command(*observer, program);
   auto* command = observer->add_subcommand(
       "fit", "fits the parameters of an observer to human answers, each with the picture that the person saw");
   auto a = std::make_shared<ObserverFitArguments>();

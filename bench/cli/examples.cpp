@@ -85,6 +85,8 @@ constexpr std::array example_rows{
                "prints the contrast sensitivity of an eye"},
     ExampleRow{"observer sensitivity", "todbench observer sensitivity hvs-2 --luminance 50 --frequency 1,4,16",
                "prints the contrast sensitivity of an eye"},
+    ExampleRow{"observer naked-eye", "todbench observer naked-eye my-display.toml --out naked --person hvs-2",
+               "predicts a session without a camera and simulates a person"},
     ExampleRow{"observer fit", "todbench observer fit unit-1 --from hvs-1 --free internal_noise --out person.toml",
                "fits the noise of an observer to the answers of a person"},
     ExampleRow{"reference-set", "todbench reference-set --out reference", "writes frames with known thresholds"},

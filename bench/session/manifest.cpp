@@ -16,13 +16,19 @@ namespace todbench {
 
 namespace {
 
-constexpr std::array<std::string_view, 24> known_files{
-    "measures.json",    "comparison.json",      "cost.json",        "curve.csv",
-    "fits.json",        "report.csv",           "fits_human.json",  "report.pdf",
-    "trials_human.csv", "shown_human.csv",      "log.txt",          "provenance.json",
-    "report.html",      "session.toml",         "targets.csv",      "targets_simulated.csv",
-    "trials.csv",       "trials_simulated.csv", "uncertainty.json", "verdict.json",
-    "grey-levels.csv",  "moving-trials.csv",    "dynamic.json",     "scene-dependence.json"};
+constexpr std::array<std::string_view, 26> known_files{"measures.json",    "comparison.json",
+                                                       "cost.json",        "curve.csv",
+                                                       "fits.json",        "report.csv",
+                                                       "fits_human.json",  "report.pdf",
+                                                       "trials_human.csv", "shown_human.csv",
+                                                       "log.txt",          "provenance.json",
+                                                       "report.html",      "session.toml",
+                                                       "targets.csv",      "targets_simulated.csv",
+                                                       "trials.csv",       "trials_simulated.csv",
+                                                       "uncertainty.json", "verdict.json",
+                                                       "grey-levels.csv",  "moving-trials.csv",
+                                                       "dynamic.json",     "scene-dependence.json",
+                                                       "naked_eye.json",   "naked_eye_comparison.json"};
 constexpr std::array<std::string_view, 3> known_folders{"inputs", "frames", "pictures"};
 constexpr std::string_view schema = "todbench-manifest-1";
 

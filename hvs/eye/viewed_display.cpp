@@ -16,25 +16,12 @@ double sinc(double x) {
   return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
 }
 
-/// Luminance without veil at a level from 0 to 1.
-double luminance_at(const ViewedDisplay& display, double level) {
-  const std::vector<double>& table = display.luminance_table;
-  if (table.empty()) {
-    return display.luminance_black_cd_m2 +
-           (display.luminance_white_cd_m2 - display.luminance_black_cd_m2) * std::pow(level, display.gamma);
-  }
-  const double at = level * static_cast<double>(table.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(at), table.size() - 2);
-  const double share = at - static_cast<double>(below);
-  return table[below] + share * (table[below + 1] - table[below]);
-}
-
 double black(const ViewedDisplay& display) {
-  return luminance_at(display, 0);
+  return luminance_cd_m2(display, 0);
 }
 
 double white(const ViewedDisplay& display) {
-  return luminance_at(display, 1);
+  return luminance_cd_m2(display, 1);
 }
 
 /// The level of the background: luminance rises with the level, so that halving finds it.
@@ -43,7 +30,7 @@ double background_level(const ViewedDisplay& display) {
   double low = 0, high = 1;
   for (int i = 0; i < 60; ++i) {
     const double level = (low + high) / 2;
-    (luminance_at(display, level) < middle ? low : high) = level;
+    (luminance_cd_m2(display, level) < middle ? low : high) = level;
   }
   return (low + high) / 2;
 }
@@ -161,6 +148,18 @@ double pixel_pitch_mm(const ViewedDisplay& display) {
   return display.diagonal_in * inch_mm / std::hypot(display.pixels[0], display.pixels[1]);
 }
 
+double luminance_cd_m2(const ViewedDisplay& display, double level) {
+  const std::vector<double>& table = display.luminance_table;
+  if (table.empty()) {
+    return display.luminance_black_cd_m2 +
+           (display.luminance_white_cd_m2 - display.luminance_black_cd_m2) * std::pow(level, display.gamma);
+  }
+  const double at = level * static_cast<double>(table.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(at), table.size() - 2);
+  const double share = at - static_cast<double>(below);
+  return table[below] + share * (table[below + 1] - table[below]);
+}
+
 double arcmin_per_sample(const ViewedDisplay& display) {
   const double half_m = pixel_pitch_mm(display) * display.zoom / 2000;
   return 2 * std::atan(half_m / display.viewing_distance_m) * 60 * 180 / std::numbers::pi;
@@ -191,7 +190,7 @@ double shown_contrast(const ViewedDisplay& display, double delta_t_k) {
   if (display.span_k == 0) return display.contrast;
   const double level = background_level(display);
   const double step = std::min({std::abs(delta_t_k) / display.span_k, level, 1 - level});
-  return (luminance_at(display, level + step) - luminance_at(display, level - step)) / 2 /
+  return (luminance_cd_m2(display, level + step) - luminance_cd_m2(display, level - step)) / 2 /
          adaptation_luminance_cd_m2(display);
 }
 

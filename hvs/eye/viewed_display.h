@@ -47,6 +47,8 @@ struct ViewedDisplay {
 
 /// Distance of two display pixels in mm. Precondition of this and of all following functions: validate() succeeds.
 [[nodiscard]] double pixel_pitch_mm(const ViewedDisplay& display);
+/// Luminance at a level from 0 to 1, without veil.
+[[nodiscard]] double luminance_cd_m2(const ViewedDisplay& display, double level);
 /// Angle of a displayed sample at the eye, in arcmin.
 [[nodiscard]] double arcmin_per_sample(const ViewedDisplay& display);
 /// Luminance of the background, which the eye adapts to, in cd/m2: the middle of the range, veil included.

@@ -79,6 +79,7 @@ TEST(ExtremeValues, OfOptionsAreRefused) {
       {{"history", "show"}, {"x"}},
       {{"history", "check"}, {}},
       {{"observer", "fit"}, {"a", "--from", "hvs-1", "--free", "internal_noise", "--out", "o.toml"}},
+      {{"observer", "naked-eye"}, {"demo", "--out", "naked"}},
       {{"sweep", "run"}, {"no.toml"}},
       {{"module", "check"}, {"cat"}}};
   const TemporaryFolder folder;

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles on a calibrated display, without camera and sensor, for a person: plain, or in white noise. Such answers
+// determine the open parameters of an observer with an eye.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "hvs/observer/template_observer.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+
+struct NakedEyeTask {
+  TemplateObserverSpec model;  ///< with an eye, and with the calibrated display of the person
+  /// Luminance contrasts: target minus background over background, above 0. Targets are brighter than the background.
+  std::vector<double> contrasts{0.4, 0.15, 0.06};
+  double noise = 0;   ///< standard deviation of white noise per displayed sample, as a luminance contrast
+  int per_size = 12;  ///< triangles per contrast and size
+  std::uint64_t seed = 1;
+  bool operator==(const NakedEyeTask&) const = default;
+};
+
+/// Error: `invalid_input` with one sentence (no eye, no display, a contrast or noise that the display cannot show).
+[[nodiscard]] Result<void> validate(const NakedEyeTask& task);
+
+/// The display with luminance in proportion to the level, on which 1 K is a luminance contrast of 1. Pictures are drawn
+/// through the measured luminances, so this is what the person sees. Precondition: validate() of the display succeeds.
+[[nodiscard]] ViewedDisplay linear_display(const ViewedDisplay& display);
+
+/// Number of sizes at each contrast, and the ratio of neighbouring ones; the fourth is near the predicted threshold.
+inline constexpr int naked_eye_sizes = 8;
+inline constexpr double naked_eye_size_ratio = 1.22;
+
+struct NakedEyeTrial {
+  double contrast = 0;
+  double size_samples = 0;  ///< square root of area, in displayed samples
+  Apex truth = Apex::up;
+  cv::Point2d centroid{};  ///< from the middle of the picture, in displayed samples, within half a sample
+  std::uint64_t number = 0;
+};
+
+/// A picture as the display shows it.
+struct NakedEyePicture {
+  cv::Mat1b levels;       ///< one per displayed sample
+  cv::Mat1f contrast;     ///< luminance contrast of every sample to the background, by its level
+  double noise = 0;       ///< standard deviation per sample: the noise of the task, and that of rounding to levels
+  double mean_level = 0;  ///< of the background, 0 to 255
+};
+
+/// Draws a square picture of `window_samples` on a side. A sample's luminance is that of the covered share of it. It is
+/// rounded to one of 256 levels up or down at random, with the luminance as the mean: contrasts far below one level are
+/// shown. Noise and rounding follow from the seed of the task and the number of the trial.
+[[nodiscard]] NakedEyePicture naked_eye_picture(const NakedEyeTask& task, const NakedEyeTrial& trial,
+                                                int window_samples);
+
+/// Trials of every contrast and size, each direction equally often, in random order. `sizes_samples`: by contrast.
+[[nodiscard]] std::vector<NakedEyeTrial> naked_eye_trials(const NakedEyeTask& task,
+                                                          const std::vector<std::vector<double>>& sizes_samples);
+
+}  // namespace todbench
