@@ -12,6 +12,7 @@
 #include <functional>
 #include <utility>
 
+#include "bench/gui/presenters/naked_eye_presenter.h"
 #include "bench/gui/views/page_check.h"
 
 namespace todbench {
@@ -85,6 +86,28 @@ bool ask_of_targets_and_bars(MainWindow& window, const std::filesystem::path& fo
   return good;
 }
 
+/// Shows one triangle to a simulated person before a display of a usual size.
+bool ask_the_naked_eye(MainWindow& window, const std::filesystem::path& folder) {
+  const Plan before = window.bench().plan();
+  Plan plan = before;
+  plan.display = {.pixel_pitch_mm = 0.27, .viewing_distance_m = 1.86, .luminance_white_cd_m2 = 200, .zoom = 2};
+  window.bench().set_plan(plan);
+  auto* question = window.findChild<QComboBox*>("humanQuestion");
+  auto* eye = window.findChild<NakedEyePresenter*>();
+  question->setCurrentIndex(3);
+  window.findChild<QPushButton*>("beginHuman")->click();
+  bool good = wait_until([&] { return eye->state() == HumanState::showing || !eye->problem().isEmpty(); });
+  for (int i = 0; i < 40 && eye->state() == HumanState::showing; ++i) {
+    if (i == 5) good &= save(window, folder, "human-naked-eye");
+    eye->answer(eye->session()->trial().truth);
+  }
+  eye->abort();
+  good &= save(window, folder, "human-naked-eye-end");
+  question->setCurrentIndex(0);
+  window.bench().set_plan(before);
+  return good;
+}
+
 int said(bool good) {
   if (!good) std::fprintf(stderr, "todbench-gui: at least one page has a fault or was not written\n");
   return good ? 0 : 7;
@@ -104,6 +127,7 @@ int take_session_screenshots(MainWindow& window, const std::filesystem::path& fo
   good &= wait_until([&] { return window.plan().expected_known() && !window.plan().prices().empty(); });
   good &= save(window, folder, "plan");
   good &= ask_of_targets_and_bars(window, folder);
+  good &= ask_the_naked_eye(window, folder);
   window.open_path(session);
   window.show_view(View::report);
   good &= wait_until([&] { return window.sessions().current() && !window.sessions().sessions().empty(); });

@@ -112,11 +112,12 @@ std::vector<NakedEyeTrial> naked_eye_trials(const NakedEyeTask& task,
   const RandomStream numbers(task.seed, "naked-eye.trials");
   for (std::size_t c = 0; c < task.contrasts.size(); ++c) {
     for (const double size : sizes_samples[c]) {
+      const std::size_t first = numbers.sub(2).below(all_apexes.size(), out.size());
       for (int k = 0; k < task.per_size; ++k) {
         const auto number = static_cast<std::uint64_t>(out.size());
         out.push_back({.contrast = task.contrasts[c],
                        .size_samples = size,
-                       .truth = all_apexes[static_cast<std::size_t>(k) % all_apexes.size()],
+                       .truth = all_apexes[(first + static_cast<std::size_t>(k)) % all_apexes.size()],
                        .centroid = {numbers.uniform(2 * number) - 0.5, numbers.uniform(2 * number + 1) - 0.5},
                        .number = number});
       }

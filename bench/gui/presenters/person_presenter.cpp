@@ -27,16 +27,15 @@ QImage picture_of(const cv::Mat1f& kelvin, const GreyScale& grey, int magnificat
   return to_image(fine, {grey.black_k, grey.white_k}, ColourMap::white_hot);
 }
 
-/// "person-20260131T123456Z-identify", with a number if the name is already used in this second.
-std::filesystem::path new_folder(const std::filesystem::path& sessions, PersonTask task) {
+}  // namespace
+
+std::filesystem::path new_person_folder(const std::filesystem::path& sessions, std::string_view task) {
   constexpr std::string_view before = "session";
-  const std::string name = "person" + session_folder_name(std::string(to_string(task))).substr(before.size());
+  const std::string name = "person" + session_folder_name(std::string(task)).substr(before.size());
   std::filesystem::path folder = sessions / name;
   for (int number = 2; is_there(folder); ++number) folder = sessions / (name + "-" + std::to_string(number));
   return folder;
 }
-
-}  // namespace
 
 QImage icon_image(const cv::Mat1d& icon) {
   return to_image(icon, {0, 1}, ColourMap::white_hot);
@@ -132,7 +131,7 @@ void PersonPresenter::abort() {
 void PersonPresenter::finish() {
   picture_ = {};
   state_ = HumanState::finished;
-  const auto folder = new_folder(sessions_, experiment_->task());
+  const auto folder = new_person_folder(sessions_, to_string(experiment_->task()));
   const bool complete = answers_.size() == experiment_->trials().size();
   if (auto written = write_person(folder, *experiment_, answers_, complete); !written)
     problem_ = QString::fromStdString(written.error().message);

@@ -10,6 +10,7 @@
 #include <QTimer>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "bench/gui/presenters/human_presenter.h"
@@ -17,6 +18,8 @@
 
 namespace todbench {
 
+/// Returns "person-20260131T123456Z-TASK" in `sessions`, with a number if the name is already used in this second.
+[[nodiscard]] std::filesystem::path new_person_folder(const std::filesystem::path& sessions, std::string_view task);
 /// Returns an alternative as an icon: white hot on the grey of the background, for every theme.
 [[nodiscard]] QImage icon_image(const cv::Mat1d& icon);
 

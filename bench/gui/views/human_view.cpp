@@ -15,6 +15,7 @@
 
 #include "bench/gui/presenters/human_presenter.h"
 #include "bench/gui/presenters/measure_presenter.h"
+#include "bench/gui/presenters/naked_eye_presenter.h"
 #include "bench/gui/presenters/person_presenter.h"
 #include "bench/gui/views/alternatives_panel.h"
 #include "bench/gui/views/layout_pieces.h"
@@ -28,7 +29,7 @@ namespace todbench {
 namespace {
 
 /// Questions of the page, in the order of the list.
-constexpr int of_triangles = 0, of_set = 1, of_bars = 2;
+constexpr int of_triangles = 0, of_set = 1, of_bars = 2, of_naked_eye = 3;
 
 /// Parses "400, 800"; empty if a part is not a number.
 std::optional<std::vector<double>> numbers_of(const QString& text) {
@@ -105,15 +106,18 @@ QString result_of_a_person(const PersonPresenter& person) {
 
 HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresenter& person, MeasurePresenter& measured,
                      QWidget* parent)
-    : QWidget(parent), bench_(bench), presenter_(presenter), person_(person), measured_(measured) {
+    : QWidget(parent),
+      bench_(bench),
+      presenter_(presenter),
+      person_(person),
+      measured_(measured),
+      naked_eye_(new NakedEyePresenter(this)) {
   setFocusPolicy(Qt::StrongFocus);
   auto* layout = new QHBoxLayout(this);
   auto* seen = new QVBoxLayout;
   picture_ = new PictureView;
   picture_->setObjectName("humanPicture");
   picture_->setFocusPolicy(Qt::NoFocus);
-  // Grey of the surround of every patch: the eye adapts to one luminance.
-  picture_->set_surround(QColor(128, 128, 128));
   picture_->setToolTip({});
   seen->addWidget(picture_, 1);
   alternatives_ = new AlternativesPanel;
@@ -130,6 +134,8 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresente
           [this](int alternative) { person_.answer(static_cast<std::size_t>(alternative)); });
   connect(&presenter_, &HumanPresenter::updated, this, &HumanView::show_state);
   connect(&person_, &PersonPresenter::updated, this, &HumanView::show_state);
+  connect(abort_, &QPushButton::clicked, naked_eye_, &NakedEyePresenter::abort);
+  connect(naked_eye_, &NakedEyePresenter::updated, this, &HumanView::show_state);
   connect(&measured_, &MeasurePresenter::state_changed, this, &HumanView::show_state);
   show_question();
 }
@@ -179,7 +185,7 @@ QWidget* HumanView::side_panel() {
 void HumanView::add_questions(QFormLayout& form) {
   question_ = new QComboBox;
   question_->setObjectName("humanQuestion");
-  question_->addItems({"Triangles of the run", "Targets of a set", "Four bars"});
+  question_->addItems({"Triangles of the run", "Targets of a set", "Four bars", "Naked eye"});
   set_ = new QComboBox;
   set_->setObjectName("humanSet");
   for (const auto& name : resource_names(ResourceKind::target_set)) set_->addItem(QString::fromStdString(name));
@@ -197,6 +203,12 @@ void HumanView::add_questions(QFormLayout& form) {
   for (const BarCriterion criterion : criteria_of_bars) criterion_->addItem(criterion_words(to_string(criterion)));
   frequencies_ = new QLineEdit("0.3, 0.6, 0.9");
   frequencies_->setObjectName("humanFrequencies");
+  contrasts_ = new QLineEdit("0.4, 0.15, 0.06");
+  contrasts_->setObjectName("humanContrasts");
+  contrasts_->setToolTip("Luminance contrasts of the triangles, brighter than the background");
+  noise_ = new QLineEdit("0");
+  noise_->setObjectName("humanNoise");
+  noise_->setToolTip("Standard deviation of white noise per displayed sample, as a luminance contrast");
   axis_ = new QComboBox;
   axis_->setObjectName("humanAxis");
   axis_->addItems({"horizontal", "vertical"});
@@ -207,6 +219,8 @@ void HumanView::add_questions(QFormLayout& form) {
   form.addRow("Criterion", criterion_);
   form.addRow("f / Nyquist", frequencies_);
   form.addRow("Axis", axis_);
+  form.addRow("Contrasts", contrasts_);
+  form.addRow("Noise", noise_);
 }
 
 BarCriterion HumanView::criterion() const {
@@ -214,7 +228,7 @@ BarCriterion HumanView::criterion() const {
 }
 
 bool HumanView::triangles() const {
-  return question_->currentIndex() == of_triangles;
+  return question_->currentIndex() == of_triangles || question_->currentIndex() == of_naked_eye;
 }
 
 void HumanView::show_question() {
@@ -225,6 +239,8 @@ void HumanView::show_question() {
   form_->setRowVisible(criterion_, question == of_bars);
   form_->setRowVisible(frequencies_, question == of_bars);
   form_->setRowVisible(axis_, question == of_bars);
+  form_->setRowVisible(contrasts_, question == of_naked_eye);
+  form_->setRowVisible(noise_, question == of_naked_eye);
   title_->setText(question == of_set    ? "Which one is it?"
                   : question == of_bars ? question_title(criterion())
                                         : "Which way does it point?");
@@ -235,9 +251,12 @@ void HumanView::show_question() {
   hint_->setText(keys +
                  (yes_or_no ? " Left: four separate bars. Some frames have no bars. There is no feedback. "
                             : " There is no feedback. If you are not sure, guess. ") +
-                 (triangles() ? "You judge the camera's own frames. The answers of the model are not shown."
-                              : "You judge the same frames of the plan's simulated sensor as the model "
-                                "observer."));
+                 (question == of_naked_eye
+                      ? "No camera is used: the triangles are drawn on this display, as its section "
+                        "[display] in the plan describes it."
+                  : triangles() ? "You judge the camera's own frames. The answers of the model are not shown."
+                                : "You judge the same frames of the plan's simulated sensor as the model "
+                                  "observer."));
   per_size_->setToolTip(question == of_set    ? "Frames per target and range"
                         : question == of_bars ? "Questions per contrast and frequency"
                                               : "Patches per contrast and size");
@@ -245,6 +264,10 @@ void HumanView::show_question() {
 }
 
 void HumanView::begin() {
+  if (question_->currentIndex() == of_naked_eye) {
+    begin_naked_eye();
+    return;
+  }
   if (!triangles()) {
     begin_person();
     return;
@@ -285,6 +308,20 @@ void HumanView::begin_person() {
   setFocus();
 }
 
+void HumanView::begin_naked_eye() {
+  const auto contrasts = numbers_of(contrasts_->text()), noise = numbers_of(noise_->text());
+  if (!contrasts || !noise || noise->size() != 1) {
+    emit bench_.trouble(
+        "Enter contrasts as numbers separated by commas, for example 0.4, 0.1, and one number as noise.");
+    return;
+  }
+  const QString problem = naked_eye_->begin(
+      bench_.plan(), {.contrasts = *contrasts, .noise = noise->front(), .per_size = per_size_->value()},
+      bench_.sessions_folder(), limited_->isChecked() ? std::optional(shown_ms_->value()) : std::nullopt);
+  if (!problem.isEmpty()) emit bench_.trouble(problem);
+  setFocus();
+}
+
 void HumanView::keyPressEvent(QKeyEvent* event) {
   if (!triangles()) {
     const int alternative = alternatives_->of_key(event->key());
@@ -295,30 +332,26 @@ void HumanView::keyPressEvent(QKeyEvent* event) {
     person_.answer(static_cast<std::size_t>(alternative));
     return;
   }
-  switch (event->key()) {
-    case Qt::Key_Up:
-      presenter_.answer(Apex::up);
-      return;
-    case Qt::Key_Right:
-      presenter_.answer(Apex::right);
-      return;
-    case Qt::Key_Down:
-      presenter_.answer(Apex::down);
-      return;
-    case Qt::Key_Left:
-      presenter_.answer(Apex::left);
-      return;
-    default:
-      QWidget::keyPressEvent(event);
-  }
+  constexpr std::array arrows{std::pair(Qt::Key_Up, Apex::up), std::pair(Qt::Key_Right, Apex::right),
+                              std::pair(Qt::Key_Down, Apex::down), std::pair(Qt::Key_Left, Apex::left)};
+  const auto arrow = std::ranges::find(arrows, event->key(), [](const auto& one) { return int{one.first}; });
+  if (arrow == arrows.end())
+    QWidget::keyPressEvent(event);
+  else if (question_->currentIndex() == of_naked_eye)
+    naked_eye_->answer(arrow->second);
+  else
+    presenter_.answer(arrow->second);
 }
 
 void HumanView::show_state() {
   const auto running = [](HumanState state) { return state == HumanState::showing || state == HumanState::hidden; };
-  question_->setEnabled(!running(presenter_.state()) && !running(person_.state()));
+  question_->setEnabled(!running(presenter_.state()) && !running(person_.state()) && !running(naked_eye_->state()) &&
+                        !naked_eye_->predicting());
   criterion_->setEnabled(question_->isEnabled());
   alternatives_->setVisible(!triangles() && running(person_.state()));
-  if (triangles())
+  if (question_->currentIndex() == of_naked_eye)
+    show_naked_eye();
+  else if (triangles())
     show_triangles();
   else
     show_person();
@@ -332,6 +365,7 @@ void HumanView::show_person() {
   picture_->set_placeholder(state == HumanState::hidden ? "Which one was it?"
                             : running                   ? ""
                                                         : "Press Begin when you are ready.");
+  picture_->set_surround(QColor(128, 128, 128));
   picture_->set_image(state == HumanState::showing ? person_.picture() : QImage());
   picture_->set_zoom(1);
   const auto& experiment = person_.experiment();
@@ -346,6 +380,41 @@ void HumanView::show_person() {
   result_->setText(result_of_a_person(person_));
 }
 
+void HumanView::show_naked_eye() {
+  const HumanState state = naked_eye_->state();
+  const bool running = state == HumanState::showing || state == HumanState::hidden;
+  begin_->setEnabled(!running && !naked_eye_->predicting());
+  abort_->setEnabled(running || naked_eye_->predicting());
+  picture_->set_placeholder(naked_eye_->predicting()      ? "The model predicts your answers."
+                            : state == HumanState::hidden ? "Which way did it point?"
+                            : running                     ? ""
+                                                          : "Press Begin when you are ready.");
+  const int level = naked_eye_->background_level();
+  picture_->set_surround(QColor(level, level, level));
+  picture_->set_image(state == HumanState::showing ? naked_eye_->picture() : QImage());
+  // Pixels of the screen, whatever its scale factor.
+  picture_->set_zoom(1 / devicePixelRatioF());
+  const auto& session = naked_eye_->session();
+  progress_->setText(running ? QString("%1 of %2").arg(session->done()).arg(session->planned()) : QString());
+  if (state != HumanState::finished || !naked_eye_->problem().isEmpty()) {
+    result_->setText(naked_eye_->problem());
+    return;
+  }
+  QString rows;
+  for (const NakedEyeContrast& predicted : session->prediction().contrasts) {
+    const TodPoint* found = point_at(session->record().curve, predicted.contrast);
+    rows += QString("<tr><td>%1&nbsp;</td><td>%2&nbsp;</td><td>%3</td></tr>")
+                .arg(predicted.contrast)
+                .arg(found == nullptr ? QString("–")
+                                      : QString::fromStdString(with_interval(found->fit.threshold, found->fit.ci95)))
+                .arg(QString::fromStdString(
+                    with_interval(predicted.s75_mrad, {predicted.spread_low_mrad, predicted.spread_high_mrad})));
+  }
+  result_->setText("<table cellspacing=4><tr><th>Contrast</th><th>S75 (mrad)</th><th>predicted [spread]</th></tr>" +
+                   rows + "</table><p>Saved in " +
+                   QString::fromStdString(naked_eye_->folder().filename().string()).toHtmlEscaped() + "</p>");
+}
+
 void HumanView::show_triangles() {
   const HumanState state = presenter_.state();
   const bool running = state == HumanState::showing || state == HumanState::hidden;
@@ -356,6 +425,7 @@ void HumanView::show_triangles() {
                             : running                   ? ""
                             : ready                     ? "Press Begin when you are ready."
                                                         : "Run a measurement first. A person then judges its frames.");
+  picture_->set_surround(QColor(128, 128, 128));
   // A fixed number of screen pixels per sample: the size of the window does not affect the picture.
   picture_->set_image(state == HumanState::showing ? presenter_.picture() : QImage());
   picture_->set_zoom(1);

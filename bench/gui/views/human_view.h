@@ -17,6 +17,7 @@ namespace todbench {
 class AlternativesPanel;
 class HumanPresenter;
 class MeasurePresenter;
+class NakedEyePresenter;
 class PersonPresenter;
 class PictureView;
 class Workbench;
@@ -39,20 +40,23 @@ class HumanView final : public QWidget {
   [[nodiscard]] BarCriterion criterion() const;
   void begin();
   void begin_person();
+  void begin_naked_eye();
   void show_question();
   void show_state();
   void show_triangles();
   void show_person();
+  void show_naked_eye();
 
   Workbench& bench_;
   HumanPresenter& presenter_;
   PersonPresenter& person_;
   MeasurePresenter& measured_;
+  NakedEyePresenter* naked_eye_;
   QFormLayout* form_ = nullptr;
   PictureView* picture_;
   AlternativesPanel* alternatives_;
   QComboBox *question_, *set_, *air_, *criterion_, *axis_;
-  QLineEdit *ranges_, *frequencies_;
+  QLineEdit *ranges_, *frequencies_, *contrasts_, *noise_;
   QLabel *title_, *hint_;
   QSpinBox *per_size_, *shown_ms_;
   QCheckBox* limited_;

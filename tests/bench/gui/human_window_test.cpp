@@ -7,6 +7,7 @@
 #include <QStackedWidget>
 #include <QToolButton>
 
+#include "bench/gui/presenters/naked_eye_presenter.h"
 #include "bench/gui/views/human_view.h"
 #include "bench/gui/views/page_check.h"
 #include "bench/gui/views/picture_view.h"
@@ -218,6 +219,47 @@ TEST(HumanObserver, SaysWhichIntervalHasFourBars) {
   EXPECT_EQ(window->person().state(), HumanState::finished);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(window->person().answers()[i].answer, i % 3 == 0 ? 0u : 1u);
   EXPECT_TRUE(std::filesystem::exists(window->person().folder() / "person.json"));
+}
+
+TEST(HumanObserver, AnswersTrianglesOfTheDisplayWithoutACamera) {
+  ShownWindow window("sim:sc2000", 1);
+  ask(window, 3, "humanContrasts", "0.3");
+  HumanView* view = window->findChild<HumanView*>();
+  NakedEyePresenter* eye = window->findChild<NakedEyePresenter*>();
+  ASSERT_NE(eye, nullptr);
+  Plan plan = window->bench().plan();
+  plan.display = {.pixel_pitch_mm = 0.27, .viewing_distance_m = 1.86, .luminance_white_cd_m2 = 200, .zoom = 2};
+  window->bench().set_plan(plan);
+
+  window.click("beginHuman");
+  ASSERT_TRUE(wait_until([&] { return eye->state() == HumanState::showing; })) << eye->problem().toStdString();
+  EXPECT_EQ(faults_of(*window).join("; ").toStdString(), "");
+  const auto prediction = content_of(eye->folder() / naked_eye_name);
+  std::vector<Apex> given;
+  for (std::size_t i = 0; !eye->session()->complete(); ++i) {
+    const QImage& shown = window.part<PictureView>("humanPicture").image();
+    ASSERT_FALSE(shown.isNull());
+    // A sample is a square of two by two pixels of the screen.
+    EXPECT_EQ(shown.width(), 2 * eye->session()->picture().levels.cols);
+    EXPECT_EQ(qGray(shown.pixel(0, 0)), qGray(shown.pixel(1, 1)));
+    given.push_back(eye->session()->trial().truth);
+    QTest::keyClick(view, keys[static_cast<std::size_t>(given.back())]);
+  }
+
+  EXPECT_EQ(eye->state(), HumanState::finished);
+  EXPECT_EQ(eye->problem().toStdString(), "");
+  EXPECT_EQ(content_of(eye->folder() / naked_eye_name), prediction);
+  const auto answers = read_trials(eye->folder() / "trials_human.csv");
+  ASSERT_TRUE(answers) << answers.error().message;
+  ASSERT_EQ(answers->size(), given.size());
+  for (std::size_t i = 0; i < given.size(); ++i) EXPECT_EQ((*answers)[i].answer, given[i]);
+  EXPECT_THAT(window.part<QLabel>("humanResult").text().toStdString(), ::testing::HasSubstr("predicted"));
+
+  plan.display = {};
+  window->bench().set_plan(plan);
+  window.click("beginHuman");
+  EXPECT_FALSE(eye->predicting());
+  EXPECT_THAT(faults_of(*window).join("; ").toStdString(), ::testing::HasSubstr("no section [display]"));
 }
 
 TEST(HumanObserver, IsAskedByTheCriterionAndBehindTheAirOfThePage) {

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/gui/presenters/naked_eye_presenter.h"
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "bench/gui/presenters/person_presenter.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/resources.h"
+
+namespace todbench {
+namespace {
+
+constexpr int pictures_of_the_prediction = 48;
+
+}  // namespace
+
+QImage screen_picture(const NakedEyePicture& picture, int zoom) {
+  QImage out(picture.levels.cols * zoom, picture.levels.rows * zoom, QImage::Format_Grayscale8);
+  for (int y = 0; y < out.height(); ++y) {
+    unsigned char* row = out.scanLine(y);
+    for (int x = 0; x < out.width(); ++x) row[x] = picture.levels(y / zoom, x / zoom);
+  }
+  return out;
+}
+
+NakedEyePresenter::NakedEyePresenter(QObject* parent) : QObject(parent) {
+  hide_.setSingleShot(true);
+  connect(&hide_, &QTimer::timeout, this, [this] {
+    if (state_ != HumanState::showing) return;
+    state_ = HumanState::hidden;
+    emit updated();
+  });
+}
+
+QString NakedEyePresenter::begin(const Plan& plan, const NakedEyeQuestion& question,
+                                 const std::filesystem::path& sessions, std::optional<int> shown_ms) {
+  if (!has_display(plan)) return "The plan has no section [display]: state the pixel pitch, distance and luminances.";
+  const auto resource = find_resource(ResourceKind::observer, "hvs-2");
+  if (!resource) return QString::fromStdString(resource.error().message);
+  auto model = parse_observer(*resource);
+  if (!model) return QString::fromStdString(model.error().message);
+  model->display = plan.display;
+  const NakedEyeTask task{.model = *std::move(model),
+                          .contrasts = question.contrasts,
+                          .noise = question.noise,
+                          .per_size = question.per_size,
+                          .seed = plan.seed};
+  if (const auto possible = validate(task); !possible) return QString::fromStdString(possible.error().message);
+  folder_ = new_person_folder(sessions, "naked-eye");
+  shown_ms_ = shown_ms;
+  session_.reset();
+  problem_.clear();
+  state_ = HumanState::idle;
+  predicting_ = true;
+  jobs_.start([this, task, folder = folder_](const std::stop_token& stop) {
+    auto made = std::make_shared<Result<NakedEyeSession>>(
+        NakedEyeSession::begin(task, folder, pictures_of_the_prediction, stop));
+    QMetaObject::invokeMethod(
+        this, [this, made] { take(std::move(*made)); }, Qt::QueuedConnection);
+  });
+  emit updated();
+  return {};
+}
+
+void NakedEyePresenter::take(Result<NakedEyeSession> session) {
+  if (!predicting_) return;
+  predicting_ = false;
+  if (session)
+    session_ = *std::move(session);
+  else
+    problem_ = QString::fromStdString(session.error().message);
+  if (session_)
+    show_next();
+  else
+    emit updated();
+}
+
+void NakedEyePresenter::show_next() {
+  if (session_->complete()) {
+    finish();
+    return;
+  }
+  background_level_ = static_cast<int>(std::lround(session_->picture().mean_level));
+  picture_ = screen_picture(session_->picture(), static_cast<int>(session_->task().model.display->zoom));
+  state_ = HumanState::showing;
+  since_shown_.start();
+  if (shown_ms_) hide_.start(*shown_ms_);
+  emit updated();
+}
+
+void NakedEyePresenter::answer(Apex apex) {
+  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
+  hide_.stop();
+  session_->answer(apex, static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9, shown_ms_);
+  show_next();
+}
+
+void NakedEyePresenter::abort() {
+  if (predicting_) {
+    predicting_ = false;
+    jobs_.stop();
+    emit updated();
+    return;
+  }
+  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
+  hide_.stop();
+  if (session_->done() > 0) {
+    finish();
+    return;
+  }
+  state_ = HumanState::idle;
+  picture_ = {};
+  emit updated();
+}
+
+void NakedEyePresenter::finish() {
+  picture_ = {};
+  state_ = HumanState::finished;
+  if (const auto written = session_->finish(); !written) problem_ = QString::fromStdString(written.error().message);
+  emit updated();
+}
+
+}  // namespace todbench
