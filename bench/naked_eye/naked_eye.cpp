@@ -4,42 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "acquisition/base/rng.h"
+#include "hvs/eye/display_levels.h"
 #include "hvs/shape/polygon_coverage.h"
 
 namespace todbench {
 namespace {
 
-constexpr int levels = 256;
 /// Edges of larger samples are visible themselves.
 constexpr double largest_sample_arcmin = 3;
-
-/// Luminance of every level, as a contrast to the background, rising.
-std::array<double, levels> contrast_of_levels(const ViewedDisplay& display) {
-  std::array<double, levels> out{};
-  const double background = adaptation_luminance_cd_m2(display);
-  for (int level = 0; level < levels; ++level) {
-    const double luminance = luminance_cd_m2(display, static_cast<double>(level) / (levels - 1)) + display.veil_cd_m2;
-    out[static_cast<std::size_t>(level)] = (luminance - background) / background;
-  }
-  return out;
-}
-
-/// The level below a contrast, and the share of the way to the next one.
-struct BetweenLevels {
-  int below = 0;
-  double share = 0, step = 0;
-};
-BetweenLevels between(const std::array<double, levels>& contrasts, double contrast) {
-  const auto above = std::upper_bound(contrasts.begin() + 1, contrasts.end() - 1, contrast);
-  const double low = *(above - 1), step = *above - low;
-  return {.below = static_cast<int>(above - contrasts.begin()) - 1,
-          .share = step > 0 ? std::clamp((contrast - low) / step, 0.0, 1.0) : 0,
-          .step = step};
-}
 
 }  // namespace
 
@@ -82,20 +57,20 @@ ViewedDisplay linear_display(const ViewedDisplay& display) {
 }
 
 NakedEyePicture naked_eye_picture(const NakedEyeTask& task, const NakedEyeTrial& trial, int window_samples) {
-  const auto contrasts = contrast_of_levels(*task.model.display);
+  const auto contrasts = level_contrasts(*task.model.display);
   const RandomStream numbers = RandomStream(task.seed, "naked-eye.picture").sub(trial.number);
   const cv::Point2d middle(window_samples / 2.0, window_samples / 2.0);
   const cv::Mat1d covered = pixel_coverage(triangle(trial.size_samples, trial.truth, middle + trial.centroid),
                                            {window_samples, window_samples});
   NakedEyePicture out{.levels = cv::Mat1b(covered.size()), .contrast = cv::Mat1f(covered.size())};
-  const BetweenLevels background = between(contrasts, 0);
+  const BetweenLevels background = between_levels(contrasts, 0);
   out.mean_level = background.below + background.share;
   double rounding = 0;
   std::uint64_t index = 0;
   for (int i = 0; i < covered.rows; ++i) {
     for (int j = 0; j < covered.cols; ++j, ++index) {
       const double wanted = trial.contrast * covered(i, j) + task.noise * static_cast<double>(numbers.normal(index));
-      const BetweenLevels at = between(contrasts, wanted);
+      const BetweenLevels at = between_levels(contrasts, wanted);
       const int level = at.below + (numbers.sub(1).uniform(index) < at.share ? 1 : 0);
       out.levels(i, j) = static_cast<unsigned char>(level);
       out.contrast(i, j) = static_cast<float>(contrasts[static_cast<std::size_t>(level)]);

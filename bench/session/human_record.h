@@ -18,7 +18,7 @@ namespace todbench {
 struct ShownPatch {
   cv::Mat1f kelvin;                 ///< samples that the model observer judged
   double black_k = 0, white_k = 0;  ///< ends of the grey scale
-  int magnification = 1;            ///< screen pixels per sample, bicubic
+  int magnification = 1;            ///< screen pixels per sample; bicubic without a display in the plan
   std::optional<int> limit_ms;      ///< maximum display time; empty: until answered
   double response_s = 0;            ///< time from display to answer
   std::optional<double> noise_k{};  ///< temporal noise of a sample, as given to the model; empty in older files

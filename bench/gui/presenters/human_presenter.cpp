@@ -9,6 +9,7 @@
 
 #include "acquisition/base/rng.h"
 #include "bench/gui/presenters/colour_map.h"
+#include "hvs/eye/display_levels.h"
 
 namespace todbench {
 namespace {
@@ -61,6 +62,29 @@ QImage picture_for_a_person(const JudgedTrial& judged, int magnification) {
   return to_image(fine, grey_levels(judged), ColourMap::white_hot);
 }
 
+LevelSpan grey_levels(const JudgedTrial& judged, const ViewedDisplay& display) {
+  const double surround = median(judged.patch_k);
+  const LevelContrasts contrasts = level_contrasts(display);
+  if (display.span_k > 0) {
+    const BetweenLevels background = between_levels(contrasts, 0);
+    const double below_k = display.span_k * (background.below + background.share) / 255;
+    return {surround - below_k, surround - below_k + display.span_k};
+  }
+  const double k_per_contrast = std::abs(judged.trial.delta_t_k) / display.contrast;
+  return {surround + contrasts.front() * k_per_contrast, surround + contrasts.back() * k_per_contrast};
+}
+
+QImage picture_at_display(const JudgedTrial& judged, const ViewedDisplay& display) {
+  const cv::Mat1b levels =
+      operator_picture(display, cv::Mat1d(judged.patch_k) - median(judged.patch_k), judged.trial.delta_t_k);
+  return QImage(levels.data, levels.cols, levels.rows, static_cast<qsizetype>(levels.step), QImage::Format_Grayscale8)
+      .copy();
+}
+
+int HumanPresenter::background_level() const {
+  return at_display() ? background_level_of(plan_.display) : 128;
+}
+
 HumanPresenter::HumanPresenter(QObject* parent) : QObject(parent) {
   hide_.setSingleShot(true);
   connect(&hide_, &QTimer::timeout, this, [this] {
@@ -90,7 +114,9 @@ void HumanPresenter::show_next() {
     finish();
     return;
   }
-  picture_ = picture_for_a_person(patches_[answers_.size()], options_.magnification);
+  const JudgedTrial& patch = patches_[answers_.size()];
+  picture_ =
+      at_display() ? picture_at_display(patch, plan_.display) : picture_for_a_person(patch, options_.magnification);
   state_ = HumanState::showing;
   since_shown_.start();
   if (options_.shown_ms) hide_.start(*options_.shown_ms);
@@ -101,11 +127,11 @@ void HumanPresenter::answer(Apex apex) {
   if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
   hide_.stop();
   const JudgedTrial& patch = patches_[answers_.size()];
-  const LevelSpan grey = grey_levels(patch);
+  const LevelSpan grey = at_display() ? grey_levels(patch, plan_.display) : grey_levels(patch);
   shown_.push_back({.kelvin = patch.patch_k,
                     .black_k = grey.low,
                     .white_k = grey.high,
-                    .magnification = options_.magnification,
+                    .magnification = at_display() ? static_cast<int>(plan_.display.zoom) : options_.magnification,
                     .limit_ms = options_.shown_ms,
                     .response_s = static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9,
                     .noise_k = patch.noise_k});

@@ -29,6 +29,10 @@ enum class HumanState { idle, showing, hidden, finished };
                                                             const HumanOptions& options);
 /// Returns the temperatures of black and white.
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged);
+/// The same for a display of the plan, whose levels are those of operator_picture().
+[[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged, const ViewedDisplay& display);
+/// Returns the patch as an operator sees it at the display, in pixels of the screen.
+[[nodiscard]] QImage picture_at_display(const JudgedTrial& judged, const ViewedDisplay& display);
 /// Returns the patch enlarged by bicubic interpolation. Grey levels span three contrasts or more around the surround,
 /// the same for all answers, so that they do not reveal the direction of the triangle.
 [[nodiscard]] QImage picture_for_a_person(const JudgedTrial& judged, int magnification);
@@ -49,6 +53,10 @@ class HumanPresenter final : public QObject {
 
   [[nodiscard]] HumanState state() const { return state_; }
   [[nodiscard]] const QImage& picture() const { return picture_; }
+  /// Level around the picture, 0 to 255: that of the background.
+  [[nodiscard]] int background_level() const;
+  /// Whether picture() is in pixels of the screen, for the display of the plan.
+  [[nodiscard]] bool at_display() const { return has_display(plan_); }
   [[nodiscard]] std::size_t done() const { return answers_.size(); }
   [[nodiscard]] std::size_t planned() const { return patches_.size(); }
   /// When finished: the record written to the session.

@@ -425,10 +425,11 @@ void HumanView::show_triangles() {
                             : running                   ? ""
                             : ready                     ? "Press Begin when you are ready."
                                                         : "Run a measurement first. A person then judges its frames.");
-  picture_->set_surround(QColor(128, 128, 128));
+  const int level = presenter_.background_level();
+  picture_->set_surround(QColor(level, level, level));
   // A fixed number of screen pixels per sample: the size of the window does not affect the picture.
   picture_->set_image(state == HumanState::showing ? presenter_.picture() : QImage());
-  picture_->set_zoom(1);
+  picture_->set_zoom(presenter_.at_display() ? 1 / devicePixelRatioF() : 1);
   progress_->setText(running ? QString("%1 of %2").arg(presenter_.done()).arg(presenter_.planned()) : QString());
   if (!presenter_.record() || running) {
     result_->setText(presenter_.problem());

@@ -93,6 +93,31 @@ TEST(HumanObserver, KeepsWhatWasShownSoThatEveryAnswerCanBeChecked) {
   }
 }
 
+TEST(HumanObserver, SeesThePictureOfAnOperatorAtTheDisplayOfThePlan) {
+  ShownWindow window("sim:sc2000", 1);
+  Plan plan = window->bench().plan();
+  plan.display = {.pixel_pitch_mm = 0.25, .viewing_distance_m = 0.6, .luminance_white_cd_m2 = 180, .zoom = 4};
+  window->bench().set_plan(plan);
+  window.measure();
+  window->show_view(View::human);
+  window.click("beginHuman");
+
+  const JudgedTrial judged =
+      patches_for_a_person(window->measure().trials(), {.per_size = 8, .shown_ms = {}, .seed = plan.seed}).front();
+  const QImage& shown = window.part<PictureView>("humanPicture").image();
+  EXPECT_EQ(shown.width(), 4 * judged.patch_k.cols);
+  EXPECT_EQ(shown, picture_at_display(judged, plan.display));
+  window->human().answer(Apex::up);
+  window.click("endHuman");
+
+  const auto record = read_human(window->measure().folder());
+  ASSERT_TRUE(record && *record);
+  EXPECT_EQ((*record)->shown.front().magnification, 4);
+  // Black and white are those of the levels: a full contrast is 0.5 of the background by default.
+  EXPECT_NEAR((*record)->shown.front().white_k - (*record)->shown.front().black_k, 4 * std::abs(judged.trial.delta_t_k),
+              1e-6);
+}
+
 TEST(HumanObserver, StandsInTheReportBesideTheModel) {
   ShownWindow window("sim:sc2000", 6);
   window.measure();
