@@ -1,254 +1,244 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/flir_seq.h"
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <optional>
-#include <tuple>
+#include <utility>
 
 #include "acquisition/base/try.h"
+#include "acquisition/compression/compressed_picture.h"
+#include "acquisition/core/byte_order.h"
 #include "acquisition/core/camera_id.h"
+#include "acquisition/recording/flir_jpeg.h"
 
 namespace todbench {
 namespace {
 
-constexpr std::size_t header_bytes = 64;
-constexpr std::size_t index_entry_bytes = 32;
-constexpr std::size_t raw_header_bytes = 32;
-constexpr std::uint16_t raw_data_type = 0x01;
-constexpr std::uint16_t camera_info_type = 0x20;
+/// JPEG-LS and PNG of noise are a little longer than the noise; a longer block is not read.
+constexpr std::uint64_t most_bytes_per_pixel = 4;
+constexpr std::uint64_t most_extra_bytes = 65536;
 
-/// Numbers in a section of the file. Reads beyond its end are zero; callers check sizes if zero would be a valid value.
-class Bytes {
- public:
-  Bytes(const std::vector<char>& file, std::size_t begin, std::size_t size, bool big_endian)
-      : data_(file.data() + std::min(begin, file.size())),
-        size_(std::min(size, file.size() - std::min(begin, file.size()))),
-        big_endian_(big_endian) {}
+void swap_bytes(cv::Mat1w& counts) {
+  for (auto& count : counts) count = static_cast<ushort>(count << 8 | count >> 8);
+}
 
-  [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] std::uint16_t u16(std::size_t at) const { return static_cast<std::uint16_t>(number(at, 2)); }
-  [[nodiscard]] std::uint32_t u32(std::size_t at) const { return number(at, 4); }
-  [[nodiscard]] std::int32_t i32(std::size_t at) const { return static_cast<std::int32_t>(number(at, 4)); }
-  [[nodiscard]] double f32(std::size_t at) const { return std::bit_cast<float>(number(at, 4)); }
-  [[nodiscard]] std::string text(std::size_t at, std::size_t length) const {
-    if (at + length > size_) return {};
-    return {data_ + at, strnlen(data_ + at, length)};
-  }
+bool is_jpeg(std::string_view start) {
+  return start.starts_with("\xff\xd8\xff");
+}
 
- private:
-  [[nodiscard]] std::uint32_t number(std::size_t at, std::size_t length) const {
-    if (at + length > size_) return 0;
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < length; ++i) {
-      const std::size_t byte = big_endian_ ? at + i : at + length - 1 - i;
-      value = value << 8 | static_cast<unsigned char>(data_[byte]);
+/// The bytes that hold the records: those of the file, or those of the segments of a JPEG picture.
+Result<FlirBytes> records_of(const std::filesystem::path& path) {
+  TODBENCH_TRY(auto file, FlirBytes::of_file(path));
+  if (!is_jpeg(file.read(0, 3))) return file;
+  TODBENCH_TRY(auto record, flir_record_of_jpeg(file));
+  return FlirBytes(std::move(record));
+}
+
+/// The start of the next record from `at`. Programs fill the gap between records with zeros; other bytes are damage.
+Result<std::uint64_t> next_record(const FlirBytes& bytes, std::uint64_t at) {
+  constexpr std::size_t window = 65536;
+  const std::uint64_t first = at;
+  while (at < bytes.size()) {
+    const std::string part = bytes.read(at, window);
+    const std::size_t used = part.find_first_not_of('\0');
+    if (part.empty()) break;
+    if (used != std::string::npos) {
+      at += used;
+      if (at != first && !is_flir_record(bytes.read(at, 4)))
+        return fail(ErrorCode::invalid_input, "no FFF record at byte " + std::to_string(at));
+      return at;
     }
-    return value;
+    at += part.size();
   }
-
-  const char* data_;
-  std::size_t size_;
-  bool big_endian_;
-};
-
-struct IndexEntry {
-  std::uint16_t type = 0;
-  std::size_t offset = 0, length = 0;  ///< offset from the start of the file
-};
-
-struct Record {
-  std::vector<IndexEntry> entries;
-  std::size_t end = 0;
-};
-
-tl::unexpected<Error> broken(const std::string& what) {
-  return fail(ErrorCode::invalid_input, what);
+  return bytes.size();
 }
 
-/// The FFF header at `begin` and its index.
-Result<Record> read_record(const std::vector<char>& file, std::size_t begin) {
-  const std::string where = "FFF record at byte " + std::to_string(begin);
-  if (begin + header_bytes > file.size() || std::memcmp(file.data() + begin, "FFF\0", 4) != 0) {
-    return broken("no " + where);
+Result<std::vector<FlirSeqFrame>> frames_in(const FlirBytes& bytes) {
+  std::vector<FlirSeqFrame> frames;
+  for (std::uint64_t at = 0;;) {
+    TODBENCH_TRY(at, next_record(bytes, at));
+    if (at >= bytes.size()) break;
+    auto record = read_flir_record(bytes, at);
+    if (!record) return fail("frame " + std::to_string(frames.size()), record.error());
+    FlirSeqFrame& frame = record->frame;
+    // One description serves all frames with the same constants: a long recording has many frames of one camera.
+    if (!frames.empty()) {
+      const auto& before = frames.back().camera;
+      if (!frame.camera || (before && frame.camera->planck == before->planck && frame.camera->serial == before->serial))
+        frame.camera = before;
+    }
+    frames.push_back(std::move(frame));
+    at = record->end;
   }
-  // The version, 100 and a few, shows the byte order of the header and the index.
-  const Bytes little(file, begin, header_bytes, false);
-  const Bytes big(file, begin, header_bytes, true);
-  const auto plausible = [](std::uint32_t version) { return version >= 100 && version < 200; };
-  if (!plausible(little.u32(20)) && !plausible(big.u32(20))) return broken(where + " has an unknown version");
-  const bool big_endian = !plausible(little.u32(20));
-  const Bytes& header = big_endian ? big : little;
-  const std::size_t index = header.u32(24);
-  const std::size_t count = header.u32(28);
-  if (count > 1000 || begin + index + count * index_entry_bytes > file.size()) {
-    return broken(where + " is truncated in its index");
-  }
-  Record record;
-  record.end = begin + index + count * index_entry_bytes;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Bytes entry(file, begin + index + i * index_entry_bytes, index_entry_bytes, big_endian);
-    const IndexEntry found{entry.u16(0), begin + entry.u32(12), entry.u32(16)};
-    if (found.type == 0) continue;
-    if (found.offset + found.length > file.size())
-      return broken(where + " points outside the file: the file is truncated");
-    record.entries.push_back(found);
-    record.end = std::max(record.end, found.offset + found.length);
-  }
-  return record;
-}
-
-/// Both blocks begin with the number 2 (bytes per pixel), which shows their byte order.
-std::optional<bool> big_endian_block(const std::vector<char>& file, const IndexEntry& entry) {
-  if (Bytes(file, entry.offset, entry.length, false).u16(0) == 2) return false;
-  if (Bytes(file, entry.offset, entry.length, true).u16(0) == 2) return true;
-  return std::nullopt;
-}
-
-Result<void> read_camera_info(const std::vector<char>& file, const IndexEntry& entry, FlirSeqFrame& frame) {
-  const auto big_endian = big_endian_block(file, entry);
-  if (!big_endian) return broken("the camera constants have an unknown byte order");
-  const Bytes info(file, entry.offset, entry.length, *big_endian);
-  if (info.size() < 0x390) return broken("the camera constants are truncated");
-  frame.object = {info.f32(0x20), info.f32(0x24), info.f32(0x28), info.f32(0x2C),
-                  info.f32(0x30), info.f32(0x34), info.f32(0x3C)};
-  frame.planck = {info.f32(0x58), info.f32(0x30C), info.f32(0x5C), info.f32(0x60),
-                  static_cast<double>(info.i32(0x308))};
-  frame.camera_model = info.text(0xD4, 32);
-  frame.camera_serial = info.text(0x104, 16);
-  frame.camera_software = info.text(0x114, 16);
-  // Seconds since 1970 and, in the low half of the next word, milliseconds.
-  frame.device_time_ns =
-      std::int64_t{info.u32(0x384)} * 1'000'000'000 + (info.u32(0x388) & 0xFFFFU) * std::int64_t{1'000'000};
-  return {};
-}
-
-Result<void> read_raw_data(const std::vector<char>& file, const IndexEntry& entry, FlirSeqFrame& frame) {
-  const auto big_endian = big_endian_block(file, entry);
-  if (!big_endian) return broken("the pixels have an unknown format");
-  const Bytes header(file, entry.offset, entry.length, *big_endian);
-  frame.width = header.u16(2);
-  frame.height = header.u16(4);
-  frame.big_endian = *big_endian;
-  frame.pixel_offset = entry.offset + raw_header_bytes;
-  const std::size_t pixels = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
-  if (pixels == 0) return broken("the frame has no pixels");
-  if (header.size() != raw_header_bytes + 2 * pixels) {
-    return broken("the pixels are compressed or truncated: " + std::to_string(header.size()) + " bytes for " +
-                  std::to_string(frame.width) + " x " + std::to_string(frame.height));
-  }
-  return {};
-}
-
-Result<FlirSeqFrame> read_frame_description(const std::vector<char>& file, const Record& record) {
-  FlirSeqFrame frame;
-  for (const auto& entry : record.entries) {
-    Result<void> read;
-    if (entry.type == camera_info_type) read = read_camera_info(file, entry, frame);
-    if (entry.type == raw_data_type) read = read_raw_data(file, entry, frame);
-    if (!read) return tl::unexpected(read.error());
-  }
-  if (frame.width == 0) return broken("the record has no pixels");
-  return frame;
+  if (frames.empty()) return fail(ErrorCode::invalid_input, "the file is empty");
+  return frames;
 }
 
 bool same_camera(const FlirSeqFrame& a, const FlirSeqFrame& b) {
-  const auto key = [](const FlirSeqFrame& f) {
-    return std::tie(f.width, f.height, f.planck.r1, f.planck.r2, f.planck.b, f.planck.f, f.planck.o, f.camera_serial);
-  };
-  return key(a) == key(b);
+  return a.width == b.width && a.height == b.height && a.camera == b.camera;
 }
 
-Result<RecordedFrame> read_pixels(std::ifstream& file, const FlirSeqFrame& frame) {
-  RecordedFrame recorded;
-  recorded.device_time_ns = frame.device_time_ns;
-  recorded.counts.create(frame.height, frame.width);
-  const auto bytes = static_cast<std::streamsize>(recorded.counts.total() * recorded.counts.elemSize());
-  file.clear();
-  file.seekg(static_cast<std::streamoff>(frame.pixel_offset));
-  file.read(reinterpret_cast<char*>(recorded.counts.data), bytes);
-  if (file.gcount() != bytes) return fail(ErrorCode::io, "the file became shorter after it was opened");
-  if (frame.big_endian) {
-    for (auto& count : recorded.counts) count = static_cast<ushort>(count << 8 | count >> 8);
+/// Reads the pixels as the file stores them.
+Result<cv::Mat1w> stored_pixels(const FlirBytes& bytes, const FlirSeqFrame& frame) {
+  const cv::Size size(frame.width, frame.height);
+  const std::uint64_t pixels = static_cast<std::uint64_t>(size.area());
+  if (frame.storage != FlirStorage::raw && frame.pixel_bytes > most_bytes_per_pixel * pixels + most_extra_bytes)
+    return fail(ErrorCode::invalid_input, "the compressed picture is longer than its pixels");
+  const std::string stored = bytes.read(frame.pixel_offset, static_cast<std::size_t>(frame.pixel_bytes));
+  if (stored.size() != frame.pixel_bytes) return fail(ErrorCode::io, "the file became shorter after it was opened");
+  if (frame.storage == FlirStorage::png) return decode_png(stored, size);
+  if (frame.storage == FlirStorage::jpeg_ls) return decode_jpeg_ls(stored, size);
+  cv::Mat1w counts(size);
+  std::memcpy(counts.data, stored.data(), stored.size());
+  if (frame.big_endian) swap_bytes(counts);
+  return counts;
+}
+
+/// Whether the bytes of a PNG are exchanged, as many FLIR cameras write them: by the median that the camera states, or
+/// else by the smoothness of the picture.
+bool is_swapped(const cv::Mat1w& counts, int stated_median) {
+  if (stated_median > 0) {
+    std::vector<ushort> values(counts.begin(), counts.end());
+    const auto median = [&] {
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      return static_cast<int>(*middle);
+    };
+    const int as_stored = std::abs(median() - stated_median);
+    for (auto& value : values) value = static_cast<ushort>(value << 8 | value >> 8);
+    const int swapped = std::abs(median() - stated_median);
+    if (as_stored != swapped) return swapped < as_stored;
   }
+  return byte_order_evidence(counts, {}).verdict == ByteOrderVerdict::swapped;
+}
+
+Result<RecordedFrame> read_pixels(const FlirBytes& bytes, const FlirSeqFrame& frame, bool swapped) {
+  TODBENCH_TRY(auto counts, stored_pixels(bytes, frame));
+  if (swapped) swap_bytes(counts);
+  RecordedFrame recorded;
+  recorded.counts = std::move(counts);
+  recorded.device_time_ns = frame.device_time_ns;
   return recorded;
 }
 
+/// The shortest text of a number of single precision, as the file has it.
 std::string text(double value) {
-  std::string digits = std::to_string(value);
-  digits.erase(digits.find_last_not_of('0') + 1);
-  return digits.ends_with('.') ? digits + "0" : digits;
+  return fmt::format("{}", static_cast<float>(value));
+}
+
+std::string storage_text(const FlirSeqFrame& frame, bool swapped) {
+  if (frame.storage == FlirStorage::jpeg_ls) return "JPEG-LS";
+  if (frame.storage == FlirStorage::png) return swapped ? "PNG with exchanged bytes" : "PNG";
+  return frame.big_endian ? "raw, big-endian" : "raw, little-endian";
+}
+
+/// Date and time in UTC; empty if the camera states none.
+std::string date_text(std::int64_t device_time_ns) {
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  if (device_time_ns < second_ns) return {};
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(static_cast<std::time_t>(device_time_ns / second_ns)),
+                     device_time_ns % second_ns / 1'000'000);
+}
+
+/// States that object parameters other than those of a black body are not in the temperatures; empty if all are
+/// neutral.
+std::string object_note(const FlirObjectParameters& object) {
+  std::string not_neutral;
+  const auto add = [&](const char* name, double value) {
+    not_neutral += (not_neutral.empty() ? "" : ", ") + std::string(name) + " = " + text(value);
+  };
+  // Cameras store factors in steps of 0.001.
+  if (!(std::abs(object.emissivity - 1) <= 1e-3)) add("ObjectEmissivity", object.emissivity);
+  if (object.distance_m > 0) add("ObjectDistance", object.distance_m);
+  if (!(std::abs(object.window_transmission - 1) <= 1e-3)) add("IRWindowTransmission", object.window_transmission);
+  if (not_neutral.empty()) return {};
+  return "The temperatures are those of a black body in front of the lens: the Planck constants in the file are "
+         "applied, its object parameters are not (" +
+         not_neutral + ").";
 }
 
 SourceInfo source_info(const std::filesystem::path& path, const FlirSeqFrame& first, const RadiometricScale& scale) {
+  const FlirCamera& camera = *first.camera;
   SourceInfo info;
   info.id = camera_id(camera_scheme::file, path.string());
   info.vendor = "FLIR";
-  info.model = first.camera_model;
-  info.serial = first.camera_serial;
-  info.firmware = first.camera_software;
+  info.model = camera.model;
+  info.serial = camera.serial;
+  info.firmware = camera.software;
   info.transport = "recording";
   info.width = first.width;
   info.height = first.height;
   info.pixel_format = "Mono16";
+  info.frame_rate_hz = camera.frame_rate_hz;
   info.scale = scale;
-  info.settings = {{"PlanckR1", text(first.planck.r1)},
-                   {"PlanckR2", text(first.planck.r2)},
-                   {"PlanckB", text(first.planck.b)},
-                   {"PlanckF", text(first.planck.f)},
-                   {"PlanckO", text(first.planck.o)},
-                   {"ObjectEmissivity", text(first.object.emissivity)},
-                   {"ObjectDistance", text(first.object.distance_m)},
-                   {"ReflectedTemperature", text(first.object.reflected_temperature_k)},
-                   {"AtmosphericTemperature", text(first.object.atmospheric_temperature_k)},
-                   {"RelativeHumidity", text(first.object.relative_humidity)}};
+  info.settings = {{"PlanckR1", text(camera.planck.r1)},
+                   {"PlanckR2", text(camera.planck.r2)},
+                   {"PlanckB", text(camera.planck.b)},
+                   {"PlanckF", text(camera.planck.f)},
+                   {"PlanckO", text(camera.planck.o)},
+                   {"ObjectEmissivity", text(camera.object.emissivity)},
+                   {"ObjectDistance", text(camera.object.distance_m)},
+                   {"ReflectedTemperature", text(camera.object.reflected_temperature_k)},
+                   {"AtmosphericTemperature", text(camera.object.atmospheric_temperature_k)},
+                   {"RelativeHumidity", text(camera.object.relative_humidity)},
+                   {"IRWindowTemperature", text(camera.object.window_temperature_k)},
+                   {"IRWindowTransmission", text(camera.object.window_transmission)},
+                   {"CameraTemperatureRangeMin", text(camera.range_low_k)},
+                   {"CameraTemperatureRangeMax", text(camera.range_high_k)},
+                   {"LensModel", camera.lens},
+                   {"LensSerialNumber", camera.lens_serial},
+                   {"DateTimeOriginal", date_text(first.device_time_ns)}};
+  if (auto note = object_note(camera.object); !note.empty()) info.warnings.push_back(std::move(note));
   return info;
 }
 
 }  // namespace
 
-Result<RadiometricScale> planck_scale(const FlirPlanck& planck) {
-  if (!(planck.r2 > 0)) return fail(ErrorCode::calibration, "the Planck constant R2 must be positive");
-  return RadiometricScale::planck({planck.r1 / planck.r2, planck.b, planck.f, -planck.o});
+bool is_flir_file(std::string_view start) {
+  return is_flir_record(start) || is_jpeg(start);
 }
 
 Result<std::vector<FlirSeqFrame>> read_flir_seq(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return fail(ErrorCode::io, path.string() + ": cannot be read");
-  const std::vector<char> file{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  std::vector<FlirSeqFrame> frames;
-  for (std::size_t begin = 0; begin < file.size();) {
-    const auto record = read_record(file, begin);
-    if (!record) return fail(path.string(), record.error());
-    auto frame = read_frame_description(file, *record);
-    if (!frame) return fail(path.string() + ": frame " + std::to_string(frames.size()), frame.error());
-    frames.push_back(std::move(*frame));
-    begin = record->end;
-  }
-  if (frames.empty()) return fail(ErrorCode::invalid_input, path.string() + ": the file is empty");
+  const auto bytes = records_of(path);
+  if (!bytes) return fail(path.string(), bytes.error());
+  auto frames = frames_in(*bytes);
+  if (!frames) return fail(path.string(), frames.error());
   return frames;
 }
 
 Result<Recording> open_flir_seq(const std::filesystem::path& path) {
-  TODBENCH_TRY(auto frames, read_flir_seq(path));
-  const bool uniform = std::all_of(frames.begin(), frames.end(),
-                                   [&](const FlirSeqFrame& frame) { return same_camera(frames.front(), frame); });
+  const auto bytes = records_of(path);
+  if (!bytes) return fail(path.string(), bytes.error());
+  auto frames = frames_in(*bytes);
+  if (!frames) return fail(path.string(), frames.error());
+  const FlirSeqFrame& first = frames->front();
+  const bool uniform =
+      std::all_of(frames->begin(), frames->end(), [&](const FlirSeqFrame& frame) { return same_camera(first, frame); });
   if (!uniform) {
     return fail(ErrorCode::invalid_input,
                 path.string() + ": the picture size or the calibration changes within the file");
   }
-  const auto scale = planck_scale(frames.front().planck);
+  if (!first.camera)
+    return fail(ErrorCode::invalid_input, path.string() + ": the file does not contain the constants of the camera");
+  const auto scale = planck_scale(first.camera->planck);
   if (!scale) return fail(path.string(), scale.error());
-  auto file = std::make_shared<std::ifstream>(path, std::ios::binary);
-  if (!*file) return fail(ErrorCode::io, path.string() + ": cannot be read");
+  bool swapped = false;
+  if (first.storage == FlirStorage::png) {
+    const auto counts = stored_pixels(*bytes, first);
+    if (!counts) return fail(path.string(), counts.error());
+    swapped = is_swapped(*counts, first.camera->raw_median);
+  }
   Recording recording;
-  recording.info = source_info(path, frames.front(), *scale);
-  recording.frame_count = frames.size();
-  recording.read = [file, all = std::move(frames)](std::uint64_t index) { return read_pixels(*file, all[index]); };
+  recording.info = source_info(path, first, *scale);
+  recording.info.settings["RawThermalImageType"] = storage_text(first, swapped);
+  recording.frame_count = frames->size();
+  recording.read = [bytes = *bytes, all = *std::move(frames), swapped](std::uint64_t index) {
+    return read_pixels(bytes, all[index], swapped);
+  };
   return recording;
 }
 

@@ -4,15 +4,18 @@
 #include <bit>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
+#include "acquisition/recording/tiff_values.h"
 
 namespace todbench {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "frames are read without swapping bytes");
 
-Result<RecordedFrame> read_frame(std::ifstream& file, const RawRecordingFormat& format, std::uint64_t index) {
+Result<RecordedFrame> read_raw_frame(std::ifstream& file, const RawRecordingFormat& format, std::uint64_t index) {
   RecordedFrame frame;
   frame.counts.create(format.height, format.width);
   const auto bytes = static_cast<std::streamsize>(frame.counts.total() * frame.counts.elemSize());
@@ -20,6 +23,11 @@ Result<RecordedFrame> read_frame(std::ifstream& file, const RawRecordingFormat& 
   file.seekg(static_cast<std::streamoff>(index) * bytes);
   file.read(reinterpret_cast<char*>(frame.counts.data), bytes);
   if (file.gcount() != bytes) return fail(ErrorCode::io, "the file became shorter after it was opened");
+  if (format.byte_order == RawByteOrder::big) {
+    for (auto& count : frame.counts) count = static_cast<ushort>(count << 8 | count >> 8);
+  }
+  // Two's complement plus 32768: the highest bit changes.
+  if (format.sign == RawSign::with) cv::bitwise_xor(frame.counts, cv::Scalar(0x8000), frame.counts);
   return frame;
 }
 
@@ -54,10 +62,13 @@ Result<Recording> open_raw_recording(const std::filesystem::path& path, const Ra
   recording.info.pixel_format = "Mono16";
   recording.info.significant_bits = format.significant_bits;
   recording.info.frame_rate_hz = format.frame_rate_hz;
-  recording.info.scale = format.scale;
+  const ValueCounts conversion{format.sign == RawSign::with ? -32768.0 : 0.0};
+  TODBENCH_TRY(recording.info.scale, conversion.scale(format.scale));
   recording.info.settings = {{"Width", std::to_string(format.width)}, {"Height", std::to_string(format.height)}};
+  if (format.byte_order == RawByteOrder::big) recording.info.settings["ByteOrder"] = "big-endian";
+  if (auto relation = conversion.describe(); !relation.empty()) recording.info.settings["Counts"] = std::move(relation);
   recording.frame_count = size / frame_bytes;
-  recording.read = [file, format](std::uint64_t index) { return read_frame(*file, format, index); };
+  recording.read = [file, format](std::uint64_t index) { return read_raw_frame(*file, format, index); };
   return recording;
 }
 

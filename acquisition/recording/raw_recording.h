@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recordings without a header: 16-bit little-endian counts, row by row, frame after frame.
+// Recordings without a header: 16-bit counts, row by row, frame after frame.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,18 @@
 
 namespace todbench {
 
+enum class RawByteOrder { little, big };
+/// Signed values are raised by 32768.
+enum class RawSign { without, with };
+
 /// Format of a raw file, which has no header.
 struct RawRecordingFormat {
   int width = 0, height = 0;
   int significant_bits = 16;
   double frame_rate_hz = 0;     ///< 0: unknown
-  RadiometricScale scale = {};  ///< uncalibrated unless stated
+  RadiometricScale scale = {};  ///< of the values in the file; uncalibrated unless stated
+  RawByteOrder byte_order = RawByteOrder::little;
+  RawSign sign = RawSign::without;
 };
 
 /// Opens a raw recording. Errors: `io` (unreadable), `invalid_input` (impossible geometry; a file that is empty or does

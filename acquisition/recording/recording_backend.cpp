@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/recording/recording_backend.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string_view>
 
 #include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
+#include "acquisition/recording/file_content.h"
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/raw_recording.h"
@@ -16,6 +19,29 @@
 
 namespace todbench {
 namespace {
+
+/// Words that stand for numbers in a query.
+struct QueryWord {
+  std::string_view key, word;
+  double value;
+};
+constexpr std::array query_words{QueryWord{"byte_order", "little", 0}, QueryWord{"byte_order", "big", 1},
+                                 QueryWord{"signed", "no", 0},         QueryWord{"signed", "yes", 1},
+                                 QueryWord{"unit", "counts", 0},       QueryWord{"unit", "kelvin", 1},
+                                 QueryWord{"unit", "celsius", 2}};
+
+/// The number of a word; empty for a key without words. Error: another word.
+Result<std::optional<double>> number_of_word(std::string_view key, std::string_view word) {
+  std::string expected;
+  for (const QueryWord& known : query_words) {
+    if (known.key != key) continue;
+    if (known.word == word) return std::optional(known.value);
+    expected += (expected.empty() ? "" : " or ") + std::string(known.word);
+  }
+  if (expected.empty()) return std::optional<double>();
+  return fail(ErrorCode::invalid_input,
+              std::string(key) + " must be " + expected + ", not '" + std::string(word) + "'");
+}
 
 /// key -> value of "width=160&height=120".
 Result<std::map<std::string, double>> parsed_query(const std::string& query) {
@@ -26,22 +52,31 @@ Result<std::map<std::string, double>> parsed_query(const std::string& query) {
     begin = end + 1;
     const std::size_t equals = item.find('=');
     const std::string key = item.substr(0, equals);
-    double value = 0;
-    const char* last = item.data() + item.size();
-    const bool number = equals != std::string::npos && equals + 1 < item.size() &&
-                        std::from_chars(item.data() + equals + 1, last, value).ptr == last;
+    const std::string word = equals == std::string::npos ? "" : item.substr(equals + 1);
+    TODBENCH_TRY(const auto named, number_of_word(key, word));
+    double value = named.value_or(0);
+    const char* last = word.data() + word.size();
+    const bool number = !word.empty() && (named || std::from_chars(word.data(), last, value).ptr == last);
     if (!number) return fail(ErrorCode::invalid_input, "'" + item + "' is not KEY=NUMBER");
     if (!values.emplace(key, value).second) return fail(ErrorCode::invalid_input, key + " is stated twice");
   }
   return values;
 }
 
-Result<RawRecordingFormat> raw_format(std::map<std::string, double> values) {
+/// What a query states about a raw or a TIFF file.
+struct StatedFormat {
+  RawRecordingFormat raw;
+  bool states_samples = false;  ///< byte order or sign
+  std::optional<ValueUnit> unit{};
+};
+
+Result<StatedFormat> stated_format(std::map<std::string, double> values) {
   const auto take = [&](const char* key, double otherwise) {
     const auto node = values.extract(key);
     return node.empty() ? otherwise : node.mapped();
   };
-  RawRecordingFormat format;
+  StatedFormat stated;
+  RawRecordingFormat& format = stated.raw;
   // A number that is not an integer or out of range becomes -1, which is refused later.
   const auto whole = [&](const char* key, double otherwise) {
     const double value = take(key, otherwise);
@@ -56,13 +91,28 @@ Result<RawRecordingFormat> raw_format(std::map<std::string, double> values) {
   const bool calibrated = values.contains("kelvin_per_count");
   const double kelvin_per_count = take("kelvin_per_count", 0);
   const double offset_k = take("offset_k", 0);
+  stated.states_samples = values.contains("byte_order") || values.contains("signed");
+  if (take("byte_order", 0) != 0) format.byte_order = RawByteOrder::big;
+  if (take("signed", 0) != 0) format.sign = RawSign::with;
+  if (values.contains("unit")) stated.unit = static_cast<ValueUnit>(static_cast<int>(take("unit", 0)));
   if (!values.empty()) return fail(ErrorCode::invalid_input, "unknown key " + values.begin()->first);
   if (calibrated) {
     const auto scale = RadiometricScale::linear({kelvin_per_count, offset_k});
     if (!scale) return fail(ErrorCode::invalid_input, scale.error().message);
     format.scale = *scale;
   }
-  return format;
+  return stated;
+}
+
+/// The sentence for a file of unknown content without a stated geometry: its name may promise a format.
+std::string no_format(const std::filesystem::path& path, const FileContent& content) {
+  const bool empty = content.start.empty();
+  return path.string() + ": " +
+         (empty ? "the file is empty"
+                : "its content is none of the formats that this program reads (it begins with the bytes " +
+                      content.start +
+                      ", whatever its name says). If it is a raw recording, state its width and height "
+                      "in pixels: ?width=640&height=480");
 }
 
 class RecordingBackend : public CameraBackend {
@@ -87,23 +137,36 @@ Result<Recording> open_recording(const std::filesystem::path& path, const std::s
   const bool folder = std::filesystem::is_directory(path, error);
   if (!folder && !std::filesystem::is_regular_file(path, error))
     return fail(ErrorCode::not_found, path.string() + ": no such file");
-  const bool is_stream = !folder && is_frame_stream(path);
-  if (!query.empty() && !folder && (is_stream || path.extension() == ".seq"))
+  const FileContent content = folder ? FileContent{FileKind::tiff} : content_of_file(path);
+  const bool own_format = content.kind == FileKind::frame_stream || content.kind == FileKind::flir;
+  if (!query.empty() && own_format)
     return fail(ErrorCode::invalid_input, path.string() + ": the file contains its format; remove '?" + query + "'");
-  if (is_stream) {
+  if (content.kind == FileKind::frame_stream) {
     TODBENCH_TRY(auto stream, open_frame_stream(path));
     return std::move(stream.recording);
   }
-  if (path.extension() == ".seq") return open_flir_seq(path);
+  if (content.kind == FileKind::flir) return open_flir_seq(path);
+  if (content.kind == FileKind::foreign) {
+    return fail(ErrorCode::invalid_input,
+                path.string() + ": the file is " + content.name + ", which this program does not read as a recording");
+  }
   const auto values = parsed_query(query);
   if (!values) return fail(path.string(), values.error());
-  const auto format = raw_format(*values);
-  if (!format) return fail(path.string(), format.error());
-  if (!folder && !has_tiff_name(path)) return open_raw_recording(path, *format);
-  if (format->width != 0 || format->height != 0)
+  const auto stated = stated_format(*values);
+  if (!stated) return fail(path.string(), stated.error());
+  const RawRecordingFormat& format = stated->raw;
+  if (content.kind == FileKind::unknown) {
+    if (format.width == 0 && format.height == 0) return fail(ErrorCode::invalid_input, no_format(path, content));
+    if (stated->unit) return fail(ErrorCode::invalid_input, path.string() + ": raw values are counts; remove unit");
+    return open_raw_recording(path, format);
+  }
+  if (format.width != 0 || format.height != 0)
     return fail(ErrorCode::invalid_input,
                 path.string() + ": a TIFF file contains its width and height; do not state them");
-  return open_tiff_stack(path, {format->significant_bits, format->frame_rate_hz, format->scale});
+  if (stated->states_samples)
+    return fail(ErrorCode::invalid_input,
+                path.string() + ": a TIFF file contains byte order and sign; do not state them");
+  return open_tiff_stack(path, {format.significant_bits, format.frame_rate_hz, format.scale, stated->unit});
 }
 
 std::unique_ptr<CameraBackend> recording_backend() {

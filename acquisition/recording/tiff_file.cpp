@@ -3,9 +3,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
 #include <opencv2/core/utility.hpp>
 #include <string_view>
 #include <system_error>
@@ -66,9 +68,7 @@ TiffPage page_of(const TiffFile& file) {
   return page;
 }
 
-Result<void> check_layout(const TiffFile& file, const TiffPage& page) {
-  if (TIFFIsTiled(file.get()) != 0)
-    return fail(ErrorCode::invalid_input, "the picture is stored in tiles, expected strips");
+Result<void> check_layout(const TiffPage& page) {
   if (page.photometric != PHOTOMETRIC_MINISBLACK && page.photometric != PHOTOMETRIC_MINISWHITE) {
     return fail(ErrorCode::invalid_input, "the tag PhotometricInterpretation is " + std::to_string(page.photometric) +
                                               ", expected 0 or 1 (grey levels)");
@@ -80,18 +80,56 @@ Result<void> check_layout(const TiffFile& file, const TiffPage& page) {
 }
 
 TiffRows::TiffRows(const TiffFile& file, const TiffPage& page, std::size_t row_bytes)
-    : file_(file), page_(page), row_(row_bytes) {}
+    : file_(file), page_(page), row_(row_bytes) {
+  if (TIFFIsTiled(file.get()) == 0) return;
+  TIFFGetField(file.get(), TIFFTAG_TILEWIDTH, &tile_width_);
+  TIFFGetField(file.get(), TIFFTAG_TILELENGTH, &tile_height_);
+}
 
 Result<void> TiffRows::may_hold() {
-  if (page_.compression == COMPRESSION_NONE) {
+  const bool tiled = TIFFIsTiled(file_.get()) != 0;
+  const std::uint64_t expansion = page_.compression == COMPRESSION_NONE ? 1 : most_expansion;
+  if (page_.compression == COMPRESSION_NONE && !tiled) {
     if (TIFFReadScanline(file_.get(), row_.data(), page_.height - 1, 0) >= 0) return {};
-  } else if (row_.size() * static_cast<std::uint64_t>(page_.height) / most_expansion <= file_.size_bytes()) {
-    return {};
+  } else if (row_.size() * static_cast<std::uint64_t>(page_.height) / expansion <= file_.size_bytes()) {
+    if (!tiled) return {};
+    const std::uint64_t pixel_bytes = row_.size() / page_.width;
+    const std::uint64_t tile_bytes = std::uint64_t{tile_width_} * tile_height_ * pixel_bytes;
+    const std::uint64_t band_bytes = row_.size() * std::uint64_t{tile_height_};
+    const bool fits = tile_bytes > 0 && tile_bytes <= std::uint64_t{most_memory} &&
+                      band_bytes <= std::uint64_t{most_memory} && tile_bytes / expansion <= file_.size_bytes();
+    if (fits && TIFFTileSize(file_.get()) == static_cast<tmsize_t>(tile_bytes)) return {};
+    return fail(ErrorCode::io, file_.why("its tiles have an unexpected size"));
   }
   return fail(ErrorCode::io, file_.why("the picture cannot be read"));
 }
 
+/// Fills the band with the tiles that hold the next row.
+Result<void> TiffRows::read_tiles() {
+  const std::size_t pixel_bytes = row_.size() / page_.width;
+  tile_.resize(std::size_t{tile_width_} * tile_height_ * pixel_bytes);
+  band_.resize(row_.size() * tile_height_);
+  for (std::uint32_t x = 0; x < page_.width; x += tile_width_) {
+    if (TIFFReadTile(file_.get(), tile_.data(), x, next_, 0, 0) < 0)
+      return fail(ErrorCode::io, file_.why("a tile of the picture cannot be read"));
+    const std::size_t used = std::min<std::size_t>(tile_width_, page_.width - x) * pixel_bytes;
+    for (std::size_t y = 0; y < tile_height_; ++y) {
+      std::memcpy(band_.data() + y * row_.size() + x * pixel_bytes, tile_.data() + y * tile_width_ * pixel_bytes, used);
+    }
+  }
+  return {};
+}
+
 Result<const std::vector<char>*> TiffRows::next() {
+  if (tile_height_ > 0) {
+    const std::size_t row = next_ % tile_height_;
+    if (row == 0) {
+      if (auto read = read_tiles(); !read) return tl::unexpected(read.error());
+    }
+    std::memcpy(row_.data(), band_.data() + row * row_.size(), row_.size());
+    ++next_;
+    return &row_;
+  }
   if (TIFFReadScanline(file_.get(), row_.data(), next_++, 0) < 0)
     return fail(ErrorCode::io, file_.why("the picture cannot be read"));
   return &row_;

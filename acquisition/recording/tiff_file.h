@@ -53,13 +53,12 @@ struct TiffPage {
 };
 [[nodiscard]] TiffPage page_of(const TiffFile& file);
 
-/// Refuses everything but pictures of one sample a pixel in strips: tiles, colour tables, an invalid tag Orientation.
-/// Error: `invalid_input`.
-[[nodiscard]] Result<void> check_layout(const TiffFile& file, const TiffPage& page);
+/// Refuses everything but grey levels: colour tables, an invalid tag Orientation. Error: `invalid_input`.
+[[nodiscard]] Result<void> check_layout(const TiffPage& page);
 
-/// Reads the rows of the current page in file order, from the top, each `row_bytes` long. Rows of a compressed strip
-/// can only be read in order. A page that states more than its file can hold is refused before memory is allocated:
-/// libtiff's lossless compressions expand a byte to at most 4096. Errors: `io`.
+/// Reads the rows of the current page in file order, from the top, each `row_bytes` long, from strips or tiles. Rows of
+/// a compressed strip can only be read in order. A page that states more than its file can hold is refused before
+/// memory is allocated: libtiff's lossless compressions expand a byte to at most 4096. Errors: `io`.
 class TiffRows {
  public:
   TiffRows(const TiffFile& file, const TiffPage& page, std::size_t row_bytes);
@@ -68,10 +67,14 @@ class TiffRows {
   [[nodiscard]] Result<const std::vector<char>*> next();
 
  private:
+  [[nodiscard]] Result<void> read_tiles();
+
   const TiffFile& file_;
   TiffPage page_;
   std::vector<char> row_;
   std::uint32_t next_ = 0;
+  std::uint32_t tile_width_ = 0, tile_height_ = 0;  ///< 0: strips
+  std::vector<char> tile_, band_;                   ///< one tile; the rows of all tiles side by side
 };
 
 /// Rotates the picture as its tag Orientation demands: row 0 at the top, column 0 at the left. Orientations 5 to 8

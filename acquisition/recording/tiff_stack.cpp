@@ -21,57 +21,84 @@
 namespace todbench {
 namespace {
 
-/// Size of the current page after its orientation is applied, if the page is readable.
-Result<cv::Size> page_size(const TiffFile& file) {
-  const TiffPage page = page_of(file);
+/// Depth of the samples of a page in OpenCV's names, if a recording may have them.
+std::optional<int> depth_of(const TiffPage& page) {
+  if (page.samples != 1) return std::nullopt;
   const bool counts = page.kind == SAMPLEFORMAT_UINT || page.kind == SAMPLEFORMAT_VOID;
+  if (page.bits == 16 && counts) return CV_16U;
+  if (page.bits == 16 && page.kind == SAMPLEFORMAT_INT) return CV_16S;
+  if (page.bits == 32 && page.kind == SAMPLEFORMAT_IEEEFP) return CV_32F;
+  if (page.bits == 64 && page.kind == SAMPLEFORMAT_IEEEFP) return CV_64F;
+  return std::nullopt;
+}
+
+/// Size and depth of a page.
+struct PageShape {
+  cv::Size size;  ///< after its orientation is applied
+  int depth = CV_16U;
+  bool operator==(const PageShape&) const = default;
+};
+
+/// The shape of the current page, if the page is readable.
+Result<PageShape> page_shape(const TiffFile& file) {
+  const TiffPage page = page_of(file);
   if (!page.has_size()) return fail(ErrorCode::invalid_input, "a page has no size or is too large");
-  if (page.bits != 16 || page.samples != 1 || !counts) {
+  const auto depth = depth_of(page);
+  if (!depth) {
     return fail(ErrorCode::invalid_input, "a page has " + std::to_string(page.samples) + " samples of " +
                                               std::to_string(page.bits) +
-                                              " bits per pixel, expected one unsigned sample of 16 bits");
+                                              " bits per pixel, expected one sample of 16 bits, or of 32 or 64 bits "
+                                              "floating point");
   }
-  if (auto checked = check_layout(file, page); !checked) return tl::unexpected(checked.error());
-  if (TIFFScanlineSize(file.get()) != static_cast<tmsize_t>(page.width) * 2)
+  if (auto checked = check_layout(page); !checked) return tl::unexpected(checked.error());
+  if (page.white_is_zero() && CV_ELEM_SIZE(*depth) != 2)
+    return fail(ErrorCode::invalid_input,
+                "the tag PhotometricInterpretation states that 0 is white, which is accepted for 16 bits only");
+  if (TIFFScanlineSize(file.get()) != static_cast<tmsize_t>(page.width) * static_cast<tmsize_t>(CV_ELEM_SIZE(*depth)))
     return fail(ErrorCode::invalid_input, file.why("the rows of a page have an unexpected length"));
   const cv::Size size(static_cast<int>(page.width), static_cast<int>(page.height));
-  return exchanges_axes(page.orientation) ? cv::Size(size.height, size.width) : size;
+  return PageShape{exchanges_axes(page.orientation) ? cv::Size(size.height, size.width) : size, *depth};
 }
 
-/// Applies the tag Orientation and makes 0 the darkest.
-cv::Mat1w shown(const cv::Mat1w& stored, const TiffPage& page) {
-  cv::Mat1w counts = oriented(stored, page.orientation);
-  if (page.white_is_zero()) counts = cv::Mat1w(~counts);
-  return counts;
+/// Applies the tag Orientation and makes the smallest value the darkest.
+cv::Mat shown(const cv::Mat& stored, const TiffPage& page) {
+  cv::Mat values = oriented(stored, page.orientation);
+  if (page.white_is_zero()) cv::bitwise_not(values.clone(), values);
+  return values;
 }
 
-Result<cv::Mat1w> read_page(const TiffFile& file) {
-  if (const auto size = page_size(file); !size) return tl::unexpected(size.error());
+Result<cv::Mat> read_page(const TiffFile& file) {
+  TODBENCH_TRY(const auto shape, page_shape(file));
   const TiffPage page = page_of(file);
-  TiffRows rows(file, page, std::size_t{2} * page.width);
+  TiffRows rows(file, page, static_cast<std::size_t>(CV_ELEM_SIZE(shape.depth)) * page.width);
   if (auto holds = rows.may_hold(); !holds) return tl::unexpected(holds.error());
-  cv::Mat1w counts(static_cast<int>(page.height), static_cast<int>(page.width));
-  for (int y = 0; y < counts.rows; ++y) {
+  cv::Mat values(static_cast<int>(page.height), static_cast<int>(page.width), shape.depth);
+  for (int y = 0; y < values.rows; ++y) {
     TODBENCH_TRY(const auto row, rows.next());
-    std::memcpy(counts.ptr(y), row->data(), row->size());
+    std::memcpy(values.ptr(y), row->data(), row->size());
   }
-  return shown(counts, page);
+  return shown(values, page);
 }
 
 /// Picture `image` of an ImageJ stack whose one directory is the present one.
-Result<cv::Mat1w> read_image(const TiffFile& file, const std::filesystem::path& path, const ImageJStack& stack,
-                             std::uint64_t image) {
+Result<cv::Mat> read_image(const TiffFile& file, const std::filesystem::path& path, const ImageJStack& stack,
+                           std::uint64_t image) {
+  TODBENCH_TRY(const auto shape, page_shape(file));
   const TiffPage page = page_of(file);
-  cv::Mat1w counts(static_cast<int>(page.height), static_cast<int>(page.width));
-  const std::uint64_t bytes = counts.total() * counts.elemSize();
+  cv::Mat values(static_cast<int>(page.height), static_cast<int>(page.width), shape.depth);
+  const std::uint64_t bytes = values.total() * values.elemSize();
   std::ifstream stream(path, std::ios::binary);
   stream.seekg(static_cast<std::streamoff>(stack.offset + image * bytes));
-  stream.read(reinterpret_cast<char*>(counts.data), static_cast<std::streamsize>(bytes));
+  stream.read(reinterpret_cast<char*>(values.data), static_cast<std::streamsize>(bytes));
   if (stream.gcount() != static_cast<std::streamsize>(bytes))
     return fail(ErrorCode::io, "the file became shorter after it was opened");
-  if (TIFFIsByteSwapped(file.get()) != 0)
-    TIFFSwabArrayOfShort(counts.ptr<std::uint16_t>(), static_cast<tmsize_t>(counts.total()));
-  return shown(counts, page);
+  if (TIFFIsByteSwapped(file.get()) != 0) {
+    const auto total = static_cast<tmsize_t>(values.total());
+    if (values.elemSize() == 2) TIFFSwabArrayOfShort(values.ptr<std::uint16_t>(), total);
+    if (values.elemSize() == 4) TIFFSwabArrayOfLong(reinterpret_cast<std::uint32_t*>(values.data), total);
+    if (values.elemSize() == 8) TIFFSwabArrayOfDouble(reinterpret_cast<double*>(values.data), total);
+  }
+  return shown(values, page);
 }
 
 /// One page of one file.
@@ -129,19 +156,22 @@ Result<FilesInOrder> files_of(const std::filesystem::path& path) {
   return found;
 }
 
-/// Adds the pages of one file; all must have the size of the first.
-Result<void> add_pages(const TiffFile& file, std::size_t number, std::vector<Page>& pages, cv::Size& size) {
+/// Adds the pages of one file; all must have the shape of the first.
+Result<void> add_pages(const TiffFile& file, std::size_t number, std::vector<Page>& pages, PageShape& shape) {
   const std::uint64_t directories = TIFFNumberOfDirectories(file.get());
   TODBENCH_TRY(const auto stack, image_j_stack(file, directories));
   do {
-    TODBENCH_TRY(const auto page, page_size(file));
-    if (pages.empty()) size = page;
-    if (page != size) {
-      return fail(ErrorCode::invalid_input, "page " + std::to_string(pages.size() + 1) + " is " +
-                                                std::to_string(page.width) + " x " + std::to_string(page.height) +
-                                                ", but the first page is " + std::to_string(size.width) + " x " +
-                                                std::to_string(size.height));
+    TODBENCH_TRY(const auto page, page_shape(file));
+    if (pages.empty()) shape = page;
+    if (page.size != shape.size) {
+      return fail(ErrorCode::invalid_input,
+                  "page " + std::to_string(pages.size() + 1) + " is " + std::to_string(page.size.width) + " x " +
+                      std::to_string(page.size.height) + ", but the first page is " + std::to_string(shape.size.width) +
+                      " x " + std::to_string(shape.size.height));
     }
+    if (page.depth != shape.depth)
+      return fail(ErrorCode::invalid_input,
+                  "page " + std::to_string(pages.size() + 1) + " has another kind of values than the first page");
     const std::uint64_t images = stack ? stack->images : 1;
     for (std::uint64_t k = 0; k < images; ++k) pages.push_back({number, TIFFCurrentDirOffset(file.get()), stack, k});
     if (TIFFLastDirectory(file.get()) != 0) return {};
@@ -157,7 +187,9 @@ class PageReader {
   PageReader(std::vector<std::filesystem::path> files, std::vector<Page> pages)
       : files_(std::move(files)), pages_(std::move(pages)) {}
 
-  Result<RecordedFrame> read(std::uint64_t index) {
+  [[nodiscard]] std::uint64_t count() const { return pages_.size(); }
+
+  Result<cv::Mat> read(std::uint64_t index) {
     const Page& page = pages_[index];
     if (!open_ || number_ != page.file) {
       open_ = std::make_unique<TiffFile>(files_[page.file], "r");
@@ -166,11 +198,9 @@ class PageReader {
     if (open_->get() == nullptr) return fail(ErrorCode::io, open_->why("cannot be opened again"));
     if (TIFFSetSubDirectory(open_->get(), page.offset) == 0)
       return fail(ErrorCode::io, open_->why("a page is missing"));
-    auto counts = page.stack ? read_image(*open_, files_[page.file], *page.stack, page.image) : read_page(*open_);
-    if (!counts) return fail(files_[page.file].string(), counts.error());
-    RecordedFrame frame;
-    frame.counts = *std::move(counts);
-    return frame;
+    auto values = page.stack ? read_image(*open_, files_[page.file], *page.stack, page.image) : read_page(*open_);
+    if (!values) return fail(files_[page.file].string(), values.error());
+    return values;
   }
 
  private:
@@ -179,6 +209,14 @@ class PageReader {
   std::unique_ptr<TiffFile> open_;
   std::size_t number_ = 0;
 };
+
+Result<RecordedFrame> read_frame(PageReader& pages, const ValueCounts& conversion, std::uint64_t index) {
+  TODBENCH_TRY(const auto values, pages.read(index));
+  TODBENCH_TRY(auto counts, conversion.counts(values));
+  RecordedFrame frame;
+  frame.counts = std::move(counts);
+  return frame;
+}
 
 }  // namespace
 
@@ -194,32 +232,40 @@ Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffF
   TODBENCH_TRY(auto found, files_of(path));
   std::vector<std::filesystem::path>& files = found.files;
   std::vector<Page> pages;
-  cv::Size size;
+  PageShape shape;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const TiffFile file(files[i], "r");
     if (file.get() == nullptr)
       return fail(ErrorCode::invalid_input, files[i].string() + ": " + file.why("not a TIFF file"));
-    if (auto added = add_pages(file, i, pages, size); !added) return fail(files[i].string(), added.error());
+    if (auto added = add_pages(file, i, pages, shape); !added) return fail(files[i].string(), added.error());
   }
+  const std::string first_name = files.front().filename().string(), last_name = files.back().filename().string();
+  auto reader = std::make_shared<PageReader>(std::move(files), std::move(pages));
+  const auto values = value_counts(shape.depth, format.unit, format.scale.calibrated(), reader->count(),
+                                   [&](std::uint64_t index) { return reader->read(index); });
+  if (!values) return fail(path.string(), values.error());
+  const auto scale = values->scale(format.scale);
+  if (!scale) return fail(path.string(), scale.error());
   Recording recording;
   recording.info.id = camera_id(camera_scheme::file, path.string());
   recording.info.model = path.filename().string();
   recording.info.transport = "recording";
-  recording.info.width = size.width;
-  recording.info.height = size.height;
+  recording.info.width = shape.size.width;
+  recording.info.height = shape.size.height;
   recording.info.pixel_format = "Mono16";
   recording.info.significant_bits = format.significant_bits;
   recording.info.frame_rate_hz = format.frame_rate_hz;
-  recording.info.scale = format.scale;
-  recording.info.settings = {{"Width", std::to_string(size.width)}, {"Height", std::to_string(size.height)}};
+  recording.info.scale = *scale;
+  recording.info.settings = {{"Width", std::to_string(shape.size.width)},
+                             {"Height", std::to_string(shape.size.height)}};
+  if (auto relation = values->describe(); !relation.empty()) recording.info.settings["Counts"] = std::move(relation);
   if (found.letters_differ) {
-    recording.info.warnings.push_back(
-        "The files are read in the order of the numbers in their names: " + files.front().filename().string() +
-        " first, " + files.back().filename().string() + " last. Their alphabetical order differs.");
+    recording.info.warnings.push_back("The files are read in the order of the numbers in their names: " + first_name +
+                                      " first, " + last_name + " last. Their alphabetical order differs.");
   }
-  recording.frame_count = pages.size();
-  recording.read = [reader = std::make_shared<PageReader>(std::move(files), std::move(pages))](std::uint64_t index) {
-    return reader->read(index);
+  recording.frame_count = reader->count();
+  recording.read = [reader, conversion = *values](std::uint64_t index) {
+    return read_frame(*reader, conversion, index);
   };
   return recording;
 }

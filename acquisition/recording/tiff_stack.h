@@ -5,25 +5,28 @@
 #include <filesystem>
 
 #include "acquisition/recording/recorded_source.h"
+#include "acquisition/recording/tiff_values.h"
 
 namespace todbench {
 
 /// Properties that a TIFF does not state.
 struct TiffFormat {
   int significant_bits = 16;
-  double frame_rate_hz = 0;     ///< 0: unknown
-  RadiometricScale scale = {};  ///< uncalibrated unless stated
+  double frame_rate_hz = 0;            ///< 0: unknown
+  RadiometricScale scale = {};         ///< of the values in the file; uncalibrated unless stated
+  std::optional<ValueUnit> unit = {};  ///< of signed and floating-point values
 };
 
 /// Whether the name of a file ends in .tif or .tiff, in letters of either case.
 [[nodiscard]] bool has_tiff_name(const std::filesystem::path& path);
 
 /// Opens a file of pages, or a folder whose files *.tif and *.tiff are ordered by the numbers in their names (f_2
-/// before f_10; a warning reports it if the alphabetical order differs). One sample of 16 unsigned bits per pixel in
-/// rows or strips, any byte order, any lossless compression that libtiff reads, also BigTIFF and uncompressed ImageJ
-/// stacks with one directory. The tags Orientation and PhotometricInterpretation (0 as white) are applied. Pages are
-/// read on demand. Errors: `io`, `invalid_input` (not a TIFF, another kind of picture, pages of different size, no
-/// page, fewer images than ImageJ states).
+/// before f_10; a warning reports it if the alphabetical order differs). One sample per pixel of 16 bits, or of 32 or
+/// 64 bits floating point, in strips or tiles, any byte order, any lossless compression that libtiff reads, also
+/// BigTIFF and uncompressed ImageJ stacks with one directory. Signed and floating-point values need a unit
+/// (ValueCounts). The tags Orientation and PhotometricInterpretation (0 as white) are applied. Pages are read on
+/// demand. Errors: `io`, `invalid_input` (not a TIFF, another kind of picture, pages of different size, no page, fewer
+/// images than ImageJ states).
 [[nodiscard]] Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffFormat& format);
 
 }  // namespace todbench

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // todbench record
+#include <fmt/format.h>
+
 #include <cctype>
 #include <filesystem>
 #include <map>
@@ -179,6 +181,35 @@ bool overwrites_its_camera(const std::filesystem::path& file, const std::string&
          std::filesystem::equivalent(std::filesystem::absolute(file).parent_path(), source, problem);
 }
 
+/// What the camera or the recording says of itself.
+Json source_json(const SourceInfo& info) {
+  return {{"vendor", info.vendor},
+          {"model", info.model},
+          {"serial", info.serial},
+          {"firmware", info.firmware},
+          {"width", info.width},
+          {"height", info.height},
+          {"pixel_format", info.pixel_format},
+          {"frame_rate_hz", info.frame_rate_hz > 0 ? Json(info.frame_rate_hz) : Json()},
+          {"scale", info.scale.describe()},
+          {"settings", info.settings},
+          {"warnings", info.warnings}};
+}
+
+/// The same for people, in two lines; empty parts are left out.
+void print_source(const Console& console, const SourceInfo& info) {
+  std::string line = info.vendor;
+  for (const auto& [what, value] : {std::pair{"", info.model}, std::pair{"serial ", info.serial}}) {
+    if (!value.empty()) line += (line.empty() ? "" : what[0] == 0 ? " " : ", ") + std::string(what) + value;
+  }
+  line += (line.empty() ? "" : ", ") + std::to_string(info.width) + " x " + std::to_string(info.height);
+  if (info.frame_rate_hz > 0) line += fmt::format(", {:.4g} Hz", info.frame_rate_hz);
+  const auto date = info.settings.find("DateTimeOriginal");
+  if (date != info.settings.end() && !date->second.empty()) line += ", " + date->second;
+  console.text(line);
+  console.text("temperature scale: " + info.scale.describe());
+}
+
 int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
   const std::filesystem::path file = a.out.empty() ? default_file(a) : a.out;
   std::error_code problem;
@@ -207,6 +238,7 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
   if (console.json()) {
     console.object({{"recording", file.string()},
                     {"camera", info.id},
+                    {"source", source_json(info)},
                     {"frames", recorded.frames},
                     {"arrived", recorded.arrived},
                     {"lost", recorded.lost},
@@ -216,6 +248,7 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
                       {"silent_gaps", recorded.numbering.silent_gaps},
                       {"estimated_lost", recorded.numbering.estimated_lost}}}});
   } else {
+    print_source(console, info);
     std::string doubtful;
     for (const auto& [reason, count] : recorded.rejected) doubtful += ", " + std::to_string(count) + " " + reason;
     console.text(file.string() + ": " + std::to_string(recorded.frames) +

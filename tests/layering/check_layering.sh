@@ -12,7 +12,8 @@ BEGIN {
   core = base " acquisition/core"
   may["acquisition/core"] = base
   may["acquisition/pixel_formats"] = base
-  may["acquisition/recording"] = core " acquisition/pixel_formats"
+  may["acquisition/compression"] = base
+  may["acquisition/recording"] = core " acquisition/pixel_formats acquisition/compression"
   may["acquisition/description"] = base
   may["acquisition/aravis"] = core " acquisition/pixel_formats acquisition/description"
   may["acquisition/v4l2"] = core " acquisition/pixel_formats"
@@ -94,7 +95,8 @@ BEGIN {
   home["^CLI/"] = "^bench/cli/"
   home["^libxml/"] = "^acquisition/description/"
   home["^tiffio.h"] = "^(acquisition/recording|bench/picture_files)/"
-  home["^png.h"] = "^bench/picture_files/"
+  home["^png.h"] = "^(acquisition/compression|bench/picture_files)/"
+  home["^charls/"] = "^acquisition/compression/"
   home["^fftw3.h"] = "^hvs/shape/"
 }
 function folder_of(path) {

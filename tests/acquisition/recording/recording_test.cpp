@@ -194,15 +194,15 @@ TEST(FlirSeq, FindsBothFramesWithTheirGeometryAndConstants) {
     EXPECT_EQ(frame.width, 640);
     EXPECT_EQ(frame.height, 480);
     EXPECT_FALSE(frame.big_endian);
-    EXPECT_EQ(frame.camera_model, "FLIR SC660");
-    EXPECT_EQ(frame.camera_serial, "404003980");
-    EXPECT_NEAR(frame.planck.r1, 21106.77, 0.01);
-    EXPECT_NEAR(frame.planck.r2, 0.012545258, 1e-9);
-    EXPECT_EQ(frame.planck.b, 1501);
-    EXPECT_EQ(frame.planck.f, 1);
-    EXPECT_EQ(frame.planck.o, -7340);
-    EXPECT_NEAR(frame.object.emissivity, 0.95, 1e-6);
-    EXPECT_NEAR(frame.object.reflected_temperature_k, 293.15, 1e-4);
+    EXPECT_EQ(frame.camera->model, "FLIR SC660");
+    EXPECT_EQ(frame.camera->serial, "404003980");
+    EXPECT_NEAR(frame.camera->planck.r1, 21106.77, 0.01);
+    EXPECT_NEAR(frame.camera->planck.r2, 0.012545258, 1e-9);
+    EXPECT_EQ(frame.camera->planck.b, 1501);
+    EXPECT_EQ(frame.camera->planck.f, 1);
+    EXPECT_EQ(frame.camera->planck.o, -7340);
+    EXPECT_NEAR(frame.camera->object.emissivity, 0.95, 1e-6);
+    EXPECT_NEAR(frame.camera->object.reflected_temperature_k, 293.15, 1e-4);
   }
   EXPECT_GT((*frames)[1].device_time_ns, (*frames)[0].device_time_ns);
 }

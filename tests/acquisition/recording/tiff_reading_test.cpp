@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -64,10 +65,11 @@ void expect_frame(const Recording& recording, std::uint64_t index, const cv::Mat
 TEST(TiffStack, IsReadInEveryLosslessCompressionWithAndWithoutPredictorInAnyOrder) {
   const TemporaryFolder folder;
   const std::vector<cv::Mat1w> frames{frame(0), frame(1), frame(2)};
-  for (const int compression : {COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS}) {
+  for (const int compression :
+       {COMPRESSION_LZW, COMPRESSION_DEFLATE, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS}) {
     for (const int predictor : {1, 2}) {
       if (predictor == 2 && compression == COMPRESSION_PACKBITS) continue;
-      for (const char* mode : {"w", "wb"}) {
+      for (const char* mode : {"w", "wb", "w8", "w8b"}) {
         const auto path = folder.path() / "stack.tif";
         write(path, frames, mode, [&](TIFF* tiff) {
           TIFFSetField(tiff, TIFFTAG_COMPRESSION, compression);
@@ -198,6 +200,185 @@ TEST(TiffStack, OfAFolderWithLeadingZerosGivesNoWarning) {
   for (const char* name : {"a_009.tif", "a_010.tif"}) write(folder.path() / name, {frame(0)}, "w", [](TIFF*) {});
 
   EXPECT_THAT(open_recording(folder.path(), "")->info.warnings, ::testing::IsEmpty());
+}
+
+/// A picture in tiles of 32 x 16, wider and higher than a whole number of them.
+void write_tiles(const std::filesystem::path& path, const cv::Mat1w& picture, const char* mode, int compression) {
+  constexpr int tile_width = 32, tile_height = 16;
+  TIFF* tiff = TIFFOpen(path.c_str(), mode);
+  ASSERT_NE(tiff, nullptr);
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, picture.cols);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, picture.rows);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, compression);
+  TIFFSetField(tiff, TIFFTAG_TILEWIDTH, tile_width);
+  TIFFSetField(tiff, TIFFTAG_TILELENGTH, tile_height);
+  for (int y = 0; y < picture.rows; y += tile_height) {
+    for (int x = 0; x < picture.cols; x += tile_width) {
+      cv::Mat1w tile(tile_height, tile_width, ushort{0});
+      const cv::Rect part = cv::Rect(x, y, tile_width, tile_height) & cv::Rect({}, picture.size());
+      picture(part).copyTo(tile(cv::Rect({}, part.size())));
+      ASSERT_GE(TIFFWriteTile(tiff, tile.data, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0), 0);
+    }
+  }
+  TIFFClose(tiff);
+}
+
+TEST(TiffStack, InTilesIsReadInBothByteOrdersCompressedAndNot) {
+  const TemporaryFolder folder;
+  cv::Mat1w picture(50, 70);
+  for (int y = 0; y < picture.rows; ++y) {
+    for (int x = 0; x < picture.cols; ++x) picture(y, x) = static_cast<ushort>(8000 + 100 * y + x);
+  }
+  for (const char* mode : {"w", "wb", "w8"}) {
+    for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE}) {
+      const auto path = folder.path() / "tiles.tif";
+      write_tiles(path, picture, mode, compression);
+
+      const auto recording = open_tiff_stack(path, {});
+
+      ASSERT_TRUE(recording) << recording.error().message;
+      expect_frame(*recording, 0, picture);
+      EXPECT_EQ(cv::norm(read_picture(path)->picture, cv::Mat1d(picture), cv::NORM_INF), 0);
+    }
+  }
+}
+
+/// Pages of any type of sample.
+void write_values(const std::filesystem::path& path, const std::vector<cv::Mat>& pages, const char* mode,
+                  int predictor) {
+  TIFF* tiff = TIFFOpen(path.c_str(), mode);
+  ASSERT_NE(tiff, nullptr);
+  for (const auto& page : pages) {
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, page.cols);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, page.rows);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, static_cast<int>(8 * page.elemSize()));
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, page.depth() >= CV_32F ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_INT);
+    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 7);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(tiff, TIFFTAG_COMPRESSION, predictor > 0 ? COMPRESSION_LZW : COMPRESSION_NONE);
+    if (predictor > 0) TIFFSetField(tiff, TIFFTAG_PREDICTOR, predictor);
+    for (int y = 0; y < page.rows; ++y) {
+      cv::Mat row = page.row(y).clone();
+      // The predictor of floating point is the same in both byte orders, but libtiff 4.5 swaps the values before it.
+      if (predictor == 3 && TIFFIsByteSwapped(tiff) != 0) {
+        if (row.depth() == CV_32F) TIFFSwabArrayOfFloat(row.ptr<float>(), row.cols);
+        if (row.depth() == CV_64F) TIFFSwabArrayOfDouble(row.ptr<double>(), row.cols);
+      }
+      ASSERT_GE(TIFFWriteScanline(tiff, row.data, static_cast<std::uint32_t>(y), 0), 0);
+    }
+    ASSERT_NE(TIFFWriteDirectory(tiff), 0);
+  }
+  TIFFClose(tiff);
+}
+
+TEST(TiffStack, OfFloatingPointTemperaturesHasThemToHalfAStepInTheStatedUnit) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "t.tif";
+  const std::vector<cv::Mat1w> counts{frame(0), frame(1)};
+  for (const int depth : {CV_32F, CV_64F}) {
+    for (const int predictor : {0, 3}) {
+      for (const char* mode : {"w", "wb", "w8"}) {
+        std::vector<cv::Mat> pages(2);
+        // 0.01 K a count: 280 to 283 K.
+        for (std::size_t k = 0; k < 2; ++k) counts[k].convertTo(pages[k], depth, 0.01, 210);
+        write_values(path, pages, mode, predictor);
+
+        const auto kelvin = open_recording(path, "unit=kelvin"), celsius = open_recording(path, "unit=celsius");
+
+        ASSERT_TRUE(kelvin) << kelvin.error().message;
+        ASSERT_TRUE(celsius) << celsius.error().message;
+        ASSERT_EQ(kelvin->frame_count, 2u);
+        // 3 K in 65533 counts: the smallest step of the series, 0.1 mK. Rounding of the file's numbers: below 0.02 mK.
+        const LinearScale* line = kelvin->info.scale.straight_line();
+        ASSERT_NE(line, nullptr);
+        EXPECT_DOUBLE_EQ(line->kelvin_per_count, 1e-4);
+        for (std::size_t k = 0; k < 2; ++k) {
+          const auto read = kelvin->read(k);
+          ASSERT_TRUE(read) << read.error().message;
+          for (int y = 0; y < stack_rows; y += 5) {
+            for (int x = 0; x < stack_columns; x += 3) {
+              const double expected = 210 + 0.01 * counts[k](y, x),
+                           seen = kelvin->info.scale.kelvin(read->counts(y, x)).value();
+              EXPECT_NEAR(seen, expected, 0.7e-4);
+              EXPECT_NEAR(celsius->info.scale.kelvin(celsius->read(k)->counts(y, x)).value(), expected + 273.15,
+                          0.7e-4);
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_THAT(open_recording(path, "").error().message, HasSubstr("floating point: state ?unit=kelvin"));
+  EXPECT_THAT(open_recording(path, "unit=fahrenheit").error().message, HasSubstr("counts or kelvin or celsius"));
+  EXPECT_THAT(open_recording(path, "unit=counts")->read(0).error().message, HasSubstr("is no whole count"));
+}
+
+TEST(TiffStack, OfFloatingPointValuesThatNoScaleHoldsIsRefused) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "t.tif";
+  const auto refused = [&](float low, float high) {
+    cv::Mat1f page(8, 8, 300.0F);
+    page(1, 1) = low;
+    page(2, 2) = high;
+    write_values(path, {page}, "w", 0);
+    const auto recording = open_recording(path, "unit=kelvin");
+    return recording ? "read" : recording.error().message;
+  };
+
+  EXPECT_EQ(refused(1, 6500), "read");
+  EXPECT_THAT(refused(1, 6600), HasSubstr("no step up to 0.1 K"));
+  EXPECT_THAT(refused(-20, 300), HasSubstr("is no temperature in kelvin"));
+  EXPECT_THAT(refused(300, std::numeric_limits<float>::quiet_NaN()), HasSubstr("a value is not a number"));
+}
+
+TEST(TiffStack, OfSignedValuesKeepsTheStatedScaleOfThem) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "s.tif";
+  cv::Mat1s page(8, 8, short{-100});
+  page(0, 0) = -32768;
+  page(7, 7) = 32767;
+  for (const char* mode : {"w", "wb"}) {
+    write_values(path, {page}, mode, 2);
+
+    const auto counts = open_recording(path, "unit=counts"),
+               scaled = open_recording(path, "kelvin_per_count=0.01&offset_k=290");
+
+    ASSERT_TRUE(counts) << counts.error().message;
+    ASSERT_TRUE(scaled) << scaled.error().message;
+    const cv::Mat1w read = counts->read(0)->counts;
+    EXPECT_EQ(read(0, 0), 0);
+    EXPECT_EQ(read(3, 3), 32668);
+    EXPECT_EQ(read(7, 7), 65535);
+    EXPECT_FALSE(counts->info.scale.calibrated());
+    EXPECT_NEAR(scaled->info.scale.kelvin(32668).value(), 289, 1e-9);
+  }
+  EXPECT_THAT(open_recording(path, "").error().message, HasSubstr("signed: state ?unit=counts"));
+}
+
+TEST(RawFile, IsReadInTheStatedByteOrderAndSign) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("a.raw", std::string("\x12\x34\xff\x9c", 4));
+  const auto read = [&](const std::string& more) {
+    const auto recording = open_recording(path, "width=2&height=1" + more);
+    EXPECT_TRUE(recording) << recording.error().message;
+    const cv::Mat1w counts = recording->read(0)->counts;
+    return std::pair(int{counts(0, 0)}, int{counts(0, 1)});
+  };
+
+  EXPECT_EQ(read(""), std::pair(0x3412, 0x9cff));
+  EXPECT_EQ(read("&byte_order=little&signed=no"), std::pair(0x3412, 0x9cff));
+  EXPECT_EQ(read("&byte_order=big"), std::pair(0x1234, 0xff9c));
+  EXPECT_EQ(read("&byte_order=big&signed=yes"), std::pair(0x1234 + 32768, 32768 - 100));
+  const auto scaled =
+      open_recording(path, "width=2&height=1&byte_order=big&signed=yes&kelvin_per_count=0.01&offset_k=273.15");
+  EXPECT_NEAR(scaled->info.scale.kelvin(32768 - 100).value(), 272.15, 1e-9);
+  EXPECT_EQ(scaled->info.settings.at("ByteOrder"), "big-endian");
+  EXPECT_THAT(open_recording(path, "width=2&height=1&byte_order=middle").error().message, HasSubstr("little or big"));
+  EXPECT_THAT(open_recording(path, "width=2&height=1&unit=kelvin").error().message, HasSubstr("raw values are counts"));
 }
 
 TEST(TiffPicture, WhoseBytesAreExchangedIsRefused) {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Counts of 16 bits from compressed pictures inside the files of camera makers.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string_view>
+
+#include "acquisition/base/result.h"
+
+namespace todbench {
+
+/// Largest picture that is decoded, in pixels: 128 MiB of counts. A few bytes can state more than a machine can hold.
+inline constexpr std::size_t most_compressed_pixels = std::size_t{1} << 26;
+
+/// Decodes JPEG-LS (ISO/IEC 14495-1) of one component with 9 to 16 bits. Errors: `invalid_input` (not JPEG-LS, another
+/// size than expected, more than one component, a lossy coding, truncated or too large).
+[[nodiscard]] Result<cv::Mat1w> decode_jpeg_ls(std::string_view bytes, cv::Size expected);
+
+/// Decodes a PNG of 16-bit grey; the first byte of a sample is the high one, as PNG states. Errors as
+/// decode_jpeg_ls().
+[[nodiscard]] Result<cv::Mat1w> decode_png(std::string_view bytes, cv::Size expected);
+
+}  // namespace todbench

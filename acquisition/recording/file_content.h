@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a file is, by its first bytes. Names are not asked: cameras and programs use one suffix for several formats.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace todbench {
+
+/// Kinds of files that are offered as recordings.
+enum class FileKind {
+  frame_stream,  ///< of the bench
+  flir,          ///< FFF records or a JPEG picture, which may contain one
+  tiff,
+  foreign,  ///< a known format that is not read as a recording
+  unknown,  ///< no known first bytes: raw counts, or damage
+};
+
+struct FileContent {
+  FileKind kind = FileKind::unknown;
+  std::string name{};   ///< of a foreign format, with its article: "a PNG picture"
+  std::string start{};  ///< the first bytes of an unknown one, as hexadecimal digits
+};
+
+/// Reads the first bytes. A file that cannot be read is unknown; opening it gives the reason.
+[[nodiscard]] FileContent content_of_file(const std::filesystem::path& path);
+
+}  // namespace todbench

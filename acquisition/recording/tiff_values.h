@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Signed and floating-point values of other programs as counts.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+#include "acquisition/base/result.h"
+#include "acquisition/core/radiometric_scale.h"
+
+namespace todbench {
+
+/// Unit of the values in a file.
+enum class ValueUnit { counts, kelvin, celsius };
+
+/// Conversion of values to counts: count = (value - offset) / step, rounded.
+struct ValueCounts {
+  double offset = 0, step = 1;
+  std::optional<ValueUnit> unit{};  ///< of floating-point values
+
+  /// Error: `invalid_input` (a value that is no number, or no whole number in counts; one outside 0 ... 65535 counts).
+  [[nodiscard]] Result<cv::Mat1w> counts(const cv::Mat& values) const;
+  /// Scale of the counts; `of_values` is that of the values in the file, if they have one.
+  [[nodiscard]] Result<RadiometricScale> scale(const RadiometricScale& of_values) const;
+  /// The relation between values and counts in words, for provenance; empty if they are equal.
+  [[nodiscard]] std::string describe() const;
+};
+
+/// Finds the conversion for values of OpenCV's type `depth`. Unsigned values are counts. Signed ones are raised by
+/// 32768. Floating-point values in kelvin or degrees Celsius get the smallest step of the series 1, 2, 5, from 0.1 mK
+/// to 0.1 K, in which all of them fit; for that every picture is read once. Errors: `invalid_input` (signed or
+/// floating-point values without a unit, a unit that does not fit, a range above 6553 K), and those of `read`.
+[[nodiscard]] Result<ValueCounts> value_counts(int depth, std::optional<ValueUnit> unit, bool calibrated,
+                                               std::uint64_t pictures,
+                                               const std::function<Result<cv::Mat>(std::uint64_t)>& read);
+
+}  // namespace todbench
