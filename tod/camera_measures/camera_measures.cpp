@@ -14,13 +14,15 @@
 #include "tod/measurement/target_change.h"
 #include "tod/measures/pixel_noise.h"
 #include "tod/measures/shading.h"
+#include "tod/presentation/absolute_target.h"
 #include "tod/registration/registration.h"
 
 namespace todbench {
 namespace {
 
 constexpr int least_side_px = 8;
-constexpr int attempts = 3;  // to take a cube without a correction in it
+constexpr double found_within_px = 6;  // of the expected place of a moving plate
+constexpr int attempts = 3;            // to take a cube without a correction in it
 
 /// Standard deviation in time of each pixel, without changes of whole frames.
 class PixelSquares {
@@ -44,6 +46,22 @@ class PixelSquares {
  private:
   int frames_ = 0;
   cv::Mat1d first_, sum_, squares_;
+};
+
+/// A target at an absolute temperature instead of a contrast.
+class TargetAtTemperature final : public Target {
+ public:
+  TargetAtTemperature(Target& target, AbsoluteTarget& absolute) : target_(target), absolute_(absolute) {}
+  void set(double temperature_k) { temperature_k_ = temperature_k; }
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return target_.capabilities(); }
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    return absolute_.present_temperature(state, temperature_k_, std::move(stop));
+  }
+
+ private:
+  Target& target_;
+  AbsoluteTarget& absolute_;
+  double temperature_k_ = 0;
 };
 
 class Run {
@@ -89,7 +107,11 @@ class Run {
         Step{"MTF", [](const Options& o) { return o.mtf_plate.has_value(); }, &Run::measure_mtf},
         Step{"CTF", [](const Options& o) { return o.ctf_plate.has_value(); }, &Run::measure_ctf},
         Step{"size-of-source effect", [](const Options& o) { return o.source_plate.has_value(); },
-             &Run::measure_source}};
+             &Run::measure_source},
+        Step{"times of frames", [](const Options& o) { return o.timing_frames > 0; }, &Run::time_frames},
+        Step{"latency", [](const Options& o) { return o.latency.has_value(); }, &Run::time_latency},
+        Step{"absolute temperatures", [](const Options& o) { return o.absolute.has_value(); },
+             &Run::show_temperatures}};
     return table;
   }
 
@@ -294,6 +316,62 @@ class Run {
                           .said_delta_t_k = lit.said_delta_t_k - 0.5 * (before.said_delta_t_k + after.said_delta_t_k),
                           .stated_px = options_.source_size_px,
                           .effect = std::move(effect)};
+    return {};
+  }
+
+  Result<void> time_frames(CameraMeasures& measures) {
+    if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
+    TODBENCH_TRY(measures.timing, measure_timing(taker_, options_.timing_frames, stop_));
+    if (source_.info().frame_rate_hz > 0) measures.timing->stated_rate_hz = source_.info().frame_rate_hz;
+    return {};
+  }
+
+  /// Presents a state of `target`, in which a target may stand for that of the run.
+  Result<PresentedTarget> present(Target& target, FrameTaker& taker, const TargetState& state) {
+    TODBENCH_TRY(const TargetChange change, change_target(target, taker, host_, state, stop_));
+    if (!change.frames) return tl::unexpected(change.frames.error());
+    if (!change.presented) return fail("presenting the target", change.presented.error());
+    TODBENCH_TRY(const std::int64_t there_ns, host_.now_ns(Moment::scene_changed));
+    taker.scene_changed(there_ns);
+    return *change.presented;
+  }
+
+  Result<void> time_latency(CameraMeasures& measures) {
+    const double contrast_k =
+        *std::ranges::max_element(options_.transfer_steps_k, {}, [](double k) { return std::abs(k); });
+    const auto put = [&](double x_mm) -> Result<void> {
+      const auto shown = present(target_, taker_, {plate().name, Mounting::identity, contrast_k, {x_mm, 0}});
+      return shown ? Result<void>() : tl::unexpected(shown.error());
+    };
+    const auto place = [&](const Frame& frame, double expected_mm) -> std::optional<double> {
+      const auto kelvin = to_kelvin(frame);
+      if (!kelvin) return std::nullopt;
+      const Registration expected = where_.shifted({expected_mm, 0});
+      const auto off_px = measure_shift(*kelvin, plate(), expected, options_.measurement.registration, found_within_px);
+      if (!off_px) return std::nullopt;
+      const cv::Point2d mm_px = where_.pixel({1, 0}) - where_.pixel({0, 0});
+      return expected_mm + off_px->dot(mm_px) / mm_px.dot(mm_px);
+    };
+    TODBENCH_TRY(measures.latency, measure_latency(taker_, target_.moving(), put, place, *options_.latency, stop_));
+    return {};
+  }
+
+  Result<void> show_temperatures(CameraMeasures& measures) {
+    AbsoluteTarget* const absolute = absolute_target(target_);
+    if (absolute == nullptr)
+      return fail(ErrorCode::invalid_input, "the target has no black body with an absolute set-point");
+    TargetAtTemperature at(target_, *absolute);
+    FrameTakerOptions taking = taker_options(options_.measurement, source_.info());
+    taking.integrity.max_saturated_share = 1;  // saturation is a result
+    taking.integrity.reject_frozen = false;    // a saturated picture does not change
+    FrameTaker taker(source_, taking);
+    const ShowTemperature show_at = [&](double temperature_k, cv::Point2d shift_mm) {
+      at.set(temperature_k);
+      return present(at, taker, {options_.absolute->plate, Mounting::identity, 0, shift_mm});
+    };
+    TODBENCH_TRY(measures.absolute, measure_absolute(taker, show_at, *options_.absolute, stop_));
+    measures.reasons.insert(measures.reasons.end(), measures.absolute->reasons.begin(),
+                            measures.absolute->reasons.end());
     return {};
   }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
+#include "tod/camera_measures/absolute_measure.h"
 #include "tod/camera_measures/bars_measure.h"
 #include "tod/camera_measures/drift_measure.h"
 #include "tod/camera_measures/edge_measure.h"
@@ -16,6 +17,7 @@
 #include "tod/camera_measures/plate_geometry.h"
 #include "tod/camera_measures/response_measure.h"
 #include "tod/camera_measures/source_size.h"
+#include "tod/camera_measures/timing_measure.h"
 #include "tod/camera_measures/triangle_strip.h"
 #include "tod/measurement/measurement.h"
 #include "tod/measures/signal_transfer.h"
@@ -45,6 +47,9 @@ struct CameraMeasuresOptions {
   double source_delta_t_k = 10;               ///< contrast at which it is shown
   int source_frames = 64;                     ///< averaged, at least 1; without contrast twice as many
   double source_size_px = 10;                 ///< side of the square source whose loss is stated
+  std::optional<AbsoluteOptions> absolute{};  ///< absolute temperatures; empty: not measured
+  int timing_frames = 0;                      ///< frames whose times are examined; 0: not measured
+  std::optional<LatencyOptions> latency{};    ///< runs of the stage; empty: not measured
   /// Plates, frames to average, corrections, timeouts and integrity as in the TOD measurement. The first plate is shown
   /// in identity mounting.
   MeasurementOptions measurement;
@@ -169,6 +174,9 @@ struct CameraMeasures {
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
   std::optional<SourceSizeMeasure> source{};
+  std::optional<AbsoluteMeasure> absolute{};
+  std::optional<TimingMeasure> timing{};
+  std::optional<LatencyMeasure> latency{};
   std::vector<TriangleStrip> triangles{};     ///< by contrast
   std::optional<double> netd_model_k{};       ///< closed form, of a simulated sensor
   std::optional<double> response_model_ms{};  ///< time constant of a simulated sensor

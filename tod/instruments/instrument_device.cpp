@@ -143,6 +143,37 @@ Result<void> BlackBodyDevice::command(double delta_t_k, const std::stop_token& s
   return send(set_command(delta_t_k), stop);
 }
 
+Result<std::array<double, 2>> BlackBodyDevice::absolute_limits(const std::stop_token& stop) {
+  const AbsoluteWords& absolute = *words().absolute;
+  if (!absolute.limits.asks()) return absolute.limits_k;
+  const auto ends = numbers(absolute.limits, 2, stop);
+  if (!ends) return tl::unexpected(ends.error());
+  return std::array{in_ours((*ends)[0], words().absolute_unit), in_ours((*ends)[1], words().absolute_unit)};
+}
+
+Result<void> BlackBodyDevice::command_absolute(double temperature_k, const std::stop_token& stop) {
+  const AbsoluteWords& absolute = *words().absolute;
+  if (absolute.set_point.asks()) {
+    const auto now = numbers(absolute.set_point, 1, stop);
+    if (!now) return tl::unexpected(now.error());
+    if (std::abs(in_ours(now->front(), words().absolute_unit) - temperature_k) <= same_temperature_k) return {};
+  }
+  return send(command_of(absolute.set, {sent_number(temperature_k, words().absolute_unit, absolute.decimals)}), stop);
+}
+
+Result<double> BlackBodyDevice::radiator(double coldest_k, const std::stop_token& stop) {
+  const auto value = numbers(words().radiator, 1, stop);
+  if (!value) return tl::unexpected(value.error());
+  const double kelvin = in_ours(value->front(), words().absolute_unit);
+  // A black body is never colder than half of its coldest set-point: 17 read where 290 K are possible are 17 degrees.
+  if (kelvin > 0.5 * coldest_k && kelvin <= hottest_k) return kelvin;
+  return fail(ErrorCode::invalid_input,
+              name() + fmt::format(": {} answered {:g}, which is {:.2f} K by its table, but its set-points begin at "
+                                   "{:g} K: does it answer in degrees Celsius? State unit = \"degC\" in [temperatures] "
+                                   "of the table",
+                                   words().radiator.queries.front(), value->front(), kelvin, coldest_k));
+}
+
 Result<double> BlackBodyDevice::measured(const std::stop_token& stop) {
   return difference(words().measured, stop);
 }

@@ -64,6 +64,13 @@ class BlackBodyDevice : public InstrumentDevice {
 
   [[nodiscard]] std::string set_command(double delta_t_k) const;
 
+  /// Lowest and highest absolute set-point, in K. Precondition, also of command_absolute(): the table has one.
+  [[nodiscard]] Result<std::array<double, 2>> absolute_limits(const std::stop_token& stop);
+  [[nodiscard]] Result<void> command_absolute(double temperature_k, const std::stop_token& stop);
+  /// Reading of the radiator. Errors: also `invalid_input` for a reading far below the coldest set-point, which is in
+  /// degrees Celsius.
+  [[nodiscard]] Result<double> radiator(double coldest_k, const std::stop_token& stop);
+
  private:
   [[nodiscard]] const BlackBodyWords& words() const { return table().black_body; }
   [[nodiscard]] Result<double> difference(const NumberQuestion& question, const std::stop_token& stop);

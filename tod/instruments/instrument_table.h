@@ -84,6 +84,16 @@ struct SettledRule {
   double dwell_s = 0;                ///< time that it has to stay within the tolerance
 };
 
+/// Absolute set-point of a black body, in BlackBodyWords::absolute_unit.
+struct AbsoluteWords {
+  int decimals = 4;          ///< of a number that is sent
+  std::string set;           ///< "SOUR:TEMP:ABS {}"
+  NumberQuestion set_point;  ///< empty: commanded each time
+  NumberQuestion limits;     ///< lowest and highest; empty: limits_k
+  std::array<double, 2> limits_k{0, 0};
+  double tolerance_k = 0.002;  ///< largest difference of the radiator's reading and the set-point that is reached
+};
+
 /// A differential black body.
 struct BlackBodyWords {
   InstrumentUnit unit{"K"};
@@ -97,6 +107,7 @@ struct BlackBodyWords {
   NumberQuestion plate;        ///< temperature of the surround; empty: not reported
   NumberQuestion radiator;     ///< of the black body behind the plate; empty: not reported
   InstrumentUnit absolute_unit{"K"};
+  std::optional<AbsoluteWords> absolute{};  ///< only with a `radiator`
 };
 
 /// Positions of a plate in its own plane. Without it, the plate is shifted by hand.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tod/instruments/instrument_device.h"
+#include "tod/presentation/absolute_target.h"
 
 namespace todbench {
 namespace {
@@ -35,7 +36,7 @@ bool has_stayed(bool so, double dwell_s, const std::function<std::chrono::steady
   return std::chrono::duration<double>(time - *since).count() >= dwell_s;
 }
 
-class ScpiTarget final : public Target, private MovingTarget {
+class ScpiTarget final : public Target, public AbsoluteTarget, private MovingTarget {
  public:
   explicit ScpiTarget(ScpiTargetOptions options)
       : options_(std::move(options)),
@@ -46,6 +47,9 @@ class ScpiTarget final : public Target, private MovingTarget {
 
   [[nodiscard]] const TargetCapabilities& capabilities() const override { return capabilities_; }
   Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override;
+  Result<std::array<double, 2>> temperatures_k(std::stop_token stop) override;
+  Result<PresentedTarget> present_temperature(const TargetState& state, double temperature_k,
+                                              std::stop_token stop) override;
   MovingTarget* moving() override { return plates().position && plates().run ? this : nullptr; }
 
  private:
@@ -74,6 +78,7 @@ class ScpiTarget final : public Target, private MovingTarget {
   TargetCapabilities capabilities_;
   std::optional<TimePoint> black_body_there_, stage_there_;  ///< start of the time within the tolerance
   bool wait_reported_ = false;
+  std::optional<double> asked_k_;  ///< absolute set-point of the present wait; empty: a difference
 };
 
 Result<void> ScpiTarget::open(const std::stop_token& stop) {
@@ -93,6 +98,15 @@ Result<void> ScpiTarget::open(const std::stop_token& stop) {
   capabilities_.sets_shift = plates().position.has_value();
   for (const TargetState& state : options_.requested) {
     if (auto possible = check_within_limits(state); !possible) return possible;
+  }
+  if (options_.temperatures_k.empty()) return {};
+  const auto absolute = temperatures_k(stop);
+  if (!absolute) return tl::unexpected(absolute.error());
+  for (const double temperature : options_.temperatures_k) {
+    if (!(temperature >= (*absolute)[0] && temperature <= (*absolute)[1]))
+      return fail(ErrorCode::invalid_input, black_body_.name() + ": " + decimal(temperature, 3) + " K is outside " +
+                                                decimal((*absolute)[0], 3) + " to " + decimal((*absolute)[1], 3) +
+                                                " K");
   }
   return {};
 }
@@ -142,11 +156,13 @@ Result<ScpiTarget::Reading> ScpiTarget::read(const TargetState& asked, const std
 }
 
 std::optional<std::string> ScpiTarget::black_body_lacks(const Reading& reading, const TargetState& asked) {
-  const double reached = reading.target.state.delta_t_k;
-  const bool near = std::abs(reached - asked.delta_t_k) <= heat().tolerance_k;
+  const double wanted = asked_k_.value_or(asked.delta_t_k);
+  const double reached =
+      asked_k_ ? reading.target.black_body_temperature_k.value_or(0) : reading.target.state.delta_t_k;
+  const bool near = std::abs(reached - wanted) <= (asked_k_ ? heat().absolute->tolerance_k : heat().tolerance_k);
   const bool there = has_stayed(near, options_.black_body_table.settled.dwell_s, options_.now, black_body_there_);
   if (reading.black_body_settled && there) return {};
-  return black_body_.name() + ": asked for " + decimal(asked.delta_t_k, 4) + " K, reached " + decimal(reached, 4) +
+  return black_body_.name() + ": asked for " + decimal(wanted, 4) + " K, reached " + decimal(reached, 4) +
          (reading.black_body_settled && !(near && !there) ? " K, settled" : " K, still settling");
 }
 
@@ -215,10 +231,41 @@ Result<PresentedTarget> ScpiTarget::present(const TargetState& state, std::stop_
   if (auto done = check_within_limits(state); !done) return tl::unexpected(done.error());
   if (auto done = black_body_.ensure_connected(stop); !done) return tl::unexpected(done.error());
   if (auto done = stage_.ensure_connected(stop); !done) return tl::unexpected(done.error());
+  asked_k_.reset();
   // The slowest first, so that they settle together.
   if (auto done = black_body_.command(state.delta_t_k, stop); !done) return tl::unexpected(done.error());
   if (auto done = stage_.command(state, stop); !done) return tl::unexpected(done.error());
   return wait_until_reached(state, stop);
+}
+
+Result<std::array<double, 2>> ScpiTarget::temperatures_k(std::stop_token stop) {
+  if (!heat().absolute)
+    return fail(ErrorCode::invalid_input,
+                black_body_.name() + ": its command table has no absolute set-point (key set in [temperatures])");
+  if (auto done = black_body_.ensure_connected(stop); !done) return tl::unexpected(done.error());
+  const auto limits = black_body_.absolute_limits(stop);
+  if (!limits) return limits;
+  if (const auto reading = black_body_.radiator((*limits)[0], stop); !reading) return tl::unexpected(reading.error());
+  return limits;
+}
+
+Result<PresentedTarget> ScpiTarget::present_temperature(const TargetState& state, double temperature_k,
+                                                        std::stop_token stop) {
+  TargetState flat = state;
+  flat.delta_t_k = 0;
+  if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the target was set");
+  if (auto done = check_within_limits(flat); !done) return tl::unexpected(done.error());
+  const auto limits = temperatures_k(stop);
+  if (!limits) return tl::unexpected(limits.error());
+  // This form also rejects NaN.
+  if (!(temperature_k >= (*limits)[0] && temperature_k <= (*limits)[1]))
+    return fail(ErrorCode::invalid_input, black_body_.name() + ": " + decimal(temperature_k, 3) + " K is outside " +
+                                              decimal((*limits)[0], 3) + " to " + decimal((*limits)[1], 3) + " K");
+  if (auto done = stage_.ensure_connected(stop); !done) return tl::unexpected(done.error());
+  if (auto done = black_body_.command_absolute(temperature_k, stop); !done) return tl::unexpected(done.error());
+  if (auto done = stage_.command(flat, stop); !done) return tl::unexpected(done.error());
+  asked_k_ = temperature_k;
+  return wait_until_reached(flat, stop);
 }
 
 Result<PlateRun> ScpiTarget::run_along_x(double to_mm, double speed_mm_s, std::stop_token stop) {

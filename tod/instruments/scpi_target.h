@@ -27,6 +27,7 @@ struct ScpiTargetOptions {
   OnTargetWait on_wait{};
   /// States that a run will request: checked against the limits and the plates of the instruments when they are opened.
   std::vector<TargetState> requested{};
+  std::vector<double> temperatures_k{};  ///< absolute temperatures that a run will request, checked likewise
   ScpiClientOptions connection;
   /// Time base of settle_timeout and settling_s.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fixed pattern of a camera and unevenness of its source, told apart by shifting the source (data reference method).
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <span>
+
+#include "acquisition/base/result.h"
+
+namespace todbench {
+
+/// A mean picture with the source shifted by whole pixels, x right, y down.
+struct ShiftedPicture {
+  cv::Point shift_px{0, 0};
+  cv::Mat1d picture;
+};
+
+/// picture = camera(x) + source(x - shift) + level of the picture. A linear slope can belong to the camera or to the
+/// source, because it changes only the levels; it is left out of both and stated.
+struct SeparatedPattern {
+  cv::Mat1d camera;  ///< mean 0, without slope
+  cv::Mat1d source;  ///< larger than a picture by the span of the shifts; mean 0, without slope
+  /// Slope of the mean picture per pixel along x and y: of the camera, of the source or of both.
+  cv::Point2d slope_per_px{0, 0};
+  double residual = 0;  ///< root mean square
+};
+
+/// Least squares by conjugate gradients. Errors: `invalid_input` (fewer than three pictures, different sizes, shifts
+/// that do not span both axes or have a common divisor, which leaves a periodic pattern undetermined, or a value that
+/// is not finite).
+[[nodiscard]] Result<SeparatedPattern> separated_pattern(std::span<const ShiftedPicture> pictures);
+
+}  // namespace todbench
