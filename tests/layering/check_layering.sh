@@ -59,6 +59,7 @@ BEGIN {
   may["bench/report"] = core " " science " bench/text bench/plan bench/judgement bench/session"
   may["bench/plate_drawing"] = hvs " tod/plate"
   devices = "acquisition/recording acquisition/aravis acquisition/v4l2 acquisition/usb tod/instruments sim_devices/lab"
+  may["bench/round_robin"] = core " " science " acquisition/recording bench/text bench/plan bench/judgement bench/session bench/report bench/reference_set bench/history"
   may["bench/reference_set"] = science " acquisition/recording bench/text bench/plan bench/judgement bench/session"
   may["bench/selftest"] = science " bench/judgement bench/reference_set"
   may["bench/observer_fit"] = science " bench/text bench/plan bench/judgement bench/session bench/report"
@@ -75,7 +76,7 @@ BEGIN {
   may["bench/moving_target"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
   may["bench/scene_dependence"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
   may["bench/model_comparison"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/run bench/enhance"
-  bench = "bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/certificate bench/observer_fit bench/naked_eye bench/reference_set bench/selftest bench/plate_drawing bench/run bench/serve bench/run_control bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history"
+  bench = "bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/certificate bench/observer_fit bench/naked_eye bench/reference_set bench/selftest bench/plate_drawing bench/run bench/serve bench/run_control bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history bench/round_robin"
   may["bench/cli"] = core " " science " acquisition/recording tod/instruments bench/doctor " bench
   may["bench/python"] = core " " science " acquisition/recording " bench
   may["bench/gui/presenters"] = core " " science " " bench

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Consensus of laboratories that measured the same item: reference values, consistency, scatter between laboratories.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "acquisition/base/interval.h"
+
+namespace todbench {
+
+/// Result of one laboratory for one item. The unit is that of the item.
+struct LaboratoryValue {
+  std::string laboratory;
+  double value = 0;
+  double u = 0;  ///< standard uncertainty, above 0
+};
+
+/// Value with its standard uncertainty.
+struct Consensus {
+  double value = 0, u = 0;
+};
+
+/// Significance of every test of a comparison (Cox 2002, section 5).
+inline constexpr double comparison_significance = 0.05;
+
+/// All functions below: at least two values, each with a finite value and a finite u above 0.
+
+/// Returns the mean with weights 1/u^2 (Cox 2002, equations 3 and 4).
+[[nodiscard]] Consensus weighted_mean(std::span<const LaboratoryValue> values);
+
+/// Chi-squared test that the stated uncertainties explain the scatter (Cox 2002, section 5, step 3).
+struct ConsistencyCheck {
+  double chi2 = 0;
+  int degrees_of_freedom = 0;
+  double p = 1;            ///< probability of a larger chi2 by chance
+  double birge_ratio = 0;  ///< sqrt(chi2 / degrees of freedom) (Birge 1932)
+  [[nodiscard]] bool consistent() const { return p >= comparison_significance; }
+};
+[[nodiscard]] ConsistencyCheck consistency(std::span<const LaboratoryValue> values);
+
+/// Returns the positions of the largest subset that is consistent; of several, the one with the smallest chi2 (Cox
+/// 2007). Up to 16 values every subset is tried. Above, the value farthest from the mean of the others, in units of its
+/// uncertainty, is removed until the rest is consistent.
+[[nodiscard]] std::vector<std::size_t> largest_consistent_subset(std::span<const LaboratoryValue> values);
+
+/// Median by Monte Carlo (Cox 2002, procedure B). Same seed, same draws.
+struct MedianConsensus {
+  Consensus median;                       ///< mean and standard deviation of the medians of the draws
+  Interval ci95;                          ///< shortest interval with 95 % of the medians
+  std::vector<double> difference_half95;  ///< by value: half of the shortest interval with 95 % of value minus median
+};
+inline constexpr int median_draws = 20'000;
+[[nodiscard]] MedianConsensus monte_carlo_median(std::span<const LaboratoryValue> values, std::uint64_t seed);
+
+/// Variance between laboratories in excess of their uncertainties, 0 or more: the estimate of moments by DerSimonian
+/// and Laird 1986 (equation 8), and that by Paule and Mandel 1982, at which the generalised chi2 equals its expectation
+/// N - 1.
+[[nodiscard]] double dersimonian_laird_variance(std::span<const LaboratoryValue> values);
+[[nodiscard]] double paule_mandel_variance(std::span<const LaboratoryValue> values);
+
+/// Mean with weights 1/(u^2 + variance).
+struct RandomEffects {
+  Consensus mean;           ///< u as of known variances
+  double hartung_knapp = 0; ///< standard error of Hartung and Knapp 2001, at least mean.u; by Student's t with N - 1
+};
+[[nodiscard]] RandomEffects random_effects(std::span<const LaboratoryValue> values, double variance);
+
+}  // namespace todbench
