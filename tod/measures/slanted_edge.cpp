@@ -17,7 +17,8 @@ namespace todbench {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double steepest_slant_deg = 25;
+constexpr double steepest_slant_deg = 46;  // beyond 45 degrees the edge runs across the other axis
+constexpr double steepest_line = 1.2;      // slope at which the search for the line ends
 constexpr double least_reach_pitch = 5;
 constexpr double largest_gap_pitch = 0.3;  // between samples on the slope of the profile: at least three phases a pitch
 constexpr double knots_pitch = 0.25;
@@ -171,7 +172,7 @@ Result<Found> settled(const Upright& in) {
   found.line = *line;
   for (int round = 0; round < 8; ++round) {
     found.reach = reach_of(in.picture.size(), found.line);
-    if (std::abs(found.line.slope) > 1 || found.reach < 2) break;
+    if (std::abs(found.line.slope) > steepest_line || found.reach < 2) break;
     found.samples = samples_near(in.picture, found.line, found.reach);
     const auto profile = profile_of(found.samples, found.reach);
     if (!profile) return fail(ErrorCode::invalid_input, "the picture has too few lines for its edge");

@@ -64,7 +64,7 @@ struct SlantedEdge {
 /// see docs/method/physical-measures.md). The MTF is relative to a source of the size of the picture (edge_tails.h).
 ///
 /// Precondition: one straight edge with a flat field on both sides, in any linear unit. Errors: `invalid_input` in one
-/// sentence (no edge above the noise; a slant of less than a pitch over the picture, beyond 25 degrees, or one that
+/// sentence (no edge above the noise; a slant of less than a pitch over the picture, beyond 46 degrees, or one that
 /// leaves gaps between the samples; an edge that leaves the picture, comes closer than 5 pitches to its border, is
 /// bent, or was clipped).
 [[nodiscard]] Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOptions& options);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/tod/measures/edge_picture.h"
 #include "tests/tod/measures/measures_reference.h"
@@ -81,6 +82,28 @@ TEST(SlantedEdge, ErrsByLessThanItSaysOverThirtyBlursAndThreeAngles) {
   }
 }
 
+// Normals between the axes, as those of a slanted star; near 45 degrees the lines repeat most slowly.
+TEST(SlantedEdge, FindsTheMtfAlongAnyDirectionUpToTheDiagonal) {
+  for (const double angle : {5.0, 20.0, 30.0, 44.0, 45.5, -30.0, -44.0}) {
+    const double span = 80 * std::tan(std::abs(angle) * std::numbers::pi / 180);
+    for (const double blur : {0.3, 0.6}) {
+      const EdgePicture made{blur, 0.895, angle, std::floor(span / 2) + 22.2, 80, static_cast<int>(span) + 44};
+      int inside = 0;
+
+      const auto edge = slanted_edge(made.picture(), {.axis = EdgeAxis::x}).value();
+      for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const auto noisy = slanted_edge(made.noisy(0.005, seed), {.axis = EdgeAxis::x}).value();
+        inside += noisy.mtf_low[25] <= made.mtf(0.25) && made.mtf(0.25) <= noisy.mtf_high[25] ? 1 : 0;
+      }
+
+      EXPECT_NEAR(edge.angle_deg, angle, 1e-3);
+      EXPECT_LT(error_of(edge, made, 0.5), 0.0003) << angle << " degrees, blur " << blur;
+      // Five or fewer of eight has a probability of 0.6 % at 95 %.
+      EXPECT_GE(inside, 6) << angle << " degrees, blur " << blur;
+    }
+  }
+}
+
 TEST(SlantedEdge, HasTheTruthInItsIntervalsInNineteenOfTwentyNoisyPictures) {
   const EdgePicture made;
   constexpr int seeds = 60;
@@ -140,12 +163,15 @@ TEST(SlantedEdge, RefusesAnEdgeThatIsOutOfRange) {
     return made.picture();
   };
   EXPECT_THAT(refused(with([](EdgePicture& e) { e.angle_deg = 0.5; })), HasSubstr("less than one pixel"));
-  EXPECT_THAT(refused(with([](EdgePicture& e) { e.angle_deg = 30, e.rows = 40; })), HasSubstr("at most 25"));
+  EXPECT_THAT(refused(with([](EdgePicture& e) { e = {0.3, 0.895, 50, 40, 20, 80}; }), {.axis = EdgeAxis::x}),
+              HasSubstr("at most 46"));
+  EXPECT_THAT(refused(with([](EdgePicture& e) { e = {0.3, 0.895, 45, 61.2, 80, 122}; }), {.axis = EdgeAxis::x}),
+              HasSubstr("gaps"));
   EXPECT_THAT(refused(with([](EdgePicture& e) { e.angle_deg = 18.434948822922; })), HasSubstr("gaps"));
   EXPECT_THAT(refused(with([](EdgePicture& e) { e.edge_at_pitch = 6; })), HasSubstr("border"));
   EXPECT_THAT(refused(with([](EdgePicture& e) { e.angle_deg = 20, e.rows = 200; })), HasSubstr("leaves the picture"));
   EXPECT_THAT(refused(with([](EdgePicture& e) { e.blur_sigma_pitch = 5; })), HasSubstr("wide"));
-  EXPECT_THAT(refused(EdgePicture().picture(), {.axis = EdgeAxis::y}), HasSubstr("at most 25"));
+  EXPECT_THAT(refused(EdgePicture().picture(), {.axis = EdgeAxis::y}), HasSubstr("at most 46"));
 }
 
 TEST(SlantedEdge, RefusesAPictureWithoutAnEdge) {
