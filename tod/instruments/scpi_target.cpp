@@ -65,6 +65,8 @@ class ScpiTarget final : public Target, public AbsoluteTarget, private MovingTar
   [[nodiscard]] const StageWords& plates() const { return options_.stage_table.stage; }
   [[nodiscard]] Result<void> check_within_limits(const TargetState& state) const;
   Result<Reading> read(const TargetState& asked, const std::stop_token& stop);
+  /// Within the settling band, and slower than the largest rate since the reading before.
+  [[nodiscard]] bool near_and_slow(double reached_k, double asked_k);
   [[nodiscard]] std::optional<std::string> black_body_lacks(const Reading& reading, const TargetState& asked);
   [[nodiscard]] std::optional<std::string> stage_lacks(const Reading& reading, const TargetState& asked);
   Result<PresentedTarget> wait_until_reached(const TargetState& asked, const std::stop_token& stop);
@@ -77,6 +79,8 @@ class ScpiTarget final : public Target, public AbsoluteTarget, private MovingTar
   StageLimits travel_;
   TargetCapabilities capabilities_;
   std::optional<TimePoint> black_body_there_, stage_there_;  ///< start of the time within the tolerance
+  std::optional<std::pair<TimePoint, double>> earlier_;      ///< a reading of the contrast in this wait
+  std::optional<double> slow_at_k_;                          ///< set contrast at which it was near and slow
   bool wait_reported_ = false;
   std::optional<double> asked_k_;  ///< absolute set-point of the present wait; empty: a difference
 };
@@ -155,10 +159,29 @@ Result<ScpiTarget::Reading> ScpiTarget::read(const TargetState& asked, const std
   return reading;
 }
 
+bool ScpiTarget::near_and_slow(double reached_k, double asked_k) {
+  constexpr double least_interval_s = 0.2;  // the last digit of a reading is not a rate
+  const auto time = options_.now();
+  if (!earlier_) earlier_ = {time, reached_k};
+  const double interval_s = std::chrono::duration<double>(time - earlier_->first).count();
+  if (interval_s < least_interval_s) return false;
+  const double rate_k_per_s = (reached_k - earlier_->second) / interval_s;
+  earlier_ = {time, reached_k};
+  return std::abs(reached_k - asked_k) <= options_.settling_band * std::abs(asked_k) &&
+         std::abs(rate_k_per_s) <= options_.max_relative_rate_per_s * std::abs(asked_k);
+}
+
 std::optional<std::string> ScpiTarget::black_body_lacks(const Reading& reading, const TargetState& asked) {
   const double wanted = asked_k_.value_or(asked.delta_t_k);
   const double reached =
       asked_k_ ? reading.target.black_body_temperature_k.value_or(0) : reading.target.state.delta_t_k;
+  if (!asked_k_ && asked.wait == ContrastWait::none) return {};
+  // Once near and slow it stays so: it approaches the set-point.
+  if (!asked_k_ && asked.wait == ContrastWait::within_band &&
+      (slow_at_k_ == asked.delta_t_k || near_and_slow(reached, asked.delta_t_k))) {
+    slow_at_k_ = asked.delta_t_k;
+    return {};
+  }
   const bool near = std::abs(reached - wanted) <= (asked_k_ ? heat().absolute->tolerance_k : heat().tolerance_k);
   const bool there = has_stayed(near, options_.black_body_table.settled.dwell_s, options_.now, black_body_there_);
   if (reading.black_body_settled && there) return {};
@@ -190,6 +213,8 @@ Result<PresentedTarget> ScpiTarget::wait_until_reached(const TargetState& asked,
 
 Result<PresentedTarget> ScpiTarget::poll_until_reached(const TargetState& asked, const std::stop_token& stop) {
   const auto start = options_.now();
+  earlier_.reset();
+  if (slow_at_k_ && (*slow_at_k_ != asked.delta_t_k || asked.wait != ContrastWait::within_band)) slow_at_k_.reset();
   black_body_there_.reset();
   stage_there_.reset();
   auto reported = start;

@@ -68,6 +68,7 @@ class Run {
     if (const auto in_place = places_.finish(); !in_place && !ended_by) ended_by = in_place.error();
     for (const std::string& sentence : places_.notes()) note(sentence);
     if (ended_by && result_.trials.empty()) return tl::unexpected(*ended_by);
+    keep_own_contrasts();
     result_.ended_by = ended_by;
     result_.temporal_noise_k = step_.temporal_noise_k();
     result_.temporal_noise_counts = step_.noise_counts();
@@ -205,8 +206,35 @@ class Run {
     std::vector<Frame> frames;  ///< empty if the place is not checked
   };
 
-  [[nodiscard]] int frames_at(double set_delta_t_k) const {
-    const auto own = options_.frames_at_contrast.find(set_delta_t_k);
+  /// Set contrast of the point of the curve to which a presentation belongs.
+  [[nodiscard]] static double point_of(const TargetState& state) {
+    return state.point_delta_t_k.value_or(state.delta_t_k);
+  }
+
+  /// Adds the triangles of a presentation to the mean of its set-up and point. The contrast itself differs between
+  /// presentations; only the deviations of the triangles from it are errors.
+  void add_own_contrast(const TargetState& state) {
+    auto& sum = own_contrasts_[{state.plate, state.mounting, point_of(state)}];
+    if (sum.count > 0 && sum.references.size() != seen_.references.size()) return;
+    if (sum.count++ == 0) {
+      sum.references = seen_.references;
+      for (ReferenceTriangle& reference : sum.references) reference.value = 0;
+    }
+    for (std::size_t i = 0; i < sum.references.size(); ++i)
+      sum.references[i].value += seen_.references[i].value - seen_.contrast_k;
+  }
+
+  void keep_own_contrasts() {
+    for (auto& [where, sum] : own_contrasts_) {
+      const double contrast_k = std::get<2>(where);
+      for (ReferenceTriangle& reference : sum.references)
+        reference.value = contrast_k + reference.value / static_cast<double>(sum.count);
+      result_.contrasts.push_back({contrast_k, contrast_k, sum.references});
+    }
+  }
+
+  [[nodiscard]] int frames_at(const TargetState& state) const {
+    const auto own = options_.frames_at_contrast.find(point_of(state));
     return own == options_.frames_at_contrast.end() ? options_.frames_per_presentation : own->second;
   }
 
@@ -222,12 +250,21 @@ class Run {
       for (const auto& problem : problems) text += (text.empty() ? "" : "; ") + sentence(problem);
       return fail(ErrorCode::calibration, "the plate is too close to the edge of the picture: " + text);
     }
-    if (!places_.looks()) return exposed;
-    for (int k = 0; k < std::min(frames_at(state.delta_t_k), most_frames_looked_at); ++k) {
+    const bool own_contrast = state.wait != ContrastWait::settled;
+    if (!places_.looks() && !own_contrast) return exposed;
+    const int most = own_contrast ? frames_at(state) : std::min(frames_at(state), most_frames_looked_at);
+    for (int k = 0; k < most; ++k) {
       auto frame = taker_.next(stop_);
       if (!frame) return tl::unexpected(frame.error());
       exposed.frames.push_back(*std::move(frame));
     }
+    if (own_contrast) {
+      auto seen = step_.own_contrast(exposed.frames, mounted_plate, exposed.registration, state, seen_);
+      if (!seen) return tl::unexpected(seen.error());
+      seen_ = *std::move(seen);
+      add_own_contrast(state);
+    }
+    if (!places_.looks()) return exposed;
     const double unit_per_k = options_.contrast_unit == ContrastUnit::kelvin ? 1 : seen_.levels_per_k;
     const auto seen = places_.look(
         exposed.frames, mounted_plate, base_, asked,
@@ -242,9 +279,12 @@ class Run {
   Result<Registration> look_at(PreparedPlate& plate, const TargetPlate& mounted_plate, const TargetState& state) {
     const SetUp set_up{state.plate, state.mounting};
     const bool new_set_up = !current_set_up_ || *current_set_up_ != set_up;
-    const bool new_contrast = new_set_up || *current_contrast_ != state.delta_t_k;
+    const bool on_its_way = state.wait == ContrastWait::none;
+    const bool new_contrast = new_set_up || (!on_its_way && *current_contrast_ != state.delta_t_k);
     if (new_contrast) read_back_noted_ = false;
-    if (const auto deviation = read_back_noted_ ? std::nullopt : step_.read_back_deviation(state, presented_)) {
+    const bool settled = state.wait == ContrastWait::settled;
+    if (const auto deviation =
+            read_back_noted_ || !settled ? std::nullopt : step_.read_back_deviation(state, presented_)) {
       note(*deviation);
       read_back_noted_ = true;
     }
@@ -267,7 +307,8 @@ class Run {
                                             .judged_delta_t_k = seen_.contrast_k * seen_.judged->gain,
                                             .noise_k = seen_.noise_k,
                                             .scale = *seen_.judged});
-      if (!seen_.references.empty()) result_.contrasts.push_back({state.delta_t_k, seen_.contrast_k, seen_.references});
+      if (settled && !seen_.references.empty())
+        result_.contrasts.push_back({state.delta_t_k, seen_.contrast_k, seen_.references});
     }
     current_set_up_ = set_up;
     current_contrast_ = state.delta_t_k;
@@ -345,7 +386,7 @@ class Run {
     std::vector<Trial> trials;
     std::vector<Patch> patches;
     std::vector<double> probabilities(count);
-    const int frames = frames_at(state.delta_t_k);
+    const int frames = frames_at(state);
     for (int k = 0; k < frames; ++k) {
       const auto at = static_cast<std::size_t>(k);
       auto taken = at < exposed.frames.size() ? exposed.frames[at] : taker_.next(stop_);
@@ -429,7 +470,7 @@ class Run {
     trial.plate = state.plate;
     trial.mounting = state.mounting;
     trial.triangle = t.name;
-    trial.set_delta_t_k = state.delta_t_k;
+    trial.set_delta_t_k = point_of(state);
     trial.delta_t_k = seen_.contrast_k;
     trial.size_mm = t.size_mm;
     trial.size_mrad = t.size_mm / options_.distance_m;
@@ -470,6 +511,11 @@ class Run {
   double scale_px_per_mm_ = 0;               ///< of the first registration: one scale for the whole run
   std::optional<std::int64_t> last_nuc_ns_;  ///< time of the last command
   std::int64_t presentation_ = 0;
+  struct OwnContrasts {
+    std::vector<ReferenceTriangle> references;  ///< sums of deviations from the contrast
+    std::size_t count = 0;
+  };
+  std::map<std::tuple<std::string, Mounting, double>, OwnContrasts> own_contrasts_;  ///< by set-up and point
   std::optional<PlateSeen> plate_seen_;
   PresentedTarget presented_;   ///< last report of the target
   bool target_failed_ = false;  ///< the error of this presentation is the target's

@@ -272,6 +272,31 @@ Result<SeenContrast> SetUpStep::in_kelvin(const EffectiveContrast& measured, con
   return seen;
 }
 
+Result<SeenContrast> SetUpStep::own_contrast(std::span<const Frame> frames, const TargetPlate& mounted_plate,
+                                             const Registration& registration, const TargetState& set,
+                                             SeenContrast seen) const {
+  constexpr double visible = 5;  // standard errors
+  cv::Mat1d sum;
+  for (const Frame& frame : frames) {
+    auto kelvin = window_kelvin(frame, {{0, 0}, frame.counts.size()});
+    if (!kelvin) return tl::unexpected(kelvin.error());
+    if (sum.empty())
+      sum = *kelvin;
+    else
+      sum += *kelvin;
+  }
+  const cv::Mat1d mean = sum / static_cast<double>(frames.size());
+  const auto measured = effective_contrast(mean, mounted_plate, registration, options_.min_reference_px);
+  if (!measured) return fail("measuring the contrast of a presentation", measured.error());
+  if (!(measured->value * set.delta_t_k > 0) || std::abs(measured->value) < visible * measured->standard_error)
+    return seen;
+  seen.contrast_k = measured->value / response(set.plate);
+  seen.references = measured->references;
+  for (ReferenceTriangle& reference : seen.references) reference.value /= response(set.plate);
+  if (measured->triangles > 1) seen.standard_error_k = measured->standard_error / response(set.plate);
+  return seen;
+}
+
 SeenContrast SetUpStep::in_grey_levels(const AveragedPicture& picture, const EffectiveContrast& measured,
                                        const TargetState& set, const PresentedTarget& said) {
   const double said_k = said.state.delta_t_k;

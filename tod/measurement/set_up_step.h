@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 
@@ -65,6 +66,11 @@ class SetUpStep {
   [[nodiscard]] Result<SeenContrast> contrast(const TargetPlate& mounted_plate, const Registration& registration,
                                               const TargetState& set, const PresentedTarget& said,
                                               std::stop_token stop);
+  /// The contrast of a presentation by its own frames, in place of that of `seen`, if it exceeds its noise. Errors:
+  /// those of effective_contrast(); `calibration` (pixels without a temperature).
+  [[nodiscard]] Result<SeenContrast> own_contrast(std::span<const Frame> frames, const TargetPlate& mounted_plate,
+                                                  const Registration& registration, const TargetState& set,
+                                                  SeenContrast seen) const;
   /// Grey levels of one frame of the set-up whose contrast was measured last. Errors: those of grey_contrast();
   /// `calibration` if the contrast is less than three of its standard uncertainties.
   [[nodiscard]] Result<GreyFrame> grey_frame(const Frame& frame, const TargetPlate& mounted_plate,

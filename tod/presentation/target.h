@@ -15,12 +15,23 @@
 
 namespace todbench {
 
+/// Contrast for which a target waits before a presentation.
+enum class ContrastWait {
+  settled,      ///< reached and stable
+  within_band,  ///< within the settling band of the set-point and slow; the frames show it
+  none,         ///< on its way; the frames show it
+};
+
 /// State to be shown.
 struct TargetState {
   std::string plate;  ///< name of the TargetPlate
   Mounting mounting = Mounting::identity;
   double delta_t_k = 0;        ///< set-point of triangle minus surround; the sign is the polarity
   cv::Point2d shift_mm{0, 0};  ///< of the plate in its own plane, as seen by the camera, x right, y down
+  /// Not settled: each presentation has the contrast of its own frames.
+  ContrastWait wait = ContrastWait::settled;
+  /// Set contrast of the point of the curve to which the answers belong; empty: `delta_t_k`.
+  std::optional<double> point_delta_t_k{};
   bool operator==(const TargetState&) const = default;
 };
 

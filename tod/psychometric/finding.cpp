@@ -43,6 +43,8 @@ std::string_view to_string(FindingKind kind) {
       return "setting_change";
     case FindingKind::orientation:
       return "orientation";
+    case FindingKind::ramp_direction:
+      return "ramp_direction";
   }
   return "unknown";
 }

@@ -32,6 +32,7 @@ enum class FindingKind {
   picture_residue,     ///< pictures still changed while they were measured; percent of the change
   setting_change,      ///< a setting of the camera changed during the run; no figures
   orientation,         ///< thresholds of upright and level triangles differ; percent, limit
+  ramp_direction,      ///< S75 of ramps up and down differ; percent, limit
 };
 inline constexpr std::array all_finding_kinds{FindingKind::deviance,           FindingKind::lapse,
                                               FindingKind::overdispersion,     FindingKind::underdispersion,
@@ -42,7 +43,7 @@ inline constexpr std::array all_finding_kinds{FindingKind::deviance,           F
                                               FindingKind::transfer_change,    FindingKind::noise_change,
                                               FindingKind::correlation_change, FindingKind::picture_residue,
                                               FindingKind::setting_change,     FindingKind::surrogate,
-                                              FindingKind::orientation};
+                                              FindingKind::orientation,        FindingKind::ramp_direction};
 [[nodiscard]] std::string_view to_string(FindingKind kind);
 
 /// One finding against a number.

@@ -164,6 +164,7 @@ struct PsychometricFit {
   /// contrast, and of an uncertain function. Not in variance_inflation.
   double joined_u = 0;
   double contrast_u = 0;  ///< part of joined_u from the scatter of the effective contrast
+  double lag_u = 0;       ///< part of joined_u from the lag between the triangles while the contrast changes
   /// Mean squared residual of graded answers over that of right and wrong ones; empty for right and wrong answers.
   std::optional<double> dispersion;
   std::optional<TwinShapeUse> twin_shape;  ///< empty: a Weibull function

@@ -94,10 +94,19 @@ struct TodPoint {
   std::optional<Orientations> orientations{};  ///< empty: not compared
 };
 
+/// One contrast of a continuous curve.
+struct ContinuousPoint {
+  double delta_t_k = 0;
+  double s75_mrad = 0;
+  Interval ci95;
+  bool operator==(const ContinuousPoint&) const = default;
+};
+
 /// A measured or simulated TOD curve. Acuity is 1 / S75.
 struct TodCurve {
   std::string observer, sensor;
-  std::vector<TodPoint> points;  ///< contrast decreasing
+  std::vector<TodPoint> points;               ///< contrast decreasing
+  std::vector<ContinuousPoint> continuous{};  ///< of a ramp, contrast decreasing; empty: contrasts were settled
 };
 
 /// Smallest gain in twice the ln likelihood by which a free lapse gives a warning: 5 % for a parameter at its bound

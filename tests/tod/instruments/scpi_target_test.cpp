@@ -104,6 +104,45 @@ TEST_F(ScpiTargetTest, AStateThatIsThereAlreadyIsReturnedAtOnce) {
   EXPECT_LT(again->settling_s, 0.3);  // one round of reading: below 30 ticks of 10 ms
 }
 
+TEST_F(ScpiTargetTest, ABandEndsTheWaitWhereAFirstOrderApproachIsNearAndSlow) {
+  options_.settling_band = 0.1;
+  options_.max_relative_rate_per_s = 0.06;
+  const auto bench = target();
+
+  const auto presented = bench->present({.plate = "fine", .delta_t_k = 2, .wait = ContrastWait::within_band}, {});
+
+  ASSERT_TRUE(presented) << presented.error().message;
+  // 2 exp(-t) K are missing: below 10 % after 2.3 s, and slower than 0.06 / s after ln(1 / 0.06) = 2.8 s; a rate takes
+  // at least 0.2 s of readings. The stage needs less. To settle takes 8.1 s.
+  EXPECT_NEAR(presented->settling_s, std::log(1 / 0.06), 0.7);
+  EXPECT_NEAR(presented->state.delta_t_k, 2 * (1 - 0.06), 0.06);
+  EXPECT_FALSE(black_body_->state().is_stable);
+}
+
+TEST_F(ScpiTargetTest, WithinABandTheNextShiftDoesNotWaitAgain) {
+  const auto bench = target();
+  ASSERT_TRUE(bench->present({.plate = "fine", .delta_t_k = 2, .wait = ContrastWait::within_band}, {}));
+
+  const auto next =
+      bench->present({.plate = "fine", .delta_t_k = 2, .shift_mm = {0.1, 0}, .wait = ContrastWait::within_band}, {});
+
+  ASSERT_TRUE(next) << next.error().message;
+  EXPECT_LT(next->settling_s, 0.7);  // the stage moves and comes to rest
+}
+
+TEST_F(ScpiTargetTest, AContrastOnItsWayIsNotWaitedForButThePlateIs) {
+  const auto bench = target();
+  ASSERT_TRUE(bench->present({.plate = "fine", .delta_t_k = 2, .wait = ContrastWait::within_band}, {}));
+
+  const auto next =
+      bench->present({.plate = "fine", .delta_t_k = 20, .shift_mm = {0.1, 0}, .wait = ContrastWait::none}, {});
+
+  ASSERT_TRUE(next) << next.error().message;
+  EXPECT_NEAR(next->state.shift_mm.x, 0.1, 1e-9);
+  EXPECT_LT(next->state.delta_t_k, 15);
+  EXPECT_LT(next->settling_s, 0.7);
+}
+
 TEST_F(ScpiTargetTest, StatesBeyondTheInstrumentsAreRefusedBeforeAnythingMoves) {
   const auto bench = target();
   const std::vector<TargetState> impossible{{"fine", Mounting::identity, 26, {0, 0}},

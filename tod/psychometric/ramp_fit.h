@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fit of graded answers at many contrasts: the function of a twin, stretched in size by a polynomial of the contrast.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "tod/psychometric/clustered_variance.h"
+#include "tod/psychometric/contrast_surface.h"
+
+namespace todbench {
+
+/// Direction of the contrast while a presentation was shown.
+enum class RampDirection { down, up };
+
+/// An answer with the contrast of its presentation.
+struct RampAnswer {
+  GradedAnswer answer;
+  double delta_t_k = 0;
+  RampDirection direction = RampDirection::down;
+};
+
+/// S75 at one contrast.
+struct RampValue {
+  double ln_s75 = 0;
+  ClusteredVariance variance;  ///< of ln S75, over set-ups
+};
+
+/// Difference of ln S75 between ramps up and down.
+struct RampDifference {
+  double ln_up_over_down = 0, standard_error = 0;
+  double limit = 0;  ///< of its magnitude: chance exceeds it in 1 %
+  [[nodiscard]] bool beyond() const;
+};
+
+/// P(S, dT) = F(S exp(-a(u)), dT), a(u) = a0 + a1 u + a2 u^2, F the surface and u its contrast_bend(). ln S75(dT) =
+/// ln S75 of the surface + a(u). Quasi-likelihood as fit_twin_shape(). The stretch is constant if the u of the answers
+/// span less than 0.05, and straight below 0.3.
+class RampFit {
+ public:
+  /// Errors: `invalid_input` (no answers, or none that determine the stretch).
+  [[nodiscard]] static Result<RampFit> of(std::vector<RampAnswer> answers, ContrastSurface surface);
+
+  [[nodiscard]] RampValue at(double delta_t_k) const;
+  /// Stretch in ln size at a contrast.
+  [[nodiscard]] double stretch(double delta_t_k) const;
+  /// By a further parameter of opposite sign in both directions.
+  [[nodiscard]] RampDifference up_against_down() const;
+
+ private:
+  enum class Directions { together, apart };
+  [[nodiscard]] std::array<double, most_parameters> row(double u, RampDirection direction, double centre) const;
+  [[nodiscard]] Result<void> climb(Directions directions);
+  [[nodiscard]] std::vector<AnswerScore> scores(double centre) const;
+
+  std::vector<RampAnswer> answers_;
+  std::vector<double> u_;  ///< of the answers
+  ContrastSurface surface_;
+  std::size_t powers_ = 3;      ///< parameters of the stretch
+  std::size_t parameters_ = 3;  ///< with that of the directions, the last one
+  std::array<double, most_parameters> value_{};
+};
+
+}  // namespace todbench
