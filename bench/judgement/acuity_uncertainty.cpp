@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "acquisition/base/distributions.h"
 #include "bench/plan/bench_air.h"
@@ -28,6 +29,8 @@ std::optional<double> read_back_deviation_k(std::span<const Presentation> presen
   double sum = 0;
   int count = 0;
   for (const Presentation& shown : presentations) {
+    // A contrast that has not settled is known from the frames alone.
+    if (shown.set.wait != ContrastWait::settled) continue;
     if (!same_contrast(shown.set.delta_t_k, set_delta_t_k) || !shown.delta_t_k) continue;
     const double deviation = *shown.delta_t_k - shown.air_transmittance.value_or(1) * shown.said.state.delta_t_k;
     if (!std::isfinite(deviation)) continue;
@@ -100,6 +103,15 @@ std::vector<BudgetRow> rows_at(const UncertaintyPlan& plan, const TodPoint& poin
                     .source = "standard error over the measurements of the contrast and their triangles",
                     .enters = BudgetInput::contrast});
   }
+  if (point.fit.lag_u > 0) {
+    rows.push_back({.name = std::string(contrast_lag_row),
+                    .value = point.fit.lag_u * std::numbers::sqrt3,
+                    .distribution = BudgetDistribution::rectangular,
+                    .sensitivity = 1,
+                    .unit = "1",
+                    .source = "max_contrast_lag_s of the plan, times the rate of the contrast",
+                    .enters = BudgetInput::acuity});
+  }
   if (deviation_k) {
     rows.push_back({.name = std::string(read_back_row),
                     .value = std::abs(*deviation_k),
@@ -126,7 +138,8 @@ BudgetRow trials_row(double half, const TodPoint& point) {
   const PsychometricFit& fit = point.fit;
   const auto freedom = freedom_of(fit);
   const double contrast = fit.contrast_u * distribution::quantile_above(upper_tail, freedom_of_contrast(point));
-  half = std::sqrt(std::max(0.0, half * half - contrast * contrast));
+  const double lag = fit.lag_u * distribution::quantile_above(upper_tail, std::nullopt);
+  half = std::sqrt(std::max(0.0, half * half - contrast * contrast - lag * lag));
   return {.name = std::string(finite_trials_row),
           .value = half / distribution::quantile_above(upper_tail, freedom),
           .degrees_of_freedom = freedom,

@@ -34,6 +34,21 @@ double percent_of_ln(double ln_ratio) {
   return 100 * std::expm1(ln_ratio);
 }
 
+/// Relative deviation from the read-back while the contrast approaches the set one; of a ramp at its first contrast.
+/// Empty for settled contrasts.
+std::optional<double> deviation_on_the_way(const Plan& plan, const TodPoint& point,
+                                           std::span<const Presentation> presentations) {
+  double sum = 0;
+  int count = 0;
+  for (const Presentation& shown : presentations) {
+    if (shown.set.wait != ContrastWait::within_band || !shown.delta_t_k) continue;
+    if (plan.schedule.kind != ScheduleKind::ramp && !same_contrast(shown.set.delta_t_k, point.set_delta_t_k)) continue;
+    sum += *shown.delta_t_k / (shown.air_transmittance.value_or(1) * shown.said.state.delta_t_k) - 1;
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
 std::vector<AdequacyFinding> changes(const RunFacts& run) {
   std::vector<AdequacyFinding> out;
   if (const auto change = transfer_change(run.contrasts); change && change->beyond()) {
@@ -103,7 +118,8 @@ std::optional<double> contrast_deviation(const Plan& plan, const TodPoint& point
                                          std::span<const Presentation> presentations) {
   if (plan.camera.contrast != ContrastUnit::kelvin || !(std::abs(point.set_delta_t_k) > 0)) return std::nullopt;
   const double air = presentations.empty() ? 1 : presentations.front().air_transmittance.value_or(1);
-  const double deviation = point.delta_t_k / (air * point.set_delta_t_k) - 1;
+  double deviation = point.delta_t_k / (air * point.set_delta_t_k) - 1;
+  if (const auto own = deviation_on_the_way(plan, point, presentations)) deviation = *own;
   return std::isfinite(deviation) ? std::optional(deviation) : std::nullopt;
 }
 

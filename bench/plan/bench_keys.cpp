@@ -291,6 +291,21 @@ PlanSection target_section() {
            .sentence = "Largest deviation of the effective contrast from the set contrast for which a verdict is made. "
                        "By default it follows from the uncertainties (method/measurement.md)",
            .place = of(&TargetPlan::max_contrast_deviation_percent)},
+          {.name = "contrast_settling_band_percent",
+           .type = NumberKey{NumberRange::between(0, 20)},
+           .unit = "%",
+           .sentence = "A presentation begins when the contrast is within this share of the set contrast and changes "
+                       "slowly. Its own frames then give its contrast; 0: the contrast has to settle",
+           .place = of(&TargetPlan::contrast_settling_band_percent),
+           .check = check_settling_band,
+           .written_at_default = false},
+          {.name = "max_contrast_lag_s",
+           .type = OptionalNumberKey{NumberRange::between(0, 100)},
+           .unit = "s",
+           .sentence = "Longest time by which the contrast of the small triangles lags that of the large ones while it "
+                       "changes. Required for a ramp",
+           .place = of(&TargetPlan::max_contrast_lag_s),
+           .check = check_contrast_lag},
       }};
   for (PlanKey& key : change_keys()) section.keys.push_back(std::move(key));
   return section;

@@ -128,6 +128,7 @@ struct UncertaintyPlan {
 /// Names of the rows that the program adds to the budget of a run.
 inline constexpr std::string_view finite_trials_row = "finite trials";
 inline constexpr std::string_view seen_contrast_row = "contrast as the camera saw it";
+inline constexpr std::string_view contrast_lag_row = "lag of the contrast in motion";
 /// Added if the plan states the air of the bench and has no row for the air path.
 inline constexpr std::string_view air_path_row = "air path";
 /// Added if the size-of-source effect was measured: the large triangles of the plate show less than the target's

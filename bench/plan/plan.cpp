@@ -18,7 +18,14 @@ double widened(const JoinedUncertainty& joined) {
 }  // namespace
 
 std::string_view to_string(ScheduleKind kind) {
-  return kind == ScheduleKind::constant ? "constant" : "adaptive";
+  switch (kind) {
+    case ScheduleKind::adaptive:
+      return "adaptive";
+    case ScheduleKind::ramp:
+      return "ramp";
+    default:
+      return "constant";
+  }
 }
 
 std::string_view to_string(AnswersChoice choice) {

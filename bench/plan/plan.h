@@ -81,6 +81,12 @@ struct TargetPlan {
   /// Largest deviation of the effective contrast from the set contrast; empty: derived from the budget
   /// (allowed_contrast_deviation()).
   std::optional<double> max_contrast_deviation_percent{};
+  /// A presentation begins within this share of the set contrast, and its own frames give its contrast; 0: the target
+  /// has to settle.
+  double contrast_settling_band_percent = 0;
+  /// Largest time by which the contrast in the middle of the plate lags that at the large triangles; required for a
+  /// ramp. Empty: not stated.
+  std::optional<double> max_contrast_lag_s{};
   /// Durations of changes of the target; the order of presentations follows from them.
   double plate_change_s = 60, mounting_change_s = 30, contrast_change_s = 20, shift_change_s = 0.1;
   bool operator==(const TargetPlan&) const = default;
@@ -107,8 +113,9 @@ struct SimulationPlan {
 enum class ScheduleKind {
   constant,  ///< every combination of [target] at every phase
   adaptive,  ///< chosen from the answers so far until intervals are narrow enough (tod/schedule/adaptive_schedule.h)
+  ramp,      ///< the contrast falls and rises in every set-up while the plate is shifted (tod/schedule/ramp_schedule.h)
 };
-inline constexpr std::array all_schedule_kinds{ScheduleKind::constant, ScheduleKind::adaptive};
+inline constexpr std::array all_schedule_kinds{ScheduleKind::constant, ScheduleKind::adaptive, ScheduleKind::ramp};
 [[nodiscard]] std::string_view to_string(ScheduleKind kind);
 
 /// Kind of answers.
@@ -125,6 +132,8 @@ struct SchedulePlan {
   ScheduleKind kind = ScheduleKind::constant;
   double half_width_percent = 10;  ///< adaptive: target half-width of the 95 % interval of S75
   int max_presentations = 1000;    ///< adaptive: maximum over all contrasts
+  /// Ramp: rate at `from_delta_t_k`, which falls in proportion to the contrast; contrast of its begin and end.
+  std::optional<double> ramp_k_per_s{}, from_delta_t_k{}, to_delta_t_k{};
   AnswersChoice answers = AnswersChoice::automatic;
   /// Successive valid frames that a graded answer averages: one number for all contrasts, or one for each of delta_t_k
   /// in its order; 0: chosen by with_frames() (bench/run/prediction.h).

@@ -58,12 +58,49 @@ ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<Targe
   return options;
 }
 
+RampOptions ramp_options(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad) {
+  const SchedulePlan& schedule = plan.schedule;
+  return {.stimuli = stimuli_options(plan, plates, ifov_mrad, Side::measured),
+          .from_k = schedule.from_delta_t_k.value_or(0),
+          .to_k = schedule.to_delta_t_k.value_or(0),
+          .rate_k_per_s = schedule.ramp_k_per_s.value_or(0)};
+}
+
+Plan with_settled_contrasts(Plan plan) {
+  if (plan.schedule.kind == ScheduleKind::ramp) {
+    plan.schedule.kind = ScheduleKind::constant;
+    plan.schedule.frames_per_presentation = {frames_of_graded_answers};
+  }
+  plan.target.contrast_settling_band_percent = 0;
+  return plan;
+}
+
+Plan with_limits_in_ramp(Plan plan) {
+  if (plan.schedule.kind != ScheduleKind::ramp) return plan;
+  std::vector<double>& contrasts = plan.target.delta_t_k;
+  for (const AcuityLimit& limit : plan.limits.acuity) {
+    const auto same = [&](double listed) { return same_contrast(listed, limit.delta_t_k); };
+    if (std::ranges::none_of(contrasts, same)) contrasts.push_back(limit.delta_t_k);
+  }
+  return plan;
+}
+
+bool has_own_contrasts(const Plan& plan) {
+  return plan.schedule.kind == ScheduleKind::ramp || plan.target.contrast_settling_band_percent > 0;
+}
+
 std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad,
                                              Side side, const RandomStream& stream,
                                              std::map<double, ProportionTable> functions) {
   const ConstantStimuliOptions stimuli = stimuli_options(plan, plates, ifov_mrad, side);
-  if (plan.schedule.kind == ScheduleKind::constant)
-    return std::make_unique<ListedSchedule>(constant_stimuli(stimuli, stream));
+  if (plan.schedule.kind == ScheduleKind::ramp)
+    return std::make_unique<RampSchedule>(ramp_options(plan, plates, ifov_mrad), stream);
+  if (plan.schedule.kind == ScheduleKind::constant) {
+    std::vector<TargetState> states = constant_stimuli(stimuli, stream);
+    if (has_own_contrasts(plan))
+      for (TargetState& state : states) state.wait = ContrastWait::within_band;
+    return std::make_unique<ListedSchedule>(std::move(states));
+  }
   return std::make_unique<AdaptiveSchedule>(AdaptiveOptions{.stimuli = stimuli,
                                                             .plates = plates,
                                                             .distance_m = plan.target.distance_m,

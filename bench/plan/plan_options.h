@@ -10,6 +10,7 @@
 #include "tod/comparison/comparison.h"
 #include "tod/presentation/target.h"
 #include "tod/psychometric/tod_curve.h"
+#include "tod/schedule/ramp_schedule.h"
 
 namespace todbench {
 
@@ -29,7 +30,15 @@ enum class Side {
 /// Returns every plate (by its own name) in every mounting at every contrast, with the phases of the side.
 [[nodiscard]] ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                      double ifov_mrad, Side side);
-/// Returns the constant or adaptive schedule of the plan. `ifov_mrad`: as for stimuli_options(). `functions`:
+/// Returns the ramp of a plan of kind ramp, for the camera.
+[[nodiscard]] RampOptions ramp_options(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad);
+/// Returns the plan of the twin of a camera: settled contrasts, one after another.
+[[nodiscard]] Plan with_settled_contrasts(Plan plan);
+/// Returns a ramp's plan with the contrasts of its limits among those of the points.
+[[nodiscard]] Plan with_limits_in_ramp(Plan plan);
+/// Returns whether each presentation has the contrast of its own frames.
+[[nodiscard]] bool has_own_contrasts(const Plan& plan);
+/// Returns the schedule of the plan. `ifov_mrad`: as for stimuli_options(). `functions`:
 /// psychometric functions of the twin by contrast; an adaptive schedule stops by them if they are fitted.
 [[nodiscard]] std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                            double ifov_mrad, Side side, const RandomStream& stream,

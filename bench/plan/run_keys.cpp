@@ -95,10 +95,12 @@ PlanSection schedule_section() {
       .keys = {
           {.name = "kind",
            .type = ChoiceKey{names_of(all_schedule_kinds)},
-           .sentence =
-               "Every combination of [target] (constant), or presentations chosen from the answers so far (adaptive)",
+           .sentence = "Every combination of [target] (constant), presentations chosen from the answers so far "
+                       "(adaptive), or a "
+                       "contrast that falls and rises while the plate is shifted (ramp)",
            .place = of(&SchedulePlan::kind),
-           .form = {"Schedule", "planSchedule"}},
+           .form = {"Schedule", "planSchedule"},
+           .check = check_schedule_kind},
           {.name = "half_width_percent",
            .type = NumberKey{NumberRange::above_to(0, 100)},
            .unit = "%",
@@ -109,6 +111,25 @@ PlanSection schedule_section() {
            .type = WholeKey{1, 1000000},
            .sentence = "Adaptive schedule: largest number of presentations, over all contrasts",
            .place = of(&SchedulePlan::max_presentations)},
+          {.name = "ramp_k_per_s",
+           .type = OptionalNumberKey{NumberRange::between(-500, 500)},
+           .unit = "K/s",
+           .sentence = "Ramp: rate at from_delta_t_k, above 0. It falls in proportion to the contrast. Required for a "
+                       "ramp",
+           .place = of(&SchedulePlan::ramp_k_per_s),
+           .check = check_ramp_rate},
+          {.name = "from_delta_t_k",
+           .type = OptionalNumberKey{NumberRange::between(-500, 500)},
+           .unit = "K",
+           .sentence = "Ramp: contrast at which every set-up begins and ends. Required for a ramp",
+           .place = of(&SchedulePlan::from_delta_t_k),
+           .check = check_ramp_from},
+          {.name = "to_delta_t_k",
+           .type = OptionalNumberKey{NumberRange::between(-500, 500)},
+           .unit = "K",
+           .sentence = "Ramp: contrast at which it turns, nearer to 0. Required for a ramp",
+           .place = of(&SchedulePlan::to_delta_t_k),
+           .check = check_ramp_to},
           {.name = "answers",
            .type = ChoiceKey{names_of(all_answers_choices)},
            .sentence =

@@ -31,6 +31,11 @@ struct RunTimes {
   std::map<double, double> presentations_s;  ///< by set contrast
 };
 
+/// Set contrast of the point of the curve.
+double point_k(const TargetState& set) {
+  return set.point_delta_t_k.value_or(set.delta_t_k);
+}
+
 /// Empty if a presentation has no time.
 std::optional<RunTimes> times_of(std::span<const Presentation> presentations) {
   RunTimes times;
@@ -42,8 +47,8 @@ std::optional<RunTimes> times_of(std::span<const Presentation> presentations) {
     const TargetState& set = shown.set;
     const TargetState* before = i > 0 ? &presentations[i - 1].set : nullptr;
     const bool opens = before == nullptr || before->plate != set.plate || before->mounting != set.mounting ||
-                       before->delta_t_k != set.delta_t_k;
-    ContrastTime& contrast = by_contrast[set.delta_t_k];
+                       point_k(*before) != point_k(set);
+    ContrastTime& contrast = by_contrast[point_k(set)];
     if (i + 1 == presentations.size()) {  // its end is not recorded: counted as the others
       if (!contrast.plain.empty()) contrast.plain.push_back(median(contrast.plain));
       continue;
@@ -78,13 +83,13 @@ const TodPoint* point_of(const TodCurve& curve, double set_delta_t_k) {
 
 std::size_t count_at(const BillInput& input, double set_delta_t_k) {
   return static_cast<std::size_t>(std::ranges::count_if(
-      input.presentations, [&](const Presentation& shown) { return shown.set.delta_t_k == set_delta_t_k; }));
+      input.presentations, [&](const Presentation& shown) { return point_k(shown.set) == set_delta_t_k; }));
 }
 
 std::size_t set_ups_at(const BillInput& input, double set_delta_t_k) {
   std::set<SetUp> set_ups;
   for (const Presentation& shown : input.presentations) {
-    if (shown.set.delta_t_k == set_delta_t_k) set_ups.emplace(shown.set.plate, shown.set.mounting);
+    if (point_k(shown.set) == set_delta_t_k) set_ups.emplace(shown.set.plate, shown.set.mounting);
   }
   return set_ups.size();
 }
@@ -111,7 +116,7 @@ std::string changes_bought(const BillInput& input) {
   std::set<double> contrasts;
   for (const Presentation& shown : input.presentations) {
     set_ups.emplace(shown.set.plate, shown.set.mounting);
-    contrasts.insert(shown.set.delta_t_k);
+    contrasts.insert(point_k(shown.set));
   }
   return fmt::format("{} set-ups, {} contrasts, {} places of the plate in the picture", set_ups.size(),
                      contrasts.size(), input.presentations.size());

@@ -36,7 +36,7 @@ struct ContrastRow {
 std::map<double, ContrastRow, std::greater<>> rows_by_contrast(const std::vector<Presentation>& presentations) {
   std::map<double, ContrastRow, std::greater<>> rows;
   for (const Presentation& shown : presentations) {
-    const double set_k = shown.set.delta_t_k;
+    const double set_k = shown.set.point_delta_t_k.value_or(shown.set.delta_t_k);
     ContrastRow& row = rows[set_k];
     row.read_back.add(shown.said.state.delta_t_k, set_k);
     if (shown.said.black_body_temperature_k && shown.said.plate_temperature_k)

@@ -3,11 +3,59 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "bench/plan/plan_options.h"
 
 namespace todbench {
 namespace {
+
+constexpr double settled_k = 0.002;  ///< tolerance of the shipped tables of black bodies
+
+/// Time constant of a black body of first order that settles in the stated time from the strongest contrast.
+double time_constant_s(const Plan& plan) {
+  double strongest = std::abs(plan.schedule.from_delta_t_k.value_or(0));
+  for (const double delta_t_k : plan.target.delta_t_k) strongest = std::max(strongest, std::abs(delta_t_k));
+  return strongest > settled_k * std::numbers::e ? plan.target.contrast_change_s / std::log(strongest / settled_k) : 0;
+}
+
+/// Wait for a contrast. Within a band it ends when a first-order approach is near and slow enough; a lag of 0.1 s is
+/// assumed if the plan states none.
+double contrast_wait_s(const Plan& plan, const TargetState* before, const TargetState& state) {
+  if (state.wait == ContrastWait::settled) return plan.target.contrast_change_s;
+  if (state.wait == ContrastWait::none || before == nullptr) return 0;
+  constexpr double default_band_percent = 10, default_rate_per_s = 0.06;
+  const double tau_s = time_constant_s(plan);
+  const double percent = plan.target.contrast_settling_band_percent;
+  const double band = std::min((percent > 0 ? percent : default_band_percent) / 100, default_rate_per_s * tau_s);
+  const double step = std::abs(state.delta_t_k - before->delta_t_k), near = band * std::abs(state.delta_t_k);
+  return near > 0 && step > near ? std::min(plan.target.contrast_change_s, tau_s * std::log(step / near)) : 0;
+}
+
+/// Adds the presentations that a slow black body needs at the end of each ramp down.
+std::vector<TargetState> with_ramp_ends(const Plan& plan, const RampOptions& ramp, std::vector<TargetState> states) {
+  const double tau_s = time_constant_s(plan);
+  const std::size_t steps = ramp_steps(ramp);
+  if (!(tau_s > 0) || plan.target.kind == TargetKind::scene) return states;
+  double contrast = ramp.from_k;
+  for (std::size_t k = 1; k < steps; ++k)
+    contrast = states[k].delta_t_k + (contrast - states[k].delta_t_k) * std::exp(-ramp_step_s / tau_s);
+  std::size_t more = 0;
+  constexpr double arrived = 1.1;
+  for (; more < 3 * steps && contrast / ramp.to_k > arrived; ++more)
+    contrast = ramp.to_k + (contrast - ramp.to_k) * std::exp(-ramp_step_s / tau_s);
+  std::vector<TargetState> out;
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    out.push_back(states[k]);
+    if (k % (2 * steps) != steps - 1) continue;
+    for (std::size_t i = 0; i < more; ++i) {
+      TargetState again = states[k];
+      again.shift_mm.x += static_cast<double>(i % 2 + 1);  // another shift
+      out.push_back(again);
+    }
+  }
+  return out;
+}
 
 /// Counts changes and frames of one presentation after another, in the order of measure().
 class Walk {
@@ -25,9 +73,11 @@ class Walk {
     time_.contrast_changes += contrast ? 1 : 0;
     time_.shift_changes += shift ? 1 : 0;
     const TargetPlan& target = plan_.target;
-    time_.changes_s += std::max({plate ? target.plate_change_s : 0, mounting ? target.mounting_change_s : 0,
-                                 contrast ? target.contrast_change_s : 0, shift ? target.shift_change_s : 0});
-    take_frames(plate || mounting, contrast, state.delta_t_k);
+    const double contrast_s = contrast ? contrast_wait_s(plan_, before, state) : 0;
+    time_.changes_s += std::max({plate ? target.plate_change_s : 0, mounting ? target.mounting_change_s : 0, contrast_s,
+                                 shift ? target.shift_change_s : 0});
+    take_frames(plate || mounting, contrast && state.wait != ContrastWait::none,
+                state.point_delta_t_k.value_or(state.delta_t_k));
   }
 
   /// Counts the requests of [measures] after the trials, in the order of measure_camera().
@@ -109,11 +159,19 @@ std::vector<TargetState> listed_presentations(const Plan& plan, const std::vecto
   // Shifts are only counted: a plan without a camera has them too.
   stimuli.pixel_mm = 1;
   stimuli.drawings.clear();
+  if (plan.schedule.kind == ScheduleKind::ramp) {
+    RampOptions ramp = ramp_options(plan, plates, 1);
+    ramp.stimuli = stimuli;
+    return with_ramp_ends(plan, ramp, ramp_presentations(ramp, RandomStream(plan.seed, "schedule")));
+  }
   if (plan.schedule.kind == ScheduleKind::adaptive) {
     const double visit_order[] = {3, 2, 1, 0};
     std::copy(std::begin(visit_order), std::end(visit_order), std::begin(stimuli.change_cost_s));
   }
-  return constant_stimuli(stimuli, RandomStream(plan.seed, "schedule"));
+  std::vector<TargetState> states = constant_stimuli(stimuli, RandomStream(plan.seed, "schedule"));
+  if (has_own_contrasts(plan) && plan.schedule.kind == ScheduleKind::constant)
+    for (TargetState& state : states) state.wait = ContrastWait::within_band;
+  return states;
 }
 
 BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,

@@ -79,11 +79,17 @@ class RemappedTarget final : public Target {
   std::map<double, double> shown_;
 };
 
+/// Largest relative difference of contrast between large and small triangles that a lag may cause: 0.3 % of S75.
+constexpr double lag_share = 0.006;
+
 /// The plates of a plan in their mountings, at the extreme contrasts.
 std::vector<TargetState> requested_states(const LoadedPlan& loaded) {
   const TargetPlan& target = loaded.plan().target;
   std::vector<TargetState> states;
-  const auto [least, most] = std::ranges::minmax(target.delta_t_k);
+  std::vector<double> contrasts = target.delta_t_k;
+  if (loaded.plan().schedule.kind == ScheduleKind::ramp)
+    contrasts.push_back(loaded.plan().schedule.from_delta_t_k.value_or(contrasts.front()));
+  const auto [least, most] = std::ranges::minmax(contrasts);
   for (const TargetPlate& plate : loaded.plates()) {
     for (const Mounting mounting : target.mountings) {
       for (const double delta_t_k : {least, most}) states.push_back({plate.name, mounting, delta_t_k, {0, 0}});
@@ -119,6 +125,10 @@ Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_
   options.poll_interval = std::chrono::milliseconds(10);
   options.on_wait = on_wait;
   options.requested = requested_states(loaded);
+  if (plan.target.contrast_settling_band_percent > 0)
+    options.settling_band = plan.target.contrast_settling_band_percent / 100;
+  if (plan.target.max_contrast_lag_s.value_or(0) > 0)
+    options.max_relative_rate_per_s = lag_share / *plan.target.max_contrast_lag_s;
   return open_scpi_target(options, stop);
 }
 

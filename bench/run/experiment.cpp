@@ -22,6 +22,7 @@
 #include "bench/run/grey_results.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/observed_source.h"
+#include "bench/run/own_contrasts.h"
 #include "bench/run/paired_comparison.h"
 #include "bench/run/physical_measures.h"
 #include "bench/run/processed_source.h"
@@ -205,6 +206,47 @@ TwinShapesOutcome take_shape(TodCurve& curve, std::span<const Trial> trials, Tri
   return outcome;
 }
 
+/// Answers of a run as they are fitted, and the function over contrast if presentations have contrasts of their own.
+struct FittedTrials {
+  std::vector<Trial> own{};                  ///< at the set contrasts
+  std::optional<ContrastSurface> surface{};  ///< empty: contrasts were settled
+  std::optional<Error> failed{};
+
+  [[nodiscard]] std::span<const Trial> of(const MeasurementResult& run) const {
+    return surface ? std::span<const Trial>(own) : std::span<const Trial>(run.trials);
+  }
+};
+
+FittedTrials trials_to_fit(const MeasurementResult& run, const Plan& plan, const ExperimentInputs& inputs,
+                           const std::stop_token& stop) {
+  if (!has_own_contrasts(plan) || run.ended_by || run.trials.empty()) return {};
+  auto surface = contrast_surface(plan, inputs, stop);
+  if (!surface) return {.failed = surface.error()};
+  const double air = run.presentations.empty() ? 1 : run.presentations.front().air_transmittance.value_or(1);
+  return {.own = at_set_contrasts(run.trials, *surface, air), .surface = *std::move(surface)};
+}
+
+/// Takes the fit over all contrasts of a ramp. Returns its finding.
+std::optional<AdequacyFinding> take_ramp_of(TodCurve& curve, TwinShapesOutcome& said, const MeasurementResult& run,
+                                            const FittedTrials& fitted, const Plan& plan) {
+  if (plan.schedule.kind != ScheduleKind::ramp || !fitted.surface || said.ended_by) return std::nullopt;
+  auto taken = take_ramp(curve, run, *fitted.surface, plan);
+  if (!taken) {
+    said.ended_by = with_context("the ramp", taken.error());
+    return std::nullopt;
+  }
+  said.notes.insert(said.notes.end(), taken->notes.begin(), taken->notes.end());
+  return std::move(taken->finding);
+}
+
+/// Tests every point, and adds what concerns all of them.
+void examine_all(TodCurve& curve, const Plan& plan, const std::optional<AdequacyFinding>& of_all) {
+  examine(curve, fit_options(plan));
+  if (!of_all) return;
+  for (TodPoint& point : curve.points)
+    if (point.adequacy) point.adequacy->findings.push_back(*of_all);
+}
+
 void say_that_it_is_fitted(const MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
                            const OpenSession& open) {
   if (!result.ended_by && chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape)
@@ -248,7 +290,9 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
       Recorder(folder, listener, stop).run(set_up->bench, *observer, *set_up->schedule, set_up->options, which);
   if (!result) return fail("simulating", result.error());
   TwinRun run{.result = std::move(*result), .curve = {}, .wall_s = 0};
-  auto curve = tod_curve(run.result.trials, fit_options(plan));
+  const FittedTrials to_fit = trials_to_fit(run.result, plan, inputs, stop);
+  if (to_fit.failed) run.result.ended_by = to_fit.failed;
+  auto curve = tod_curve(to_fit.of(run.result), fit_options(plan));
   // Report the reason of the early end rather than that its few trials make no curve.
   if (!curve) return tl::unexpected(run.result.ended_by.value_or(curve.error()));
   run.curve = std::move(*curve);
@@ -264,9 +308,10 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
 
   const TodCurve stopped_by = known_functions(set_up->functions, run.curve);
   say_that_it_is_fitted(run.result, plan, inputs, {folder, listener});
-  const TwinShapesOutcome shaped =
-      take_shape(run.curve, run.result.trials, trials_of(run.result), plan, inputs, shown_delta_t_k,
+  TwinShapesOutcome shaped =
+      take_shape(run.curve, to_fit.of(run.result), trials_of(run.result), plan, inputs, shown_delta_t_k,
                  stopped_by.points.empty() ? camera.functions : &stopped_by, stop);
+  const auto of_ramp = take_ramp_of(run.curve, shaped, run.result, to_fit, plan);
   keep_shape(run.result, shaped, {folder, listener});
   if (!run.result.ended_by && (has_modules(plan, inputs.sensor) || host.added.make)) {
     const std::string sentence =
@@ -292,7 +337,7 @@ Result<TwinRun> run_simulated(const Plan& plan, const ExperimentInputs& inputs, 
                                spread->second.second * inputs.sensor.ifov_mrad()};
     }
   }
-  examine(run.curve, fit_options(plan));
+  examine_all(run.curve, plan, of_ramp);
   run.wall_s = seconds_since(begin);
   return run;
 }
@@ -412,9 +457,9 @@ std::map<double, double> contrasts_seen(const TodCurve& curve) {
 }
 
 /// Returns the curve of these trials without the shape of the twin. Fails if they make none.
-Result<TodCurve> curve_of_camera(MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
-                                 const SourceInfo& info, const OpenSession& open) {
-  auto curve = tod_curve(result.trials, fit_options(plan));
+Result<TodCurve> curve_of_camera(MeasurementResult& result, std::span<const Trial> trials, const Plan& plan,
+                                 const ExperimentInputs& inputs, const SourceInfo& info, const OpenSession& open) {
+  auto curve = tod_curve(trials, fit_options(plan));
   if (!curve) return tl::unexpected(result.ended_by.value_or(curve.error()));
   add_contrast_errors(*curve, result.contrasts);
   curve->sensor = info.model + " " + info.serial;
@@ -463,38 +508,40 @@ void widen_where_not_verified(FittedCurve& fitted, const CameraSurrogate& surrog
 /// which takes a second. Borrowed objects outlive it. `functions`: null if an adaptive schedule stopped by those of
 /// `measured`.
 std::unique_ptr<BackgroundTask<FittedCurve>> fit_in_background(TodCurve curve, const MeasuredRun& measured,
-                                                               const Plan& plan, const ExperimentInputs& inputs,
+                                                               const FittedTrials& to_fit, const Plan& plan,
+                                                               const ExperimentInputs& inputs,
                                                                BackgroundTwinFunctions* functions,
                                                                const CameraSurrogate& surrogate) {
   const Trials made = trials_of(measured.result);
-  const std::span<const Trial> trials = measured.result.trials;
-  return std::make_unique<BackgroundTask<FittedCurve>>(
-      [curve = std::move(curve), made, trials, &measured, &plan, &inputs, functions, &surrogate](std::stop_token stop) {
-        TodCurve known;
-        if (made == Trials::all)
-          known = functions != nullptr ? functions->known_for(curve, stop) : known_functions(measured.functions, curve);
-        FittedCurve fitted{curve, {}};
-        fitted.said = take_shape(fitted.curve, trials, made, plan, inputs, contrasts_seen(curve), &known, stop);
-        const auto lent = surrogate.lent();
-        if (lent && made == Trials::all && !fitted.said.ended_by &&
-            chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape) {
-          fitted.by_twin = std::move(fitted.curve);
-          fitted.curve = curve;
-          fitted.said = take_shape(fitted.curve, trials, made, plan, *lent, contrasts_seen(curve), nullptr, stop);
-        }
-        join_contrast_errors(fitted.curve);
-        widen_where_not_verified(fitted, surrogate);
-        examine(fitted.curve, fit_options(plan));
-        for (TodPoint& point : fitted.curve.points)
-          if (point.adequacy && fitted.model_u.contains(point.set_delta_t_k))
-            point.adequacy->findings.push_back(surrogate.finding());
-        const MeasurementResult& run = measured.result;
-        const auto settings = findings_of(measured.changed);
-        for (auto& sentence :
-             add_run_findings(fitted.curve, plan, {run.presentations, run.contrasts, run.constancy, settings}))
-          fitted.said.notes.push_back(std::move(sentence));
-        return fitted;
-      });
+  const std::span<const Trial> trials = to_fit.of(measured.result);
+  return std::make_unique<BackgroundTask<FittedCurve>>([curve = std::move(curve), made, trials, &measured, &to_fit,
+                                                        &plan, &inputs, functions, &surrogate](std::stop_token stop) {
+    TodCurve known;
+    if (made == Trials::all)
+      known = functions != nullptr ? functions->known_for(curve, stop) : known_functions(measured.functions, curve);
+    FittedCurve fitted{curve, {}};
+    fitted.said = take_shape(fitted.curve, trials, made, plan, inputs, contrasts_seen(curve), &known, stop);
+    const auto lent = surrogate.lent();
+    if (lent && made == Trials::all && !fitted.said.ended_by &&
+        chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape) {
+      fitted.by_twin = std::move(fitted.curve);
+      fitted.curve = curve;
+      fitted.said = take_shape(fitted.curve, trials, made, plan, *lent, contrasts_seen(curve), nullptr, stop);
+    }
+    const auto of_ramp = take_ramp_of(fitted.curve, fitted.said, measured.result, to_fit, plan);
+    join_contrast_errors(fitted.curve);
+    widen_where_not_verified(fitted, surrogate);
+    examine_all(fitted.curve, plan, of_ramp);
+    for (TodPoint& point : fitted.curve.points)
+      if (point.adequacy && fitted.model_u.contains(point.set_delta_t_k))
+        point.adequacy->findings.push_back(surrogate.finding());
+    const MeasurementResult& run = measured.result;
+    const auto settings = findings_of(measured.changed);
+    for (auto& sentence :
+         add_run_findings(fitted.curve, plan, {run.presentations, run.contrasts, run.constancy, settings}))
+      fitted.said.notes.push_back(std::move(sentence));
+    return fitted;
+  });
 }
 
 /// Takes the camera's physical measures, then checks that the recording is complete on disk.
@@ -578,7 +625,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
   EffectPlanner planner;
   auto inputs = experiment_inputs(loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
-  const auto chosen = loaded.with(with_frames(loaded.plan(), *inputs));
+  const auto chosen = loaded.with(with_frames(with_limits_in_ramp(loaded.plan()), *inputs));
   if (!chosen) return tl::unexpected(chosen.error());
   const Plan& plan = chosen->plan();
   Provenance provenance = begin_provenance(plan, Side::simulated);
@@ -652,7 +699,7 @@ Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const Experimen
 Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const ExperimentInputs& inputs, OpenedBench bench,
                                            const ExperimentOptions& options, const ExperimentListener& listener,
                                            std::stop_token stop) {
-  const auto chosen = loaded.with(with_frames(loaded.plan(), inputs));
+  const auto chosen = loaded.with(with_frames(with_limits_in_ramp(loaded.plan()), inputs));
   if (!chosen) return tl::unexpected(chosen.error());
   const Plan& plan = chosen->plan();
   if (listener.on_open) listener.on_open(bench.camera->info());
@@ -694,7 +741,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   auto responses = responses_of_camera(plan, inputs, stop);
   if (!responses) return abandon(open, plan, provenance, with_context("measuring", responses.error()));
   std::optional<BackgroundTwinFunctions> functions;
-  if (plan.schedule.kind == ScheduleKind::constant) functions.emplace(plan, inputs);
+  if (plan.schedule.kind != ScheduleKind::adaptive) functions.emplace(plan, inputs);
   BackgroundMeasures twin_measures(loaded, inputs);
   CameraSurrogate surrogate(*chosen, inputs, *responses);
   auto measured = run_measured(plan, inputs, surrogate, bench, *folder, options.host.added, listener, stop);
@@ -707,19 +754,22 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
     note(*folder, listener, *sentence);
     result.notes.push_back(*sentence);
   }
-  auto curve = curve_of_camera(result, plan, inputs, info, open);
+  const auto lent = surrogate.lent();
+  const FittedTrials to_fit = trials_to_fit(result, plan, lent ? *lent : inputs, stop);
+  if (to_fit.failed) result.ended_by = to_fit.failed;
+  auto curve = curve_of_camera(result, to_fit.of(result), plan, inputs, info, open);
   if (!curve) {
     provenance.run = run_record(result, seconds_since(begin));
     return abandon(open, plan, provenance, curve.error());
   }
-  const auto fit =
-      fit_in_background(*std::move(curve), *measured, plan, inputs, functions ? &*functions : nullptr, surrogate);
+  const auto fit = fit_in_background(*std::move(curve), *measured, to_fit, plan, inputs,
+                                     functions ? &*functions : nullptr, surrogate);
   std::unique_ptr<BackgroundTask<Pairs>> pairs;
   if (!result.ended_by) {
     const auto camera_of = [&](std::stop_token halt) {
       const FittedCurve& made = fit->get(std::move(halt));
-      return PairedCamera{made.curve, result.trials, result.set_ups, made.by_twin ? &*made.by_twin : nullptr,
-                          &made.model_u};
+      return PairedCamera{made.curve,    result.trials,    result.set_ups, made.by_twin ? &*made.by_twin : nullptr,
+                          &made.model_u, to_fit.of(result)};
     };
     pairs = pairs_in_background(camera_of, plan, inputs);
   }
@@ -744,7 +794,8 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
                       .functions = &fitted.functions_of_twin(),
                       .shown_delta_t_k = contrasts_seen(fitted.curve)};
     if (plan.camera.contrast == ContrastUnit::kelvin) camera.responses = *responses;
-    add_twin(outcome, provenance, camera, loaded, plan, inputs, {pairs.get(), twin_measures}, options.host, open, stop);
+    add_twin(outcome, provenance, camera, loaded, with_settled_contrasts(plan), inputs, {pairs.get(), twin_measures},
+             options.host, open, stop);
   }
   add_display(outcome, provenance, plan, inputs, open, stop);
   return concluded(std::move(outcome), plan, open, provenance);

@@ -24,14 +24,15 @@ bool unfit_for_pairs(const TodPoint& point) {
 }
 
 Result<RatioOfPairs> ratio_at(const TodPoint& point, const ContrastScatter& contrast, std::span<const Trial> trials,
-                              double margin_percent, const ExperimentInputs& inputs, TemplateObserver& observer,
-                              const PairedTwinOptions& options, const TodPoint* by_twin, double model_u) {
+                              std::span<const Trial> fitted, double margin_percent, const ExperimentInputs& inputs,
+                              TemplateObserver& observer, const PairedTwinOptions& options, const TodPoint* by_twin,
+                              double model_u) {
   if (!point.fit.twin_shape)
     return fail(ErrorCode::invalid_input, "the camera's answers are not fitted with the function of the twin");
   if (trials.empty() || !all_graded(trials)) return fail(ErrorCode::invalid_input, "not all answers are graded");
   const auto twin = twin_answers(inputs.sensor, inputs.effects, observer, trials, options);
   if (!twin) return tl::unexpected(twin.error());
-  const std::vector<GradedAnswer> camera = graded_answers(trials);
+  const std::vector<GradedAnswer> camera = graded_answers(fitted);
   std::vector<PairedAnswer> pairs;
   for (std::size_t i = 0; i < camera.size(); ++i)
     pairs.push_back({camera[i], (*twin)[i].probability_correct, (*twin)[i].variance});
@@ -90,12 +91,17 @@ PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& came
     const ComparisonPoint& compared = comparison.points[i];
     const TodPoint* point = point_at(camera.curve, compared.set_delta_t_k);
     if (point == nullptr) continue;
-    std::vector<Trial> own;
-    std::ranges::copy_if(camera.trials, std::back_inserter(own),
-                         [&](const Trial& trial) { return trial.set_delta_t_k == point->set_delta_t_k; });
+    const auto at_point = [&](std::span<const Trial> trials) {
+      std::vector<Trial> own;
+      std::ranges::copy_if(trials, std::back_inserter(own),
+                           [&](const Trial& trial) { return trial.set_delta_t_k == point->set_delta_t_k; });
+      return own;
+    };
+    const std::vector<Trial> own = at_point(camera.trials);
+    const std::vector<Trial> fitted = camera.fitted.empty() ? own : at_point(camera.fitted);
     const ContrastScatter& contrast = contrasts[static_cast<std::size_t>(point - camera.curve.points.data())];
     auto paired = point_by_twin(camera, point->set_delta_t_k).and_then([&](const TodPoint* by_twin) {
-      return ratio_at(*point, contrast, own, compared.margin_percent, inputs, observer, options, by_twin,
+      return ratio_at(*point, contrast, own, fitted, compared.margin_percent, inputs, observer, options, by_twin,
                       model_u_of(camera, point->set_delta_t_k));
     });
     if (!paired) {

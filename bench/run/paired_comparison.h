@@ -32,6 +32,8 @@ struct PairedCamera {
   const TodCurve* by_twin = nullptr;
   /// By set contrast: standard uncertainty of ln S75 of a camera whose pictures contradict its model; null: none.
   const std::map<double, double>* model_u = nullptr;
+  /// The same trials as they were fitted, if not as they were shown: at the set contrasts. Empty: as shown.
+  std::span<const Trial> fitted{};
 };
 
 struct PairedOutcome {

@@ -63,6 +63,7 @@ void fit_fields(JsonFields& json, PsychometricFit& fit) {
   json.value("variance_inflation", fit.variance_inflation);
   json.later("joined_u", fit.joined_u);
   json.later("contrast_u", fit.contrast_u);
+  if (json.reading() || fit.lag_u > 0) json.later("lag_u", fit.lag_u);
   if (json.reading() && fit.clusters > 0) fit.interval = IntervalKind::clusters;  // in records without the key
   json.later("interval", fit.interval, all_interval_kinds);
   json.later("dispersion", fit.dispersion);
@@ -145,10 +146,17 @@ void curve_point_fields(JsonFields& json, TodPoint& point) {
   json.value("levels", point.levels, level_fields);
 }
 
+void continuous_fields(JsonFields& json, ContinuousPoint& point) {
+  json.value("delta_t_k", point.delta_t_k);
+  json.value("s75_mrad", point.s75_mrad);
+  json.value("s75_ci95_mrad", point.ci95);
+}
+
 void curve_fields(JsonFields& json, TodCurve& curve) {
   json.value("observer", curve.observer);
   json.value("sensor", curve.sensor);
   json.value("points", curve.points, curve_point_fields);
+  if (json.reading() || !curve.continuous.empty()) json.later("continuous", curve.continuous, continuous_fields);
 }
 
 void curves_fields(JsonFields& json, StoredCurves& curves) {

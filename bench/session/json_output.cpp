@@ -49,6 +49,13 @@ Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures&
   json["observer"] = curve.observer;
   json["sensor"] = curve.sensor;
   json["points"] = std::move(points);
+  if (!curve.continuous.empty()) {
+    json["curve"] = Json::array();
+    for (const ContinuousPoint& point : curve.continuous)
+      json["curve"].push_back({{"delta_t_k", json_number(point.delta_t_k)},
+                               {"s75_mrad", json_number(point.s75_mrad)},
+                               {"s75_ci95_mrad", json_interval(point.ci95)}});
+  }
   json["plan"] = effects_json(plan);
   json["wall_s"] = json_number(figures.wall_s);
   json["frames"]["used"] = figures.frames_used;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <set>
 #include <system_error>
 
@@ -125,6 +126,24 @@ void add_rows(std::string& text, const TodCurve& curve, Side side, const std::op
     }
     text += "," + std::string(to_string(point.fit.verdict));
     if (uncertainty) add_expanded(text, point_at(*uncertainty, point.set_delta_t_k));
+    text += "\n";
+  }
+}
+
+/// Appends the rows of a continuous curve: side "continuous", without the columns of a fit.
+void add_continuous(std::string& text, const TodCurve& curve, const std::optional<CurveUncertainty>& uncertainty) {
+  for (const ContinuousPoint& point : curve.continuous) {
+    const Interval acuity = acuity_interval(point.ci95);
+    text += "continuous";
+    for (const std::optional<double>& value :
+         {std::optional(point.delta_t_k), std::optional(point.delta_t_k), std::optional<double>(),
+          std::optional(point.s75_mrad), point.ci95.low, point.ci95.high, std::optional(1 / point.s75_mrad), acuity.low,
+          acuity.high, std::optional<double>(), std::optional<double>(), std::optional<double>(),
+          std::optional<double>(), std::optional<double>()}) {
+      text += "," + csv_number(value);
+    }
+    text += ",";
+    if (uncertainty) add_expanded(text, nullptr);
     text += "\n";
   }
 }
@@ -333,6 +352,7 @@ std::string curve_csv(const TodCurve& main, const std::optional<TodCurve>& twin,
   text += "\n";
   add_rows(text, main, side, uncertainty);
   if (twin) add_rows(text, *twin, Side::simulated, uncertainty ? std::optional(CurveUncertainty{}) : std::nullopt);
+  add_continuous(text, main, uncertainty);
   return text;
 }
 
@@ -358,6 +378,19 @@ Result<void> keep_as_it_was(Plan& plan, std::span<const Trial> trials, const std
   return {};
 }
 
+/// targets.csv states set-points; the points of the curve to which they belong are in the trials.
+void restore_own_contrasts(Session& session) {
+  const bool ramp = session.plan.schedule.kind == ScheduleKind::ramp;
+  if (!ramp && !(session.plan.target.contrast_settling_band_percent > 0)) return;
+  std::map<std::int64_t, double> points;
+  for (const Trial& trial : session.trials) points[trial.presentation] = trial.set_delta_t_k;
+  for (Presentation& shown : session.presentations) {
+    shown.set.wait = ramp ? ContrastWait::none : ContrastWait::within_band;
+    const auto point = points.find(shown.presentation);
+    if (ramp && point != points.end()) shown.set.point_delta_t_k = point->second;
+  }
+}
+
 }  // namespace
 
 Result<Session> read_session(const std::filesystem::path& folder) {
@@ -379,6 +412,7 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   if (auto kept = keep_as_it_was(session.plan, session.trials, folder / "session.toml"); !kept)
     return tl::unexpected(kept.error());
   if (const Result<void> read = read_all_targets(folder, session); !read) return tl::unexpected(read.error());
+  restore_own_contrasts(session);
   TODBENCH_TRY(auto curves, read_record(folder / "fits.json", curves_from));
   if (curves) {
     session.curve = std::move(curves->main);

@@ -365,6 +365,49 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"no_tolerance", "[simulation]\ntolerance_percent = 0\n", "expected a number above 0 up to 50, found 0"},
         Mistake{"lapse", "[fit]\nlapse = 0.2\n",
                 "plan.toml:2: key 'lapse' in [fit]: expected a number from 0 to 0.1 or \"free\", found 0.2"},
+        Mistake{"ramp_without_rate",
+                "[schedule]\nkind = \"ramp\"\nfrom_delta_t_k = 16.9\nto_delta_t_k = 0.23\n[target]\ndistance_m = "
+                "2\nmax_contrast_lag_s = 0.03\n",
+                "key 'ramp_k_per_s' in [schedule]: needed for [schedule] kind \"ramp\", expected a rate above 0 K/s"},
+        Mistake{"ramp_of_rate_0",
+                "[schedule]\nkind = \"ramp\"\nramp_k_per_s = 0\nfrom_delta_t_k = 16.9\nto_delta_t_k = "
+                "0.23\n[target]\ndistance_m = 2\nmax_contrast_lag_s = 0.03\n",
+                "a rate of 0 K/s never leaves from_delta_t_k"},
+        Mistake{"ramp_of_wrong_sign",
+                "[schedule]\nkind = \"ramp\"\nramp_k_per_s = -0.5\nfrom_delta_t_k = 16.9\nto_delta_t_k = "
+                "0.23\n[target]\ndistance_m = 2\nmax_contrast_lag_s = 0.03\n",
+                "a rate of -0.5 K/s has the wrong sign"},
+        Mistake{"ramp_that_rises",
+                "[schedule]\nkind = \"ramp\"\nramp_k_per_s = 0.5\nfrom_delta_t_k = 0.23\nto_delta_t_k = "
+                "16.9\n[target]\ndistance_m = 2\nmax_contrast_lag_s = 0.03\n",
+                "a ramp falls towards 0 without reaching it, but the plan states 0.23 K to 16.9 K"},
+        Mistake{"ramp_through_0",
+                "[schedule]\nkind = \"ramp\"\nramp_k_per_s = 0.5\nfrom_delta_t_k = 16.9\nto_delta_t_k = "
+                "-0.23\n[target]\ndistance_m = 2\nmax_contrast_lag_s = 0.03\n",
+                "a ramp falls towards 0 without reaching it"},
+        Mistake{"ramp_beside_contrasts",
+                "[schedule]\nkind = \"ramp\"\nramp_k_per_s = 0.5\nfrom_delta_t_k = 16.9\nto_delta_t_k = "
+                "0.5\n[target]\ndistance_m = 2\nmax_contrast_lag_s = 0.03\n",
+                "the contrast 0.23 K of [target] delta_t_k is outside the ramp, 16.9 K to 0.5 K"},
+        Mistake{"ramp_without_lag",
+                "[schedule]\nkind = \"ramp\"\nramp_k_per_s = 0.5\nfrom_delta_t_k = 16.9\nto_delta_t_k = "
+                "0.23\n[target]\ndistance_m = 2\n",
+                "key 'max_contrast_lag_s' in [target]: needed for [schedule] kind \"ramp\""},
+        Mistake{"ramp_of_four_set_ups",
+                "[schedule]\nkind = \"ramp\"\nramp_k_per_s = 0.5\nfrom_delta_t_k = 16.9\nto_delta_t_k = "
+                "0.23\n[target]\ndistance_m = 2\nmax_contrast_lag_s = 0.03\nplates = [\"tcat-a\"]\n",
+                "a ramp needs at least five set-ups (plates in their mountings), found 4"},
+        Mistake{"ramp_of_binary_answers",
+                "[schedule]\nkind = \"ramp\"\nanswers = \"binary\"\nramp_k_per_s = 0.5\nfrom_delta_t_k = "
+                "16.9\nto_delta_t_k = 0.23\n[target]\ndistance_m = 2\nmax_contrast_lag_s = 0.03\n",
+                "a ramp needs graded answers that are fitted with the function of the twin"},
+        Mistake{"ramp_by_hand",
+                "[schedule]\nkind = \"ramp\"\nramp_k_per_s = 0.5\nfrom_delta_t_k = 16.9\nto_delta_t_k = "
+                "0.23\n[target]\ndistance_m = 2\nmax_contrast_lag_s = 0.03\nkind = \"prompt\"\n",
+                "a ramp needs [target] kind \"scpi\" or \"scene\""},
+        Mistake{"band_of_adaptive",
+                "[schedule]\nkind = \"adaptive\"\n[target]\ndistance_m = 2\ncontrast_settling_band_percent = 10\n",
+                "a contrast of each presentation needs [schedule] kind \"constant\" or \"ramp\""},
         Mistake{"limit_without_contrast", "[[limits.acuity]]\ndelta_t_k = 5\nleast_acuity_per_mrad = 1\n",
                 "plan.toml:2: key 'delta_t_k' in [limits.acuity]: 5 K is not among the contrasts of [target]"},
         Mistake{"limit_twice",
