@@ -167,10 +167,13 @@ SensorSpec CameraSurrogate::sensor(bool with_noise) const {
   return spec;
 }
 
+bool CameraSurrogate::differs() const {
+  return possible_ && fit_.result() &&
+         (optics_differ_ || samples_per_pitch_ != loaded_.sensor().samples_per_pitch() || noise_differs());
+}
+
 std::optional<ExperimentInputs> CameraSurrogate::lent() const {
-  if (!possible_ || !fit_.result()) return std::nullopt;
-  if (!optics_differ_ && samples_per_pitch_ == loaded_.sensor().samples_per_pitch() && !noise_differs())
-    return std::nullopt;
+  if (!differs()) return std::nullopt;
   ExperimentInputs out = inputs_;
   const SensorSpec spec = sensor(true);
   if (!validate(spec)) return std::nullopt;
@@ -181,7 +184,7 @@ std::optional<ExperimentInputs> CameraSurrogate::lent() const {
 
 bool CameraSurrogate::refused() const {
   const auto optics = fit_.result();
-  return possible_ && optics && !optics->fits();
+  return possible_ && optics && (!optics->fits() || (differs() && !validate(sensor(true))));
 }
 
 double CameraSurrogate::response_shift() const {
@@ -237,6 +240,13 @@ AdequacyFinding CameraSurrogate::finding() const {
             .sentence =
                 "the frames do not show whether the camera has the optics and the noise of its twin. The fit uses the "
                 "twin's function, so the interval is wider by the effect of another slope",
+            .unfit = false};
+  }
+  if (optics && optics->fits()) {
+    return {.kind = FindingKind::surrogate,
+            .sentence =
+                "the frames show noise or optics that no simulated sensor has. Contrast and function may not be "
+                "those of this camera, so the interval is wider",
             .unfit = false};
   }
   return {.kind = FindingKind::surrogate,

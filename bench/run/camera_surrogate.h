@@ -33,7 +33,7 @@ class CameraSurrogate {
   /// function then stays. Noise differs if a t test at 1 % says so and it would move a threshold by more than 0.05 %:
   /// NETD by 5 %, rows, columns and fixed pattern by 3 % of the variance of a pixel.
   [[nodiscard]] std::optional<ExperimentInputs> lent() const;
-  /// Whether the camera's pictures contradict all optics of the twin's kind.
+  /// Whether the camera's pictures contradict all optics of the twin's kind, or no valid sensor has what they show.
   [[nodiscard]] bool refused() const;
   /// Whether the frames could not be compared with the twin's optics: contrasts in grey levels, a program in the twin,
   /// or no triangle large enough.
@@ -58,6 +58,8 @@ class CameraSurrogate {
   };
   [[nodiscard]] std::optional<Noise> noise() const;
   [[nodiscard]] bool noise_differs() const;
+  /// Whether a surrogate is needed.
+  [[nodiscard]] bool differs() const;
   [[nodiscard]] SensorSpec sensor(bool with_noise) const;
   void add_noise(const SetUpPicture& found);
   void add_to_fit(const SetUpPicture& found);

@@ -29,7 +29,7 @@ std::vector<std::string> rows_of(std::uint64_t seed) {
   const TemporaryFolder folder;
   std::vector<AnsweredSession> sessions;
   for (const double noise : {0.0, 0.05}) {
-    NakedEyeTask task{.model = hvs_2_at(calibrated_screen()), .noise = noise, .per_size = 20, .seed = seed};
+    NakedEyeTask task{.model = hvs_2_at(calibrated_screen()), .noise = noise, .per_size = 16, .seed = seed};
     task.contrasts = noise > 0 ? std::vector{0.5, 0.3, 0.2} : std::vector{0.4, 0.15, 0.06};
     const auto where = folder.path() / (noise > 0 ? "noise" : "plain");
     auto session = NakedEyeSession::begin(task, where, 16, {});
@@ -52,6 +52,7 @@ std::vector<std::string> rows_of(std::uint64_t seed) {
   options.free = {true, true, true, false};
   options.persons = PersonsAre::one;
   options.replicates = 19;
+  options.draws = 96;
   options.seed = seed;
   const auto fit = fit_people(std::move(sessions), options, {});
   if (!fit) {

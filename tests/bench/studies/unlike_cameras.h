@@ -20,6 +20,7 @@ inline const std::vector<double> unlike_contrasts_k{16.9, 0.5};
 inline std::vector<GradedDesign> unlike_designs() {
   const auto sensor = [](auto change) {
     SensorSpec spec;
+    spec.name = "unlike";
     change(spec);
     return spec;
   };
@@ -27,7 +28,7 @@ inline std::vector<GradedDesign> unlike_designs() {
     return GradedDesign{
         .name = name, .camera = camera, .twin = twin, .phases = phases, .delta_t_k = unlike_contrasts_k};
   };
-  const SensorSpec plain;
+  const SensorSpec plain = sensor([](SensorSpec& /*spec*/) {});
   const SensorSpec blurred = sensor([](SensorSpec& s) { s.aberration_sigma_pitch = 0.35; });
   const SensorSpec more = sensor([](SensorSpec& s) { s.aberration_sigma_pitch = 0.5; });
   const SensorSpec slow = sensor([](SensorSpec& s) { s.f_number = 2; });
