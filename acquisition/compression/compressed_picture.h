@@ -13,8 +13,12 @@ namespace todbench {
 inline constexpr std::size_t most_compressed_pixels = std::size_t{1} << 26;
 
 /// Decodes JPEG-LS (ISO/IEC 14495-1) of one component with 9 to 16 bits. Errors: `invalid_input` (not JPEG-LS, another
-/// size than expected, more than one component, a lossy coding, truncated or too large).
+/// size than expected, more than one component, truncated or too large).
 [[nodiscard]] Result<cv::Mat1w> decode_jpeg_ls(std::string_view bytes, cv::Size expected);
+
+/// The largest difference between a count and its JPEG-LS coding, 0: lossless. Cameras of FLIR use up to 5. Error:
+/// `invalid_input` (not JPEG-LS).
+[[nodiscard]] Result<int> largest_jpeg_ls_error(std::string_view bytes);
 
 /// Decodes a PNG of 16-bit grey; the first byte of a sample is the high one, as PNG states. Errors as
 /// decode_jpeg_ls().

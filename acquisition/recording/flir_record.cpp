@@ -21,6 +21,8 @@ constexpr std::size_t raw_header_bytes = 32;
 /// Least length of the constants, up to the time; and the length up to the frame rate.
 constexpr std::size_t camera_info_bytes = 0x390;
 constexpr std::size_t camera_info_with_rate_bytes = 0x466;
+/// Cameras round the length of compressed pixels up, and leave these bytes out at the end of the file.
+constexpr std::uint64_t most_missing_bytes = 16;
 constexpr std::uint16_t raw_data_type = 0x01;
 constexpr std::uint16_t camera_info_type = 0x20;
 
@@ -57,6 +59,7 @@ class FlirFields {
 struct FlirBlock {
   std::uint16_t type = 0;
   std::uint64_t offset = 0, length = 0;
+  bool cut_off = false;  ///< its last bytes are missing
 };
 
 tl::unexpected<Error> broken(const std::string& what) {
@@ -90,10 +93,15 @@ Result<std::vector<FlirBlock>> read_index(const FlirBytes& bytes, std::uint64_t 
   std::vector<FlirBlock> blocks{{0, begin, header_bytes}, {0, index, table.size()}};
   for (std::size_t i = 0; i < count; ++i) {
     const FlirFields entry(std::string_view(table).substr(std::min(i * index_entry_bytes, table.size())), big_endian);
-    const FlirBlock found{entry.u16(0), begin + entry.u32(12), entry.u32(16)};
+    FlirBlock found{entry.u16(0), begin + entry.u32(12), entry.u32(16)};
     if (found.type == 0 || found.length == 0) continue;
-    if (found.offset + found.length > bytes.size())
-      return broken(where + " points outside the file: the file is truncated");
+    if (found.offset + found.length > bytes.size()) {
+      const std::uint64_t missing = found.offset + found.length - bytes.size();
+      if (found.type != raw_data_type || missing > most_missing_bytes || missing >= found.length)
+        return broken(where + " points outside the file: the file is truncated");
+      found.length -= missing;
+      found.cut_off = true;
+    }
     blocks.push_back(found);
   }
   if (!separate(blocks)) return broken(where + " has blocks that overlap");
@@ -158,6 +166,8 @@ Result<void> read_raw_data(const FlirBytes& bytes, const FlirBlock& block, FlirS
   // Pixels that have the length of raw ones are raw, whatever their first bytes look like.
   if (frame.pixel_bytes == raw_bytes) return {};
   frame.storage = storage_of(std::string_view(start).substr(raw_header_bytes));
+  const bool whole = !block.cut_off || bytes.read(bytes.size() - 2, 2) == "\xff\xd9";
+  if (!whole) return broken("the pixels point outside the file: the file is truncated");
   if (frame.storage != FlirStorage::raw) return {};
   return broken("the pixels have an unknown compression or are truncated: " + std::to_string(frame.pixel_bytes) +
                 " bytes for " + std::to_string(frame.width) + " x " + std::to_string(frame.height));

@@ -82,14 +82,21 @@ bool same_camera(const FlirSeqFrame& a, const FlirSeqFrame& b) {
   return a.width == b.width && a.height == b.height && a.camera == b.camera;
 }
 
-/// Reads the pixels as the file stores them.
-Result<cv::Mat1w> stored_pixels(const FlirBytes& bytes, const FlirSeqFrame& frame) {
+/// Reads the bytes of the pixels.
+Result<std::string> stored_bytes(const FlirBytes& bytes, const FlirSeqFrame& frame) {
   const cv::Size size(frame.width, frame.height);
   const std::uint64_t pixels = static_cast<std::uint64_t>(size.area());
   if (frame.storage != FlirStorage::raw && frame.pixel_bytes > most_bytes_per_pixel * pixels + most_extra_bytes)
     return fail(ErrorCode::invalid_input, "the compressed picture is longer than its pixels");
   const std::string stored = bytes.read(frame.pixel_offset, static_cast<std::size_t>(frame.pixel_bytes));
   if (stored.size() != frame.pixel_bytes) return fail(ErrorCode::io, "the file became shorter after it was opened");
+  return stored;
+}
+
+/// Reads the pixels as the file stores them.
+Result<cv::Mat1w> stored_pixels(const FlirBytes& bytes, const FlirSeqFrame& frame) {
+  const cv::Size size(frame.width, frame.height);
+  TODBENCH_TRY(const std::string stored, stored_bytes(bytes, frame));
   if (frame.storage == FlirStorage::png) return decode_png(stored, size);
   if (frame.storage == FlirStorage::jpeg_ls) return decode_jpeg_ls(stored, size);
   cv::Mat1w counts(size);
@@ -196,6 +203,17 @@ SourceInfo source_info(const std::filesystem::path& path, const FlirSeqFrame& fi
   return info;
 }
 
+/// States how much the compression of a frame changed its counts.
+Result<void> note_losses(const FlirBytes& bytes, const FlirSeqFrame& frame, SourceInfo& info) {
+  TODBENCH_TRY(const std::string stored, stored_bytes(bytes, frame));
+  TODBENCH_TRY(const int largest, largest_jpeg_ls_error(stored));
+  info.settings["LargestCompressionError"] = std::to_string(largest);
+  if (largest == 0) return {};
+  info.warnings.push_back("The camera compressed the pixels with losses: a count may be off by " +
+                          std::to_string(largest) + ". Noise in this file is not the noise of the camera.");
+  return {};
+}
+
 }  // namespace
 
 bool is_flir_file(std::string_view start) {
@@ -226,14 +244,17 @@ Result<Recording> open_flir_seq(const std::filesystem::path& path) {
     return fail(ErrorCode::invalid_input, path.string() + ": the file does not contain the constants of the camera");
   const auto scale = planck_scale(first.camera->planck);
   if (!scale) return fail(path.string(), scale.error());
+  Recording recording;
+  recording.info = source_info(path, first, *scale);
   bool swapped = false;
+  if (first.storage == FlirStorage::jpeg_ls) {
+    if (auto noted = note_losses(*bytes, first, recording.info); !noted) return fail(path.string(), noted.error());
+  }
   if (first.storage == FlirStorage::png) {
     const auto counts = stored_pixels(*bytes, first);
     if (!counts) return fail(path.string(), counts.error());
     swapped = is_swapped(*counts, first.camera->raw_median);
   }
-  Recording recording;
-  recording.info = source_info(path, first, *scale);
   recording.info.settings["RawThermalImageType"] = storage_text(first, swapped);
   recording.frame_count = frames->size();
   recording.read = [bytes = *bytes, all = *std::move(frames), swapped](std::uint64_t index) {
