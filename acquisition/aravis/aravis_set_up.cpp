@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "acquisition/aravis/aravis_source.h"
+#include "acquisition/aravis/aravis_version.h"
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/host_network.h"
 #include "acquisition/aravis/object_parameters.h"
@@ -149,6 +150,7 @@ Result<void> AravisSource::refresh() {
   if (!settings) return tl::unexpected(settings.error());
   info_.settings = *std::move(settings);
   info_.settings["CameraFamily"] = family_.name;
+  info_.settings["AravisVersion"] = to_string(running_aravis());
   if (stated_kelvin_per_count_) info_.settings[scale_feature] = control_text(*stated_kelvin_per_count_);
   if (stated_offset_k_) info_.settings[offset_feature] = control_text(*stated_offset_k_);
   publish_socket_buffer();
@@ -161,9 +163,15 @@ Result<std::shared_ptr<ArvStream>> AravisSource::create_stream() {
     return fail("creating the frame stream", safe.error());
   }
   auto* tap = new StreamTap{.events = events_};
-  ArvStream* raw = arv_camera_create_stream_full(
-      camera_.get(), &AravisSource::on_stream_event, tap, [](void* data) { delete static_cast<StreamTap*>(data); },
-      error.out());
+  const auto destroy_tap = [](void* data) { delete static_cast<StreamTap*>(data); };
+  // Aravis 0.9.1 renamed the function.
+#if ARAVIS_CHECK_VERSION(0, 9, 1)
+  ArvStream* raw =
+      arv_camera_create_stream(camera_.get(), &AravisSource::on_stream_event, tap, destroy_tap, error.out());
+#else
+  ArvStream* raw =
+      arv_camera_create_stream_full(camera_.get(), &AravisSource::on_stream_event, tap, destroy_tap, error.out());
+#endif
   if (raw == nullptr) return error.failure(ErrorCode::not_found, "creating the frame stream");
   tap->stream = raw;
   auto stream = shared(raw);
@@ -245,8 +253,7 @@ Result<void> AravisSource::state_frame(const std::string& value) {
   const auto size = frame_size_of(value);
   if (!size)
     return fail(ErrorCode::invalid_input, std::string(frame_size_feature) + " = " + value + ": expected WIDTHxHEIGHT");
-  const std::size_t bytes =
-      static_cast<std::size_t>(size->area()) * static_cast<std::size_t>(facts_of(format_.pixel_format).bytes_per_pixel);
+  const std::size_t bytes = bytes_of_pixels(format_.pixel_format, static_cast<std::size_t>(size->area()));
   if (bytes > format_.payload_bytes) {
     return fail(ErrorCode::invalid_input, std::string(frame_size_feature) + " = " + value +
                                               ": larger than the camera's payload of " +

@@ -16,9 +16,12 @@
 namespace todbench {
 namespace {
 
-/// Formats that a camera is set to: one pixel in two bytes. Mono14 precedes Mono16 so that it is preferred if both
+/// Formats that a camera is set to; of those with equally many bits the first: unpacked ones come before packed ones.
+/// Mono14 precedes Mono16 so that it is preferred if both
 /// carry 14 bits: only its name states the full scale.
-constexpr std::array usable_formats{PixelFormat::mono14, PixelFormat::mono16, PixelFormat::mono12, PixelFormat::mono10};
+constexpr std::array usable_formats{PixelFormat::mono14,  PixelFormat::mono16,       PixelFormat::mono12,
+                                    PixelFormat::mono10,  PixelFormat::mono12p,      PixelFormat::mono12_packed,
+                                    PixelFormat::mono10p, PixelFormat::mono10_packed};
 
 /// Exceeds every thermal camera's picture; the limit bounds the memory that a camera's statement can reserve.
 constexpr int most_pixels_per_side = 16384;
@@ -100,9 +103,9 @@ Result<void> choose_pixel_format(ArvDevice* device, const std::string& wanted) {
     if (!best || significant_bits(device, format) > significant_bits(device, *best)) best = format;
   }
   if (!best) {
-    return fail(ErrorCode::not_found, (wanted.empty() ? "no unpacked 10 ... 16 bit monochrome pixel format"
-                                                      : "no usable pixel format " + wanted) +
-                                          "; the camera offers " + (names.empty() ? "none" : names));
+    return fail(ErrorCode::not_found,
+                (wanted.empty() ? "no 10 ... 16 bit monochrome pixel format" : "no usable pixel format " + wanted) +
+                    "; the camera offers " + (names.empty() ? "none" : names));
   }
   auto chosen = set_feature(device, "PixelFormat", std::string(to_string(*best)));
   if (!chosen && chosen.error().code != ErrorCode::disconnected) chosen.error().code = ErrorCode::not_found;
@@ -194,7 +197,7 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
   if (!known || (*known != PixelFormat::mono8 &&
                  std::find(usable_formats.begin(), usable_formats.end(), *known) == usable_formats.end())) {
     return fail(ErrorCode::not_found, "pixel format " + get_feature(device, "PixelFormat").value_or("") +
-                                          " is not an unpacked 8 ... 16 bit monochrome format");
+                                          " is not an 8 ... 16 bit monochrome format that this program reads");
   }
   format.pixel_format = *known;
   format.significant_bits = significant_bits(device, *known);
@@ -208,8 +211,7 @@ Result<StreamFormat> read_stream_format(ArvCamera* camera) {
                                           " bytes, which is larger than the program accepts");
   }
   const auto pixels = static_cast<std::size_t>(format.width) * static_cast<std::size_t>(format.height);
-  const auto bytes_per_pixel = static_cast<std::size_t>(facts_of(*known).bytes_per_pixel);
-  if (format.width <= 0 || format.height <= 0 || format.payload_bytes < bytes_per_pixel * pixels) {
+  if (format.width <= 0 || format.height <= 0 || format.payload_bytes < bytes_of_pixels(*known, pixels)) {
     return fail(ErrorCode::not_found, "the camera states an impossible geometry of " + std::to_string(format.width) +
                                           " x " + std::to_string(format.height) + " pixels in " +
                                           std::to_string(format.payload_bytes) + " bytes");

@@ -32,15 +32,20 @@ std::optional<std::size_t> first_chunk_bytes(std::span<const std::uint8_t> recei
 }  // namespace
 
 std::size_t row_bytes(const StatedImage& image) {
-  return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(facts_of(image.format).bytes_per_pixel) +
-         static_cast<std::size_t>(image.x_padding);
+  const auto width = static_cast<std::size_t>(image.width);
+  const bool whole_bytes = width * static_cast<std::size_t>(facts_of(image.format).bits_per_pixel) % 8 == 0;
+  if (!whole_bytes && image.x_padding == 0) return 0;
+  return bytes_of_pixels(image.format, width) + static_cast<std::size_t>(image.x_padding);
 }
 
 std::optional<std::span<const std::uint8_t>> image_bytes(std::span<const std::uint8_t> received,
                                                          const StatedImage& image, ChunkLayout chunks) {
   if (image.width < 1 || image.height < 1 || image.x_padding < 0 || image.y_padding < 0) return std::nullopt;
-  const std::size_t stated =
-      row_bytes(image) * static_cast<std::size_t>(image.height) + static_cast<std::size_t>(image.y_padding);
+  const auto height = static_cast<std::size_t>(image.height);
+  const std::size_t row = row_bytes(image);
+  const std::size_t rows =
+      row > 0 ? row * height : bytes_of_pixels(image.format, static_cast<std::size_t>(image.width) * height);
+  const std::size_t stated = rows + static_cast<std::size_t>(image.y_padding);
   if (chunks == ChunkLayout::none) return received.size() == stated ? std::optional(received) : std::nullopt;
   const auto first = first_chunk_bytes(received, chunks);
   if (!first || *first < stated || *first - stated >= chunk_alignment) return std::nullopt;

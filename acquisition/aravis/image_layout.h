@@ -26,7 +26,8 @@ enum class ChunkLayout {
   little_endian,  ///< the same: USB3 Vision
 };
 
-/// Bytes from the start of a row to the start of the next.
+/// Bytes from the start of a row to the start of the next; 0: rows of a packed format without gaps, which share a byte
+/// if they do not fill whole ones.
 [[nodiscard]] std::size_t row_bytes(const StatedImage& image);
 
 /// Returns the bytes of the image, padding included. Empty if their number differs from the stated one: a row that is

@@ -12,8 +12,48 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "pixels of two bytes are copied as they lie in memory");
 
-std::size_t bytes_for(PixelFormat format, std::size_t pixels) {
-  return pixels * static_cast<std::size_t>(facts_of(format).bytes_per_pixel);
+/// Pixels of `bits` bits one after another, the lowest bit first (PFNC 2.4, section on packed formats "p").
+void decode_bits(std::span<const std::uint8_t> from, unsigned bits, std::span<std::uint16_t> to) {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const std::size_t first = i * bits, byte = first / 8;
+    // A pixel lies in two bytes: 12 bits begin at bit 0 or 4, 10 bits at an even bit up to 6.
+    const unsigned word = from[byte] | (byte + 1 < from.size() ? from[byte + 1] << 8U : 0U);
+    to[i] = static_cast<std::uint16_t>(word >> first % 8 & ((1U << bits) - 1U));
+  }
+}
+
+void encode_bits(std::span<const std::uint16_t> from, unsigned bits, std::span<std::uint8_t> to) {
+  std::fill(to.begin(), to.end(), std::uint8_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const std::size_t first = i * bits, byte = first / 8;
+    const unsigned word = static_cast<unsigned>(from[i]) << first % 8;
+    to[byte] = static_cast<std::uint8_t>(to[byte] | (word & 0xFFU));
+    if (byte + 1 < to.size()) to[byte + 1] = static_cast<std::uint8_t>(to[byte + 1] | word >> 8U);
+  }
+}
+
+/// Two pixels in three bytes (GigE Vision 1.2, Mono10Packed and Mono12Packed): high bits of the first, low bits of both
+/// (those of the second four bits higher), high bits of the second.
+void decode_pairs(std::span<const std::uint8_t> from, unsigned low_bits, std::span<std::uint16_t> to) {
+  const unsigned mask = (1U << low_bits) - 1U;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const std::size_t triple = i / 2 * 3;
+    const bool second = i % 2 != 0;
+    const unsigned high = from[triple + (second ? 2 : 0)];
+    const unsigned low = from[triple + 1] >> (second ? 4U : 0U) & mask;
+    to[i] = static_cast<std::uint16_t>(high << low_bits | low);
+  }
+}
+
+void encode_pairs(std::span<const std::uint16_t> from, unsigned low_bits, std::span<std::uint8_t> to) {
+  std::fill(to.begin(), to.end(), std::uint8_t{0});
+  const unsigned mask = (1U << low_bits) - 1U;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const std::size_t triple = i / 2 * 3;
+    const bool second = i % 2 != 0;
+    to[triple + (second ? 2 : 0)] = static_cast<std::uint8_t>(from[i] >> low_bits);
+    to[triple + 1] = static_cast<std::uint8_t>(to[triple + 1] | (from[i] & mask) << (second ? 4U : 0U));
+  }
 }
 
 void swap_bytes(std::span<std::uint16_t> words) {
@@ -28,6 +68,14 @@ void decode_run(std::span<const std::uint8_t> from, const PixelLayout& layout, s
     case PixelFormat::yuyv:
       for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[2 * i];
       return;
+    case PixelFormat::mono10p:
+      return decode_bits(from, 10, to);
+    case PixelFormat::mono12p:
+      return decode_bits(from, 12, to);
+    case PixelFormat::mono10_packed:
+      return decode_pairs(from, 2, to);
+    case PixelFormat::mono12_packed:
+      return decode_pairs(from, 4, to);
     default:
       std::memcpy(to.data(), from.data(), to.size_bytes());
       if (layout.order == ByteOrder::big_endian) swap_bytes(to);
@@ -45,6 +93,14 @@ void encode_run(std::span<const std::uint16_t> from, const PixelLayout& layout, 
         to[2 * i + 1] = 128;
       }
       return;
+    case PixelFormat::mono10p:
+      return encode_bits(from, 10, to);
+    case PixelFormat::mono12p:
+      return encode_bits(from, 12, to);
+    case PixelFormat::mono10_packed:
+      return encode_pairs(from, 2, to);
+    case PixelFormat::mono12_packed:
+      return encode_pairs(from, 4, to);
     default:
       std::memcpy(to.data(), from.data(), from.size_bytes());
       if (layout.order == ByteOrder::little_endian) return;
@@ -89,13 +145,15 @@ std::optional<FourccFormat> format_of_fourcc(std::uint32_t code) {
     return FourccFormat{PixelFormat::mono16, ByteOrder::big_endian};
   }
   for (const auto& facts : pixel_format_table) {
-    if (fourcc(facts.fourcc) == code) return FourccFormat{facts.format, ByteOrder::little_endian};
+    if (facts.fourcc != nullptr && fourcc(facts.fourcc) == code)
+      return FourccFormat{facts.format, ByteOrder::little_endian};
   }
   return std::nullopt;
 }
 
 std::uint32_t fourcc_code(PixelFormat format) {
-  return fourcc(facts_of(format).fourcc);
+  const char* text = facts_of(format).fourcc;
+  return text == nullptr ? 0 : fourcc(text);
 }
 
 Result<std::size_t> picture_bytes(const PixelLayout& layout) {
@@ -103,8 +161,9 @@ Result<std::size_t> picture_bytes(const PixelLayout& layout) {
   if (layout.width < 1 || layout.height < 1 || layout.width > most || layout.height > most) {
     return fail(ErrorCode::invalid_input, described(layout) + ": impossible size");
   }
-  const std::size_t row = bytes_for(layout.format, static_cast<std::size_t>(layout.width));
-  if (layout.row_bytes == 0) return row * static_cast<std::size_t>(layout.height);
+  const auto width = static_cast<std::size_t>(layout.width);
+  const std::size_t row = bytes_of_pixels(layout.format, width);
+  if (layout.row_bytes == 0) return bytes_of_pixels(layout.format, width * static_cast<std::size_t>(layout.height));
   // Rows of a gigabyte are a mistake; the limit prevents an overflow of the product.
   if (layout.row_bytes < row || layout.row_bytes > (std::size_t{1} << 30)) {
     return fail(ErrorCode::invalid_input, described(layout) + ": rows of " + std::to_string(layout.row_bytes) +
@@ -123,7 +182,7 @@ Result<cv::Mat1w> decode_pixels(std::span<const std::uint8_t> bytes, const Pixel
   cv::Mat1w counts(layout.height, layout.width);
   const auto [runs, pixels, stride] = runs_of(layout);
   for (std::size_t run = 0; run < runs; ++run) {
-    decode_run(bytes.subspan(run * stride, bytes_for(layout.format, pixels)), layout,
+    decode_run(bytes.subspan(run * stride, bytes_of_pixels(layout.format, pixels)), layout,
                {counts.ptr<std::uint16_t>(static_cast<int>(run)), pixels});
   }
   return counts;
@@ -149,7 +208,7 @@ Result<std::vector<std::uint8_t>> encode_pixels(const cv::Mat1w& counts, const P
   const auto [runs, pixels, stride] = runs_of(layout);
   for (std::size_t run = 0; run < runs; ++run) {
     encode_run({whole.ptr<std::uint16_t>(static_cast<int>(run)), pixels}, layout,
-               std::span(bytes).subspan(run * stride, bytes_for(layout.format, pixels)));
+               std::span(bytes).subspan(run * stride, bytes_of_pixels(layout.format, pixels)));
   }
   return bytes;
 }

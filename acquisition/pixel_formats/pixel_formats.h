@@ -17,12 +17,16 @@ namespace todbench {
 
 /// Layout of a pixel's counts in bytes.
 enum class PixelFormat {
-  mono8,   ///< one byte
-  mono10,  ///< two bytes, the low 10 bits
-  mono12,  ///< two bytes, the low 12 bits
-  mono14,  ///< two bytes, the low 14 bits
-  mono16,  ///< two bytes
-  yuyv,    ///< two bytes: the luma of the pixel, then a dropped byte
+  mono8,          ///< one byte
+  mono10,         ///< two bytes, the low 10 bits
+  mono12,         ///< two bytes, the low 12 bits
+  mono14,         ///< two bytes, the low 14 bits
+  mono16,         ///< two bytes
+  yuyv,           ///< two bytes: the luma of the pixel, then a dropped byte
+  mono10p,        ///< PFNC: 10 bits after 10 bits, the lowest bit first
+  mono12p,        ///< PFNC: 12 bits after 12 bits, the lowest bit first
+  mono10_packed,  ///< GigE Vision: two pixels in three bytes, the middle one has their low bits
+  mono12_packed,  ///< the same with 12 bits
 };
 
 /// Names and codes of a format: the name of the GenICam Pixel Format Naming Convention (PFNC 2.4), the 32-bit code of
@@ -31,19 +35,23 @@ struct PixelFormatFacts {
   PixelFormat format;
   std::string_view name;
   std::uint32_t pfnc;
-  const char* fourcc;
+  const char* fourcc;    ///< null: none
   int significant_bits;  ///< used bits of a pixel
-  int bytes_per_pixel;
+  int bits_per_pixel;    ///< bits that a pixel takes
 };
 
-/// The formats that the back ends read and the emulated cameras send. Packed formats (Mono12p, Mono12Packed) are
-/// excluded.
-inline constexpr PixelFormatFacts pixel_format_table[] = {{PixelFormat::mono8, "Mono8", 0x01080001, "GREY", 8, 1},
-                                                          {PixelFormat::mono10, "Mono10", 0x01100003, "Y10 ", 10, 2},
-                                                          {PixelFormat::mono12, "Mono12", 0x01100005, "Y12 ", 12, 2},
-                                                          {PixelFormat::mono14, "Mono14", 0x01100025, "Y14 ", 14, 2},
-                                                          {PixelFormat::mono16, "Mono16", 0x01100007, "Y16 ", 16, 2},
-                                                          {PixelFormat::yuyv, "YUV422_8", 0x02100032, "YUYV", 8, 2}};
+/// The formats that the back ends read and the emulated cameras send.
+inline constexpr PixelFormatFacts pixel_format_table[] = {
+    {PixelFormat::mono8, "Mono8", 0x01080001, "GREY", 8, 8},
+    {PixelFormat::mono10, "Mono10", 0x01100003, "Y10 ", 10, 16},
+    {PixelFormat::mono12, "Mono12", 0x01100005, "Y12 ", 12, 16},
+    {PixelFormat::mono14, "Mono14", 0x01100025, "Y14 ", 14, 16},
+    {PixelFormat::mono16, "Mono16", 0x01100007, "Y16 ", 16, 16},
+    {PixelFormat::yuyv, "YUV422_8", 0x02100032, "YUYV", 8, 16},
+    {PixelFormat::mono10p, "Mono10p", 0x010A0046, nullptr, 10, 10},
+    {PixelFormat::mono12p, "Mono12p", 0x010C0047, nullptr, 12, 12},
+    {PixelFormat::mono10_packed, "Mono10Packed", 0x010C0004, nullptr, 10, 12},
+    {PixelFormat::mono12_packed, "Mono12Packed", 0x010C0006, nullptr, 12, 12}};
 
 /// Returns the format's entry in the table.
 [[nodiscard]] constexpr const PixelFormatFacts& facts_of(PixelFormat format) {
@@ -51,6 +59,11 @@ inline constexpr PixelFormatFacts pixel_format_table[] = {{PixelFormat::mono8, "
     if (facts.format == format) return facts;
   }
   return pixel_format_table[0];  // not reached: every format has a line
+}
+
+/// Bytes of so many pixels one after another; the last byte of a packed format may be used in part.
+[[nodiscard]] constexpr std::size_t bytes_of_pixels(PixelFormat format, std::size_t pixels) {
+  return (pixels * static_cast<std::size_t>(facts_of(format).bits_per_pixel) + 7) / 8;
 }
 
 /// Byte order of pixels with two bytes of counts (mono10, 12, 14, 16); the other formats ignore it.
@@ -78,7 +91,7 @@ struct FourccFormat {
 /// Recognises "Y16 ", "Y16 " with bit 31 set (big-endian, listed as "Y16 -BE"), "Y14 ", "Y12 ", "Y10 ", "GREY", "YUYV";
 /// empty for any other code. The code is v4l2_fourcc(): first character in the low byte.
 [[nodiscard]] std::optional<FourccFormat> format_of_fourcc(std::uint32_t fourcc);
-/// The code of a format, little-endian if it has a byte order.
+/// The code of a format, little-endian if it has a byte order; 0: none.
 [[nodiscard]] std::uint32_t fourcc_code(PixelFormat format);
 
 /// A picture in memory.
@@ -86,7 +99,8 @@ struct PixelLayout {
   PixelFormat format = PixelFormat::mono16;
   ByteOrder order = ByteOrder::little_endian;
   int width = 0, height = 0;  ///< pixels, 1 ... 65535
-  /// Bytes from the start of a row to the start of the next. 0: rows without gaps.
+  /// Bytes from the start of a row to the start of the next. 0: rows without gaps; rows of a packed format then share
+  /// a byte if they do not fill whole ones.
   std::size_t row_bytes = 0;
 };
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <utility>
 
 #include "acquisition/base/host_clock.h"
@@ -71,6 +72,7 @@ Result<std::unique_ptr<FrameSource>> V4l2Source::create(const VideoNode& node, c
   if (const auto set = source->take_layout({.pixel_format = options.pixel_format}); !set)
     return tl::unexpected(set.error());
   source->controls_ = list_controls(source->device_);
+  source->open_serial_port();
   source->refresh();
   if (const auto learnt = source->learn_scale(); !learnt) return tl::unexpected(learnt.error());
   return source;
@@ -96,6 +98,67 @@ Result<void> V4l2Source::set_layout(const std::string& feature, const std::strin
     if (!wanted.frame) return fail(ErrorCode::not_found, "WIDTHxHEIGHT in pixels, for example 640x512");
   }
   return take_layout(wanted);
+}
+
+void V4l2Source::open_serial_port() {
+  if (node_.family() != VideoFamily::boson) return;
+  const auto node = serial_port_of(node_.device_path);
+  if (!node) {
+    serial_port_problem_ = "the system has no serial port of this camera";
+    return;
+  }
+  auto port = BosonPort::open(*node);
+  if (port) {
+    serial_port_ = *std::move(port);
+  } else {
+    serial_port_problem_ = port.error().message;
+  }
+}
+
+void V4l2Source::refresh_serial_port() {
+  if (node_.family() != VideoFamily::boson) return;
+  for (const auto& [feature, function, name] :
+       {std::tuple{"GainMode", BosonFunction::get_gain_mode, &boson_gain_mode},
+        std::tuple{"FFCMode", BosonFunction::get_correction_mode, &boson_correction_mode}}) {
+    if (!serial_port_) break;
+    const auto number = serial_port_->mode(function);
+    if (number) {
+      const std::string_view known = name(*number);
+      info_.settings[feature] = known.empty() ? std::to_string(*number) : std::string(known);
+    } else {
+      // A port that does not answer would delay every later call.
+      serial_port_problem_ = number.error().message;
+      serial_port_.reset();
+    }
+  }
+  if (!serial_port_)
+    info_.warnings.push_back("The serial port of the Boson is not used: " + serial_port_problem_ +
+                             ". Its gain mode is unknown, and it cannot be told to correct its non-uniformity.");
+}
+
+Result<void> V4l2Source::set_boson_mode(const std::string& feature, const std::string& value) {
+  const bool gain = feature == "GainMode";
+  constexpr std::uint32_t most_modes = 8;
+  std::string expected;
+  for (std::uint32_t number = 0; number < most_modes; ++number) {
+    const std::string_view name = gain ? boson_gain_mode(number) : boson_correction_mode(number);
+    if (name.empty()) break;
+    if (name == value)
+      return serial_port_->set_mode(gain ? BosonFunction::set_gain_mode : BosonFunction::set_correction_mode, number);
+    expected += (expected.empty() ? "" : ", ") + std::string(name);
+  }
+  return fail(ErrorCode::not_found, expected);
+}
+
+Result<void> V4l2Source::correct_boson() {
+  // From the first command on, only commands start a correction.
+  if (info_.settings["FFCMode"] != "Manual") {
+    if (auto manual = set_boson_mode("FFCMode", "Manual"); !manual) return manual;
+    info_.settings["FFCMode"] = "Manual";
+  }
+  may_pause_until_ns_ = monotonic_ns() + longest_correction_ns;
+  if (auto done = serial_port_->call(BosonFunction::run_correction); !done) return tl::unexpected(done.error());
+  return {};
 }
 
 void V4l2Source::refresh() {
@@ -133,10 +196,11 @@ void V4l2Source::refresh() {
         "per count. If the camera is in another mode, state TemperatureLinearScale in [camera.settings]. Counts above "
         "180 degrees Celsius, the limit of the high-gain mode, have no temperature.");
   }
+  refresh_serial_port();
   if (node_.family() == VideoFamily::boson && layout_.kelvin_per_count == 0 && !stated_kelvin_per_count_) {
     info_.warnings.emplace_back(
-        "A Boson reports neither its scale nor its gain mode over USB video. Its counts have no temperature until "
-        "TemperatureLinearScale is stated in [camera.settings].");
+        "A Boson reports no scale. Its counts have no temperature until TemperatureLinearScale is stated in "
+        "[camera.settings].");
   }
   const double kelvin_per_count = stated_kelvin_per_count_.value_or(layout_.kelvin_per_count);
   // A scale from telemetry stays valid until telemetry changes it.
@@ -362,6 +426,7 @@ Result<std::string> V4l2Source::get(const std::string& feature) {
   if (feature == "AcquisitionFrameRate") return control_text(info_.frame_rate_hz);
   if (feature == "TemperatureLinearScale") return control_text(info_.scale.kelvin_per_count(0).value_or(0));
   if (feature == "TemperatureLinearOffset") return control_text(info_.scale.kelvin(0).value_or(0));
+  if (serial_port_ && (feature == "GainMode" || feature == "FFCMode")) return info_.settings[feature];
   const VideoControl* known = find_control(controls_, feature);
   if (known == nullptr)
     return fail(ErrorCode::invalid_input, "camera " + info_.id + " has no feature '" + feature + "'");
@@ -392,6 +457,9 @@ Result<void> V4l2Source::set(const std::string& feature, const std::string& valu
     } else {
       done = device_.set_frame_rate(*rate);
     }
+  } else if (serial_port_ && (feature == "GainMode" || feature == "FFCMode")) {
+    done = set_boson_mode(feature, value);
+    if (!done && done.error().code == ErrorCode::not_found) return refused(done.error().message);
   } else if (feature == nuc_command_feature) {
     if (find_control(controls_, value) == nullptr) return refused("the name of a control of the camera");
     nuc_command_ = value;
@@ -408,6 +476,7 @@ Result<void> V4l2Source::set(const std::string& feature, const std::string& valu
 Result<void> V4l2Source::correct_nonuniformity() {
   const std::lock_guard control(control_);
   if (is_lost()) return tl::unexpected(disconnected());
+  if (serial_port_ && nuc_command_.empty()) return correct_boson();
   const VideoControl* button =
       nuc_command_.empty() ? nonuniformity_button(controls_) : find_control(controls_, nuc_command_);
   if (button == nullptr) {

@@ -13,6 +13,7 @@
 
 #include "acquisition/core/frame_sequence.h"
 #include "acquisition/core/frame_source.h"
+#include "acquisition/v4l2/boson_serial.h"
 #include "acquisition/v4l2/v4l2_backend.h"
 #include "acquisition/v4l2/video_controls.h"
 #include "acquisition/v4l2/video_device.h"
@@ -58,6 +59,13 @@ class V4l2Source final : public FrameSource {
   [[nodiscard]] Result<void> take_layout(const WantedLayout& wanted);
   [[nodiscard]] Result<void> set_layout(const std::string& feature, const std::string& value);
   void refresh();
+  /// Opens the serial port of a Boson, if it has one.
+  void open_serial_port();
+  /// Reads what a Boson states on its serial port into settings and warnings.
+  void refresh_serial_port();
+  /// Writes GainMode or FFCMode. Error: `not_found` with the accepted words.
+  [[nodiscard]] Result<void> set_boson_mode(const std::string& feature, const std::string& value);
+  [[nodiscard]] Result<void> correct_boson();
   void set_scale(const RadiometricScale& scale);
   [[nodiscard]] RadiometricScale scale_of(const LeptonTelemetry& telemetry) const;
   /// Reads frames of a camera that reports its scale only in telemetry, until one does. The first frames may be empty.
@@ -100,6 +108,8 @@ class V4l2Source final : public FrameSource {
   std::mutex control_;  ///< serialises start, stop, get and set; locked before inbox_.mutex
   VideoDevice device_;  ///< used by the receiving thread while it runs, except for controls
   std::vector<VideoControl> controls_;
+  std::optional<BosonPort> serial_port_;  ///< of a Boson
+  std::string serial_port_problem_;       ///< reason why it is not used; empty: none
   mutable Inbox inbox_;
   std::jthread receiver_;
 };

@@ -189,7 +189,12 @@ void EmulatedGigeCamera::State::power_up() {
   }
   next_frame_id = config.first_frame_id;
   encoder.emplace(config.kelvin_per_count, config.offset_k, config.radiometric);
+  // Since the first development release for Aravis 0.10 with a function that frees the data.
+#if ARAVIS_CHECK_VERSION(0, 9, 0)
+  arv_fake_camera_set_fill_pattern(registers.get(), &State::on_fill, this, nullptr);
+#else
   arv_fake_camera_set_fill_pattern(registers.get(), &State::on_fill, this);
+#endif
 }
 
 void EmulatedGigeCamera::State::begin_correction() {

@@ -121,8 +121,8 @@ void GvspCamera::State::on_write(std::uint32_t address, std::uint32_t value) {
 void GvspCamera::State::update_payload_size() {
   const ModelRegisters& r = description.registers;
   const auto format = pixel_format_of_pfnc(registers.get(r.pixel_format)).value_or(PixelFormat::mono16);
-  const auto image = static_cast<std::uint32_t>(facts_of(format).bytes_per_pixel * config.width *
-                                                (config.height + config.rows_not_sent));
+  const auto image = static_cast<std::uint32_t>(bytes_of_pixels(
+      format, static_cast<std::size_t>(config.width) * static_cast<std::size_t>(config.height + config.rows_not_sent)));
   const auto padding =
       static_cast<std::uint32_t>(config.row_padding_bytes * config.height + config.image_padding_bytes);
   registers.set(r.payload_size, image + padding + (registers.get(r.chunk_mode) != 0 ? chunk_bytes : 0));

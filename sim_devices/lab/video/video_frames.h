@@ -55,7 +55,7 @@ struct VideoWireFormat {
   PixelFormat pixels = PixelFormat::mono16;
   std::vector<cv::Size> sizes;
   [[nodiscard]] std::uint32_t fourcc() const { return fourcc_code(pixels); }
-  [[nodiscard]] int bytes_per_pixel() const { return facts_of(pixels).bytes_per_pixel; }
+  [[nodiscard]] int bytes_per_pixel() const { return facts_of(pixels).bits_per_pixel / 8; }
 };
 [[nodiscard]] VideoWireFormat wire_format(const VideoCameraConfig& config);
 

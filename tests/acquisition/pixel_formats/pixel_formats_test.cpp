@@ -107,6 +107,18 @@ TEST(PixelFormats, PutBitsWhereTheNamingConventionsDrawThem) {
   EXPECT_THAT(decoded_row({0x11, 0x80, 0x22, 0x7f}, PixelFormat::yuyv, little, 2), ElementsAre(0x11, 0x22));
 }
 
+// The bytes are drawn in PFNC 2.4 (Mono10p, Mono12p) and GigE Vision 1.2 (Mono10Packed, Mono12Packed).
+TEST(PixelFormats, PutPackedBitsWhereTheirStandardsDrawThem) {
+  const auto order = ByteOrder::little_endian;
+
+  EXPECT_THAT(decoded_row({0x21, 0x43, 0x65}, PixelFormat::mono12p, order, 2), ElementsAre(0x321, 0x654));
+  EXPECT_THAT(decoded_row({0x01, 0x08, 0x30, 0x00, 0x01}, PixelFormat::mono10p, order, 4), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(decoded_row({0xff, 0x03, 0x00, 0x00, 0xff}, PixelFormat::mono10p, order, 4),
+              ElementsAre(0x3ff, 0, 0, 0x3fc));
+  EXPECT_THAT(decoded_row({0xab, 0x6c, 0x45}, PixelFormat::mono12_packed, order, 2), ElementsAre(0xabc, 0x456));
+  EXPECT_THAT(decoded_row({0xab, 0x21, 0x45}, PixelFormat::mono10_packed, order, 2), ElementsAre(0x2ad, 0x116));
+}
+
 TEST(PixelFormats, KeepBitsThatAFormatDoesNotHaveForTheGateToSee) {
   EXPECT_THAT(decoded_row({0x01, 0xff}, PixelFormat::mono14, ByteOrder::little_endian, 1), ElementsAre(0xff01));
 }

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Aravis that runs, which may differ from the one of the build, and what is known of its faults.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace todbench {
+
+/// A version of Aravis, ordered.
+struct AravisVersion {
+  unsigned major = 0, minor = 0, micro = 0;
+  auto operator<=>(const AravisVersion&) const = default;
+};
+[[nodiscard]] std::string to_string(const AravisVersion& version);
+
+/// The version of the library that is loaded.
+[[nodiscard]] AravisVersion running_aravis();
+
+/// Faults of a version that concern thermal cameras, one sentence each, from the release notes of Aravis.
+[[nodiscard]] std::vector<std::string> aravis_faults(const AravisVersion& version);
+
+}  // namespace todbench

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Serial port of a FLIR Boson: gain mode and non-uniformity correction, which USB video does not carry. Framing and
+// function codes as in FLIR's published software development kit (FSLP, FunctionCodes.h, EnumTypes.h).
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "acquisition/base/descriptor.h"
+#include "acquisition/base/result.h"
+
+namespace todbench {
+
+/// Functions of the camera that the program uses.
+enum class BosonFunction : std::uint32_t {
+  run_correction = 0x00050007,
+  set_correction_mode = 0x00050012,
+  get_correction_mode = 0x00050013,
+  set_gain_mode = 0x00050014,
+  get_gain_mode = 0x00050015,
+};
+
+/// The answer of the camera to a request.
+struct BosonReply {
+  std::uint32_t sequence = 0, function = 0;
+  std::uint32_t status = 0;  ///< 0: done
+  std::string payload;
+};
+
+/// Bytes of a request: start byte, channel 0, sequence, function, four bytes FF, payload, CRC, end byte; the three
+/// bytes of the framing are escaped within.
+[[nodiscard]] std::string boson_request(std::uint32_t sequence, BosonFunction function, std::string_view payload = {});
+
+/// Reads the bytes from a start byte to the next end byte, both included. Error: `invalid_input` (no frame, an unknown
+/// escape, a wrong CRC, another channel, too short).
+[[nodiscard]] Result<BosonReply> boson_reply(std::string_view frame);
+
+/// Names of the modes, as the features GainMode and FFCMode have them; empty for an unknown number.
+[[nodiscard]] std::string_view boson_gain_mode(std::uint32_t number);
+[[nodiscard]] std::string_view boson_correction_mode(std::uint32_t number);
+
+/// An open serial port. One thread at a time.
+class BosonPort {
+ public:
+  /// Error: `io`.
+  [[nodiscard]] static Result<BosonPort> open(const std::filesystem::path& node);
+
+  /// Sends a request and waits for its answer. Errors: `timeout`, `io`, `invalid_input` (the camera refuses the
+  /// request, or its answer is damaged).
+  [[nodiscard]] Result<std::string> call(BosonFunction function, std::string_view payload = {},
+                                         std::chrono::milliseconds patience = std::chrono::milliseconds(2000));
+  /// The mode that a function reads. Errors as call().
+  [[nodiscard]] Result<std::uint32_t> mode(BosonFunction function);
+  [[nodiscard]] Result<void> set_mode(BosonFunction function, std::uint32_t number);
+
+ private:
+  explicit BosonPort(Descriptor port) : port_(std::move(port)) {}
+  Descriptor port_;
+  std::uint32_t sequence_ = 0;
+};
+
+/// Node of the serial port that belongs to a USB device, by its folder in sysfs; empty if it has none.
+[[nodiscard]] std::optional<std::filesystem::path> serial_port_of(const std::filesystem::path& usb_device);
+
+}  // namespace todbench
