@@ -63,6 +63,7 @@ void add_conformity_command(CLI::App& app, Program& program);
 void add_budget_command(CLI::App& app, Program& program);
 void add_reference_set_command(CLI::App& app, Program& program);
 void add_observer_command(CLI::App& app, Program& program);
+void add_round_robin_command(CLI::App& app, Program& program);
 void add_reproduce_command(CLI::App& app, Program& program);
 void add_selftest_command(CLI::App& app, Program& program);
 void add_serve_command(CLI::App& app, Program& program);

@@ -51,7 +51,7 @@ void add_commands(CLI::App& app, Program& program) {
   add_group(app, program, "Field", {add_range_command, add_identify_command, add_picture_command});
   add_group(app, program, "Studies",
             {add_sweep_command, add_enhance_command, add_compare_models_command, add_scene_dependence_command,
-             add_observer_command, add_reference_set_command, add_reproduce_command});
+             add_observer_command, add_reference_set_command, add_round_robin_command, add_reproduce_command});
   add_group(app, program, "Maintenance",
             {add_selftest_command, add_history_command, add_instrument_command, add_module_command});
   add_manual_command(app, program);

@@ -20,25 +20,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> plate_names{"tcat-a", "tcat-b"};
 
-Result<void> write_descriptions(const std::filesystem::path& folder, const ReferenceSetOptions& options) {
-  for (const char* name : {"plates", "observers", "sensors"}) {
-    if (auto made = make_folder(folder / name); !made) return made;
-  }
-  std::vector<std::pair<ResourceKind, std::string_view>> copies{{ResourceKind::observer, reference_observer}};
-  for (const auto name : plate_names) copies.emplace_back(ResourceKind::plate, name);
-  for (const auto& [kind, name] : copies) {
-    const auto resource = find_resource(kind, name);
-    if (!resource) return tl::unexpected(resource.error());
-    const auto file = folder / (kind == ResourceKind::plate ? "plates" : "observers") / (std::string(name) + ".toml");
-    if (auto written = write_file_atomically(file, resource->text); !written) return written;
-  }
-  for (const ReferenceCase& c : options.cases) {
-    const auto file = folder / "sensors" / (c.sensor.name + ".toml");
-    if (auto written = write_file_atomically(file, sensor_description(c.sensor)); !written) return written;
-  }
-  return {};
-}
-
 /// Writer of the frames of one case in both formats, and of their content.
 class CaseWriter {
  public:
@@ -103,19 +84,47 @@ std::vector<TargetState> presentations(const ReferenceCase& c, int frames, const
   return out;
 }
 
-Result<void> write_case(const std::filesystem::path& folder, const ReferenceCase& c, std::uint64_t number,
-                        const ReferenceSetOptions& options, const std::vector<TargetPlate>& plates,
-                        const std::stop_token& stop) {
+Result<std::vector<TargetPlate>> both_plates() {
+  std::vector<TargetPlate> plates;
+  for (const auto name : plate_names) {
+    auto plate = load_plate(name);
+    if (!plate) return tl::unexpected(plate.error());
+    plates.push_back(*std::move(plate));
+  }
+  return plates;
+}
+
+}  // namespace
+
+Result<void> write_plates_and_observer(const std::filesystem::path& folder) {
+  for (const char* name : {"plates", "observers"}) {
+    if (auto made = make_folder(folder / name); !made) return made;
+  }
+  std::vector<std::pair<ResourceKind, std::string_view>> copies{{ResourceKind::observer, reference_observer}};
+  for (const auto name : plate_names) copies.emplace_back(ResourceKind::plate, name);
+  for (const auto& [kind, name] : copies) {
+    const auto resource = find_resource(kind, name);
+    if (!resource) return tl::unexpected(resource.error());
+    const auto file = folder / (kind == ResourceKind::plate ? "plates" : "observers") / (std::string(name) + ".toml");
+    if (auto written = write_file_atomically(file, resource->text); !written) return written;
+  }
+  return {};
+}
+
+Result<void> write_reference_case(const std::filesystem::path& folder, const ReferenceCase& c, std::uint64_t number,
+                                  const ReferenceSetOptions& options, const std::stop_token& stop) {
+  const auto plates = both_plates();
+  if (!plates) return tl::unexpected(plates.error());
   const RandomStream stream = RandomStream(options.seed, "reference_set").sub(number);
   const auto model =
       std::make_shared<const SensorModel>(c.sensor, full_plan(c.sensor, {}, {}), Accuracy::normal(), stream.stream());
   PlateScene first;
-  first.plate = plates.front();
+  first.plate = plates->front();
   first.distance_m = reference_distance_m;
   first.background_k = reference_background_k;
   const auto scene = std::make_shared<SceneHolder>(first);
   const auto camera = simulated_source(model, scene, c.name);
-  const auto target = scene_target(scene, plates);
+  const auto target = scene_target(scene, *plates);
   auto writer = CaseWriter::create(folder, c, camera->info());
   if (!writer) return tl::unexpected(writer.error());
   if (auto started = camera->start(); !started) return started;
@@ -129,22 +138,19 @@ Result<void> write_case(const std::filesystem::path& folder, const ReferenceCase
   return writer->finish(folder, c.name);
 }
 
-}  // namespace
-
 Result<void> write_reference_set(const std::filesystem::path& folder, const ReferenceSetOptions& options,
                                  std::stop_token stop) {
-  std::vector<TargetPlate> plates;
-  for (const auto name : plate_names) {
-    auto plate = load_plate(name);
-    if (!plate) return tl::unexpected(plate.error());
-    plates.push_back(*std::move(plate));
-  }
   const auto truths = reference_truths(options.cases, stop);
   if (!truths) return tl::unexpected(truths.error());
   if (auto made = make_folder(folder); !made) return made;
-  if (auto written = write_descriptions(folder, options); !written) return written;
+  if (auto written = write_plates_and_observer(folder); !written) return written;
+  if (auto made = make_folder(folder / "sensors"); !made) return made;
+  for (const ReferenceCase& c : options.cases) {
+    const auto file = folder / "sensors" / (c.sensor.name + ".toml");
+    if (auto written = write_file_atomically(file, sensor_description(c.sensor)); !written) return written;
+  }
   for (std::size_t i = 0; i < options.cases.size(); ++i) {
-    if (auto written = write_case(folder, options.cases[i], i, options, plates, stop); !written)
+    if (auto written = write_reference_case(folder, options.cases[i], i, options, stop); !written)
       return fail(options.cases[i].name, written.error());
     if (options.on_progress) options.on_progress(i + 1, options.cases.size());
   }

@@ -20,6 +20,14 @@ struct ReferenceSetOptions {
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
 };
 
+/// Writes plates/ and observers/ of the set into a folder. Errors: `io`.
+[[nodiscard]] Result<void> write_plates_and_observer(const std::filesystem::path& folder);
+/// Writes CASE.tif, CASE.todrec, CASE-frames.csv and CASE-triangles.csv of one case. The frames follow from the seed of
+/// the options and `number`. Errors: `io`, `interrupted`.
+[[nodiscard]] Result<void> write_reference_case(const std::filesystem::path& folder, const ReferenceCase& c,
+                                                std::uint64_t number, const ReferenceSetOptions& options,
+                                                const std::stop_token& stop);
+
 /// Writes the set into an empty folder. For each case: CASE.tif (pages of 16 bits), CASE.todrec (the same frames with
 /// their scale), CASE-frames.csv and CASE-triangles.csv. For the set: set.json (truths and all settings), sensors,
 /// plates and observer as TOML, README.md and SHA256SUMS. The same seed gives the same bytes. Errors: `io`,

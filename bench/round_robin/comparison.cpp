@@ -11,6 +11,10 @@
 namespace todbench {
 namespace {
 
+/// Share of outlying_significance for laboratories over all their items. A bias of a laboratory is less conspicuous
+/// than a mistake in one result.
+constexpr double laboratory_share = 0.8;
+
 /// By item: whether each result is kept for the reference value.
 using Kept = std::vector<std::vector<bool>>;
 
@@ -87,23 +91,24 @@ bool may_be_set_aside(const std::vector<ComparedItem>& items, const Kept& kept, 
 std::optional<std::pair<OutlyingResult, std::optional<std::size_t>>> most_improbable(
     const std::vector<ComparedItem>& items, const Kept& kept) {
   const Deviations found = deviations(items, kept);
-  const double share = items.size() == 1 ? 1 : 0.5;
+  // With one item a laboratory is its result.
+  const double laboratories = items.size() == 1 ? 0 : laboratory_share, results = 1 - laboratories;
   std::optional<std::pair<OutlyingResult, std::optional<std::size_t>>> worst;
   const auto offer = [&](OutlyingResult candidate, std::optional<std::size_t> only) {
-    if (candidate.p >= comparison_significance || (worst && candidate.p >= worst->first.p)) return;
+    if (candidate.p >= outlying_significance || (worst && candidate.p >= worst->first.p)) return;
     worst = {std::move(candidate), only};
   };
   for (const auto& [name, laboratory] : found.laboratories) {
-    if (laboratory.items < 2) continue;
+    if (items.size() == 1 || laboratory.items < 2) continue;
     const double zeta = laboratory.combined();
-    offer({name, "", "", zeta, of_any(two_sided(zeta), found.laboratories.size()) / share}, std::nullopt);
+    offer({name, "", "", zeta, of_any(two_sided(zeta), found.laboratories.size()) / laboratories}, std::nullopt);
   }
   for (std::size_t j = 0; j < items.size(); ++j) {
     for (std::size_t i = 0; i < items[j].results.size(); ++i) {
       if (!kept[j][i]) continue;
       const double zeta = found.zeta[j][i];
       offer({items[j].results[i].laboratory, items[j].item, items[j].quantity, zeta,
-             of_any(two_sided(zeta), found.results) / share},
+             of_any(two_sided(zeta), found.results) / results},
             j);
     }
   }
@@ -217,9 +222,9 @@ Result<RoundRobin> evaluated(std::vector<ComparedItem> items, std::uint64_t seed
   Kept kept;
   for (const ComparedItem& item : items) {
     if (item.results.size() < 2) {
-      return fail(ErrorCode::invalid_input,
-                  "item '" + item.item + "', quantity '" + item.quantity +
-                      "': expected results of at least two laboratories, found " + std::to_string(item.results.size()));
+      return fail(ErrorCode::invalid_input, "item '" + item.item + "', quantity '" + item.quantity +
+                                                "': expected results of at least two laboratories, found " +
+                                                std::to_string(item.results.size()));
     }
     kept.emplace_back(item.results.size(), true);
   }

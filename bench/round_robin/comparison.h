@@ -83,11 +83,13 @@ struct RoundRobin {
   [[nodiscard]] bool consistent() const;
 };
 
-/// Evaluates a comparison. The errors of a laboratory are taken as independent between items. Tests for outlying
-/// results have the significance comparison_significance over the whole comparison: half of it for laboratories over
-/// all their items, half for single results. The most improbable is set aside and the rest tested again. If this would leave
-/// no more than half of the laboratories of an item, none is set aside. `seed` draws the medians. Errors: `invalid_input` (no item, or
-/// an item with fewer than two laboratories).
+/// Probability that a comparison of correct laboratories names one of them or one of their results.
+inline constexpr double outlying_significance = 0.025;
+
+/// Evaluates a comparison. The errors of a laboratory are taken as independent between items. The most improbable
+/// outlying laboratory or result is set aside and the rest tested again. If this would leave no more than half of the
+/// laboratories of an item, none is set aside. `seed` draws the medians. Errors: `invalid_input` (no item, or an item
+/// with fewer than two laboratories).
 [[nodiscard]] Result<RoundRobin> evaluated(std::vector<ComparedItem> items, std::uint64_t seed);
 
 }  // namespace todbench

@@ -154,9 +154,10 @@ double paule_mandel_variance(std::span<const LaboratoryValue> values) {
   const auto expected = static_cast<double>(values.size() - 1);
   const auto excess = [&](double variance) { return weighted_sums(values, variance).q - expected; };
   if (excess(0) <= 0) return 0;
-  const auto [least, most] = std::minmax_element(
-      values.begin(), values.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
-  // The generalised chi2 falls with the variance, and at the square of the range it is below N / 4 * range^2 / variance.
+  const auto [least, most] =
+      std::minmax_element(values.begin(), values.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
+  // The generalised chi2 falls with the variance, and at the square of the range it is below N / 4 * range^2 /
+  // variance.
   double low = 0, high = std::pow(most->value - least->value, 2);
   for (int i = 0; i < 200 && high - low > 1e-14 * high; ++i) {
     const double middle = (low + high) / 2;

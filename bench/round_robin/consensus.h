@@ -23,7 +23,7 @@ struct Consensus {
   double value = 0, u = 0;
 };
 
-/// Significance of every test of a comparison (Cox 2002, section 5).
+/// Significance of the consistency check (Cox 2002, section 5).
 inline constexpr double comparison_significance = 0.05;
 
 /// All functions below: at least two values, each with a finite value and a finite u above 0.
@@ -63,8 +63,8 @@ inline constexpr int median_draws = 20'000;
 
 /// Mean with weights 1/(u^2 + variance).
 struct RandomEffects {
-  Consensus mean;           ///< u as of known variances
-  double hartung_knapp = 0; ///< standard error of Hartung and Knapp 2001, at least mean.u; by Student's t with N - 1
+  Consensus mean;            ///< u as of known variances
+  double hartung_knapp = 0;  ///< standard error of Hartung and Knapp 2001, at least mean.u; by Student's t with N - 1
 };
 [[nodiscard]] RandomEffects random_effects(std::span<const LaboratoryValue> values, double variance);
 

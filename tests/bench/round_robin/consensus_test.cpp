@@ -47,7 +47,8 @@ TEST(WeightedMean, OfTwoUnequalLaboratoriesIsThatOfTheFormula) {
   const Consensus mean = weighted_mean(two);
   const ConsistencyCheck check = consistency(two);
 
-  // (10 + 13 / 4) / (1 + 1 / 4); chi2 = (13 - 10)^2 / (1 + 4); its tail with one degree of freedom is erfc(sqrt(chi2/2)).
+  // (10 + 13 / 4) / (1 + 1 / 4); chi2 = (13 - 10)^2 / (1 + 4); its tail with one degree of freedom is
+  // erfc(sqrt(chi2/2)).
   EXPECT_NEAR(mean.value, 10.6, 1e-12);
   EXPECT_NEAR(mean.u, std::sqrt(0.8), 1e-12);
   EXPECT_NEAR(check.chi2, 1.8, 1e-12);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Protocol of an interlaboratory comparison for one laboratory, as a page.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/reference_set/reference_case.h"
+#include "bench/report/document.h"
+
+namespace todbench {
+
+struct ProtocolFacts {
+  std::string laboratory;
+  std::vector<ReferenceCase> cases;
+  int frames = 0;
+  std::string sealed_sha256;  ///< of the coordinator's file with the true values
+};
+/// States items, files, measurand and the file of results; nothing that is sealed.
+[[nodiscard]] Document blind_protocol(const ProtocolFacts& facts);
+
+}  // namespace todbench

@@ -1,0 +1,72 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# round_robin_test.sh PROGRAM: a comparison by the command line, from blind recordings to degrees of equivalence, and results that are refused.
+set -u
+program=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+failed=0
+wrong() {
+  echo "$*"
+  failed=1
+}
+ends() {
+  expected=$1
+  shift
+  "$@" >out 2>err
+  code=$?
+  [ $code -eq "$expected" ] || wrong "$*: exit code $code instead of $expected: $(cat err)"
+}
+# A refusal: exit code 2, one line on standard error with these words, nothing on standard output.
+refused() {
+  words=$1
+  shift
+  ends 2 "$@"
+  [ "$(wc -l <err)" -eq 1 ] || wrong "$*: more than one line: $(cat err)"
+  grep -qF -- "$words" err || wrong "$*: '$words' is not in: $(cat err)"
+  [ -s out ] && wrong "$*: standard output: $(cat out)"
+}
+
+ends 0 "$program" round-robin prepare --out c --laboratories 3 --items 2 --seed 77 --quiet
+grep -q '"schema": "todbench-round-robin-1"' c/sealed.json || wrong "sealed.json: $(head -c 200 c/sealed.json)"
+grep -q "$(sha256sum c/sealed.json | cut -d' ' -f1)" c/laboratory-3/protocol.html || wrong "the protocol does not state the digest of sealed.json"
+(cd c/laboratory-2 && sha256sum --quiet -c SHA256SUMS) || wrong "SHA256SUMS"
+refused "expected a new or an empty folder" "$program" round-robin prepare --out c
+for n in 1 2 3; do
+  ends 0 "$program" round-robin judge c/laboratory-$n --laboratory "lab $n" --out results-$n.csv --quiet
+done
+# Correct laboratories: 0, or with a small probability 1 or 3. With this seed they are consistent.
+ends 0 "$program" round-robin evaluate results-1.csv results-2.csv results-3.csv --sealed c/sealed.json --out page --json
+grep -q '"verdict": *"consistent"' out || wrong "verdict: $(cat out)"
+grep -q '"reference_holds_truth": *\(true\|false\)' out || wrong "no comparison with the truth: $(cat out)"
+for file in page/round-robin.html page/round-robin.json page/degrees.csv; do [ -s "$file" ] || wrong "$file is missing"; done
+
+# A fourth laboratory with a bias of 30 % in both items is named.
+sed 's/^lab 1/lab 4/' results-1.csv | awk -F, -v OFS=, 'NR > 1 { $5 *= 1.3 } { print }' >results-4.csv
+ends 1 "$program" round-robin evaluate results-1.csv results-2.csv results-3.csv results-4.csv
+grep -q "outlying: lab 4" out || wrong "lab 4 is not named: $(cat out)"
+
+head="laboratory,item,quantity,value,u"
+printf '%s\nA,i,q,1,0\nB,i,q,1,1\n' $head >zero.csv
+printf '%s\nA,i,q,1,-1\nB,i,q,1,1\n' $head >negative.csv
+printf '%s\nA,i,q,nan,1\nB,i,q,1,1\n' $head >nan.csv
+printf '%s\nA,i,q,1e308,1\nB,i,q,1,1\n' $head >huge.csv
+printf '%s\nA,i,q,1,\nB,i,q,1,1\n' $head >missing.csv
+printf '%s\nA,i,q,1,1\nA,i,q,1,1\n' $head >twice.csv
+printf '%s\nA,i,q,1,1\n' $head >alone.csv
+printf '%s,unit\nA,i,q,1,1,mrad\nB,i,q,1,1,px\n' $head >units.csv
+printf '%s\nA,i,q,1,1\nB,i,q,1,1\n' $head >good.csv
+refused "column u: expected a number above 0" "$program" round-robin evaluate zero.csv
+refused "column u: expected a number above 0" "$program" round-robin evaluate negative.csv
+refused "column value: expected a number" "$program" round-robin evaluate nan.csv
+refused "column value: expected a number" "$program" round-robin evaluate huge.csv
+refused "missing uncertainty" "$program" round-robin evaluate missing.csv
+refused "has a second result" "$program" round-robin evaluate twice.csv
+refused "has a second result" "$program" round-robin evaluate good.csv good.csv
+refused "at least two laboratories" "$program" round-robin evaluate alone.csv
+refused "differs from" "$program" round-robin evaluate units.csv
+refused "has no item 'i'" "$program" round-robin evaluate good.csv --sealed c/sealed.json
+refused "contains no session" "$program" round-robin evaluate c
+refused "none.csv" "$program" round-robin evaluate none.csv
+exit $failed
