@@ -282,6 +282,7 @@ class Run {
     const bool on_its_way = state.wait == ContrastWait::none;
     const bool new_contrast = new_set_up || (!on_its_way && *current_contrast_ != state.delta_t_k);
     if (new_contrast) read_back_noted_ = false;
+    step_.expect(state.wait);
     const bool settled = state.wait == ContrastWait::settled;
     if (const auto deviation =
             read_back_noted_ || !settled ? std::nullopt : step_.read_back_deviation(state, presented_)) {

@@ -97,8 +97,8 @@ Result<AveragedPicture> SetUpStep::average(int count, std::stop_token stop, cons
     last = kelvin;
   });
   if (!picture) return picture;
-  // Grey levels may have another gain in every frame.
-  if (!grey() && !before_.empty()) {
+  // Grey levels may have another gain in every frame; a contrast on its way differs between the frames.
+  if (!grey() && wait_ == ContrastWait::settled && !before_.empty()) {
     const auto residue = picture_residue(before_, first, last, picture->kelvin, noise_of_one_frame(*picture));
     auto& worst = constancy_.residue;
     if (residue && (!worst || residue->share * worst->limit > worst->share * residue->limit)) worst = residue;

@@ -52,6 +52,8 @@ class SetUpStep {
             std::function<void(const std::string&)> note)
       : options_(options), camera_(camera), taker_(taker), note_(std::move(note)) {}
 
+  /// Whether the contrast of the next averages has settled: otherwise they are not compared with earlier pictures.
+  void expect(ContrastWait wait) { wait_ = wait; }
   /// Takes the frames in which a plate is located, and learns the noise from the first that show any.
   [[nodiscard]] Result<AveragedPicture> look(std::stop_token stop);
   /// Locates the plate in the average; `mounted_plate` as stated by `state`. Errors: those of register_plate(),
@@ -127,6 +129,7 @@ class SetUpStep {
   double memory_ratio_ = 1;              ///< of JudgedMemory
   std::vector<double> noted_contrasts_;  ///< after the stages
   std::optional<double> noise_counts_, lag1_correlation_;
+  ContrastWait wait_ = ContrastWait::settled;
   cv::Mat1d before_;  ///< mean of the last average; empty: none yet
   RunConstancy constancy_;
   ScanWatch scan_;

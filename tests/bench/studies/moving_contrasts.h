@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs in which the contrast has not settled, of a camera whose threshold is known without trials.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/plan/plan_options.h"
+#include "bench/run/camera_surrogate.h"
+#include "bench/run/devices.h"
+#include "bench/run/experiment_inputs.h"
+#include "bench/run/own_contrasts.h"
+#include "bench/run/simulated_responses.h"
+#include "bench/run/twin_shapes.h"
+#include "hvs/observer/template_observer.h"
+#include "sim_devices/prediction/direct_estimate.h"
+#include "sim_devices/sensor/sensor_model.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench::testing {
+
+/// A black body of first order in front of the simulated scene. Every frame counts 20 ms, and the contrast of a
+/// presentation is that at its middle.
+class SlowBlackBody final : public Target {
+ public:
+  SlowBlackBody(std::unique_ptr<Target> scene, double time_constant_s, double presentation_s)
+      : scene_(std::move(scene)), time_constant_s_(time_constant_s), presentation_s_(presentation_s) {}
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return scene_->capabilities(); }
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    constexpr double band = 0.1, rate_per_s = 0.06;
+    const double near = std::min(band, rate_per_s * time_constant_s_) * std::abs(state.delta_t_k);
+    if (state.wait == ContrastWait::settled) body_k_ = state.delta_t_k;
+    const double away_k = body_k_ - state.delta_t_k;
+    if (state.wait == ContrastWait::within_band && std::abs(away_k) > near)
+      body_k_ = state.delta_t_k + std::copysign(near, away_k);
+    body_k_ = state.delta_t_k + (body_k_ - state.delta_t_k) * std::exp(-presentation_s_ / time_constant_s_);
+    TargetState shown = state;
+    shown.delta_t_k = body_k_;
+    return scene_->present(shown, stop);
+  }
+
+ private:
+  std::unique_ptr<Target> scene_;
+  double time_constant_s_, presentation_s_, body_k_ = 0;
+};
+
+/// A camera in front of a slow black body, and its twin.
+struct MovingContrasts {
+  std::string name;
+  SensorSpec camera{}, twin{};
+  bool ramp = true;  ///< otherwise within a settling band
+  double time_constant_s = 2.2;
+  std::vector<double> judged_k{10, 3.5, 1.2, 0.5, 0.3};  ///< contrasts of the result; of a ramp, none of the plan
+};
+
+inline void PrintTo(const MovingContrasts& design, std::ostream* out) {
+  *out << design.name;
+}
+
+inline Plan plan_of(const MovingContrasts& design, std::uint64_t seed) {
+  Plan plan;
+  plan.name = "contrasts that have not settled";
+  plan.seed = seed;
+  plan.camera.id = "sim:sc2000";
+  plan.camera.ifov_mrad = design.camera.ifov_mrad();
+  plan.target.phases = 6;
+  plan.schedule.frames_per_presentation = {4};
+  if (design.ramp) {
+    plan.schedule.kind = ScheduleKind::ramp;
+    plan.schedule.ramp_k_per_s = 7.3;  // 10 s from 16.9 to 0.23 K
+    plan.schedule.from_delta_t_k = 16.9;
+    plan.schedule.to_delta_t_k = 0.23;
+    plan.target.max_contrast_lag_s = 0;
+  } else {
+    plan.target.contrast_settling_band_percent = 10;
+    plan.target.delta_t_k = design.judged_k;
+  }
+  return plan;
+}
+
+/// ln S75 of a run at a contrast, and half of its interval.
+struct MovingResult {
+  double delta_t_k = 0, ln_s75 = 0, half = 0;
+};
+
+/// The functions of one twin, which runs of the same camera share.
+using Surfaces = std::map<std::string, ContrastSurface>;
+
+inline std::vector<MovingResult> results_of(const TodCurve& curve, const MovingContrasts& design) {
+  std::vector<MovingResult> out;
+  const auto add = [&](double delta_t_k, double s75, const Interval& ci) {
+    if (ci.low && ci.high) out.push_back({delta_t_k, std::log(s75), 0.5 * std::log(*ci.high / *ci.low)});
+  };
+  for (const double judged_k : design.judged_k) {
+    if (!design.ramp) {
+      const TodPoint* point = point_at(curve, judged_k);
+      if (point != nullptr && point->fit.threshold) add(judged_k, *point->fit.threshold, point->fit.ci95);
+      continue;
+    }
+    // Of the continuous curve, straight in ln dT between its neighbours, which are 11 % apart.
+    for (std::size_t i = 1; i < curve.continuous.size(); ++i) {
+      const ContinuousPoint &a = curve.continuous[i - 1], &b = curve.continuous[i];
+      if (!(a.delta_t_k >= judged_k && b.delta_t_k < judged_k)) continue;
+      const double w = std::log(judged_k / a.delta_t_k) / std::log(b.delta_t_k / a.delta_t_k);
+      const auto between = [w](double x, double y) { return std::exp((1 - w) * std::log(x) + w * std::log(y)); };
+      add(judged_k, between(a.s75_mrad, b.s75_mrad),
+          {between(*a.ci95.low, *b.ci95.low), between(*a.ci95.high, *b.ci95.high)});
+    }
+  }
+  return out;
+}
+
+/// One run of the program's own measurement, with the surrogate that it learns from the frames.
+inline std::vector<MovingResult> moving_run(const MovingContrasts& design, std::uint64_t seed, Surfaces& surfaces) {
+  const Plan plan = plan_of(design, seed);
+  PlanParts parts = LoadedPlan::load(plan).value().parts();
+  parts.sensor = design.twin;
+  const LoadedPlan loaded = LoadedPlan::of(plan, std::move(parts)).value();
+  EffectPlanner planner;
+  ExperimentInputs inputs = experiment_inputs(loaded, planner).value();
+  inputs.effects = full_plan(design.twin, {}, {});
+  inputs.sensor = design.twin;
+  const auto model = std::make_shared<const SensorModel>(design.camera, full_plan(design.camera, {}, {}),
+                                                         inputs.accuracy, 100'000 + seed);
+  OpenedBench bench = simulated_bench(model, loaded.shown_plates(), plan.target.distance_m, {});
+  SlowBlackBody target(std::move(bench.target), design.time_constant_s, design.ramp ? ramp_step_s : 0.24);
+  MeasurementOptions options = camera_options(plan, inputs.plates);
+  take_answers(options, plan, inputs);
+  options.free_running = false;
+  options.frames_after_change = 0;
+  static const auto responses = simulated_responses(SensorModel(inputs.sensor, inputs.effects, inputs.accuracy, 1),
+                                                    plan, inputs.plates, options, {})
+                                    .value();
+  CameraSurrogate surrogate(loaded, inputs, responses);
+  options.contrast_response = surrogate.responses();
+  options.learn_response = [&surrogate](const SetUpPicture& found) { return surrogate.learn(found); };
+  const auto schedule =
+      make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(seed, "schedule"));
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  const auto run = measure(*bench.camera, target, observer, *schedule, options, *bench.host, {}, {});
+  if (!run || run->ended_by) {
+    ADD_FAILURE() << design.name << " " << seed << ": " << (run ? run->ended_by->message : run.error().message);
+    return {};
+  }
+  const auto lent = surrogate.lent();
+  auto surface = surfaces.find(design.name);
+  if (surface == surfaces.end())
+    surface = surfaces.emplace(design.name, contrast_surface(plan, lent ? *lent : inputs, {}).value()).first;
+  const std::vector<Trial> trials = at_set_contrasts(run->trials, surface->second, 1);
+  TodCurve curve = tod_curve(trials, fit_options(plan)).value();
+  if (design.ramp) {
+    const auto taken = take_ramp(curve, *run, surface->second, plan);
+    if (!taken) ADD_FAILURE() << taken.error().message;
+  } else {
+    const auto said = fit_twin_shapes(curve, trials, lent ? *lent : inputs, fit_options(plan),
+                                      direct_options(curve, inputs, {}, seed, {}));
+    for (const auto& note : said.notes) ADD_FAILURE() << note;
+  }
+  return results_of(curve, design);
+}
+
+/// ln S75 without trials.
+inline double ln_truth(const SensorSpec& sensor, double delta_t_k) {
+  Plan plan;
+  EffectPlanner planner;
+  const ExperimentInputs inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner).value();
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  double sum = 0;
+  constexpr int parts = 2;
+  for (int part = 0; part < parts; ++part) {
+    const auto found =
+        direct_estimate(sensor, full_plan(sensor, {}, {}), observer, {delta_t_k},
+                        {.accuracy = Accuracy::reference(), .seed = 3'000'000 + static_cast<std::uint64_t>(part)});
+    sum += std::log(found.value()[0].s75_pitch * sensor.ifov_mrad()) / parts;
+  }
+  return sum;
+}
+
+/// Figures of one contrast over the seeds of a study.
+struct MovingSummary {
+  double delta_t_k = 0, bias_percent = 0, se_percent = 0, sd_percent = 0, half_percent = 0;
+  int covered = 0, runs = 0;
+};
+
+inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::uint64_t first_seed, int runs) {
+  Surfaces surfaces;
+  std::map<double, std::vector<MovingResult>> by_contrast;
+  for (int i = 0; i < runs; ++i)
+    for (const MovingResult& one : moving_run(design, first_seed + static_cast<std::uint64_t>(i), surfaces))
+      by_contrast[one.delta_t_k].push_back(one);
+  std::vector<MovingSummary> out;
+  for (const auto& [delta_t_k, results] : by_contrast) {
+    const double truth = ln_truth(design.camera, delta_t_k);
+    const auto n = static_cast<double>(results.size());
+    MovingSummary sum{.delta_t_k = delta_t_k, .runs = static_cast<int>(results.size())};
+    double squares = 0;
+    for (const MovingResult& one : results) {
+      const double error = 100 * (one.ln_s75 - truth);
+      sum.bias_percent += error / n;
+      squares += error * error;
+      sum.half_percent += 100 * one.half / n;
+      sum.covered += std::abs(error) <= 100 * one.half ? 1 : 0;
+    }
+    sum.sd_percent =
+        std::sqrt(std::max(0.0, (squares - n * sum.bias_percent * sum.bias_percent) / std::max(1.0, n - 1)));
+    sum.se_percent = sum.sd_percent / std::sqrt(n);
+    out.push_back(sum);
+  }
+  return out;
+}
+
+inline std::vector<MovingContrasts> moving_designs() {
+  SensorSpec blurred, noisy, columns;
+  blurred.aberration_sigma_pitch = 0.35;
+  noisy.netd_k *= 2;
+  columns.column_noise_k = 0.035;
+  MovingContrasts band{.name = "band, equal", .ramp = false};
+  band.judged_k = {16.9, 1.93, 0.23};
+  return {band,
+          {.name = "ramp, equal"},
+          {.name = "ramp, equal, black body of 8 s", .time_constant_s = 8},
+          {.name = "ramp, blur", .camera = blurred},
+          {.name = "ramp, noise x 2", .camera = noisy},
+          {.name = "ramp, column noise", .camera = columns}};
+}
+
+}  // namespace todbench::testing
