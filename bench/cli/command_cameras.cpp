@@ -104,6 +104,24 @@ void add_emulate_command(CLI::App& app, Program& program) {
   command->add_option("--distance-m", a->distance_m, "distance from the camera to the plate in m")
       ->check(number_in(0.1, 1000))
       ->capture_default_str();
+  command
+      ->add_option("--collimator-transmission", a->collimator_transmission,
+                   "transmission of a collimator before the plate; the distance is then its focal length")
+      ->check(number_in(0.01, 1))
+      ->capture_default_str();
+  command->add_option("--collimator-mirror-c", a->collimator_mirror_c, "temperature of its mirrors in degrees Celsius")
+      ->check(number_in(-100, 200))
+      ->capture_default_str();
+  command
+      ->add_option("--collimator-blur-mrad", a->collimator_blur_mrad,
+                   "aberration of the collimator: standard deviation of its blur in mrad")
+      ->check(number_in(0, 100))
+      ->capture_default_str();
+  command->add_option("--latency-ms", a->latency_ms, "delay in ms from the exposure of a frame to its time stamp")
+      ->check(number_in(0, 10000))
+      ->capture_default_str();
+  command->add_flag("--black-body-celsius", a->celsius,
+                    "the black body answers absolute temperatures in degrees Celsius, against its command table");
   command->add_option("--black-body-port", a->black_body_port, "TCP port of the black body; 0: any free port")
       ->check(whole_number(0, 65535))
       ->capture_default_str();

@@ -41,14 +41,18 @@ std::optional<double> read_back_deviation_k(std::span<const Presentation> presen
 }
 
 /// Returns the air transmittance of the bench, equal for all presentations of a run; empty if not stated.
-std::optional<double> air_of(std::span<const Presentation> presentations) {
-  return presentations.empty() ? std::nullopt : presentations.front().air_transmittance;
+std::optional<double> air_of(const Plan& plan, std::span<const Presentation> presentations) {
+  if (presentations.empty() || !presentations.front().air_transmittance) return std::nullopt;
+  const CollimatorPlan& collimator = plan.target.collimator;
+  if (!collimator.stated()) return presentations.front().air_transmittance;
+  if (!(plan.target.air_humidity_percent > 0)) return std::nullopt;
+  return *presentations.front().air_transmittance / collimator.transmission;
 }
 
 /// Returns a row for the uncertainty of the air transmittance, unless the plan has one.
-std::optional<BudgetRow> row_of_air(const UncertaintyPlan& plan, std::span<const Presentation> presentations) {
-  const auto transmittance = air_of(presentations);
-  const bool stated = std::any_of(plan.rows.begin(), plan.rows.end(),
+std::optional<BudgetRow> row_of_air(const Plan& plan, std::span<const Presentation> presentations) {
+  const auto transmittance = air_of(plan, presentations);
+  const bool stated = std::any_of(plan.uncertainty.rows.begin(), plan.uncertainty.rows.end(),
                                   [](const BudgetRow& row) { return input_of(row) == BudgetInput::air_path; });
   if (!transmittance || stated) return std::nullopt;
   return BudgetRow{.name = std::string(air_path_row),
@@ -291,7 +295,7 @@ Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, cons
   out.u_scale = relative_u_of_scale(plan);
   out.u_camera_scale = relative_u_of_camera_scale(plan);
   out.u_distance = relative_u_of_distance(plan);
-  const auto air = row_of_air(plan.uncertainty, presentations);
+  const auto air = row_of_air(plan, presentations);
   std::vector<BudgetRow> of_run;
   if (air) of_run.push_back(*air);
   if (source_loss) of_run.push_back(row_of_source(*source_loss));

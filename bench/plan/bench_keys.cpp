@@ -227,10 +227,20 @@ PlanSection target_section() {
           {.name = "distance_m",
            .type = NumberKey{NumberRange::between(0.001, 1e5)},
            .unit = "m",
-           .sentence = "Distance from the entrance pupil to the plate. Required in a file with a [target]",
+           .sentence = "Distance from the entrance pupil to the plate. Required in a file with a [target], except with "
+                       "[target.collimator], whose focal length replaces it",
            .place = of(&TargetPlan::distance_m),
            .required = Required::with_section,
-           .form = {"Distance to plate", "planDistance"}},
+           .fallback = {.words = "focal length of the collimator",
+                        .value = [](const Plan& plan, const PlanParts&) -> KeyValue {
+                          const CollimatorPlan& collimator = plan.target.collimator;
+                          return collimator.stated() ? 1e-3 * collimator.focal_length_mm : plan.target.distance_m;
+                        }},
+           .replaced = {.by = [](const Plan& plan) { return plan.target.collimator.stated(); },
+                        .sentence = "the plan states a distance and a collimator: remove distance_m, because behind a "
+                                    "collimator the angle of a triangle is its size over the focal length"},
+           .form = {"Distance to plate", "planDistance"},
+           .check = check_distance},
           {.name = "plates",
            .type = ResourcesKey{ResourceKind::plate},
            .sentence = "Plates that are shown, by name or file",

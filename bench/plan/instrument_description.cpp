@@ -185,6 +185,31 @@ class InstrumentReader {
     const std::string form_of = form(absolute, "answer", 1, "");
     words_of.plate = one_number(absolute, "plate", form_of, "");
     words_of.radiator = one_number(absolute, "radiator", form_of, "");
+    read_absolute(absolute, form_of);
+  }
+
+  /// Absolute set-point, in the unit of the temperatures.
+  void read_absolute(TomlReader& at, const std::string& answer) {
+    BlackBodyWords& words_of = table_.black_body;
+    const std::string set = form(at, "set", 1, "");
+    AbsoluteWords absolute;
+    absolute.set = set;
+    absolute.decimals = static_cast<int>(at.whole("decimals", 0, 9, absolute.decimals));
+    absolute.set_point = one_number(at, "set_point", answer, "");
+    absolute.limits = question(at, "limits", "limits_answer", 2, Texts{});
+    const InstrumentUnit& unit_of = words_of.absolute_unit;
+    absolute.tolerance_k = unit_of.scale * at.number("tolerance", NumberRange::above_to(0, 1e6), 0.002 / unit_of.scale);
+    const auto ends = at.numbers("range", NumberRange::between(-1e6, 1e6), std::vector<double>{});
+    if (set.empty()) return;
+    if (!words_of.radiator.asks()) at.reject("set", "an absolute set-point needs the reading radiator");
+    if (absolute.limits.asks() != ends.empty()) {
+      at.reject(ends.empty() ? "limits" : "range", "expected either limits or range");
+    } else if (!ends.empty() && (ends.size() != 2 || !(ends[0] < ends[1]))) {
+      at.reject("range", "expected two numbers, the lowest and the highest temperature");
+    } else if (!ends.empty()) {
+      absolute.limits_k = {ends[0] * unit_of.scale + unit_of.offset, ends[1] * unit_of.scale + unit_of.offset};
+    }
+    words_of.absolute = std::move(absolute);
   }
 
   /// Choice whose command has a placeholder for a word.

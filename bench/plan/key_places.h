@@ -39,6 +39,9 @@ constexpr const auto& values_of(const ConformityRule&) {
 constexpr const auto& values_of(const PixelArea&) {
   return all_pixel_areas;
 }
+constexpr const auto& values_of(const PixelRule&) {
+  return all_pixel_rules;
+}
 constexpr const auto& values_of(const BudgetDistribution&) {
   return budget_distributions;
 }

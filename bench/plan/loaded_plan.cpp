@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "acquisition/base/try.h"
+#include "bench/plan/collimator.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/instrument_description.h"
 #include "bench/plan/plan_keys.h"
@@ -72,6 +73,8 @@ MeasurePlate plate_of(PlateUse use) {
       return {&MeasuresPlan::mtf, &MeasuresPlan::mtf_plate, &PlanParts::mtf_plate};
     case PlateUse::ctf:
       return {&MeasuresPlan::ctf, &MeasuresPlan::ctf_plate, &PlanParts::ctf_plate};
+    case PlateUse::absolute:
+      return {&MeasuresPlan::absolute, &MeasuresPlan::absolute_plate, &PlanParts::open_plate};
     case PlateUse::source_size:
       break;
   }
@@ -98,6 +101,10 @@ std::vector<ValueMistake> read_letterhead(const Plan& plan, const ResourceFinder
 std::string unfit_for(PlateUse use, const TargetPlate& plate) {
   if (use == PlateUse::source_size && plate.rectangles.size() < 2)
     return "the plate has fewer than two rectangles, but the size-of-source effect compares square apertures";
+  if (use == PlateUse::absolute)
+    return plate.rectangles.size() == 1
+               ? ""
+               : "absolute temperatures need a plate with one rectangle that fills the picture";
   if (plate.rectangles.empty()) return "the plate has no rectangles, but an MTF or CTF needs straight edges";
   if (use == PlateUse::ctf && plate.bars.empty()) return "the plate has no bars, but a CTF needs groups of bars";
   return "";
@@ -218,7 +225,7 @@ std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, cons
 
 std::vector<TargetPlate> LoadedPlan::shown_plates() const {
   std::vector<TargetPlate> plates = parts_.plates;
-  for (const auto* added : {&parts_.mtf_plate, &parts_.ctf_plate, &parts_.source_plate}) {
+  for (const auto* added : {&parts_.mtf_plate, &parts_.ctf_plate, &parts_.source_plate, &parts_.open_plate}) {
     const auto there = [&](const TargetPlate& plate) { return plate.name == (*added)->name; };
     if (*added && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(**added);
   }
@@ -228,6 +235,11 @@ std::vector<TargetPlate> LoadedPlan::shown_plates() const {
 LoadedPlan::LoadedPlan(Plan plan, PlanParts parts)
     : plan_(std::move(plan)), parts_(std::move(parts)), sensor_(parts_.sensor) {
   sensor_.microscan = plan_.simulation.microscan;
+  if (plan_.target.collimator.stated()) {
+    const SpectralBand band{sensor_.wavelength_min_um, sensor_.wavelength_max_um};
+    plan_.target.collimator.transmission = mean_transmission(plan_.target.collimator, band);
+    plan_.uncertainty = budget_with_collimator(plan_, band);
+  }
   parts_.observer.display = parts_.observer.eye ? std::optional(plan_.display) : std::nullopt;
 }
 

@@ -30,6 +30,7 @@ struct PlanParts {
   std::optional<TargetPlate> mtf_plate{};     ///< present if [measures] requests an MTF
   std::optional<TargetPlate> ctf_plate{};     ///< present if [measures] requests a CTF
   std::optional<TargetPlate> source_plate{};  ///< present if [measures] requests the size-of-source effect
+  std::optional<TargetPlate> open_plate{};    ///< present if [measures] requests absolute temperatures
   InstrumentTable black_body{}, stage{};      ///< only for targets of kind scpi; otherwise unspecified
   std::optional<Letterhead> letterhead{};     ///< present if [report] names one
   /// Source texts by kind and reference.

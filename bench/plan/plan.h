@@ -28,6 +28,17 @@
 
 namespace todbench {
 
+/// [camera] warm_up: condition that the camera meets before a run. All defaults: no condition.
+struct WarmUpPlan {
+  double time_s = 0;           ///< frames are taken for this time before the run
+  double drift_k_per_min = 0;  ///< the mean of the frames must drift more slowly; 0: not checked
+  double window_s = 60;        ///< of frames from which the drift is computed
+  double timeout_s = 3600;     ///< the run ends if the drift is not below the bound by then
+  /// Returns whether the run waits.
+  [[nodiscard]] bool stated() const { return time_s > 0 || drift_k_per_min > 0; }
+  bool operator==(const WarmUpPlan&) const = default;
+};
+
 /// [camera]: the real or emulated camera. Without an id the plan can only be simulated.
 struct CameraPlan {
   std::string id;                                ///< as listed by `todbench devices`, e.g. "gige:FLIR-48000123"
@@ -39,6 +50,7 @@ struct CameraPlan {
   ContrastUnit contrast = ContrastUnit::kelvin;  ///< camera only; the twin is measured in kelvin
   std::string frame_size;                        ///< "640x512": requested size; empty: chosen by the back end
   std::string nuc_command;                       ///< feature that triggers a correction; empty: found by name
+  WarmUpPlan warm_up{};
   bool operator==(const CameraPlan&) const = default;
 };
 
@@ -51,6 +63,21 @@ enum class TargetKind {
 inline constexpr std::array all_target_kinds{TargetKind::scpi, TargetKind::prompt, TargetKind::scene,
                                              TargetKind::display};
 [[nodiscard]] std::string_view to_string(TargetKind kind);
+
+/// [target] collimator: a mirror or lens that shows the plate at infinity. It replaces the distance.
+struct CollimatorPlan {
+  double focal_length_mm = 0;    ///< 0: no collimator
+  double focal_length_u_mm = 0;  ///< standard uncertainty
+  double transmission = 1;       ///< of a contrast; with a table its mean, once the plan is loaded
+  double transmission_u = 0;     ///< standard uncertainty
+  /// Table: wavelengths in rising order and the transmission at each. The mean over the camera's band is used.
+  std::vector<double> wavelengths_um{}, transmissions{};
+  /// Temperature of its mirrors; empty: that of the air.
+  std::optional<double> mirror_temperature_c{};
+  double blur_mrad = 0;  ///< aberration: standard deviation of a normal blur per axis
+  [[nodiscard]] bool stated() const { return focal_length_mm > 0; }
+  bool operator==(const CollimatorPlan&) const = default;
+};
 
 /// Section [target]. Every combination of its lists is shown.
 struct TargetPlan {
@@ -65,7 +92,9 @@ struct TargetPlan {
   int display_width_px = 1920, display_height_px = 1080;
   double display_pixel_mm = 0, display_span_k = 0, display_gamma = 1, display_settle_s = 0.2;
   std::vector<double> display_luminance{0, 1};  ///< replaces display_gamma: at equally spaced levels, black to white
-  double distance_m = 2;                        ///< entrance pupil to plate; required in a file
+  /// Entrance pupil to plate, or the focal length of the collimator. A file states either this or a collimator.
+  double distance_m = 2;
+  CollimatorPlan collimator{};
   std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
   std::vector<Mounting> mountings{all_mountings.begin(), all_mountings.end()};
   /// How many of `mountings`, the first ones, show a plate: one number for all plates, or one for each of `plates` in
@@ -247,12 +276,23 @@ inline constexpr std::array all_pixel_areas{PixelArea::plate, PixelArea::frame};
   return area == PixelArea::frame ? "frame" : "plate";
 }
 
+/// Rule by which a pixel is bad.
+enum class PixelRule {
+  own,        ///< the keys pixels_response, pixels_offset and pixels_noisy
+  gbt_17444,  ///< GB/T 17444-2013: response below half of the mean, noise above twice the mean
+};
+inline constexpr std::array all_pixel_rules{PixelRule::own, PixelRule::gbt_17444};
+[[nodiscard]] constexpr std::string_view to_string(PixelRule rule) {
+  return rule == PixelRule::gbt_17444 ? "gbt-17444" : "own";
+}
+
 /// Section [measures]: physical measures of the camera, after the trials with the same target, and of the twin.
 struct MeasuresPlan {
   bool noise = false;  ///< temporal noise, NETD and 3-D noise of the first plate at contrast 0
   int noise_frames = CameraMeasuresOptions{}.noise_frames;  ///< frames of the noise cube
   bool pixels = false;                                      ///< bad and substituted pixels, from the noise cube
   PixelArea pixels_area = PixelArea::plate;
+  PixelRule pixel_rule = PixelRule::own;
   double pixels_response =
       BadPixelRules{}.dead_responsivity;  ///< dead: response deviates from the median by more than this share
   double pixels_offset =
@@ -287,6 +327,17 @@ struct MeasuresPlan {
   double source_size_delta_t_k = CameraMeasuresOptions{}.source_delta_t_k;  ///< contrast of the plate
   int source_size_frames = CameraMeasuresOptions{}.source_frames;  ///< averaged; without contrast twice as many
   double source_size_px = CameraMeasuresOptions{}.source_size_px;  ///< side of the source whose loss is reported
+  bool absolute = false;                ///< accuracy, non-uniformity and range over absolute temperatures
+  std::string absolute_plate = "open";  ///< plate whose cut-out is larger than the picture, by name or file
+  std::vector<double> absolute_temperatures_k{285, 290, 295, 300, 305};  ///< of the black body, in order
+  int absolute_frames = AbsoluteOptions{}.frames;                        ///< averaged at each temperature
+  /// Shift of the source on the stage by which the patterns of camera and source are told apart; 0: they are not.
+  int absolute_shift_px = AbsoluteOptions{}.shift_px;
+  bool timing = false;         ///< frame rate, jitter, gaps
+  int timing_frames = 500;     ///< observed
+  bool latency = false;        ///< from runs of the stage on the clock of the camera
+  double latency_mrad_s = 50;  ///< speed of the runs
+  int latency_runs = 8;        ///< to the right and to the left in turn
   bool operator==(const MeasuresPlan&) const = default;
 
   /// Returns whether any measure is on.
@@ -307,7 +358,10 @@ inline constexpr std::array measure_keys{MeasureKey{"noise", &MeasuresPlan::nois
                                          MeasureKey{"triangles", &MeasuresPlan::triangles},
                                          MeasureKey{"mtf", &MeasuresPlan::mtf},
                                          MeasureKey{"ctf", &MeasuresPlan::ctf},
-                                         MeasureKey{"source_size", &MeasuresPlan::source_size}};
+                                         MeasureKey{"source_size", &MeasuresPlan::source_size},
+                                         MeasureKey{"absolute", &MeasuresPlan::absolute},
+                                         MeasureKey{"timing", &MeasuresPlan::timing},
+                                         MeasureKey{"latency", &MeasuresPlan::latency}};
 
 /// Section [motion]: passes of a plate on a moving stage, for `todbench dynamic PLAN`.
 struct MotionPlan {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "acquisition/core/control_text.h"
+#include "bench/plan/collimator.h"
 #include "bench/plan/quantity.h"
 #include "bench/text/text.h"
 #include "tod/instruments/instrument_line.h"
@@ -308,6 +309,62 @@ ValueMistakes check_source_size_contrast(const Plan& plan, std::size_t /*row*/) 
   return {{std::nullopt, "the size-of-source effect needs a contrast other than 0"}};
 }
 
+ValueMistakes check_absolute_temperatures(const Plan& plan, std::size_t /*row*/) {
+  if (!plan.measures.absolute) return {};
+  const std::vector<double>& temperatures = plan.measures.absolute_temperatures_k;
+  ValueMistakes mistakes;
+  constexpr std::size_t least = 3;
+  if (temperatures.size() < least)
+    mistakes.push_back({std::nullopt, "expected at least three temperatures, found " +
+                                          number_text(static_cast<double>(temperatures.size()))});
+  for (std::size_t i = 1; i < temperatures.size(); ++i) {
+    if (!(temperatures[i] > temperatures[i - 1]))
+      mistakes.push_back({i, "temperatures must rise: expected more than " + number_text(temperatures[i - 1]) +
+                                 " K, found " + number_text(temperatures[i]) + " K"});
+  }
+  if (plan.target.kind != TargetKind::scpi)
+    mistakes.push_back({std::nullopt,
+                        "absolute temperatures need a black body with an absolute set-point: [target] kind must be "
+                        "\"scpi\""});
+  return mistakes;
+}
+
+ValueMistakes check_distance(const Plan& plan, std::size_t /*row*/) {
+  const CollimatorPlan& collimator = plan.target.collimator;
+  constexpr double rounding = 1e-9;
+  const double focal_length_m = 1e-3 * collimator.focal_length_mm;
+  if (!collimator.stated() || std::abs(plan.target.distance_m / focal_length_m - 1) < rounding) return {};
+  return {{std::nullopt, "the plan states a distance of " + number_text(plan.target.distance_m) +
+                             " m and a collimator of " + number_text(collimator.focal_length_mm) +
+                             " mm: remove one of them"}};
+}
+
+ValueMistakes check_focal_length(const Plan& plan, std::size_t /*row*/) {
+  const CollimatorPlan& collimator = plan.target.collimator;
+  if (!collimator.stated()) {
+    if (collimator == CollimatorPlan{}) return {};
+    return {{std::nullopt, "missing: the angle of a triangle is its size over the focal length of the collimator"}};
+  }
+  if (plan.target.kind == TargetKind::display)
+    return {{std::nullopt, "a monitor is not shown through a collimator: [target] kind must not be \"display\""}};
+  return {};
+}
+
+ValueMistakes check_collimator_table(const Plan& plan, std::size_t /*row*/) {
+  const CollimatorPlan& collimator = plan.target.collimator;
+  const std::vector<double>& wavelengths = collimator.wavelengths_um;
+  if (wavelengths.size() != collimator.transmissions.size())
+    return {{std::nullopt, "expected one transmission for each of " +
+                               number_text(static_cast<double>(wavelengths.size())) + " wavelengths, found " +
+                               number_text(static_cast<double>(collimator.transmissions.size()))}};
+  for (std::size_t i = 1; i < wavelengths.size(); ++i) {
+    if (!(wavelengths[i] > wavelengths[i - 1]))
+      return {{std::nullopt, "wavelengths must rise, found " + number_text(wavelengths[i]) + " um after " +
+                                 number_text(wavelengths[i - 1]) + " um"}};
+  }
+  return {};
+}
+
 ValueMistakes check_response(const Plan& plan, std::size_t /*row*/) {
   if (!plan.measures.response) return {};
   ValueMistakes mistakes;
@@ -406,7 +463,7 @@ ValueMistakes check_measure_limits(const Plan& plan, std::size_t row) {
 ValueMistakes check_require(const Plan& plan, std::size_t /*row*/) {
   if (!plan.uncertainty.require) return {};
   std::string missing;
-  for (const BudgetInput input : not_stated(plan.uncertainty)) {
+  for (const BudgetInput input : not_stated(budget_with_collimator(plan, {}))) {
     // The run adds this row itself.
     if (input == BudgetInput::air_path && plan.target.air_humidity_percent > 0 && plan.target.kind != TargetKind::scene)
       continue;

@@ -65,6 +65,14 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_ctf_contrast(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_source_size_contrast(const Plan& plan, std::size_t row);
+/// Three different temperatures in the range of a black body, if absolute temperatures are requested.
+[[nodiscard]] ValueMistakes check_absolute_temperatures(const Plan& plan, std::size_t row);
+/// The focal length of the collimator, if there is one.
+[[nodiscard]] ValueMistakes check_distance(const Plan& plan, std::size_t row);
+/// The other keys of the collimator need a focal length; no collimator before a monitor.
+[[nodiscard]] ValueMistakes check_focal_length(const Plan& plan, std::size_t row);
+/// As many wavelengths as transmissions, in rising order.
+[[nodiscard]] ValueMistakes check_collimator_table(const Plan& plan, std::size_t row);
 /// If a response time is requested: a step large enough to observe, and a target with a known settling time.
 [[nodiscard]] ValueMistakes check_response(const Plan& plan, std::size_t row);
 /// One of the contrasts of the target, not in an earlier row.

@@ -6,12 +6,12 @@ namespace todbench {
 
 const std::vector<PlanSection>& plan_sections() {
   static const std::vector<PlanSection> sections{
-      about_section(),       camera_section(),   target_section(),        observer_section(),
-      simulation_section(),  schedule_section(), fit_section(),           measurement_section(),
-      measures_section(),    limits_section(),   acuity_limits_section(), measure_limits_section(),
-      zone_limits_section(), fleet_section(),    uncertainty_section(),   budget_row_section(),
-      instrument_section(),  module_section(),   motion_section(),        report_section(),
-      display_section()};
+      about_section(),         camera_section(),         warm_up_section(),     collimator_section(),
+      target_section(),        observer_section(),       simulation_section(),  schedule_section(),
+      fit_section(),           measurement_section(),    measures_section(),    limits_section(),
+      acuity_limits_section(), measure_limits_section(), zone_limits_section(), fleet_section(),
+      uncertainty_section(),   budget_row_section(),     instrument_section(),  module_section(),
+      motion_section(),        report_section(),         display_section()};
   return sections;
 }
 

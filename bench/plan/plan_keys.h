@@ -54,6 +54,13 @@ enum class Required {
   always,
 };
 
+/// Condition under which another key of the plan replaces a key.
+struct KeyReplaced {
+  std::function<bool(const Plan&)> by{};  ///< true: a file must not have the key, and a plan is written without it
+  std::string_view sentence{};            ///< mistake of a file that has the key nevertheless
+  [[nodiscard]] bool in(const Plan& plan) const { return by && by(plan); }
+};
+
 struct PlanKey {
   std::string_view name;
   KeyType type;
@@ -62,6 +69,7 @@ struct PlanKey {
   KeyPlace place{};
   Required required = Required::never;
   KeyFallback fallback{};
+  KeyReplaced replaced{};
   FormLine form{};
   KeyOption option{};
   /// Replaces the range of the type if the rest of the plan narrows it. The key is then required.

@@ -69,6 +69,7 @@ class PlanReader {
 
  private:
   [[nodiscard]] bool required(const TomlReader& table, const PlanKey& key) const {
+    if (key.replaced.in(plan_)) return false;
     if (key.narrowed && key.narrowed(plan_)) return true;
     return key.required == Required::always || (key.required == Required::with_section && table.present());
   }
@@ -82,6 +83,7 @@ class PlanReader {
       missing_.insert({at.key, at.row});
       return;
     }
+    if (table.has(name) && key.replaced.in(plan_)) table.reject(name, std::string(key.replaced.sentence));
     const KeyValue fallback = key.fallback.value ? key.fallback.value(plan_, parts_) : key.place.get(plan_, at.row);
     key.place.set(plan_, at.row, read_value(type, table, name, fallback));
     if (std::holds_alternative<ResourceKey>(type) || std::holds_alternative<ResourcesKey>(type))

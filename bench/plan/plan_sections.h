@@ -23,6 +23,10 @@ inline constexpr NumberRange share = NumberRange::between(0, 1);
 [[nodiscard]] PlanSection module_section();
 [[nodiscard]] PlanSection report_section();
 
+// condition_keys.cpp
+[[nodiscard]] PlanSection warm_up_section();
+[[nodiscard]] PlanSection collimator_section();
+
 // display_keys.cpp
 [[nodiscard]] PlanSection display_section();
 

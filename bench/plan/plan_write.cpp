@@ -11,6 +11,7 @@ namespace {
 
 void write_keys(std::string& text, const PlanSection& section, const Plan& plan, std::size_t row) {
   for (const PlanKey& key : section.keys) {
+    if (key.replaced.in(plan)) continue;
     if (!key.written_at_default && key.place.get(plan, row) == default_of({&section, &key, row})) continue;
     const std::optional<std::string> value = toml_value(key.type, key.place.get(plan, row));
     if (value) text += std::string(key.name) + " = " + *value + "\n";

@@ -51,7 +51,8 @@ struct ReportData {
 
   std::optional<SourceInfo> camera;  ///< unit under test, as read from the device; empty: simulation only
   std::string temperature_scale;     ///< of the camera, in words; empty: as described by the scale in `camera`
-  double distance_m = 0;             ///< entrance pupil to plate; 0: not stated
+  double distance_m = 0;             ///< entrance pupil to plate, or focal length of a collimator; 0: not stated
+  bool collimated = false;           ///< the plate is behind a collimator
   double ifov_mrad = 0;              ///< 0: not stated
   std::string target;                ///< instruments with serial numbers
   std::vector<TargetPlate> plates;   ///< in identity mounting

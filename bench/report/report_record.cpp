@@ -106,7 +106,8 @@ Section set_up_section(const ReportData& data) {
   Section section{"Set-up and geometry", {}};
   section.blocks.emplace_back(
       ValueTable{"",
-                 {{"Distance, entrance pupil to plate", number_or_missing(data.distance_m, 4, "m", not_in_plan)},
+                 {{data.collimated ? "Focal length of the collimator" : "Distance, entrance pupil to plate",
+                   number_or_missing(data.distance_m, 4, "m", not_in_plan)},
                   {"IFOV of a pixel", number_or_missing(data.ifov_mrad, 4, "mrad", not_in_plan)},
                   {"One pixel on the plate", number_or_missing(field_mm, 4, "mm", "needs distance and IFOV")},
                   {"Target", text_or_missing(data.target, "not recorded")},

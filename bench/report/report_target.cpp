@@ -79,7 +79,8 @@ std::optional<Table> target_table(const ReportData& data) {
   const auto air = data.presentations.front().air_transmittance;
   if (air) {
     rows.caption +=
-        ". The air transmits " + shown(100 * *air, 2) +
+        ". " + std::string(data.collimated ? "Collimator and air transmit " : "The air transmits ") +
+        shown(100 * *air, 2) +
         " % of the contrast, so the observed contrast is compared with the read-back times this transmittance";
     rows.header[5] = "Observed − read back × transmittance (K)";
     rows.header.insert(rows.header.begin() + 2, "Read back × transmittance (K)");

@@ -81,7 +81,7 @@ class Walk {
   }
 
   /// Counts the requests of [measures] after the trials, in the order of measure_camera().
-  void measure(const TargetState& last, const std::string& first_plate) {
+  void measure(const TargetState& last, const std::string& first_plate, double plate_width_mm) {
     const MeasuresPlan& measures = plan_.measures;
     if (!measures.any()) return;
     const TargetPlan& target = plan_.target;
@@ -119,6 +119,29 @@ class Walk {
       change(new_plate_s, measures.source_size_frames);
       for (int i = 0; i < 2; ++i) change(target.contrast_change_s, measures.source_size_frames);
     }
+    if (measures.timing) change(target.contrast_change_s, measures.timing_frames);
+    if (measures.latency) {
+      for (int i = 0; i < measures.latency_runs; ++i) {
+        change(target.shift_change_s, 0);
+        time_.changes_s += 0.1 * plate_width_mm / (measures.latency_mrad_s * target.distance_m);
+      }
+    }
+    if (measures.absolute) add_absolute(new_plate_s);
+  }
+
+  /// Both passes over the temperatures, then both halves of the shifted pictures, in the order of measure_absolute().
+  void add_absolute(double new_plate_s) {
+    const MeasuresPlan& measures = plan_.measures;
+    constexpr int passes = 2, places = 5;
+    const auto change = [&](double seconds) {
+      time_.changes_s += seconds;
+      time_.frames += static_cast<std::uint64_t>(plan_.measurement.frames_after_change + measures.absolute_frames);
+    };
+    for (std::size_t i = 0; i < passes * measures.absolute_temperatures_k.size(); ++i)
+      change(i == 0 ? new_plate_s : plan_.target.contrast_change_s);
+    if (measures.absolute_shift_px == 0) return;
+    for (int i = 0; i < passes * places; ++i)
+      change(i == 0 ? plan_.target.contrast_change_s : plan_.target.shift_change_s);
   }
 
   [[nodiscard]] BenchTime finished(double frame_rate_hz) {
@@ -127,6 +150,9 @@ class Walk {
       time_.changes_s = 0;
       return time_;
     }
+    // The warm-up of the camera precedes the run; a drift adds at least its window.
+    const WarmUpPlan& warm_up = plan_.camera.warm_up;
+    time_.changes_s += std::max(warm_up.time_s, warm_up.drift_k_per_min > 0 ? warm_up.window_s : 0);
     time_.frames_s = frame_rate_hz > 0 ? static_cast<double>(time_.frames) / frame_rate_hz : 0;
     const double running = time_.changes_s + time_.frames_s;
     if (plan_.camera.nuc_interval_s > 0)
@@ -194,7 +220,7 @@ BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, c
     walk.present(before, state);
     before = &state;
   }
-  if (before != nullptr && !plates.empty()) walk.measure(*before, plates.front().name);
+  if (before != nullptr && !plates.empty()) walk.measure(*before, plates.front().name, plates.front().width_mm);
   return walk.finished(frame_rate_hz);
 }
 

@@ -129,6 +129,7 @@ Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_
     options.settling_band = plan.target.contrast_settling_band_percent / 100;
   if (plan.target.max_contrast_lag_s.value_or(0) > 0)
     options.max_relative_rate_per_s = lag_share / *plan.target.max_contrast_lag_s;
+  if (plan.measures.absolute) options.temperatures_k = plan.measures.absolute_temperatures_k;
   return open_scpi_target(options, stop);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -122,7 +123,13 @@ EmulationArguments emulation_for(const Plan& plan) {
   if (plan.measures.mtf) add(plan.measures.mtf_plate);
   if (plan.measures.ctf) add(plan.measures.ctf_plate);
   if (plan.measures.source_size) add(plan.measures.source_size_plate);
+  if (plan.measures.absolute) add(plan.measures.absolute_plate);
   arguments.distance_m = plan.target.distance_m;
+  if (const CollimatorPlan& collimator = plan.target.collimator; collimator.stated()) {
+    arguments.collimator_transmission = collimator.transmission;
+    arguments.collimator_mirror_c = collimator.mirror_temperature_c.value_or(plan.target.air_temperature_c);
+    arguments.collimator_blur_mrad = collimator.blur_mrad;
+  }
   arguments.black_body_port = 0;
   arguments.stage_port = 0;
   arguments.seed = plan.seed + 1;  // a separate camera: its noise is not the twin's
@@ -171,6 +178,13 @@ Result<LaboratoryOptions> laboratory_options(const EmulationArguments& arguments
                               .gamma = arguments.monitor_gamma,
                               .levels = LevelsInFile(arguments.monitor_file)};
   }
+  if (arguments.collimator_blur_mrad > 0)
+    options.sensor.aberration_sigma_pitch =
+        std::hypot(options.sensor.aberration_sigma_pitch, arguments.collimator_blur_mrad / options.sensor.ifov_mrad());
+  options.mirror_transmission = arguments.collimator_transmission;
+  options.mirror_temperature_k = arguments.collimator_mirror_c + 273.15;
+  options.latency_s = 1e-3 * arguments.latency_ms;
+  options.black_body.celsius = arguments.celsius;
   options.plan = full_plan(options.sensor, {}, {}, any_motion);  // the stage may run
   for (const auto& name : arguments.plates) {
     auto plate = load_plate(name);

@@ -32,6 +32,11 @@ struct EmulationArguments {
   std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses
   /// Standard deviation of the stage position while the stage moves.
   double stage_jitter_mm = 0;
+  /// Collimator before the plate: its transmission, the temperature of its mirrors, its blur. The distance is then its
+  /// focal length.
+  double collimator_transmission = 1, collimator_mirror_c = 21.85, collimator_blur_mrad = 0;
+  double latency_ms = 0;                      ///< of the time stamps of frames
+  bool celsius = false;                       ///< the black body answers absolute temperatures in degrees Celsius
   double black_body_time_constant_s = 0.004;  ///< of the approach to a set-point, > 0
   /// Drift of the camera after a correction, initial rate in K/min: mean of the picture, standard deviation over the
   /// pixels; their time constant, 0: linear drift.

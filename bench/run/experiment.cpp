@@ -31,6 +31,7 @@
 #include "bench/run/simulated_responses.h"
 #include "bench/run/simulated_set_up.h"
 #include "bench/run/twin_shapes.h"
+#include "bench/run/warm_up_gate.h"
 #include "bench/text/text.h"
 #include "tod/adequacy/adequacy.h"
 #include "tod/measurement/contrast_error.h"
@@ -559,6 +560,19 @@ std::optional<CameraMeasures> measures_of_camera(MeasuredRun& measured, const Pl
   return measures ? *std::move(measures) : std::nullopt;
 }
 
+/// The warm-up of [camera.warm_up]. A camera that warms up corrects itself often.
+Result<std::string> warmed_up(FrameSource& camera, const Plan& plan, const std::stop_token& stop) {
+  constexpr double most_rejected_share = 0.5;
+  FrameTakerOptions taking;
+  taking.frames_after_change = 0;
+  taking.nuc_wait_s = plan.camera.nuc_wait_s;
+  taking.max_rejected_share = most_rejected_share;
+  taking.frame_timeout = std::chrono::milliseconds(plan.measurement.frame_timeout_ms);
+  taking.integrity.width = camera.info().width;
+  taking.integrity.height = camera.info().height;
+  return wait_for_warm_up(camera, plan.camera.warm_up, taking, stop);
+}
+
 /// Work started in parallel to the camera.
 struct BackgroundWork {
   BackgroundTask<Pairs>* pairs;  ///< null: none are made
@@ -723,6 +737,14 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   for (const auto& warning : info.warnings) note(*folder, listener, warning);
   for (const auto& warning : bench.warnings) note(*folder, listener, warning);
   for (const auto& warning : inputs.warnings) note(*folder, listener, warning);
+  std::string warm_up;
+  if (plan.camera.warm_up.stated() && !options.host.added.as_recorded) {
+    phase(*folder, listener, "waiting until " + info.model + " is warm");
+    auto warm = warmed_up(*bench.camera, plan, stop);
+    if (!warm) return abandon(open, plan, provenance, with_context("warm-up", warm.error()));
+    warm_up = *std::move(warm);
+    note(*folder, listener, warm_up);
+  }
   std::shared_ptr<FrameStreamWriter> recording;
   if (plan.measurement.record_frames) {
     auto begun = record_bench(bench, folder->path());
@@ -749,6 +771,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   MeasurementResult& result = measured->result;
   result.notes.insert(result.notes.end(), inputs.warnings.begin(), inputs.warnings.end());
   if (!forecast.empty()) result.notes.push_back(forecast);
+  if (!warm_up.empty()) result.notes.push_back(warm_up);
   provenance.camera_optics = surrogate.record();
   if (const auto sentence = surrogate.sentence()) {
     note(*folder, listener, *sentence);

@@ -84,6 +84,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   inputs.mtf_plate = loaded.parts().mtf_plate;
   inputs.ctf_plate = loaded.parts().ctf_plate;
   inputs.source_plate = loaded.parts().source_plate;
+  inputs.open_plate = loaded.parts().open_plate;
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
   inputs.stated_noise_counts = noise_in_counts(loaded.sensor());
@@ -140,12 +141,16 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
 }
 
 Result<std::optional<double>> stated_air(const Plan& plan, const SensorSpec& sensor) {
-  if (!(plan.target.air_humidity_percent > 0) || plan.target.kind == TargetKind::scene) return std::optional<double>();
+  if (plan.target.kind == TargetKind::scene) return std::optional<double>();
+  const CollimatorPlan& collimator = plan.target.collimator;
+  const bool through = collimator.stated() && collimator.transmission != 1;
+  if (!(plan.target.air_humidity_percent > 0))
+    return through ? std::optional(collimator.transmission) : std::optional<double>();
   const auto found = bench_transmittance(
       {.temperature_c = plan.target.air_temperature_c, .humidity_percent = plan.target.air_humidity_percent},
       plan.target.distance_m, {sensor.wavelength_min_um, sensor.wavelength_max_um});
   if (!found) return fail("[target] air_humidity_percent", found.error());
-  return std::optional(*found);
+  return std::optional(through ? collimator.transmission * *found : *found);
 }
 
 void take_answers(MeasurementOptions& options, const Plan& plan, const ExperimentInputs& inputs) {

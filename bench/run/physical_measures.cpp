@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <utility>
 
+#include "bench/plan/collimator.h"
 #include "bench/run/camera_settings.h"
 #include "bench/run/module_chain.h"
 #include "bench/run/plate_picture.h"
@@ -20,6 +22,8 @@
 
 namespace todbench {
 namespace {
+
+constexpr double zero_celsius_k = 273.15;
 
 /// Adds the transfer function of the sensor along the normal of each edge. Its frequencies are per detector pitch,
 /// those of a picture per sample.
@@ -84,6 +88,10 @@ std::optional<PixelOptions> pixel_options(const Plan& plan) {
   options.rules.bad = {
       .dead_responsivity = measures.pixels_response, .noisy = measures.pixels_noisy, .offset = measures.pixels_offset};
   options.rules.blinking = measures.pixels_blinking;
+  // GB/T 17444-2013 as known from abstracts: response below half of the mean, noise above twice the mean, no rule for
+  // the level. Medians stand for the means, because bad pixels change a mean.
+  if (measures.pixel_rule == PixelRule::gbt_17444)
+    options.rules.bad = {.dead_responsivity = 0.5, .noisy = 2, .offset = std::numeric_limits<double>::max()};
   for (const ZoneLimit& zone : plan.limits.zones) {
     if (zone.name != whole_frame_zone)
       options.zones.push_back({zone.name, zone.area[0], zone.area[1], zone.area[2], zone.area[3]});
@@ -99,6 +107,53 @@ std::optional<ResponseOptions> response_options(const Plan& plan) {
   options.steps = measures.response_steps, options.frames = measures.response_frames;
   if (measures.response_settling_ms) options.settling_s = 1e-3 * *measures.response_settling_ms;
   return options;
+}
+
+/// Standard uncertainty of the temperature that a correct camera shows: rows of the black body in kelvin, and the
+/// transmission of a collimator for the largest distance from its mirrors.
+double source_u_k(const Plan& plan) {
+  double variance = 0;
+  for (const BudgetRow& row : plan.uncertainty.rows) {
+    const BudgetInput input = input_of(row);
+    const auto unit = budget_unit(InputKind::contrast, row.unit);
+    const bool of_black_body =
+        input == BudgetInput::black_body_calibration || input == BudgetInput::black_body_emissivity ||
+        input == BudgetInput::black_body_ambient || input == BudgetInput::black_body_uniformity ||
+        input == BudgetInput::black_body_stability;
+    if (of_black_body && unit && !unit->relative && !row.sensitivity)
+      variance += std::pow(standard_of(row) * unit->factor, 2);
+  }
+  const CollimatorPlan& collimator = plan.target.collimator;
+  if (!collimator.stated()) return std::sqrt(variance);
+  const double mirrors_k = collimator.mirror_temperature_c.value_or(plan.target.air_temperature_c) + zero_celsius_k;
+  double farthest_k = 0;
+  for (const double temperature_k : plan.measures.absolute_temperatures_k)
+    farthest_k = std::max(farthest_k, std::abs(temperature_k - mirrors_k));
+  return std::hypot(std::sqrt(variance), collimator.transmission_u * farthest_k);
+}
+
+std::optional<AbsoluteOptions> absolute_options(const Plan& plan, const ExperimentInputs& inputs) {
+  const MeasuresPlan& measures = plan.measures;
+  if (!measures.absolute || !inputs.open_plate) return std::nullopt;
+  AbsoluteOptions options{.plate = inputs.open_plate->name,
+                          .temperatures_k = measures.absolute_temperatures_k,
+                          .frames = measures.absolute_frames,
+                          .shift_px = measures.absolute_shift_px,
+                          .pixel_mm = plan.camera.ifov_mrad * plan.target.distance_m,
+                          .source_u_k = source_u_k(plan)};
+  const SpectralBand band{inputs.sensor.wavelength_min_um, inputs.sensor.wavelength_max_um};
+  if (plan.target.collimator.stated())
+    options.expected_k = [plan, band](double black_body_k) { return seen_through_k(plan, band, black_body_k); };
+  return options;
+}
+
+std::optional<LatencyOptions> latency_options(const Plan& plan, const ExperimentInputs& inputs) {
+  if (!plan.measures.latency || inputs.plates.empty()) return std::nullopt;
+  // The plate stays in the picture: it moves by a tenth of its width.
+  constexpr double share_of_plate = 0.1;
+  return LatencyOptions{.speed_mm_s = plan.measures.latency_mrad_s * plan.target.distance_m,
+                        .travel_mm = share_of_plate * inputs.plates.front().width_mm,
+                        .runs = plan.measures.latency_runs};
 }
 
 std::vector<double> triangle_contrasts(const Plan& plan) {
@@ -144,6 +199,9 @@ MaybeMeasures measures_of_bench(const Plan& plan, const MeasurementOptions& opti
                                   .source_delta_t_k = plan.measures.source_size_delta_t_k,
                                   .source_frames = plan.measures.source_size_frames,
                                   .source_size_px = plan.measures.source_size_px,
+                                  .absolute = absolute_options(plan, inputs),
+                                  .timing_frames = plan.measures.timing ? plan.measures.timing_frames : 0,
+                                  .latency = latency_options(plan, inputs),
                                   .measurement = options},
                                  *bench.host, std::move(stop));
   if (!measures) return tl::unexpected(measures.error());
@@ -213,6 +271,8 @@ namespace {
 /// simulated_measures() without messages. Precondition: the plan requests some.
 MaybeMeasures measures_of_sensor(const LoadedPlan& loaded, const ExperimentInputs& inputs, std::stop_token stop) {
   Plan plan = loaded.plan();
+  // A scene has no absolute set-point and no clock: these measures are those of a real camera.
+  plan.measures.absolute = plan.measures.timing = plan.measures.latency = false;
   const auto model = whole_sensor(loaded, inputs);
   // The sensor does not drift, so the default time is enough; a program in its place gets the shortest.
   plan.measures.drift_s =

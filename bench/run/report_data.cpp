@@ -95,6 +95,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
     data.temperature_scale = provenance.camera->calibration;
   }
   data.distance_m = plan.target.distance_m;
+  data.collimated = plan.target.collimator.stated();
   data.ifov_mrad = plan.camera.ifov_mrad;
   data.target = provenance.target;
   data.plates = session.parts.plates;

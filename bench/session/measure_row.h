@@ -36,11 +36,15 @@ struct MeasureRow {
 [[nodiscard]] MeasureRow mtf_row();
 [[nodiscard]] MeasureRow ctf_row();
 [[nodiscard]] MeasureRow source_size_row();
+[[nodiscard]] MeasureRow absolute_row();
+[[nodiscard]] MeasureRow timing_row();
+[[nodiscard]] MeasureRow latency_row();
 
 /// Returns all rows in the order of their quantities.
 [[nodiscard]] inline const auto& measure_table() {
-  static const std::array rows{transfer_row(), geometry_row(), noise_row(), drift_row(),      response_row(),
-                               pixels_row(),   mtf_row(),      ctf_row(),   source_size_row()};
+  static const std::array rows{transfer_row(),    geometry_row(), noise_row(),  drift_row(),
+                               response_row(),    pixels_row(),   mtf_row(),    ctf_row(),
+                               source_size_row(), absolute_row(), timing_row(), latency_row()};
   return rows;
 }
 

@@ -32,6 +32,16 @@ std::string conditions_of(const NoiseMeasure& noise) {
   return text;
 }
 
+/// Errors of the fitted surface by the pattern of the pixels. The six terms have a leverage of 26 / N in a corner, so
+/// that the difference of two corners has the variance 52 / N of a pixel's.
+Interval shading_interval(const NoiseMeasure& noise) {
+  if (noise.pattern_k.empty()) return {};
+  cv::Scalar mean, sd;
+  cv::meanStdDev(noise.pattern_k, mean, sd);
+  const double half = 1.96 * sd[0] * std::sqrt(52 / static_cast<double>(noise.pattern_k.total()));
+  return {.low = std::max(0.0, noise.shading_range_k - half), .high = noise.shading_range_k + half};
+}
+
 bool too_coarse(const NoiseMeasure& noise) {
   return noise.noise_counts && *noise.noise_counts < least_measurable_noise_counts;
 }
@@ -39,7 +49,7 @@ bool too_coarse(const NoiseMeasure& noise) {
 void add_noise(MeasureLines& out, const CameraMeasures& measures) {
   const NoiseMeasure& noise = *measures.noise;
   const std::string conditions = conditions_of(noise);
-  out.lines.push_back(measure_line("shading_range", noise.shading_range_k, {}, conditions));
+  out.lines.push_back(measure_line("shading_range", noise.shading_range_k, shading_interval(noise), conditions));
   if (noise.noise_counts) out.lines.push_back(measure_line("noise_counts", noise.noise_counts, {}, conditions));
   if (too_coarse(noise)) {
     out.reasons.push_back(fmt::format(

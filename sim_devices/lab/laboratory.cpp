@@ -7,6 +7,7 @@
 
 #include "acquisition/base/rng.h"
 #include "acquisition/core/camera_id.h"
+#include "sim_devices/atmosphere/mirror_radiance.h"
 #include "sim_devices/sensor/contrast_steps.h"
 #include "sim_devices/sensor/moving_scene.h"
 
@@ -65,7 +66,7 @@ struct Laboratory::State {
       next_exposure = first + index + 1;
       since_power_up = index + 1;
       if (monitor) return monitor->expose(first + index);
-      PlateScene scene = scene_at(frame_time_s(index));
+      PlateScene scene = scene_at(frame_time_s(index) - options.latency_s);
       scene.delta_t_k = taken_in_k(scene.delta_t_k, index);
       cv::Mat1w counts = exposed(scene, first + index, index);
       return options.sent_counts ? options.sent_counts(std::move(counts), scene) : counts;
@@ -111,8 +112,14 @@ struct Laboratory::State {
                                     [&](const TargetPlate& p) { return p.name == on_stage.plate; });
     PlateScene scene;
     if (plate != options.plates.end()) scene.plate = mounted(*plate, on_stage.mounting);
-    scene.delta_t_k = heat.delta_t_k;
-    scene.background_k = heat.plate_temperature_k;
+    const auto seen_k = [&](double source_k) {
+      return seen_behind_mirrors_k({options.sensor.wavelength_min_um, options.sensor.wavelength_max_um},
+                                   options.mirror_transmission, options.mirror_temperature_k, source_k);
+    };
+    scene.background_k = seen_k(heat.plate_temperature_k);
+    scene.delta_t_k = options.mirror_transmission == 1
+                          ? heat.delta_t_k
+                          : seen_k(heat.plate_temperature_k + heat.delta_t_k) - scene.background_k;
     scene.distance_m = options.distance_m;
     const auto& real_place_mm = options.stage.real_place_mm;
     scene.shift_mm = real_place_mm ? real_place_mm(on_stage.shift_mm) : on_stage.shift_mm;
@@ -128,6 +135,8 @@ Laboratory::~Laboratory() = default;
 Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options) {
   if (options.plates.empty()) return fail(ErrorCode::invalid_input, "the emulated laboratory needs at least one plate");
   // Written so that NaN fails.
+  if (!(options.mirror_transmission > 0 && options.mirror_transmission <= 1 && options.mirror_temperature_k > 0))
+    return fail(ErrorCode::invalid_input, "the mirrors need a transmission above 0 and up to 1, and a temperature");
   if (!(options.stated_scale > 0)) return fail(ErrorCode::invalid_input, "the stated scale must be above 0");
   auto state = std::make_unique<State>();
   state->options = std::move(options);

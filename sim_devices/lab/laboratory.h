@@ -38,6 +38,9 @@ struct LaboratoryOptions {
   /// Error of the stated scale: stated over true kelvin, from `scene_temperature_k` of the sensor; > 0. Affects only
   /// cameras that state their scale. A scale that the kind of camera fixes is not changed.
   double stated_scale = 1;
+  /// Mirrors between target and camera; a transmission of 1: none.
+  double mirror_transmission = 1, mirror_temperature_k = 295;
+  double latency_s = 0;  ///< time from the exposure of a frame to its time stamp, beyond that of the camera
   BlackBodyOptions black_body;
   PlateStageOptions stage;  ///< its plates are set from `plates`
   /// Upright monitor in front of the camera instead of black body and plate. The instruments run without effect.

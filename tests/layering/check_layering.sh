@@ -49,7 +49,7 @@ BEGIN {
   may["sim_devices/lab/video"] = base " acquisition/v4l2 acquisition/pixel_formats sim_devices/lab/device_nodes"
   may["sim_devices/lab/usb"] = core " acquisition/usb acquisition/pixel_formats sim_devices/lab/device_nodes sim_devices/lab/genicam sim_devices/lab/video"
   lab = "sim_devices/lab/device_nodes sim_devices/lab/genicam sim_devices/lab/instruments sim_devices/lab/gige sim_devices/lab/video sim_devices/lab/usb"
-  may["sim_devices/lab"] = core " acquisition/aravis acquisition/v4l2 tod/plate sim_devices/scene sim_devices/sensor " lab
+  may["sim_devices/lab"] = core " acquisition/aravis acquisition/v4l2 tod/plate sim_devices/atmosphere sim_devices/scene sim_devices/sensor " lab
   science = tod " sim_devices/scene sim_devices/module sim_devices/atmosphere sim_devices/sensor sim_devices/prediction"
   may["bench/text"] = base " tod/psychometric"
   may["bench/picture_files"] = base

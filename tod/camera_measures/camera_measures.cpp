@@ -160,15 +160,19 @@ class Run {
     if (auto shown = show(largest); !shown) return tl::unexpected(shown.error());
     auto picture = taker_.average(options_.measurement.registration_frames, stop_);
     if (!picture) return tl::unexpected(picture.error());
-    RegistrationOptions registration = options_.measurement.registration;
-    registration.expected_scale_px_per_mm = 1 / (options_.measurement.distance_m * options_.measurement.ifov_mrad);
-    auto found = register_plate(picture->kelvin, plate(), registration);
+    auto found = register_plate(picture->kelvin, plate(), registration());
     if (!found) return fail("finding the plate", found.error());
     where_ = *found;
     keep_view(measures, *picture, largest);
     if (options_.geometry) tell_geometry(measures, *picture, largest);
     located_ = true;
     return {};
+  }
+
+  [[nodiscard]] RegistrationOptions registration() const {
+    RegistrationOptions out = options_.measurement.registration;
+    out.expected_scale_px_per_mm = 1 / (options_.measurement.distance_m * options_.measurement.ifov_mrad);
+    return out;
   }
 
   void tell_geometry(CameraMeasures& measures, const AveragedPicture& picture, double delta_t_k) {
@@ -347,7 +351,7 @@ class Run {
       const auto kelvin = to_kelvin(frame);
       if (!kelvin) return std::nullopt;
       const Registration expected = where_.shifted({expected_mm, 0});
-      const auto off_px = measure_shift(*kelvin, plate(), expected, options_.measurement.registration, found_within_px);
+      const auto off_px = measure_shift(*kelvin, plate(), expected, registration(), found_within_px);
       if (!off_px) return std::nullopt;
       const cv::Point2d mm_px = where_.pixel({1, 0}) - where_.pixel({0, 0});
       return expected_mm + off_px->dot(mm_px) / mm_px.dot(mm_px);

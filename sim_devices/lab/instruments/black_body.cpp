@@ -81,6 +81,14 @@ void BlackBody::set_point(double delta_t_k) {
   settling_.since = std::max(time, settling_.since);
 }
 
+double BlackBody::radiator_k(double delta_t_k) const {
+  return options_.ambient_k + (1 + options_.plate_coupling) * delta_t_k;
+}
+
+double BlackBody::difference_k(double radiator_k) const {
+  return (radiator_k - options_.ambient_k) / (1 + options_.plate_coupling);
+}
+
 ScpiLanguage BlackBody::language() {
   using Parameters = std::span<const std::string>;
   const auto number = [this](double BlackBodyState::*value) {
@@ -102,6 +110,28 @@ ScpiLanguage BlackBody::language() {
     if (scpi_keyword(parameters[0], "MINimum")) return scpi_decimal(options_.min_delta_t_k, 4);
     if (scpi_keyword(parameters[0], "MAXimum")) return scpi_decimal(options_.max_delta_t_k, 4);
     return tl::unexpected(ScpiError{-224, "Illegal parameter value"});
+  };
+  const auto set_absolute = [this](Parameters parameters) -> ScpiAnswer {
+    if (auto count = scpi_count(parameters, 1); !count) return tl::unexpected(count.error());
+    const auto value =
+        scpi_number(parameters[0], radiator_k(options_.min_delta_t_k), radiator_k(options_.max_delta_t_k), "K");
+    if (!value) return tl::unexpected(value.error());
+    set_point(difference_k(*value));
+    return "";
+  };
+  const auto get_absolute = [this](Parameters parameters) -> ScpiAnswer {
+    if (parameters.empty()) return scpi_decimal(radiator_k(settling().set_point_k), 4);
+    if (auto count = scpi_count(parameters, 1); !count) return tl::unexpected(count.error());
+    if (scpi_keyword(parameters[0], "MINimum")) return scpi_decimal(radiator_k(options_.min_delta_t_k), 4);
+    if (scpi_keyword(parameters[0], "MAXimum")) return scpi_decimal(radiator_k(options_.max_delta_t_k), 4);
+    return tl::unexpected(ScpiError{-224, "Illegal parameter value"});
+  };
+  const auto absolute = [this](double BlackBodyState::*value) {
+    return [this, value](Parameters parameters) -> ScpiAnswer {
+      if (auto count = scpi_count(parameters, 0); !count) return tl::unexpected(count.error());
+      constexpr double zero_celsius_k = 273.15;
+      return scpi_decimal(state().*value - (options_.celsius ? zero_celsius_k : 0), 4);
+    };
   };
   const auto set_window = [this](Parameters parameters) -> ScpiAnswer {
     if (auto count = scpi_count(parameters, 1); !count) return tl::unexpected(count.error());
@@ -131,8 +161,10 @@ ScpiLanguage BlackBody::language() {
            {"[SOURce:]TEMPerature:STABility:WINDow", set_window},
            {"[SOURce:]TEMPerature:STABility:WINDow?", get_window},
            {"MEASure:TEMPerature:DIFFerence?", number(&BlackBodyState::indicated_delta_t_k)},
-           {"MEASure:TEMPerature:PLATe?", number(&BlackBodyState::plate_temperature_k)},
-           {"MEASure:TEMPerature:BBODy?", number(&BlackBodyState::black_body_temperature_k)},
+           {"[SOURce:]TEMPerature:ABSolute", set_absolute},
+           {"[SOURce:]TEMPerature:ABSolute?", get_absolute},
+           {"MEASure:TEMPerature:PLATe?", absolute(&BlackBodyState::plate_temperature_k)},
+           {"MEASure:TEMPerature:BBODy?", absolute(&BlackBodyState::black_body_temperature_k)},
            {"STATus:OPERation:CONDition?", condition}}};
 }
 

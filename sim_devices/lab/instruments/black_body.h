@@ -5,6 +5,8 @@
 //   [SOURce:]TEMPerature:DIFFerence <K>|MIN|MAX      set-point of radiator minus plate; rounded to the resolution
 //   [SOURce:]TEMPerature:DIFFerence? [MIN|MAX]       the set-point, or its limits
 //   [SOURce:]TEMPerature:STABility:WINDow <K>, ?     largest distance from the set-point that counts as stable
+//   [SOURce:]TEMPerature:ABSolute <K>|MIN|MAX        set-point of the radiator
+//   [SOURce:]TEMPerature:ABSolute? [MIN|MAX]         the set-point, or its limits
 //   MEASure:TEMPerature:DIFFerence?                  reading of the sensors, K
 //   MEASure:TEMPerature:PLATe?  MEASure:TEMPerature:BBODy?   absolute temperatures, K
 //   STATus:OPERation:CONDition?                      bit 1 (value 2, SETTling): not yet stable
@@ -34,6 +36,8 @@ struct BlackBodyOptions {
   double ambient_k = 295;       ///< of the plate at a difference of zero
   /// The radiator heats the plate in front of it: plate = ambient + coupling * difference.
   double plate_coupling = 0.02;
+  /// The absolute readings are in degrees Celsius, against the table of the instrument.
+  bool celsius = false;
   /// Error of the sensor: returns the real difference for an indication of `indicated_k`, K; finite. Called from any
   /// thread. Empty: a perfectly calibrated instrument.
   std::function<double(double indicated_k)> real_delta_t_k{};
@@ -79,6 +83,9 @@ class BlackBody {
   [[nodiscard]] double indicated(const Settling& settling, std::chrono::steady_clock::time_point time) const;
   [[nodiscard]] Settling settling() const;
   void set_point(double delta_t_k);
+  /// Temperature of the radiator at an indicated difference, and its inverse.
+  [[nodiscard]] double radiator_k(double delta_t_k) const;
+  [[nodiscard]] double difference_k(double radiator_k) const;
 
   const BlackBodyOptions options_;
   mutable std::mutex mutex_;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The collimator of a plan: transmission, rows of the budget, temperatures through it.
+#pragma once
+
+#include "bench/plan/plan.h"
+#include "sim_devices/atmosphere/band_radiance.h"
+
+namespace todbench {
+
+/// Mean of a table of transmissions over the band, weighted with the derivative of Planck's law at 295 K; the stated
+/// transmission without a table. A loaded plan has this value in `transmission`.
+[[nodiscard]] double mean_transmission(const CollimatorPlan& collimator, const SpectralBand& band);
+
+/// Temperature that a correct camera shows for a black body behind the collimator: band radiance
+/// transmission L(black body) + (1 - transmission) L(mirrors), as a temperature. The same without a collimator.
+[[nodiscard]] double seen_through_k(const Plan& plan, const SpectralBand& band, double black_body_k);
+
+/// Names of the rows that a collimator adds to a budget.
+inline constexpr std::string_view focal_length_row = "focal length of the collimator";
+inline constexpr std::string_view entrance_pupil_row = "entrance pupil before the collimator";
+inline constexpr std::string_view transmission_row = "transmission of the collimator";
+inline constexpr std::string_view mirrors_row = "mirrors of the collimator";
+inline constexpr std::string_view aberration_row = "aberration of the collimator";
+
+/// Returns the budget of the plan with the rows of the collimator, which replace rows of the same names; unchanged
+/// without a collimator or without a budget.
+/// The entrance pupil has no effect behind a collimator: its row is 0.
+[[nodiscard]] UncertaintyPlan budget_with_collimator(const Plan& plan, const SpectralBand& band);
+
+}  // namespace todbench

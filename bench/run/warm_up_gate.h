@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Gate before a run: waits until the camera is warm.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "acquisition/base/interval.h"
+#include "acquisition/core/frame_source.h"
+#include "bench/plan/plan.h"
+#include "tod/measurement/frame_taker.h"
+
+namespace todbench {
+
+/// Levels of the frames of the last `window_s`, and the drift through them.
+class DriftWindow {
+ public:
+  explicit DriftWindow(double window_s) : window_s_(window_s) {}
+  void add(double time_s, double level_k);
+  /// After a correction the level of earlier frames does not continue.
+  void clear() { points_.clear(); }
+  /// Slope with the 95 % interval in K/min, by least squares; empty before the window is full, or with fewer than ten
+  /// frames.
+  [[nodiscard]] std::optional<Estimate> k_per_min() const;
+
+ private:
+  struct LevelAt {
+    double time_s = 0, level_k = 0;
+  };
+  double window_s_;
+  std::deque<LevelAt> points_;
+};
+
+/// Starts the source, takes frames until the conditions hold, and stops it. Returns a sentence about the warm-up; empty
+/// without conditions. Errors: `calibration` (the camera still drifts at the end of the time limit), those of
+/// FrameTaker::next().
+[[nodiscard]] Result<std::string> wait_for_warm_up(FrameSource& source, const WarmUpPlan& plan,
+                                                   const FrameTakerOptions& taking, const std::stop_token& stop);
+
+}  // namespace todbench

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Temperature of a source behind warm mirrors.
+#pragma once
+
+#include "sim_devices/atmosphere/band_radiance.h"
+
+namespace todbench {
+
+/// Temperature that a camera shows for a black body of `source_k` behind mirrors of this transmission and temperature:
+/// that of the band radiance transmission L(source) + (1 - transmission) L(mirrors). Precondition: temperatures above
+/// 0 K, transmission above 0 and at most 1.
+[[nodiscard]] inline double seen_behind_mirrors_k(const SpectralBand& band, double transmission, double mirrors_k,
+                                                  double source_k) {
+  if (transmission == 1) return source_k;
+  const double radiance =
+      transmission * band_radiance(band, source_k) + (1 - transmission) * band_radiance(band, mirrors_k);
+  return radiation_temperature_k(band, radiance).value_or(source_k);
+}
+
+}  // namespace todbench
