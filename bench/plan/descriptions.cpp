@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/descriptions.h"
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -79,6 +81,24 @@ PlateBars read_bars(TomlReader& table, std::size_t number) {
   const std::string axis = table.choice("axis", std::vector<std::string>{"x", "y"}, std::nullopt);
   bars.angle_deg = table.number("angle_deg", NumberRange::between(-45, 45), 0.0) + (axis == "y" ? 90 : 0);
   return bars;
+}
+
+/// Adds a group of four bars; the bars of a group of five become rectangles "NAME, bar 1" to "NAME, bar 5".
+void add_bars(TomlReader& table, std::size_t number, TargetPlate& plate) {
+  const std::int64_t count = table.whole("bars", 4, 5, 4);
+  const PlateBars group = read_bars(table, number);
+  if (count == 4) {
+    plate.bars.push_back(group);
+    return;
+  }
+  const double angle = group.angle_deg * std::numbers::pi / 180;
+  for (std::int64_t i = 0; i < count; ++i) {
+    plate.rectangles.push_back({group.name + ", bar " + std::to_string(i + 1),
+                                group.position_mm + cv::Point2d(std::cos(angle), std::sin(angle)) *
+                                                        (2 * (static_cast<double>(i) - 2) * group.bar_mm),
+                                {group.bar_mm, group.length_mm},
+                                group.angle_deg});
+  }
 }
 
 /// Optional keys fall back to the default of the struct.
@@ -251,7 +271,7 @@ Result<TargetPlate> parse_plate(const Resource& resource) {
   number = 0;
   for (TomlReader& table : reader.sections("rectangle")) plate.rectangles.push_back(read_rectangle(table, ++number));
   number = 0;
-  for (TomlReader& table : reader.sections("bars")) plate.bars.push_back(read_bars(table, ++number));
+  for (TomlReader& table : reader.sections("bars")) add_bars(table, ++number, plate);
   return checked(reader, resource, std::move(plate));
 }
 

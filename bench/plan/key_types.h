@@ -61,7 +61,7 @@ struct ChoicesKey {
   MayBeEmpty may_be_empty = MayBeEmpty::no;
 };
 /// Use of a plate that a single key names.
-enum class PlateUse { mtf, ctf, source_size, absolute };
+enum class PlateUse { mtf, ctf, source_size, absolute, mrtd };
 /// Name or file of a description.
 struct ResourceKey {
   ResourceKind kind;

@@ -75,6 +75,8 @@ MeasurePlate plate_of(PlateUse use) {
       return {&MeasuresPlan::ctf, &MeasuresPlan::ctf_plate, &PlanParts::ctf_plate};
     case PlateUse::absolute:
       return {&MeasuresPlan::absolute, &MeasuresPlan::absolute_plate, &PlanParts::open_plate};
+    case PlateUse::mrtd:
+      return {&MeasuresPlan::mrtd, &MeasuresPlan::mrtd_plate, &PlanParts::mrtd_plate};
     case PlateUse::source_size:
       break;
   }
@@ -98,7 +100,20 @@ std::vector<ValueMistake> read_letterhead(const Plan& plan, const ResourceFinder
 }
 
 /// Returns the reason why a plate cannot be used for a measure; empty if it can.
-std::string unfit_for(PlateUse use, const TargetPlate& plate) {
+std::string unfit_for(PlateUse use, const TargetPlate& plate, const Plan& plan) {
+  if (use == PlateUse::mrtd) {
+    const auto pairs = bar_pairs(plate);
+    if (pairs.empty())
+      return "an MRTD needs groups of four bars and groups of five bars (bars = 5) that fill the same square";
+    double widest_mm = 0;
+    for (const BarPair& pair : pairs) widest_mm = std::max(widest_mm, pair.four.bar_mm);
+    const double per_pitch = plan.target.distance_m * plan.camera.ifov_mrad / (2 * widest_mm);
+    if (per_pitch <= mrtd_cut_per_pitch) return "";
+    return fmt::format(
+        "its widest bars, {:g} mm, have {:.3g} cycles per pixel at {:g} m: finer than the cut of an "
+        "MRTD, half a cycle per pixel",
+        widest_mm, per_pitch, plan.target.distance_m);
+  }
   if (use == PlateUse::source_size && plate.rectangles.size() < 2)
     return "the plate has fewer than two rectangles, but the size-of-source effect compares square apertures";
   if (use == PlateUse::absolute)
@@ -119,12 +134,14 @@ std::vector<ValueMistake> read_measure_plate(PlateUse use, const Plan& plan, con
   if (!is_asked_for({ResourceKind::plate, use}, plan)) return {};
   Result<TargetPlate> plate = read_part(ResourceKind::plate, reference, find, parts, parse_plate);
   if (!plate) return {{std::nullopt, plate.error().message}};
-  if (const std::string why = unfit_for(use, *plate); !why.empty()) return {{std::nullopt, reference + ": " + why}};
+  if (const std::string why = unfit_for(use, *plate, plan); !why.empty())
+    return {{std::nullopt, reference + ": " + why}};
   for (std::size_t i = 0; i < parts.plates.size(); ++i) {
     if (parts.plates[i].name == plate->name && i < plan.target.plates.size() && plan.target.plates[i] != reference)
       return {{std::nullopt, reference + ": a plate of the trials has the same name, '" + plate->name + "'"}};
   }
-  for (const auto& [other_use, measure] : {std::pair(PlateUse::mtf, "MTF"), std::pair(PlateUse::ctf, "CTF")}) {
+  for (const auto& [other_use, measure] : {std::pair(PlateUse::mtf, "MTF"), std::pair(PlateUse::ctf, "CTF"),
+                                           std::pair(PlateUse::source_size, "size-of-source effect")}) {
     const MeasurePlate other = plate_of(other_use);
     const std::optional<TargetPlate>& shown = parts.*other.part;
     if (other_use < use && shown && shown->name == plate->name && plan.measures.*other.reference != reference)
@@ -171,6 +188,9 @@ Result<void> check_eye(const Plan& plan, const PlanParts& parts) {
   const auto judges = [](const ModulePlan& module) { return module.place == ModulePlace::observer; };
   if (std::ranges::any_of(plan.modules, judges)) {
     if (auto blind = refuse_eye(parts.observer, "a module in place of the observer"); !blind) return blind;
+  }
+  if (plan.measures.mrtd) {
+    if (auto blind = refuse_eye(parts.observer, "the MRTD"); !blind) return blind;
   }
   if (!parts.observer.eye || has_display(plan)) return {};
   return fail_at(ErrorCode::invalid_input, "observer.name",
@@ -225,7 +245,8 @@ std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, cons
 
 std::vector<TargetPlate> LoadedPlan::shown_plates() const {
   std::vector<TargetPlate> plates = parts_.plates;
-  for (const auto* added : {&parts_.mtf_plate, &parts_.ctf_plate, &parts_.source_plate, &parts_.open_plate}) {
+  for (const auto* added :
+       {&parts_.mtf_plate, &parts_.ctf_plate, &parts_.source_plate, &parts_.open_plate, &parts_.mrtd_plate}) {
     const auto there = [&](const TargetPlate& plate) { return plate.name == (*added)->name; };
     if (*added && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(**added);
   }

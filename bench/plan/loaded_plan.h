@@ -31,6 +31,7 @@ struct PlanParts {
   std::optional<TargetPlate> ctf_plate{};     ///< present if [measures] requests a CTF
   std::optional<TargetPlate> source_plate{};  ///< present if [measures] requests the size-of-source effect
   std::optional<TargetPlate> open_plate{};    ///< present if [measures] requests absolute temperatures
+  std::optional<TargetPlate> mrtd_plate{};    ///< present if [measures] requests an MRTD
   InstrumentTable black_body{}, stage{};      ///< only for targets of kind scpi; otherwise unspecified
   std::optional<Letterhead> letterhead{};     ///< present if [report] names one
   /// Source texts by kind and reference.

@@ -333,11 +333,18 @@ struct MeasuresPlan {
   int absolute_frames = AbsoluteOptions{}.frames;                        ///< averaged at each temperature
   /// Shift of the source on the stage by which the patterns of camera and source are told apart; 0: they are not.
   int absolute_shift_px = AbsoluteOptions{}.shift_px;
-  bool timing = false;         ///< frame rate, jitter, gaps
-  int timing_frames = 500;     ///< observed
-  bool latency = false;        ///< from runs of the stage on the clock of the camera
-  double latency_mrad_s = 50;  ///< speed of the runs
-  int latency_runs = 8;        ///< to the right and to the left in turn
+  bool timing = false;              ///< frame rate, jitter, gaps
+  int timing_frames = 500;          ///< observed
+  bool latency = false;             ///< from runs of the stage on the clock of the camera
+  double latency_mrad_s = 50;       ///< speed of the runs
+  int latency_runs = 8;             ///< to the right and to the left in turn
+  bool mrtd = false;                ///< MRTD of four bars, MDTD of spots, by the observer
+  std::string mrtd_plate = "mrtd";  ///< name or file
+  std::vector<double> mrtd_delta_t_k = MrtdOptions{}.contrasts_k;       ///< magnitudes, shown at both polarities
+  int mrtd_frames = MrtdOptions{}.frames;                               ///< judged at each contrast of each set-up
+  int mrtd_set_ups = MrtdOptions{}.set_ups;                             ///< places of the plate between the pixels
+  double mrtd_frequency_per_pitch = MrtdOptions{}.frequency_per_pitch;  ///< the nearest bars are reported and limited
+  double mdtd_size_px = MrtdOptions{}.spot_px;                          ///< the nearest spot is reported and limited
   bool operator==(const MeasuresPlan&) const = default;
 
   /// Returns whether any measure is on.
@@ -361,7 +368,8 @@ inline constexpr std::array measure_keys{MeasureKey{"noise", &MeasuresPlan::nois
                                          MeasureKey{"source_size", &MeasuresPlan::source_size},
                                          MeasureKey{"absolute", &MeasuresPlan::absolute},
                                          MeasureKey{"timing", &MeasuresPlan::timing},
-                                         MeasureKey{"latency", &MeasuresPlan::latency}};
+                                         MeasureKey{"latency", &MeasuresPlan::latency},
+                                         MeasureKey{"mrtd", &MeasuresPlan::mrtd}};
 
 /// Section [motion]: passes of a plate on a moving stage, for `todbench dynamic PLAN`.
 struct MotionPlan {

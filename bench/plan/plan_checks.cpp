@@ -365,6 +365,21 @@ ValueMistakes check_collimator_table(const Plan& plan, std::size_t /*row*/) {
   return {};
 }
 
+ValueMistakes check_mrtd(const Plan& plan, std::size_t /*row*/) {
+  if (!plan.measures.mrtd || plan.target.kind != TargetKind::display) return {};
+  return {{std::nullopt, "the MRTD needs contrasts far below a grey level of a monitor: use a black body"}};
+}
+
+ValueMistakes check_mrtd_contrasts(const Plan& plan, std::size_t /*row*/) {
+  if (!plan.measures.mrtd) return {};
+  std::vector<double> contrasts = plan.measures.mrtd_delta_t_k;
+  std::sort(contrasts.begin(), contrasts.end());
+  contrasts.erase(std::unique(contrasts.begin(), contrasts.end()), contrasts.end());
+  if (contrasts.size() < 3 || contrasts.size() != plan.measures.mrtd_delta_t_k.size())
+    return {{std::nullopt, "expected at least three contrasts, each stated once"}};
+  return {};
+}
+
 ValueMistakes check_response(const Plan& plan, std::size_t /*row*/) {
   if (!plan.measures.response) return {};
   ValueMistakes mistakes;

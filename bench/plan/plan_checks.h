@@ -73,6 +73,8 @@ using ValueMistakes = std::vector<ValueMistake>;
 [[nodiscard]] ValueMistakes check_focal_length(const Plan& plan, std::size_t row);
 /// As many wavelengths as transmissions, in rising order.
 [[nodiscard]] ValueMistakes check_collimator_table(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_mrtd(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_mrtd_contrasts(const Plan& plan, std::size_t row);
 /// If a response time is requested: a step large enough to observe, and a target with a known settling time.
 [[nodiscard]] ValueMistakes check_response(const Plan& plan, std::size_t row);
 /// One of the contrasts of the target, not in an earlier row.

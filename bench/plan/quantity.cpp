@@ -138,6 +138,35 @@ constexpr std::array table{
         .second_measure = "source_size",
         .at_most = {"netd_extended", "NETD on an extended source at most "},
         .stated = StatedUncertainty::scale},
+    Quantity{.name = "mrtd_x",
+             .unit = "K",
+             .title = "MRTD along x, of the bars nearest to the frequency of the plan",
+             .definition =
+                 "Half the difference of the contrasts of both polarities at which the observer distinguishes "
+                 "four bars along x from five of the same square in 75 % of two-interval decisions (Bijl and "
+                 "Valeton 1999; target and half difference after STANAG 4349, known second-hand).",
+             .measure = "mrtd",
+             .at_most = {"mrtd_x", "MRTD along x of the bars nearest to the frequency of the plan at most "},
+             .stated = StatedUncertainty::scale},
+    Quantity{.name = "mrtd_y",
+             .unit = "K",
+             .title = "MRTD along y, of the bars nearest to the frequency of the plan",
+             .definition =
+                 "Half the difference of the contrasts of both polarities at which the observer distinguishes "
+                 "four bars along y from five of the same square in 75 % of two-interval decisions (Bijl and "
+                 "Valeton 1999; target and half difference after STANAG 4349, known second-hand).",
+             .measure = "mrtd",
+             .at_most = {"mrtd_y", "MRTD along y of the bars nearest to the frequency of the plan at most "},
+             .stated = StatedUncertainty::scale},
+    Quantity{.name = "mdtd",
+             .unit = "K",
+             .title = "MDTD of the spot nearest to the size of the plan",
+             .definition = "Half the difference of the contrasts of both polarities at which the observer finds a "
+                           "square spot in 75 % of two-interval decisions (in the spirit of ASTM E1311, known from its "
+                           "abstract).",
+             .measure = "mrtd",
+             .at_most = {"mdtd", "MDTD of the spot nearest to the size of the plan at most "},
+             .stated = StatedUncertainty::scale},
     Quantity{
         .name = "ifov_x",
         .unit = "mrad",
@@ -401,6 +430,12 @@ constexpr std::array table{
              "Number of pixels whose temporal noise is too large a multiple of the median.", "pixels"},
     Quantity{"pixels_blinking", "1", "Blinking pixels",
              "Number of pixels whose largest change of level is too large a multiple of the median.", "pixels"},
+    Quantity{"mrtd_best_phase_x", "K", "MRTD along x at the best sampling phase (MTDP-like)",
+             "MRTD along x at the sampling phase of the bars that answers best; not the MTDP of TRM.", "mrtd"},
+    Quantity{"mrtd_best_phase_y", "K", "MRTD along y at the best sampling phase (MTDP-like)",
+             "MRTD along y at the sampling phase of the bars that answers best; not the MTDP of TRM.", "mrtd"},
+    Quantity{"mrtd_mean", "K", "MRTD, mean of both axes",
+             "Mean of the MRTD along x and along y, of the bars nearest to the frequency of the plan.", "mrtd"},
     Quantity{"picture_residual", "K", "Picture of the plate against the sensor model: residual",
              "Root mean square difference between the mean picture of the plate and that of the sensor model without "
              "noise."},

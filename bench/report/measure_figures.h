@@ -3,6 +3,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "bench/report/document.h"
 #include "bench/session/measures_record.h"
@@ -23,6 +25,11 @@ namespace todbench {
 [[nodiscard]] std::optional<FigurePairs> ctf_figures(const SessionMeasures& measures, bool camera);
 /// Loss of apertures and gain of opaque spots against their size, with the fitted curve.
 [[nodiscard]] std::optional<FigurePairs> source_size_figures(const SessionMeasures& measures, bool camera);
+/// One figure for each axis: MRTD, best phase; and one of the spots.
+[[nodiscard]] std::optional<FigurePairs> mrtd_figures(const SessionMeasures& measures, bool camera);
+/// Table of bars and spots as an acceptance document lists them: frequency, contrast of each polarity, offset, half
+/// difference of each axis, best phase. Of one side, with its name in the captions.
+[[nodiscard]] std::vector<Table> mrtd_tables(const MrtdMeasure& mrtd, const std::string& who);
 /// Maps of the camera next to those of the twin.
 [[nodiscard]] std::optional<FigurePairs> pixel_figures(const SessionMeasures& measures, bool camera);
 

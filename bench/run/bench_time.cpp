@@ -127,6 +127,7 @@ class Walk {
       }
     }
     if (measures.absolute) add_absolute(new_plate_s);
+    if (measures.mrtd) count_mrtd(measures, target);
   }
 
   /// Both passes over the temperatures, then both halves of the shifted pictures, in the order of measure_absolute().
@@ -161,6 +162,27 @@ class Walk {
   }
 
  private:
+  void count_mrtd(const MeasuresPlan& measures, const TargetPlan& target) {
+    MrtdOptions options{.contrasts_k = measures.mrtd_delta_t_k,
+                        .frames = measures.mrtd_frames,
+                        .set_ups = measures.mrtd_set_ups,
+                        .mountings = target.mountings};
+    const TargetState* before = nullptr;
+    const std::vector<MrtdPresentation> presentations = mrtd_presentations(options, 1);
+    for (const MrtdPresentation& one : presentations) {
+      const TargetState& state = one.state;
+      const bool contrast = before == nullptr || before->delta_t_k != state.delta_t_k;
+      const bool mounting = before != nullptr && before->mounting != state.mounting;
+      time_.changes_s +=
+          std::max({before == nullptr ? target.plate_change_s : 0, mounting ? target.mounting_change_s : 0,
+                    contrast ? target.contrast_change_s : 0, target.shift_change_s});
+      time_.frames +=
+          static_cast<std::uint64_t>(plan_.measurement.frames_after_change +
+                                     (one.set_up < 0 ? plan_.measurement.registration_frames : measures.mrtd_frames));
+      before = &state;
+    }
+  }
+
   void take_frames(bool new_set_up, bool new_contrast, double delta_t_k) {
     const MeasurementPlan& measurement = plan_.measurement;
     // The camera is predicted without the modules of the sensor.

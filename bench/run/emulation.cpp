@@ -124,6 +124,7 @@ EmulationArguments emulation_for(const Plan& plan) {
   if (plan.measures.ctf) add(plan.measures.ctf_plate);
   if (plan.measures.source_size) add(plan.measures.source_size_plate);
   if (plan.measures.absolute) add(plan.measures.absolute_plate);
+  if (plan.measures.mrtd) add(plan.measures.mrtd_plate);
   arguments.distance_m = plan.target.distance_m;
   if (const CollimatorPlan& collimator = plan.target.collimator; collimator.stated()) {
     arguments.collimator_transmission = collimator.transmission;

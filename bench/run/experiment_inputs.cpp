@@ -85,6 +85,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   inputs.ctf_plate = loaded.parts().ctf_plate;
   inputs.source_plate = loaded.parts().source_plate;
   inputs.open_plate = loaded.parts().open_plate;
+  inputs.mrtd_plate = loaded.parts().mrtd_plate;
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
   inputs.stated_noise_counts = noise_in_counts(loaded.sensor());

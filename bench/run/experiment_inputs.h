@@ -22,6 +22,7 @@ struct ExperimentInputs {
   std::optional<TargetPlate> ctf_plate{};     ///< if a CTF is requested
   std::optional<TargetPlate> source_plate{};  ///< if the size-of-source effect is requested
   std::optional<TargetPlate> open_plate{};    ///< if absolute temperatures are requested
+  std::optional<TargetPlate> mrtd_plate{};    ///< if an MRTD is requested
   TemplateObserverSpec observer;
   SensorSpec sensor;                      ///< as planned: parameters of skipped effects have their neutral values
   double stated_noise_counts = 0;         ///< temporal noise of the sensor with all effects, in counts

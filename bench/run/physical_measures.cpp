@@ -156,6 +156,21 @@ std::optional<LatencyOptions> latency_options(const Plan& plan, const Experiment
                         .runs = plan.measures.latency_runs};
 }
 
+std::optional<MrtdOptions> mrtd_options(const Plan& plan, const ExperimentInputs& inputs) {
+  const MeasuresPlan& measures = plan.measures;
+  if (!measures.mrtd || !inputs.mrtd_plate) return std::nullopt;
+  MrtdOptions options{.plate = *inputs.mrtd_plate,
+                      .contrasts_k = measures.mrtd_delta_t_k,
+                      .frames = measures.mrtd_frames,
+                      .set_ups = measures.mrtd_set_ups,
+                      .mountings = plan.target.mountings,
+                      .frequency_per_pitch = measures.mrtd_frequency_per_pitch,
+                      .spot_px = measures.mdtd_size_px,
+                      .observer = inputs.observer,
+                      .seed = plan.seed};
+  return options;
+}
+
 std::vector<double> triangle_contrasts(const Plan& plan) {
   return plan.measures.triangles ? plan.target.delta_t_k : std::vector<double>{};
 }
@@ -202,6 +217,7 @@ MaybeMeasures measures_of_bench(const Plan& plan, const MeasurementOptions& opti
                                   .absolute = absolute_options(plan, inputs),
                                   .timing_frames = plan.measures.timing ? plan.measures.timing_frames : 0,
                                   .latency = latency_options(plan, inputs),
+                                  .mrtd = mrtd_options(plan, inputs),
                                   .measurement = options},
                                  *bench.host, std::move(stop));
   if (!measures) return tl::unexpected(measures.error());

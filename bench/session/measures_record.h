@@ -47,6 +47,7 @@ struct MeasureLines {
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
   std::optional<SourceSizeMeasure> source{};
+  std::optional<MrtdMeasure> mrtd{};
   std::optional<TransferMeasure> transfer{};
   std::optional<GeometryMeasure> geometry{};
   std::optional<DriftMeasure> drift{};
@@ -67,7 +68,8 @@ struct SessionMeasures {
 };
 
 /// Returns {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "drift": {...},
-/// "response": {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "source_size": {...}, "maps": [...], "picture":
+/// "response": {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "source_size": {...}, "mrtd": {...}, "maps": [...],
+/// "picture":
 /// {...}, "reasons": [...]}, "twin": the same or null}.
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// Returns the same with numbers, maps and reasons only.

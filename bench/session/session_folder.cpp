@@ -255,6 +255,7 @@ Result<void> SessionFolder::write_plan(const LoadedPlan& loaded) {
   if (stored.measures.ctf) references.emplace_back(ResourceKind::plate, &stored.measures.ctf_plate);
   if (stored.measures.source_size) references.emplace_back(ResourceKind::plate, &stored.measures.source_size_plate);
   if (stored.measures.absolute) references.emplace_back(ResourceKind::plate, &stored.measures.absolute_plate);
+  if (stored.measures.mrtd) references.emplace_back(ResourceKind::plate, &stored.measures.mrtd_plate);
   for (std::string& plate : stored.target.plates) references.emplace_back(ResourceKind::plate, &plate);
   if (stored.target.kind == TargetKind::scpi) {
     references.emplace_back(ResourceKind::black_body, &stored.target.black_body_table);

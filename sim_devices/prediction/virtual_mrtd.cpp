@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "hvs/observer/identification_bank.h"
@@ -18,61 +16,20 @@
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/scene_image.h"
 #include "sim_devices/sensor/transfer_functions.h"
+#include "tod/measures/two_intervals.h"
 #include "tod/range/bars_sampled.h"
 
 namespace todbench {
 namespace {
 
 constexpr std::size_t phases_across = 8, phases_along = 2, bar_phases = phases_across * phases_along;
-constexpr double wanted_share = 0.75, false_alarms = 0.05;
+constexpr double false_alarms = 0.05;
 constexpr double contrast_step = 1.25;
 constexpr int most_steps = 36;  ///< highest contrast: 1.25^36 = 3081 times ideal_k
 constexpr double known_band_per_pitch = 3;
 
-/// Scores of an observer for intervals with a pattern: [phase][draw].
-using Responses = std::vector<std::vector<float>>;
-
-struct Share {
-  double mean = 0, standard_error = 0;
-};
-
-/// Share of pairs of draws, one with each pattern, in which the response to `pattern` is larger. Standard error after
-/// DeLong et al. (1988), Biometrics 44.
-Share share_of_pairs(const Responses& pattern, const Responses& other) {
-  const std::size_t draws = pattern.front().size();
-  std::vector<float> all_pattern, all_other;
-  for (const auto& row : pattern) all_pattern.insert(all_pattern.end(), row.begin(), row.end());
-  for (const auto& row : other) all_other.insert(all_other.end(), row.begin(), row.end());
-  std::sort(all_pattern.begin(), all_pattern.end());
-  std::sort(all_other.begin(), all_other.end());
-  const auto below = [](const std::vector<float>& sorted, float value) {
-    const auto range = std::equal_range(sorted.begin(), sorted.end(), value);
-    return static_cast<double>(range.first - sorted.begin()) + static_cast<double>(range.second - range.first) / 2;
-  };
-  const auto pairs = static_cast<double>(pattern.size() * other.size() * (draws - 1));
-  Share out;
-  double squares_pattern = 0, squares_other = 0, sum_other = 0;
-  for (std::size_t d = 0; d < draws; ++d) {
-    double own = 0, wins = 0, losses = 0;
-    for (const auto& p : pattern) {
-      wins += below(all_other, p[d]);
-      for (const auto& o : other) own += p[d] > o[d] ? 1 : p[d] == o[d] ? 0.5 : 0;
-    }
-    for (const auto& o : other) losses += static_cast<double>(all_pattern.size()) - below(all_pattern, o[d]);
-    const double by_pattern = (wins - own) / pairs, by_other = (losses - own) / pairs;
-    out.mean += by_pattern;
-    sum_other += by_other;
-    squares_pattern += by_pattern * by_pattern;
-    squares_other += by_other * by_other;
-  }
-  const auto n = static_cast<double>(draws);
-  out.mean /= n;
-  sum_other /= n;
-  const double variance =
-      (squares_pattern / n - out.mean * out.mean + squares_other / n - sum_other * sum_other) / (n - 1);
-  out.standard_error = std::sqrt(std::max(0.0, variance));
-  return out;
-}
+using Responses = IntervalScores;
+using Share = ShareOfPairs;
 
 /// Share of yes answers to the pattern, at the limit that gives 5 % yes answers without one.
 Share share_of_yes(const Responses& pattern, const Responses& nothing) {
@@ -93,27 +50,6 @@ Share share_of_yes(const Responses& pattern, const Responses& nothing) {
   const auto n = static_cast<double>(draws);
   const double mean = sum / n;
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
-}
-
-double probit(double p) {
-  return std::numbers::sqrt2 * boost::math::erf_inv(2 * std::clamp(p, 1e-6, 1 - 1e-6) - 1);
-}
-
-/// First crossing of 75 % over rising contrasts, interpolated in probit over ln contrast.
-struct PassedContrast {
-  std::optional<double> contrast_k;
-  double relative_error = 0;
-};
-PassedContrast passed_contrast(const std::vector<double>& contrasts_k, const std::vector<Share>& shares) {
-  for (std::size_t i = 1; i < shares.size(); ++i) {
-    if (shares[i].mean < wanted_share || shares[i - 1].mean >= wanted_share) continue;
-    const double low = probit(shares[i - 1].mean), high = probit(shares[i].mean);
-    const double step = std::log(contrasts_k[i] / contrasts_k[i - 1]);
-    const double place = (probit(wanted_share) - low) / (high - low);
-    const double slope = (shares[i].mean - shares[i - 1].mean) / step;
-    return {contrasts_k[i - 1] * std::exp(place * step), shares[i].standard_error / slope};
-  }
-  return {};
 }
 
 /// Offset of the pattern's middle from that of the window across the bars, in samples.
@@ -164,7 +100,7 @@ class BarTrial {
     std::vector<Share> all;
     std::array<std::vector<Share>, phases_across> by_phase;
     const auto passed = [](const std::vector<Share>& shares) {
-      return !shares.empty() && shares.back().mean >= wanted_share;
+      return !shares.empty() && shares.back().mean >= threshold_share;
     };
     for (int step = -2; step <= most_steps; ++step) {
       if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
@@ -326,7 +262,7 @@ VirtualMrtdPoint point_before_trials(const VirtualMrtdTask& task, const SensorSp
   const BarPattern other = task.criterion == BarCriterion::four_or_five ? BarPattern::five_bars : BarPattern::uniform;
   const auto energies = bar_energies(per_sample, other, in_samples, known_band_per_pitch / n, 4);
   const double noise_k = std::sqrt(std::max(white_variance_k2(spec, task.plan, 1), 1e-12));
-  point.ideal_k = noise_k * ideal_two_interval_contrast(energies, wanted_share);
+  point.ideal_k = noise_k * ideal_two_interval_contrast(energies, threshold_share);
   const BlurredBars bars(
       per_sample, [&](double u) { return camera(u * n, 0).real(); }, 4.0 / n);
   const BarModulation left = bar_modulation(bars);

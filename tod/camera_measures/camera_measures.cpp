@@ -110,8 +110,8 @@ class Run {
              &Run::measure_source},
         Step{"times of frames", [](const Options& o) { return o.timing_frames > 0; }, &Run::time_frames},
         Step{"latency", [](const Options& o) { return o.latency.has_value(); }, &Run::time_latency},
-        Step{"absolute temperatures", [](const Options& o) { return o.absolute.has_value(); },
-             &Run::show_temperatures}};
+        Step{"absolute temperatures", [](const Options& o) { return o.absolute.has_value(); }, &Run::show_temperatures},
+        Step{"MRTD", [](const Options& o) { return o.mrtd.has_value(); }, &Run::take_mrtd}};
     return table;
   }
 
@@ -140,8 +140,12 @@ class Run {
   Result<PresentedTarget> show(double delta_t_k) { return show(plate().name, delta_t_k); }
 
   Result<PresentedTarget> show(const std::string& plate_name, double delta_t_k) {
+    return show_state({plate_name, Mounting::identity, delta_t_k, {0, 0}});
+  }
+
+  Result<PresentedTarget> show_state(const TargetState& state) {
     if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    auto change = change_target(target_, taker_, host_, {plate_name, Mounting::identity, delta_t_k, {0, 0}}, stop_);
+    auto change = change_target(target_, taker_, host_, state, stop_);
     if (!change) return tl::unexpected(change.error());
     if (!change->frames) return tl::unexpected(change->frames.error());
     if (!change->presented) return fail("presenting the target", change->presented.error());
@@ -151,18 +155,25 @@ class Run {
     return *change->presented;
   }
 
-  /// Locates the plate at the contrast that shows it best.
-  Result<void> locate(CameraMeasures& measures) {
+  [[nodiscard]] double largest_step() const {
     double largest = 0;
     for (const double step : options_.transfer_steps_k) largest = std::abs(step) > std::abs(largest) ? step : largest;
+    return largest;
+  }
+
+  /// Locates the plate at the contrast that shows it best.
+  Result<void> locate(CameraMeasures& measures) {
+    const double largest = largest_step();
     if (largest == 0)
       return fail(ErrorCode::invalid_input, "the plate cannot be located, because all contrasts of the steps are 0 K");
-    if (auto shown = show(largest); !shown) return tl::unexpected(shown.error());
+    const auto shown = show(largest);
+    if (!shown) return tl::unexpected(shown.error());
     auto picture = taker_.average(options_.measurement.registration_frames, stop_);
     if (!picture) return tl::unexpected(picture.error());
     auto found = register_plate(picture->kelvin, plate(), registration());
     if (!found) return fail("finding the plate", found.error());
     where_ = *found;
+    learn_response(picture->kelvin, shown->state.delta_t_k);
     keep_view(measures, *picture, largest);
     if (options_.geometry) tell_geometry(measures, *picture, largest);
     located_ = true;
@@ -173,6 +184,12 @@ class Run {
     RegistrationOptions out = options_.measurement.registration;
     out.expected_scale_px_per_mm = 1 / (options_.measurement.distance_m * options_.measurement.ifov_mrad);
     return out;
+  }
+
+  /// Response of the camera to a contrast of the target; stays 1 if the triangles are too small.
+  void learn_response(const cv::Mat1d& picture, double said_k) {
+    const auto seen = effective_contrast(picture, plate(), where_, options_.measurement.min_reference_px);
+    if (seen && std::isfinite(seen->value / said_k) && seen->value != 0) response_ = seen->value / said_k;
   }
 
   void tell_geometry(CameraMeasures& measures, const AveragedPicture& picture, double delta_t_k) {
@@ -379,6 +396,20 @@ class Run {
     return {};
   }
 
+  Result<void> take_mrtd(CameraMeasures& measures) {
+    MrtdOptions mrtd = *options_.mrtd;
+    mrtd.pitch_mrad = options_.measurement.ifov_mrad;
+    mrtd.registration_frames = options_.measurement.registration_frames;
+    mrtd.response = response_;
+    mrtd.locating_k = largest_step();
+    TODBENCH_TRY(MrtdMeasure found,
+                 measure_mrtd(
+                     taker_, [this](const TargetState& state) { return show_state(state); }, where_, mrtd, stop_));
+    measures.reasons.insert(measures.reasons.end(), found.reasons.begin(), found.reasons.end());
+    measures.mrtd = std::move(found);
+    return {};
+  }
+
   /// The upright rectangle of the picture that the plate covers, without its rim.
   [[nodiscard]] Result<cv::Rect> field() const {
     const double w = plate().width_mm / 2, h = plate().height_mm / 2;
@@ -560,6 +591,7 @@ class Run {
   FrameTaker taker_;
   Registration where_;
   bool located_ = false;
+  double response_ = 1;                         ///< observed contrast over that of the target
   std::vector<ContrastPicture> step_pictures_;  ///< of the signal transfer
 };
 

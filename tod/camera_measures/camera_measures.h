@@ -13,6 +13,7 @@
 #include "tod/camera_measures/bars_measure.h"
 #include "tod/camera_measures/drift_measure.h"
 #include "tod/camera_measures/edge_measure.h"
+#include "tod/camera_measures/mrtd_measure.h"
 #include "tod/camera_measures/pixel_measure.h"
 #include "tod/camera_measures/plate_geometry.h"
 #include "tod/camera_measures/response_measure.h"
@@ -50,6 +51,7 @@ struct CameraMeasuresOptions {
   std::optional<AbsoluteOptions> absolute{};  ///< absolute temperatures; empty: not measured
   int timing_frames = 0;                      ///< frames whose times are examined; 0: not measured
   std::optional<LatencyOptions> latency{};    ///< runs of the stage; empty: not measured
+  std::optional<MrtdOptions> mrtd{};          ///< response, IFOV and frames to locate are filled in; empty: no MRTD
   /// Plates, frames to average, corrections, timeouts and integrity as in the TOD measurement. The first plate is shown
   /// in identity mounting.
   MeasurementOptions measurement;
@@ -177,6 +179,7 @@ struct CameraMeasures {
   std::optional<AbsoluteMeasure> absolute{};
   std::optional<TimingMeasure> timing{};
   std::optional<LatencyMeasure> latency{};
+  std::optional<MrtdMeasure> mrtd{};
   std::vector<TriangleStrip> triangles{};     ///< by contrast
   std::optional<double> netd_model_k{};       ///< closed form, of a simulated sensor
   std::optional<double> response_model_ms{};  ///< time constant of a simulated sensor

@@ -7,6 +7,7 @@
 
 #include "bench/plan/descriptions.h"
 #include "bench/run/emulation.h"
+#include "sim_devices/prediction/virtual_mrtd.h"
 #include "tests/bench/run/emulated_measures.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
@@ -50,6 +51,39 @@ TEST(GigeMeasures, FindTheResponseTimeOfTheEmulatedCamera) {
   // Two half-widths are four standard uncertainties.
   EXPECT_NEAR(found.value_s, 0.015, found.high_s - found.low_s);
   EXPECT_LT(found.high_s - found.low_s, 0.4 * 0.015);
+}
+
+TEST(GigeMeasures, FindTheMrtdThatTheSensorHasWithoutFrames) {
+  Plan plan = wire_plan();
+  plan.measures.mrtd = true;  // the stage has the plate
+  CameraMeasuresOptions options;
+  options.mrtd = MrtdOptions{.plate = *load_plate("mrtd"),
+                             .contrasts_k = {0.008, 0.016, 0.032, 0.064},
+                             .frames = 12,
+                             .set_ups = 5,
+                             .frequency_per_pitch = 0.3};
+  VirtualMrtdTask task;
+  task.sensor = *load_sensor(plan.simulation.sensor);
+  task.plan = full_plan(task.sensor, {}, {});
+  task.accuracy = Accuracy::draft();
+  task.draws = 600;
+  task.frequencies_per_mrad = {0.3 / task.sensor.ifov_mrad()};
+
+  const auto measures = testing::measured(plan, emulation_for(plan), options);
+  const auto virtual_bars = virtual_mrtd(task);
+
+  ASSERT_TRUE(measures) << measures.error().message;
+  EXPECT_THAT(measures->reasons, ::testing::IsEmpty());
+  ASSERT_TRUE(measures->mrtd && virtual_bars);
+  for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
+    const MrtdPoint* point = measures->mrtd->stated(axis);
+    ASSERT_TRUE(point != nullptr && point->threshold_k && point->ci95.low && point->ci95.high);
+    // Two half-widths are four standard uncertainties, of both.
+    const double apart = std::log(*point->threshold_k / *virtual_bars->front().threshold_k);
+    const double half = 0.5 * std::log(*point->ci95.high / *point->ci95.low);
+    EXPECT_LT(std::abs(apart), 2 * std::hypot(half, 1.96 * virtual_bars->front().relative_error));
+    EXPECT_LT(half, 0.6);
+  }
 }
 
 TEST(GigeMeasures, RefuseAResponseTimeThatTheBlackBodyCovers) {

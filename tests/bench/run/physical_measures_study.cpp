@@ -8,6 +8,7 @@
 
 #include "tests/bench/run/bars_coverage.h"
 #include "tests/bench/run/edge_coverage.h"
+#include "tests/bench/run/mrtd_coverage.h"
 #include "tests/bench/run/pixel_coverage.h"
 #include "tests/bench/run/source_size_coverage.h"
 
@@ -34,6 +35,18 @@ TEST(PlateEdgesStudy, HoldTheMtfOfTheSensorModel) {
     }
     std::fflush(stdout);
     EXPECT_EQ(coverage->single_sided, 0);
+  }
+}
+
+// TODBENCH_STUDY_RUNS: seeds (60 without it).
+TEST(MrtdStudy, HoldsTheVirtualMrtdOfTheSensor) {
+  const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
+  const auto found = testing::mrtd_coverage({0.2, 0.3, 0.4}, asked != nullptr ? std::atoi(asked) : 60, 6000, 0.002);
+  ASSERT_TRUE(found) << found.error().message;
+  for (const testing::MrtdCoverage& of : *found) {
+    fmt::print("| {:g} | {:.4f} | {:.3f} | {:+.3f} | {:.3f} | {:.3f} | {:+.3f} |\n", of.frequency_per_pitch, of.truth_k,
+               of.within, of.bias, of.half_width, of.best_within, of.best_bias);
+    EXPECT_GT(of.within, 0.95 - 4 * std::sqrt(0.05 * 0.95 / of.intervals));
   }
 }
 

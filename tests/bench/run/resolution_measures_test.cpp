@@ -11,9 +11,11 @@
 #include "bench/run/experiment.h"
 #include "bench/run/report_data.h"
 #include "bench/session/open_session.h"
+#include "sim_devices/prediction/virtual_mrtd.h"
 #include "tests/bench/run/bars_coverage.h"
 #include "tests/bench/run/edge_coverage.h"
 #include "tests/bench/run/measures_plan.h"
+#include "tests/bench/run/mrtd_coverage.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -145,6 +147,83 @@ TEST(PhysicalMeasures, FindTheCtfOfTheSensorModelAndJudgeIt) {
   EXPECT_THAT(page, HasSubstr("ctf-y"));
 }
 
+/// MRTD at one frequency with few frames.
+Plan mrtd_plan() {
+  Plan plan = plan_of_one(&MeasuresPlan::mrtd);
+  plan.measures.mrtd_delta_t_k = {0.004, 0.008, 0.016, 0.032, 0.064};
+  plan.measures.mrtd_frames = 8;
+  plan.measures.mrtd_set_ups = 5;
+  return plan;
+}
+
+TEST(PhysicalMeasures, FindTheMrtdOfTheVirtualBarsAndJudgeIt) {
+  const TemporaryFolder folder;
+  Plan plan = mrtd_plan();
+  plan.limits.measures = {{"mrtd_x", std::nullopt, 0.05}, {"mrtd_y", std::nullopt, 0.005}};
+  VirtualMrtdTask task;
+  task.sensor = *load_sensor("sc2000");
+  task.plan = full_plan(task.sensor, {}, {});
+  task.accuracy = Accuracy::draft();
+  task.draws = 600;
+  task.frequencies_per_mrad = {0.25 / task.sensor.ifov_mrad()};
+
+  const auto outcome = measure_plan(plan, {.folder = folder.path() / "session"}, {}, {});
+  const auto virtual_bars = virtual_mrtd(task);
+
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_FALSE(outcome->ended_by) << outcome->ended_by->message;
+  ASSERT_TRUE(virtual_bars) << virtual_bars.error().message;
+  ASSERT_TRUE(outcome->measures && outcome->twin_measures);
+  EXPECT_THAT(outcome->measures->reasons, ::testing::IsEmpty());
+  ASSERT_TRUE(outcome->measures->mrtd && outcome->twin_measures->mrtd);
+  const MrtdMeasure& found = *outcome->measures->mrtd;
+  ASSERT_EQ(found.bars.size(), 14u);
+  EXPECT_EQ(found.spots.size(), 5u);
+  for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
+    const MrtdPoint* point = found.stated(axis);
+    ASSERT_TRUE(point != nullptr && point->threshold_k && point->ci95.low) << point->reason;
+    EXPECT_NEAR(point->frequency_per_pitch, 0.25, 0.001);
+    // Two half-widths are four standard uncertainties, of both.
+    const double apart = std::log(*point->threshold_k / *virtual_bars->front().threshold_k);
+    const double half = 0.5 * std::log(*point->ci95.high / *point->ci95.low);
+    EXPECT_LT(std::abs(apart), 2 * std::hypot(half, 1.96 * virtual_bars->front().relative_error));
+    EXPECT_LT(half, 0.6);
+    EXPECT_EQ(point->positive_share.size(), 5u);
+    EXPECT_LT(*point->negative_k, 0);
+  }
+  for (const MrtdPoint& point : found.bars) {
+    if (point.frequency_per_pitch > 0.55) {
+      EXPECT_THAT(point.reason, HasSubstr("beyond Nyquist"));
+    }
+  }
+  const auto session = open_session(folder.path() / "session", {});
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_EQ(session->plan.measures.mrtd_plate, "mrtd");
+  ASSERT_TRUE(session->measures && session->measures->main->mrtd);
+  EXPECT_EQ(session->measures->main->mrtd->bars.size(), 14u);
+  const auto* x = line_of(session->measures->main, "mrtd_x");
+  ASSERT_NE(x, nullptr);
+  EXPECT_EQ(x->value, found.stated(EdgeAxis::x)->threshold_k);
+  ASSERT_NE(line_of(session->measures->main, "mdtd"), nullptr);
+  EXPECT_EQ(outcome->verdict.demands[outcome->verdict.demands.size() - 2].decision, VerdictKind::pass);
+  EXPECT_EQ(outcome->verdict.demands.back().decision, VerdictKind::fail);
+  const std::string page = render_report(*report_data(*session, "session"));
+  EXPECT_THAT(page, HasSubstr("mrtd-x"));
+  EXPECT_THAT(page, HasSubstr("half difference"));
+}
+
+// Short form of MrtdStudy: the target shows 2 mK more than it reports, which the half difference does not contain.
+TEST(BarsJudge, HoldsTheVirtualMrtdWithATargetOfUnknownOffset) {
+  const auto found = testing::mrtd_coverage({0.3}, 4, 1500, 0.002);
+
+  ASSERT_TRUE(found) << found.error().message;
+  const testing::MrtdCoverage& of = found->front();
+  EXPECT_EQ(of.intervals, 8);
+  // Five or fewer of eight have a probability of 0.6 % at 95 %; the truth has an error of its own of 3 %.
+  EXPECT_GE(of.within, 6.0 / 8);
+  EXPECT_LT(std::abs(of.bias), 4 * std::hypot(of.half_width / 2 / std::sqrt(8), of.truth_error));
+}
+
 TEST(PlateBars, HoldTheTruthAtBestAndWorstPhase) {
   for (const double aberration_pitch : {0.0, 0.6}) {
     SensorSpec sensor = *load_sensor("sc2000");
@@ -204,6 +283,18 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
   unasked.measures.mtf = false;
   unasked.limits.measures = {{"mtf_x", 0.5, std::nullopt}};
   above.limits.measures = {{"mtf_x", std::nullopt, 0.5}};
+
+  Plan no_fives = mrtd_plan(), far_away = mrtd_plan(), twice = mrtd_plan(), no_mrtd = mrtd_plan();
+  no_fives.measures.mrtd_plate = "bars";
+  far_away.target.distance_m = 20;
+  twice.measures.mrtd_delta_t_k = {0.1, 0.1, 0.2};
+  no_mrtd.measures.mrtd = false;
+  no_mrtd.limits.measures = {{"mrtd_x", std::nullopt, 0.5}};
+  EXPECT_EQ(refusal(mrtd_plan()), "");
+  EXPECT_THAT(refusal(no_fives), HasSubstr("groups of five bars"));
+  EXPECT_THAT(refusal(far_away), HasSubstr("finer than the cut"));
+  EXPECT_THAT(refusal(twice), HasSubstr("each stated once"));
+  EXPECT_THAT(refusal(no_mrtd), HasSubstr("mrtd = true"));
 
   Plan no_geometry = plan_of_one(&MeasuresPlan::geometry), distorted = plan_of_one(&MeasuresPlan::geometry),
        narrow = plan_of_one(&MeasuresPlan::geometry);

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The observer before the bars and spots of a plate: frames in, thresholds out. No devices.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hvs/observer/identification_bank.h"
+#include "tod/camera_measures/mrtd_measure.h"
+#include "tod/measures/two_intervals.h"
+
+namespace todbench {
+
+/// State in which a frame shows the plate.
+struct ShownBars {
+  int set_up = 0;
+  std::size_t level = 0;  ///< of the contrast
+  double said_k = 0;      ///< reported by the target, signed
+  Mounting mounting = Mounting::identity;
+  Registration where;  ///< of the plate in this mounting and place
+};
+
+class BarsJudge {
+ public:
+  /// `where`: of the plate in identity mounting, for scale and direction. Errors: `invalid_input` (no pair that can be
+  /// judged, an observer with an eye), those of the observer's templates.
+  [[nodiscard]] static Result<BarsJudge> create(const MrtdOptions& options, const Registration& where);
+  /// Judges all places of one frame. Places whose window leaves the picture are left out from then on.
+  void add(const cv::Mat1d& kelvin, const ShownBars& shown);
+  [[nodiscard]] MrtdMeasure result() const;
+
+ private:
+  /// Scores of one polarity for intervals with the target and with the alternative: [level][set-up][draw].
+  struct Scores {
+    std::vector<IntervalScores> target, other;
+  };
+  /// A target with its alternative on the plate.
+  struct Place {
+    std::string name{};
+    EdgeAxis axis = EdgeAxis::x;
+    double frequency_per_pitch = 0, size_px = 0;
+    std::optional<IdentificationBank> bank{};
+    std::vector<std::vector<float>> own_noise{};  ///< scores of white noise of sd 1
+    Scores positive{}, negative{};
+    std::vector<double> phase{};  ///< of the target across the bars, by set-up
+    bool left_out = false;
+  };
+  struct Thresholds;
+
+  explicit BarsJudge(const MrtdOptions& options) : options_(options) {}
+  Result<void> add_place(const PlateRectangle& target, const PlateRectangle& other, Place place,
+                         const std::vector<AlternativeAspects>& alternatives);
+  [[nodiscard]] Thresholds thresholds(const Place& place, int left_out) const;
+  [[nodiscard]] MrtdPoint point(const Place& place) const;
+
+  MrtdOptions options_;
+  std::vector<Place> places_;
+  /// Their targets and alternatives in turn, as rectangles, so that mounted() moves them.
+  TargetPlate positions_;
+  std::vector<double> said_sum_k_;
+  std::vector<int> said_count_;
+  std::vector<std::string> reasons_;
+  std::uint64_t draws_ = 0;
+};
+
+}  // namespace todbench

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// MRTD of a camera with its own target: four bars or five, judged by the template observer at contrasts of both
+// polarities.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/base/interval.h"
+#include "hvs/observer/template_observer.h"
+#include "tod/measurement/frame_taker.h"
+#include "tod/measures/slanted_edge.h"
+#include "tod/plate/target_plate.h"
+#include "tod/presentation/target.h"
+#include "tod/registration/registration.h"
+
+namespace todbench {
+
+struct MrtdOptions {
+  TargetPlate plate{};  ///< in identity mounting, with bar_pairs()
+  /// Magnitudes of the contrasts, shown at both polarities.
+  std::vector<double> contrasts_k{0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
+  int frames = 16;  ///< judged at each contrast of each set-up, one by one
+  int set_ups = 8;  ///< places of the plate between the pixels, shared by the mountings; at least 5
+  std::vector<Mounting> mountings{Mounting::identity};
+  double frequency_per_pitch = 0.25;  ///< the nearest bars are stated
+  double spot_px = 3;                 ///< the nearest spot is stated
+  double pitch_mrad = 0;              ///< IFOV of a pixel
+  double locating_k = 4;              ///< contrast at which the plate is located
+  int registration_frames = 32;       ///< averaged to locate it
+  double response = 1;                ///< observed contrast over the contrast that the target reports
+  TemplateObserverSpec observer{};    ///< without an eye
+  std::uint64_t seed = 1;             ///< of the observer's own noise
+};
+
+/// Threshold of one pair of groups of bars (MRTD), or of one spot against nothing (MDTD).
+struct MrtdPoint {
+  std::string place;  ///< name of the group with four bars, or of the spot
+  EdgeAxis axis = EdgeAxis::x;
+  double frequency_per_pitch = 0;  ///< of the four bars, in the picture; 0: a spot
+  double size_px = 0;              ///< side of the spot; 0: bars
+  /// Contrast for 75 % correct at each polarity; the negative one is below 0.
+  std::optional<double> positive_k{}, negative_k{};
+  std::optional<double> threshold_k{};   ///< half of their difference
+  Interval ci95{};                       ///< of it, by jackknife over the set-ups
+  std::string reason{};                  ///< of a missing threshold; empty if there is one
+  std::optional<double> best_phase_k{};  ///< threshold at the sampling phase that answers best; empty: not found
+  Interval best_phase_ci95{};
+  double best_phase = 0;  ///< distance of the middle of the bars from a border of pixels, 0 to 0.5 pixels
+  /// Shares of correct decisions by contrast, over all set-ups.
+  std::vector<double> positive_share{}, negative_share{};
+};
+
+struct MrtdMeasure {
+  std::string plate, observer;
+  int frames = 0, set_ups = 0, mountings = 0;
+  double pitch_mrad = 0;
+  double frequency_per_pitch = 0, spot_px = 0;  ///< requested
+  std::vector<double> contrast_k{};             ///< that the target reported, mean magnitudes, rising
+  std::vector<MrtdPoint> bars{};                ///< x before y, low frequencies first
+  std::vector<MrtdPoint> spots{};               ///< small ones first
+  std::vector<std::string> reasons{};           ///< sentences about places that could not be judged
+
+  /// Bars on this axis whose frequency is nearest to the requested one; null if there are none.
+  [[nodiscard]] const MrtdPoint* stated(EdgeAxis axis) const;
+  /// Spot whose side is nearest to the requested one; null if there is none.
+  [[nodiscard]] const MrtdPoint* stated_spot() const;
+};
+
+/// Highest frequency of an MRTD, with room for the error of the scale: a machine still distinguishes alias patterns of
+/// bars beyond Nyquist, a person does not see four bars.
+inline constexpr double mrtd_cut_per_pitch = 0.505;
+
+/// The two alternatives of Bijl and Valeton: four bars, and five bars that fill a square of the same size.
+struct BarPair {
+  PlateBars four;
+  std::string five;                       ///< name of the group of five
+  std::vector<PlateRectangle> five_bars;  ///< rectangles "NAME, bar 1" to "NAME, bar 5"
+  cv::Point2d five_mm;                    ///< middle of their square
+};
+/// Each group of four bars of a plate with the nearest group of five bars on the same axis.
+[[nodiscard]] std::vector<BarPair> bar_pairs(const TargetPlate& plate);
+/// Rectangles that are not part of a group of five bars.
+[[nodiscard]] std::vector<PlateRectangle> spots_of(const TargetPlate& plate);
+
+/// Shows a state of the target and waits until frames of it can be taken.
+using ShowState = std::function<Result<PresentedTarget>(const TargetState&)>;
+
+/// States that the measure shows, in order: in each mounting first the contrast by which the plate is located, then
+/// every contrast from large to small and of both polarities, at the set-ups of this mounting.
+struct MrtdPresentation {
+  TargetState state;
+  int set_up = 0;         ///< below 0: locates the plate
+  std::size_t level = 0;  ///< in MrtdOptions::contrasts_k
+};
+/// `pixel_mm`: size of a pixel on the plate.
+[[nodiscard]] std::vector<MrtdPresentation> mrtd_presentations(const MrtdOptions& options, double pixel_mm);
+
+/// A decision has two intervals, one with four and one with five bars of the same square and contrast; the observer
+/// states which had four (Bijl and Valeton 1999: free of response bias). Every frame shows both groups. All pairs of
+/// frames are decided, as in virtual_mrtd(). A function of contrast (fit_contrast()) gives the threshold of each
+/// polarity; half of their difference does not contain the offset of the target. The interval is that of the jackknife
+/// over the set-ups, with Student's t. Spots are decided against an empty part of the plate.
+///
+/// `where`: of a plate in the same holder, in identity mounting; the plate itself is located to a whole pixel, and the
+/// observer searches for the rest. Errors: those of target and camera, `calibration` (plate not in the picture),
+/// `invalid_input` (no pair of groups that can be judged, an observer with an eye).
+[[nodiscard]] Result<MrtdMeasure> measure_mrtd(FrameTaker& taker, const ShowState& show, const Registration& where,
+                                               const MrtdOptions& options, std::stop_token stop);
+
+}  // namespace todbench

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two-interval decisions of an observer: share of correct answers from its scores, and the contrast for 75 %.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace todbench {
+
+/// Scores of an observer for intervals with a pattern: [phase or set-up][draw].
+using IntervalScores = std::vector<std::vector<float>>;
+
+/// Share of correct decisions that defines a threshold.
+inline constexpr double threshold_share = 0.75;
+
+struct ShareOfPairs {
+  double mean = 0, standard_error = 0;
+};
+
+/// Share of pairs of draws, one with each pattern, in which the score for `pattern` is larger; pairs of one draw number
+/// are left out. Standard error after DeLong et al. (1988), Biometrics 44. Precondition: at least two draws, all rows
+/// of one length.
+[[nodiscard]] ShareOfPairs share_of_pairs(const IntervalScores& pattern, const IntervalScores& other);
+
+/// First crossing of 75 % over rising contrasts, interpolated in probit over ln contrast.
+struct PassedContrast {
+  std::optional<double> contrast_k;
+  double relative_error = 0;
+};
+[[nodiscard]] PassedContrast passed_contrast(std::span<const double> contrasts_k, std::span<const ShareOfPairs> shares);
+
+/// Psychometric function of contrast, Phi(z75 (c / threshold)^exponent): the distance between sensitivity and contrast
+/// grows as a power (Foley and Legge 1981). Sampling changes the threshold with the phase p of a symmetric pattern:
+/// ln threshold = ln level + swing[0] cos(2 pi p) + swing[1] cos(4 pi p).
+struct ContrastFunction {
+  double level_k = 0;             ///< geometric mean of the thresholds over the phases
+  double exponent = 1;            ///< between 0.3 and 8
+  std::array<double, 2> swing{};  ///< 0 if phases were not fitted
+
+  /// ln threshold at a phase minus ln level.
+  [[nodiscard]] double ln_ratio_at(double phase) const;
+  /// Phase of the lowest threshold, in 0 to 0.5 in steps of 1/64.
+  [[nodiscard]] double best_phase() const;
+};
+
+/// A share of correct decisions at a contrast.
+struct ContrastShare {
+  double contrast_k = 0;  ///< > 0
+  double share = 0;
+  double phase = 0;  ///< of the pattern against the samples, in samples
+};
+
+enum class PhaseFit { none, swing };
+
+/// Weighted least squares over the shares within a factor of `fitted_span` of `near_k`; weights by binomial variance.
+/// Empty if they do not determine a threshold within that range.
+[[nodiscard]] std::optional<ContrastFunction> fit_contrast(std::span<const ContrastShare> shares, double near_k,
+                                                           PhaseFit phases = PhaseFit::none);
+inline constexpr double fitted_span = 3.3;  ///< a ladder of factor 2 has three or four contrasts in it
+
+}  // namespace todbench
