@@ -14,6 +14,7 @@
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/set_up_step.h"
 #include "tod/plate/test_pattern.h"
+#include "tod/presentation/target_failure.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
@@ -197,7 +198,7 @@ Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std
   auto presented = bench->target->present(state, stop);
   if (!presented) {
     if (presented.error().code == ErrorCode::interrupted) return {};
-    return fail("presenting the target", presented.error());
+    return target_failure("presenting the target", presented.error());
   }
   FrameTaker taker(*bench->camera, taker_options(options, bench->camera->info()));
   taker.scene_changed(monotonic_ns());

@@ -24,6 +24,7 @@
 #endif
 #ifdef TODBENCH_WITH_V4L2
 #include "acquisition/v4l2/v4l2_backend.h"
+#include "tod/presentation/target_failure.h"
 #endif
 
 namespace todbench {
@@ -100,39 +101,6 @@ std::vector<TargetState> requested_states(const LoadedPlan& loaded) {
   return states;
 }
 
-Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_token stop,
-                                            const AskOperator& ask_operator, const OnTargetWait& on_wait) {
-  const Plan& plan = loaded.plan();
-  if (plan.target.kind == TargetKind::prompt) return prompt_target(ask_operator ? ask_operator : ask_at_terminal());
-  if (plan.target.kind == TargetKind::display) {
-    return open_display_target(
-        {.plates = loaded.shown_plates(),
-         .display = {.size_px = {plan.target.display_width_px, plan.target.display_height_px},
-                     .pixel_mm = plan.target.display_pixel_mm},
-         .span_k = plan.target.display_span_k,
-         .tone = {.gamma = plan.target.display_gamma, .luminance = plan.target.display_luminance},
-         .delta_t_k = plan.target.delta_t_k,
-         .settle = std::chrono::milliseconds(static_cast<long>(1000 * plan.target.display_settle_s)),
-         .description = "display: " + plan.target.display},
-        plan.target.display);
-  }
-  ScpiTargetOptions options;
-  options.black_body = plan.target.black_body;
-  options.stage = plan.target.stage;
-  options.black_body_table = loaded.parts().black_body;
-  options.stage_table = loaded.parts().stage;
-  options.settle_timeout = std::chrono::milliseconds(static_cast<long>(plan.target.settle_timeout_s * 1000));
-  options.poll_interval = std::chrono::milliseconds(10);
-  options.on_wait = on_wait;
-  options.requested = requested_states(loaded);
-  if (plan.target.contrast_settling_band_percent > 0)
-    options.settling_band = plan.target.contrast_settling_band_percent / 100;
-  if (plan.target.max_contrast_lag_s.value_or(0) > 0)
-    options.max_relative_rate_per_s = lag_share / *plan.target.max_contrast_lag_s;
-  if (plan.measures.absolute) options.temperatures_k = plan.measures.absolute_temperatures_k;
-  return open_scpi_target(options, stop);
-}
-
 /// Whether the camera sends without requests. Recordings do not, and their end is not a loss.
 bool free_running(const Plan& plan) {
   return !has_scheme(plan.camera.id, camera_scheme::file) && !has_scheme(plan.camera.id, camera_scheme::sim);
@@ -191,6 +159,39 @@ OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std:
   return bench;
 }
 
+Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_token stop,
+                                            const AskOperator& ask_operator, const OnTargetWait& on_wait) {
+  const Plan& plan = loaded.plan();
+  if (plan.target.kind == TargetKind::prompt) return prompt_target(ask_operator ? ask_operator : ask_at_terminal());
+  if (plan.target.kind == TargetKind::display) {
+    return open_display_target(
+        {.plates = loaded.shown_plates(),
+         .display = {.size_px = {plan.target.display_width_px, plan.target.display_height_px},
+                     .pixel_mm = plan.target.display_pixel_mm},
+         .span_k = plan.target.display_span_k,
+         .tone = {.gamma = plan.target.display_gamma, .luminance = plan.target.display_luminance},
+         .delta_t_k = plan.target.delta_t_k,
+         .settle = std::chrono::milliseconds(static_cast<long>(1000 * plan.target.display_settle_s)),
+         .description = "display: " + plan.target.display},
+        plan.target.display);
+  }
+  ScpiTargetOptions options;
+  options.black_body = plan.target.black_body;
+  options.stage = plan.target.stage;
+  options.black_body_table = loaded.parts().black_body;
+  options.stage_table = loaded.parts().stage;
+  options.settle_timeout = std::chrono::milliseconds(static_cast<long>(plan.target.settle_timeout_s * 1000));
+  options.poll_interval = std::chrono::milliseconds(10);
+  options.on_wait = on_wait;
+  options.requested = requested_states(loaded);
+  if (plan.target.contrast_settling_band_percent > 0)
+    options.settling_band = plan.target.contrast_settling_band_percent / 100;
+  if (plan.target.max_contrast_lag_s.value_or(0) > 0)
+    options.max_relative_rate_per_s = lag_share / *plan.target.max_contrast_lag_s;
+  if (plan.measures.absolute) options.temperatures_k = plan.measures.absolute_temperatures_k;
+  return open_scpi_target(options, stop);
+}
+
 Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, const ExperimentHost& host,
                                const SayProgress& on_progress, const OnTargetWait& on_wait) {
   const Plan& plan = loaded.plan();
@@ -241,7 +242,7 @@ Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, c
   }
   bench.host = bench_host(hosting);
   auto target = open_target(loaded, stop, host.ask_operator, on_wait);
-  if (!target) return fail("opening the target", target.error());
+  if (!target) return target_failure("opening the target", target.error());
   bench.target = std::move(*target);
   return bench;
 }

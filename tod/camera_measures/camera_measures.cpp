@@ -15,6 +15,7 @@
 #include "tod/measures/pixel_noise.h"
 #include "tod/measures/shading.h"
 #include "tod/presentation/absolute_target.h"
+#include "tod/presentation/target_failure.h"
 #include "tod/registration/registration.h"
 
 namespace todbench {
@@ -148,7 +149,7 @@ class Run {
     auto change = change_target(target_, taker_, host_, state, stop_);
     if (!change) return tl::unexpected(change.error());
     if (!change->frames) return tl::unexpected(change->frames.error());
-    if (!change->presented) return fail("presenting the target", change->presented.error());
+    if (!change->presented) return target_failure("presenting the target", change->presented.error());
     const auto there_ns = host_.now_ns(Moment::scene_changed);
     if (!there_ns) return tl::unexpected(there_ns.error());
     taker_.scene_changed(*there_ns);
@@ -351,7 +352,7 @@ class Run {
   Result<PresentedTarget> present(Target& target, FrameTaker& taker, const TargetState& state) {
     TODBENCH_TRY(const TargetChange change, change_target(target, taker, host_, state, stop_));
     if (!change.frames) return tl::unexpected(change.frames.error());
-    if (!change.presented) return fail("presenting the target", change.presented.error());
+    if (!change.presented) return target_failure("presenting the target", change.presented.error());
     TODBENCH_TRY(const std::int64_t there_ns, host_.now_ns(Moment::scene_changed));
     taker.scene_changed(there_ns);
     return *change.presented;

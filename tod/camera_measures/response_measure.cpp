@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/base/median.h"
+#include "tod/presentation/target_failure.h"
 
 namespace todbench {
 namespace {
@@ -127,7 +128,7 @@ class ResponseRun {
   Result<void> present(const TargetState& state, const Function& with) {
     if (host_.frames_while_presenting() != FramesWhilePresenting::take) {
       if (auto presented = target_.present(state, stop_); !presented)
-        return fail("presenting the target", presented.error());
+        return target_failure("presenting the target", presented.error());
       return {};
     }
     Result<PresentedTarget> presented;
@@ -149,7 +150,7 @@ class ResponseRun {
       there = true;
     }
     if (!frames) return frames;
-    if (!presented) return fail("presenting the target", presented.error());
+    if (!presented) return target_failure("presenting the target", presented.error());
     if (const auto told = host_.asked_while_presenting(calls); !told) return tl::unexpected(told.error());
     return {};
   }

@@ -14,6 +14,7 @@
 #include "tod/measurement/prepared_plate.h"
 #include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
+#include "tod/presentation/target_failure.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
@@ -168,7 +169,7 @@ class Run {
     auto change = change_target(target_, taker_, host_, state, stop_);
     if (!change) return tl::unexpected(change.error());
     target_failed_ = !change->presented && !change->given_up;
-    if (target_failed_) return fail("presenting the target", change->presented.error());
+    if (target_failed_) return target_failure("presenting the target", change->presented.error());
     if (!change->frames) return change->frames;
     presented_ = *std::move(change->presented);
     return {};

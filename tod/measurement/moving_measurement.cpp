@@ -11,6 +11,7 @@
 #include "tod/measurement/place_watch.h"
 #include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
+#include "tod/presentation/target_failure.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
@@ -150,7 +151,8 @@ class MovingRun {
     if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     auto change = change_target(target_, taker_, host_, at(set_up, delta_t_k, shift_mm), stop_);
     if (!change) return tl::unexpected(change.error());
-    if (!change->presented && !change->given_up) return fail("presenting the target", change->presented.error());
+    if (!change->presented && !change->given_up)
+      return target_failure("presenting the target", change->presented.error());
     if (!change->frames) return change->frames;
     presented_ = *std::move(change->presented);
     const auto there_ns = host_.now_ns(Moment::scene_changed);
@@ -279,7 +281,7 @@ class MovingRun {
                                                   MovingPassRecord& pass) {
     const double speed_mm_s = pass.speed_mrad_s * at_rest().distance_m;
     const auto run = target_.moving()->run_along_x(to_mm, speed_mm_s, stop_);
-    if (!run) return fail("moving the target", run.error());
+    if (!run) return target_failure("moving the target", run.error());
     // All frames are taken before any is examined, because the camera does not wait.
     auto taken = taken_of_run(*run);
     if (!taken) return tl::unexpected(taken.error());
