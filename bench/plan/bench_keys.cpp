@@ -57,7 +57,8 @@ PlanSection about_section() {
               {.name = "description",
                .type = TextKey{},
                .sentence = "Description in the report",
-               .place = in_plan(&Plan::description)},
+               .place = in_plan(&Plan::description),
+               .form = {"Description", "planDescription"}},
               {.name = "operator",
                .type = TextKey{},
                .sentence = "Person who runs the measurement",
@@ -145,7 +146,8 @@ PlanSection camera_section() {
            .type = FreeTableKey{},
            .sentence =
                "Features of the camera and their values, [camera.settings]. They are set before the run and read back",
-           .place = of(&CameraPlan::settings)},
+           .place = of(&CameraPlan::settings),
+           .form = {"Camera settings", "planCameraSettings"}},
       }};
 }
 
@@ -283,13 +285,15 @@ PlanSection target_section() {
            .type = NumberKey{NumberRange::between(-40, 60)},
            .unit = "°C",
            .sentence = "Temperature of the air between plate and camera, used with air_humidity_percent",
-           .place = of(&TargetPlan::air_temperature_c)},
+           .place = of(&TargetPlan::air_temperature_c),
+           .form = {"Air temperature", "planAirTemperature"}},
           {.name = "air_humidity_percent",
            .type = NumberKey{NumberRange::between(0, 100)},
            .unit = "%",
            .sentence = "Relative humidity of that air; 0: not stated. If it is stated, the comparison of read-back and "
                        "observed contrast is corrected for the absorption over distance_m (method/uncertainty.md)",
-           .place = of(&TargetPlan::air_humidity_percent)},
+           .place = of(&TargetPlan::air_humidity_percent),
+           .form = {"Air humidity", "planAirHumidity"}},
           {.name = "settle_timeout_s",
            .type = NumberKey{NumberRange::between(0.001, 1e7)},
            .unit = "s",
@@ -382,7 +386,8 @@ PlanSection instrument_section() {
                 "Last day on which the calibration is valid, YYYY-MM-DD. If it has passed, the measurement is rejected",
             .place = in_row(rows, &InstrumentPlan::calibration_due),
             .check = check_due_date}},
-      .rows = rows_of(rows)};
+      .rows = rows_of(rows),
+      .form = {"Instruments", "planInstruments"}};
 }
 
 PlanSection module_section() {

@@ -282,6 +282,7 @@ PlanSection budget_row_section() {
                         "cancels in comparisons with them",
             .place = of(&BudgetRow::common)}},
       .rows = rows_of(rows),
+      .form = {"Uncertainty budget", "planBudget"},
       .other_names = {"components", "row", "rows"}};
 }
 

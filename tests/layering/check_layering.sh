@@ -79,7 +79,7 @@ BEGIN {
   bench = "bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/certificate bench/observer_fit bench/naked_eye bench/reference_set bench/selftest bench/plate_drawing bench/run bench/serve bench/run_control bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history bench/round_robin"
   may["bench/cli"] = core " " science " acquisition/recording tod/instruments bench/doctor " bench
   may["bench/python"] = core " " science " acquisition/recording " bench
-  may["bench/gui/presenters"] = core " " science " " bench
+  may["bench/gui/presenters"] = core " " science " acquisition/recording " bench
   may["bench/gui/views"] = science " " bench " bench/gui/presenters"
   may["bench/gui"] = science " " bench " bench/gui/presenters bench/gui/views"
   # third-party header: the only folders that may include it

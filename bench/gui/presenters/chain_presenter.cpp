@@ -256,7 +256,8 @@ void ChainPresenter::set_options(const ChainSettings& options) {
       if (request != request_) return;
       busy_ = false;
       problem_ = pictures ? QString() : QString::fromStdString(pictures.error().message);
-      if (pictures) pictures_ = *pictures;
+      // The pictures of an earlier scene would be taken for those of this one.
+      pictures_ = pictures ? *pictures : std::vector<StagePicture>();
       emit updated();
     });
   });

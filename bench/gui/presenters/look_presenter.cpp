@@ -3,10 +3,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
+#include <utility>
 
+#include "acquisition/core/camera_id.h"
+#include "acquisition/recording/tiff_writer.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/devices.h"
+#include "bench/session/provenance.h"
+#include "tod/presentation/target_failure.h"
 #include "tod/schedule/schedule.h"
 
 namespace todbench {
@@ -25,15 +31,26 @@ Result<void> show_first_state(const Plan& plan, const std::vector<TargetPlate>& 
                                        RandomStream(plan.seed, "schedule"));
   if (states.empty()) return {};
   auto presented = target.present(states.front(), stop);
-  if (!presented) return fail("presenting the target", presented.error());
+  if (!presented) return target_failure("presenting the target", presented.error());
   return {};
 }
 
-/// Opens camera and target of the plan if the target needs no operator; otherwise the camera alone.
+/// Shows the first state of a target that is not part of the camera, while the camera already runs.
+void show_target(const Plan& plan, const std::function<void(const std::string&)>& note, const std::stop_token& stop) {
+  const auto shown = [&]() -> Result<void> {
+    const auto loaded = LoadedPlan::load(plan);
+    if (!loaded) return tl::unexpected(loaded.error());
+    const auto target = open_target(*loaded, stop);
+    if (!target) return target_failure("opening the target", target.error());
+    return show_first_state(plan, loaded->plates(), **target, stop);
+  }();
+  if (!shown && shown.error().code != ErrorCode::interrupted)
+    note("The picture shows the scene without its target: " + shown.error().message);
+}
+
+/// Opens the camera: alone, or with its scene if that is part of it.
 Result<OpenedBench> open_for_looking(const Plan& plan, const std::stop_token& stop) {
-  const bool driven = plan.target.kind == TargetKind::scene ||
-                      (plan.target.kind == TargetKind::scpi && !plan.target.black_body.empty());
-  if (driven) {
+  if (plan.target.kind == TargetKind::scene) {
     const auto loaded = LoadedPlan::load(plan);
     if (!loaded) return tl::unexpected(loaded.error());
     auto bench = open_bench(*loaded, stop);
@@ -49,27 +66,67 @@ Result<OpenedBench> open_for_looking(const Plan& plan, const std::stop_token& st
   return bench;
 }
 
-Result<void> look(const Plan& plan, LiveFeed& feed, const std::stop_token& stop) {
+/// Recipients of a live picture.
+struct LookListener {
+  std::function<void(const std::string& sentence)> note;
+  std::function<void(FrameSource&)> on_open;
+};
+
+Result<void> look(const Plan& plan, LiveFeed& feed, CameraDesk& desk, const LookListener& listener,
+                  const std::stop_token& stop) {
   auto bench = open_for_looking(plan, stop);
   if (!bench) return tl::unexpected(bench.error());
   FrameSource& camera = *bench->camera;
   feed.open(camera.info());
+  for (const auto& [feature, value] : plan.camera.settings) {
+    if (auto set = camera.set(feature, value); !set)
+      listener.note("The camera refuses a setting of the plan: " + set.error().message);
+  }
   const std::stop_callback wake(stop, [&camera] { camera.stop(); });
   if (auto started = camera.start(); !started) return started;
+  desk.open();
+  listener.on_open(camera);
+  const bool driven = plan.target.kind == TargetKind::scpi && !plan.target.black_body.empty();
+  std::jthread target;
+  if (driven) target = std::jthread([&](const std::stop_token& end) { show_target(plan, listener.note, end); });
+  const bool recorded = has_scheme(plan.camera.id, camera_scheme::file);
+  bool again = false;  // a recording with a frame is shown over and over
   while (!stop.stop_requested()) {
     auto frame = camera.next(frame_timeout);
     if (stop.stop_requested()) break;
+    if (!frame && again && frame.error().code == ErrorCode::disconnected) {
+      again = false;
+      camera.stop();
+      if (auto started = camera.start(); !started) return started;
+      continue;
+    }
+    again = recorded && frame.has_value();
     if (!frame && frame.error().code == ErrorCode::timeout) {
       return fail(ErrorCode::disconnected,
                   "camera " + camera.info().id + " sends no frames; check the connection with 'todbench doctor'");
     }
     if (!frame) return tl::unexpected(frame.error());
     feed.put(*frame);
-    // A simulated camera is as fast as requested; frames beyond the display rate are useless.
-    if (bench->simulated) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (auto kept = desk.append(*frame); !kept) listener.note("The recording ended: " + kept.error().message);
+    desk.serve(camera);
+    // These are as fast as requested; frames beyond the display rate are useless.
+    if (bench->simulated || recorded) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   camera.stop();
   return {};
+}
+
+/// "snapshot-20261127T031500Z" with an ending that no file of the folder has yet.
+std::filesystem::path new_file(const std::filesystem::path& folder, const std::string& kind,
+                               const std::string& ending) {
+  std::string stem = kind + "-";
+  for (const char c : utc_now()) {
+    if (c != '-' && c != ':') stem += c;
+  }
+  std::filesystem::path file = folder / (stem + ending);
+  for (int number = 2; std::filesystem::exists(file); ++number)
+    file = folder / (stem + "-" + std::to_string(number) + ending);
+  return file;
 }
 
 }  // namespace
@@ -81,9 +138,88 @@ LookPresenter::LookPresenter(Workbench& bench, QObject* parent) : QObject(parent
 }
 
 void LookPresenter::start() {
-  LiveFeed& feed = bench_.feed();
-  bench_.run(Activity::looking,
-             [&feed](const Plan& plan, const std::stop_token& stop) { return look(plan, feed, stop); });
+  LookListener listener;
+  listener.note = [this](const std::string& sentence) { bench_.note(sentence); };
+  listener.on_open = [this](FrameSource& camera) {
+    bench_.post([this, readings = read_controls(camera)] {
+      controls_ = readings;
+      emit controls_changed();
+    });
+  };
+  bench_.run(Activity::looking, [this, listener, desk = desk_](const Plan& plan, const std::stop_token& stop) {
+    auto ended = look(plan, bench_.feed(), *desk, listener, stop);
+    bench_.post([this] {
+      end_recording();
+      controls_.clear();
+      emit controls_changed();
+    });
+    return ended;
+  });
+}
+
+void LookPresenter::ask(CameraDesk::Request request) {
+  if (bench_.activity() == Activity::looking) desk_->ask(std::move(request));
+}
+
+void LookPresenter::report(const Result<void>& done) {
+  if (!done) emit bench_.trouble(QString::fromStdString(done.error().message), Remedy::none);
+}
+
+void LookPresenter::change(const std::string& feature, const std::string& value) {
+  ask([this, feature, value](FrameSource& camera) {
+    auto set = change_feature(camera, feature, value);
+    bench_.post([this, feature, set, readings = read_controls(camera)] {
+      controls_ = readings;
+      if (set) {
+        emit bench_.noted(
+            QString::fromStdString(feature + " is " + *set + ". The plan states it in [camera] settings."));
+        Plan plan = bench_.plan();
+        plan.camera.settings[feature] = *set;
+        bench_.set_plan(plan);
+      } else {
+        report(tl::unexpected(set.error()));
+      }
+      emit controls_changed();
+    });
+  });
+}
+
+void LookPresenter::correct() {
+  ask([this](FrameSource& camera) {
+    auto corrected = camera.correct_nonuniformity();
+    bench_.post([this, corrected] {
+      report(corrected);
+      if (corrected) emit bench_.noted("The camera corrects its non-uniformity.");
+    });
+  });
+}
+
+Result<std::filesystem::path> LookPresenter::snapshot() {
+  if (!latest_) return fail(ErrorCode::invalid_input, "there is no picture yet");
+  const std::filesystem::path file = new_file(bench_.sessions_folder(), "snapshot", ".tif");
+  auto tiff = TiffWriter::create(file);
+  if (!tiff) return tl::unexpected(tiff.error());
+  if (auto written = tiff->append(latest_->frame.counts); !written) return tl::unexpected(written.error());
+  if (auto pages = tiff->verified_pages(); !pages) return tl::unexpected(pages.error());
+  return file;
+}
+
+void LookPresenter::toggle_recording() {
+  if (recording()) {
+    end_recording();
+  } else if (const auto info = bench_.feed().info(); info && bench_.activity() == Activity::looking) {
+    recorded_ = new_file(bench_.sessions_folder(), "recording", ".todrec");
+    report(desk_->record(recorded_, *info));
+  }
+  emit controls_changed();
+}
+
+void LookPresenter::end_recording() {
+  const auto frames = desk_->end_recording();
+  if (!frames) return report(tl::unexpected(frames.error()));
+  if (*frames) {
+    emit bench_.noted(QString("Recorded %1 frames: %2").arg(**frames).arg(QString::fromStdString(recorded_.string())));
+  }
 }
 
 void LookPresenter::take_latest() {

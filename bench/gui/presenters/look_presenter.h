@@ -6,9 +6,13 @@
 #include <QObject>
 #include <QString>
 #include <QTimer>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "bench/gui/presenters/camera_desk.h"
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/gui/presenters/live_feed.h"
 #include "bench/gui/presenters/workbench.h"
@@ -32,7 +36,8 @@ class LookPresenter final : public QObject {
  public:
   explicit LookPresenter(Workbench& bench, QObject* parent = nullptr);
 
-  /// Runs the selected camera; a target that the plan can drive first shows the plan's highest contrast.
+  /// Runs the selected camera. A target that the plan can drive is asked for the plan's highest contrast at the same
+  /// time; the picture does not wait for it, and its failure is a message.
   void start();
   void stop() { bench_.stop(); }
 
@@ -56,14 +61,35 @@ class LookPresenter final : public QObject {
   /// Settings read from the camera, as text; empty before the first frame.
   [[nodiscard]] QString camera() const;
 
+  /// Settings of the running camera, in the order of all_camera_controls; empty before it runs.
+  [[nodiscard]] const std::vector<ControlReading>& controls() const { return controls_; }
+  /// Sets a feature of the running camera. The plan states the new value in [camera] settings, so that a measurement
+  /// uses it. controls_changed() follows; a refusal is a trouble of the workbench.
+  void change(const std::string& feature, const std::string& value);
+  /// Commands a non-uniformity correction.
+  void correct();
+  /// Writes the latest frame as a TIFF of 16 bits into the folder of the sessions, and returns the file. Errors: `io`;
+  /// `invalid_input` without a frame.
+  Result<std::filesystem::path> snapshot();
+  /// Records the frames that follow into the folder of the sessions, or ends the recording.
+  void toggle_recording();
+  [[nodiscard]] bool recording() const { return desk_->recording(); }
+
  signals:
   void updated();
+  void controls_changed();
 
  private:
   void take_latest();
   void render();
+  void ask(CameraDesk::Request request);
+  void report(const Result<void>& done);
+  void end_recording();
 
   Workbench& bench_;
+  std::shared_ptr<CameraDesk> desk_ = std::make_shared<CameraDesk>();
+  std::vector<ControlReading> controls_;
+  std::filesystem::path recorded_;  ///< file of the recording
   QTimer timer_;
   std::optional<LiveFrame> latest_;
   QImage image_;

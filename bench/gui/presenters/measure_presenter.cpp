@@ -6,9 +6,12 @@
 #include <utility>
 
 #include "bench/plan/descriptions.h"
+#include "bench/plan/plan_options.h"
 #include "bench/report/tod_figures.h"
 #include "bench/run/replay.h"
 #include "bench/run/report_data.h"
+#include "bench/run/resumed_run.h"
+#include "tod/schedule/schedule.h"
 
 namespace todbench {
 namespace {
@@ -28,6 +31,28 @@ std::vector<double> sizes_of(const Plan& plan) {
       sizes_mrad.push_back(triangle.size_mm / plan.target.distance_m);
   }
   return sizes_mrad;
+}
+
+/// Requests to the operator for the presentations of the plan; 0: unknown, or no operator. Physical measures ask
+/// further ones.
+std::size_t requests_of(const Plan& plan) {
+  if (plan.target.kind != TargetKind::prompt || plan.schedule.kind != ScheduleKind::constant) return 0;
+  if (!(plan.camera.ifov_mrad > 0)) return 0;
+  std::vector<TargetPlate> plates;
+  for (const std::string& name : plan.target.plates) {
+    auto plate = load_plate(name);
+    if (!plate) return 0;
+    plates.push_back(*std::move(plate));
+  }
+  const auto states = constant_stimuli(stimuli_options(plan, plates, plan.camera.ifov_mrad, Side::measured),
+                                       RandomStream(plan.seed, "schedule"));
+  std::size_t requests = 0;
+  std::optional<TargetState> last;
+  for (const TargetState& state : states) {
+    if (!request_between(last, state).steps.empty()) ++requests;
+    last = state;
+  }
+  return requests;
 }
 
 }  // namespace
@@ -105,6 +130,7 @@ ExperimentHost MeasurePresenter::host() {
     desk_->clear();
     bench_.post([this, request] {
       request_ = request;
+      ++requests_;
       emit updated();
       emit operator_needed();
     });
@@ -121,6 +147,9 @@ ExperimentHost MeasurePresenter::host() {
 void MeasurePresenter::begin(const Plan& plan) {
   plan_ = plan;
   sizes_mrad_ = sizes_of(plan);
+  requests_ = 0;
+  planned_requests_ = requests_of(plan);
+  since_begin_.start();
   phase_ = "starting";
   notes_.clear();
   request_.reset();
@@ -153,6 +182,7 @@ void MeasurePresenter::start() {
   if (state_ != RunState::idle) return;
   begin(bench_.plan());
   replayed_.reset();
+  resumed_.reset();
   const std::filesystem::path folder = bench_.sessions_folder() / session_folder_name(plan_.name);
   bench_.run(Activity::measuring, [this, run = run_, folder](const Plan& plan, const std::stop_token& stop) {
     const ExperimentOptions options{.folder = folder, .existing = ExistingFolder::number, .host = host()};
@@ -165,6 +195,7 @@ void MeasurePresenter::replay(const std::filesystem::path& session, const Plan& 
   if (state_ != RunState::idle) return;
   begin(plan);
   replayed_ = session;
+  resumed_.reset();
   const std::filesystem::path folder =
       bench_.sessions_folder() / session_folder_name(session_name(session) + "-replay");
   bench_.run_without_devices(
@@ -177,9 +208,26 @@ void MeasurePresenter::replay(const std::filesystem::path& session, const Plan& 
   emit updated();
 }
 
+void MeasurePresenter::resume_run(const std::filesystem::path& session, const Plan& plan) {
+  if (state_ != RunState::idle) return;
+  bench_.set_plan(plan);
+  begin(plan);
+  replayed_.reset();
+  resumed_ = session;
+  const std::filesystem::path folder =
+      bench_.sessions_folder() / session_folder_name(session_name(session) + "-resumed");
+  bench_.run(Activity::measuring, [this, run = run_, session, folder](const Plan&, const std::stop_token& stop) {
+    const ExperimentOptions options{.folder = folder, .existing = ExistingFolder::number, .host = host()};
+    return hand_over(run, resume_session(session, options, listener(), stop), {});
+  });
+  emit updated();
+}
+
 void MeasurePresenter::again() {
   if (replayed_) {
     replay(*replayed_, plan_);
+  } else if (resumed_) {
+    resume_run(*resumed_, plan_);
   } else {
     start();
   }
@@ -328,6 +376,22 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
   set_state(RunState::idle);
   emit updated();
   if (outcome_) emit finished(QString::fromStdString(folder_.string()));
+}
+
+QString MeasurePresenter::under_way() const {
+  if (state_ == RunState::idle) return {};
+  const qint64 minutes = since_begin_.elapsed() / 60'000;
+  const QString length = minutes < 1    ? "less than a minute"
+                         : minutes < 60 ? QString("%1 min").arg(minutes)
+                                        : QString("%1 h %2 min").arg(minutes / 60).arg(minutes % 60);
+  return "A run of " + length + " is under way";
+}
+
+QString MeasurePresenter::request_number() const {
+  if (!request_) return {};
+  QString text = QString("Request %1").arg(requests_);
+  if (planned_requests_ >= requests_ && planned_requests_ > 0) text += QString(" of %1").arg(planned_requests_);
+  return text;
 }
 
 QString MeasurePresenter::next_step() const {

@@ -44,7 +44,10 @@ class MeasurePresenter final : public QObject {
   void start();
   /// Replays the recorded frames of a session with the plan `plan` into a new session folder.
   void replay(const std::filesystem::path& session, const Plan& plan);
-  /// Repeats the last start() or replay().
+  /// Goes on with a run that ended early, into a new session folder (resume_session()). The plan of the session becomes
+  /// that of the bench.
+  void resume_run(const std::filesystem::path& session, const Plan& plan);
+  /// Repeats the last start(), replay() or resume_run().
   void again();
   void pause();
   void resume();
@@ -59,6 +62,10 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] std::size_t planned() const { return planned_; }
   /// "1 min 12 s left", from the presentations of this phase; empty if unknown.
   [[nodiscard]] QString time_left() const;
+  /// "A run of 3 h 10 min is under way"; empty: no run.
+  [[nodiscard]] QString under_way() const;
+  /// "Request 7 of 24" while the run waits for the operator; the total only with a constant schedule.
+  [[nodiscard]] QString request_number() const;
   /// Request to the operator that the run waits for; empty: it does not wait.
   [[nodiscard]] const std::optional<OperatorRequest>& operator_request() const { return request_; }
   /// State of the target that the run waits for, with requested and reached values; empty: it does not wait.
@@ -69,6 +76,12 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] QString camera_away() const;
   [[nodiscard]] const QStringList& notes() const { return notes_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+  /// Session to which the answers of a person to trials() belong: that of the run, or the replayed one if all its
+  /// answers came out the same.
+  [[nodiscard]] const std::filesystem::path& judged_session() const {
+    return replayed_ && same_.value_or(false) ? *replayed_ : folder_;
+  }
 
   /// Curves of the camera and of its twin: fitted during the run, afterwards the results of the session.
   [[nodiscard]] const std::optional<TodCurve>& measured() const { return measured_; }
@@ -132,7 +145,8 @@ class MeasurePresenter final : public QObject {
   QStringList notes_;
   std::size_t done_ = 0, planned_ = 0, done_at_start_ = 0;
   std::size_t presented_ = 0;  ///< of the last part that counts its presentations
-  QElapsedTimer in_phase_, since_fit_;
+  QElapsedTimer in_phase_, since_fit_, since_begin_;
+  std::size_t requests_ = 0, planned_requests_ = 0;  ///< to the operator; 0 planned: unknown
   std::filesystem::path folder_;
   std::vector<JudgedTrial> trials_;
   std::vector<Trial> twin_trials_;
@@ -146,6 +160,7 @@ class MeasurePresenter final : public QObject {
   std::optional<bool> same_;
   std::optional<Away> away_;
   std::optional<std::filesystem::path> replayed_;  ///< empty: the last run used the camera
+  std::optional<std::filesystem::path> resumed_;   ///< session whose run the last one continued
   Pause pause_;
   std::shared_ptr<OperatorRequests> desk_ = std::make_shared<OperatorRequests>();
   Inbox inbox_;

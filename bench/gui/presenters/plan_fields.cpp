@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "bench/plan/plan_keys.h"
@@ -96,8 +99,39 @@ struct AskFor {
     field.kind = FieldKind::rows;
     field.columns = {{"Name or file", list_of(resource_names(type.kind))}};
   }
-  void operator()(const FreeTableKey&) const { field.kind = FieldKind::text; }
+  void operator()(const FreeTableKey&) const {
+    field.kind = FieldKind::rows;
+    field.columns = {{"Feature", {}}, {"Value", {}}};
+  }
 };
+
+QString free_table_shown(const KeyAt& at, const Plan& plan) {
+  const KeyValue value = at.key->place.get(plan, at.row);
+  std::vector<QStringList> rows;
+  for (const auto& [name, text] : std::get<std::map<std::string, std::string>>(value))
+    rows.push_back({QString::fromStdString(name), QString::fromStdString(text)});
+  return text_of_rows(rows);
+}
+
+QString enter_free_table(const KeyAt& at, Plan& plan, const QString& text) {
+  std::map<std::string, std::string> table;
+  for (const QStringList& row : rows_of_text(text)) {
+    if (row.size() > 2) return "'" + row.join(": ") + "' has more values than a name and its value";
+    if (row.front().isEmpty()) return "a value has no name";
+    table[row.front().toStdString()] = row.value(1).toStdString();
+  }
+  at.key->place.set(plan, at.row, KeyValue(table));
+  return {};
+}
+
+/// "target" -> "Target", "limits.zone" -> "Limits".
+QString heading_of(const PlanSection& section) {
+  if (section.name.empty()) return "Names";
+  QString name = text_of(section.name).section('.', 0, 0);
+  if (name == "instrument") return "Instruments";
+  if (name == "uncertainty") return "Uncertainty budget";
+  return name.left(1).toUpper() + name.mid(1);
+}
 
 PlanField field_of(const KeyAt& at) {
   PlanField field{.label = with_unit(text_of(at.key->form.label), at.key->unit),
@@ -107,6 +141,11 @@ PlanField field_of(const KeyAt& at) {
   field.paths = {path_of(*at.section, *at.key)};
   field.shown = [at](const Plan& plan) { return shown_value(at, plan); };
   field.entered = [at](Plan& plan, const QString& text) { return enter(at, plan, text); };
+  field.section = heading_of(*at.section);
+  if (std::holds_alternative<FreeTableKey>(at.key->type)) {
+    field.shown = [at](const Plan& plan) { return free_table_shown(at, plan); };
+    field.entered = [at](Plan& plan, const QString& text) { return enter_free_table(at, plan, text); };
+  }
   return field;
 }
 
@@ -250,6 +289,7 @@ PlanField field_of(const PlanSection& section) {
   }
   field.shown = [&section](const Plan& plan) { return table_shown(section, plan); };
   field.entered = [&section](Plan& plan, const QString& text) { return enter_table(section, plan, text); };
+  field.section = heading_of(section);
   return field;
 }
 
@@ -301,6 +341,27 @@ std::vector<QStringList> rows_of_text(const QString& text) {
   }
   end_row();
   return rows;
+}
+
+QString idle_reason(const PlanField& field, const Plan& plan) {
+  const std::string path = field.paths.empty() ? std::string() : field.paths.front();
+  const auto is_one_of = [&path](std::initializer_list<std::string_view> names) {
+    return std::find(names.begin(), names.end(), path) != names.end();
+  };
+  const TargetKind kind = plan.target.kind;
+  if (kind != TargetKind::scpi && is_one_of({"target.black_body", "target.stage", "target.black_body_table",
+                                             "target.stage_table", "target.settle_timeout_s"}))
+    return "No effect: only a target of kind 'scpi' has instruments.";
+  if (kind != TargetKind::display && path.starts_with("target.display"))
+    return "No effect: only a target of kind 'display' has a monitor.";
+  if (plan.schedule.kind != ScheduleKind::adaptive &&
+      is_one_of({"schedule.half_width_percent", "schedule.max_presentations"}))
+    return "No effect: only a schedule of kind 'adaptive' ends at a half-width.";
+  if (plan.target.air_humidity_percent <= 0 && path == "target.air_temperature_c")
+    return "No effect until the humidity of the air is stated.";
+  if (plan.camera.nuc_interval_s <= 0 && path == "camera.nuc_command")
+    return "No effect: no correction is commanded (nuc_interval_s is 0).";
+  return {};
 }
 
 std::vector<PlanField> plan_fields() {

@@ -55,7 +55,11 @@ struct PlanField {
   std::function<QString(const Plan&)> shown{};
   /// Sets a text in the plan. On an error returns a sentence and leaves the plan as it is.
   std::function<QString(Plan&, const QString&)> entered{};
+  QString section{};  ///< heading of the lines with the same section
 };
+
+/// Reason why a field has no effect in a plan; empty: it has one.
+[[nodiscard]] QString idle_reason(const PlanField& field, const Plan& plan);
 
 /// Returns the keys that have a line, in the order of the table (bench/plan/plan_key_table.cpp).
 [[nodiscard]] std::vector<PlanField> plan_fields();

@@ -32,6 +32,11 @@ bool PlanForm::right() const {
          std::all_of(lines_.begin(), lines_.end(), [](const Line& line) { return line.problem.isEmpty(); });
 }
 
+bool PlanForm::changed() const {
+  return draft_ != base_ ||
+         std::any_of(lines_.begin(), lines_.end(), [](const Line& line) { return !line.unreadable.isNull(); });
+}
+
 void PlanForm::enter(std::size_t i, const QString& text) {
   Line& line = lines_[i];
   line.entered = true;

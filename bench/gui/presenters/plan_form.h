@@ -27,6 +27,8 @@ class PlanForm {
   /// Whether there are no errors: draft() can become the plan of the bench.
   [[nodiscard]] bool right() const;
   [[nodiscard]] const Plan& draft() const { return draft_; }
+  /// Whether entries are not in the plan that was shown last.
+  [[nodiscard]] bool changed() const;
 
   void enter(std::size_t i, const QString& text);
   /// Reports that the bench rejects the draft, for example because a file cannot be read.

@@ -5,9 +5,11 @@
 #include <utility>
 
 #include "acquisition/core/camera_id.h"
+#include "bench/gui/presenters/device_plan.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/resources.h"
 #include "bench/run/devices.h"
+#include "tod/presentation/target_failure.h"
 
 namespace todbench {
 namespace {
@@ -31,7 +33,27 @@ std::vector<DeviceEntry> built_in_devices() {
   return entries;
 }
 
+/// The device behind the camera of a plan: the plans of the emulated laboratory name its address.
+QString device_of(const Plan& plan) {
+#ifdef TODBENCH_WITH_ARAVIS
+  if (plan.camera.id == camera_id(camera_scheme::gige, "127.0.0.1")) return emulated_laboratory;
+#endif
+  return QString::fromStdString(plan.camera.id);
+}
+
 }  // namespace
+
+Remedy remedy_of(const Error& error) {
+  switch (error.code) {
+    case ErrorCode::not_found:
+    case ErrorCode::disconnected:
+    case ErrorCode::timeout:
+    case ErrorCode::integrity:
+      return Remedy::try_again;
+    default:
+      return Remedy::none;
+  }
+}
 
 QString name_of(DeviceHealth health) {
   switch (health) {
@@ -70,33 +92,39 @@ Workbench::Workbench(std::filesystem::path sessions, QObject* parent)
 Workbench::~Workbench() = default;
 
 void Workbench::set_plan(const Plan& plan) {
+  const bool other = !plan.camera.id.empty() && plan.camera.id != plan_.camera.id;
   plan_ = plan;
   emit plan_changed();
+  if (!other) return;
+  const QString device = device_of(plan);
+  if (device == device_) return;
+  // A run has its own copy of the plan and goes on.
+  if (activity_ == Activity::looking || activity_ == Activity::aligning) stop();
+  device_ = device;
+  const bool listed =
+      std::any_of(devices_.begin(), devices_.end(), [&](const DeviceEntry& entry) { return entry.id == device; });
+  if (!listed) {
+    devices_.push_back({.id = device, .group = "Camera of the plan", .label = device, .detail = "named by the plan"});
+    emit devices_changed();
+  }
+  emit device_selected();
 }
 
 Result<void> Workbench::select_device(const QString& id) {
-  Plan plan = plan_;
+  Plan plan;
   if (id == emulated_laboratory) {
-    plan.camera.id = camera_id(camera_scheme::gige, "127.0.0.1");
-    plan.target.kind = TargetKind::scpi;
-    plan.target.black_body = "127.0.0.1:5025";
-    plan.target.stage = "127.0.0.1:5026";
+    plan = plan_for_laboratory(plan_);
   } else if (const auto name = camera_name(id.toStdString(), camera_scheme::sim)) {
-    auto sensor = load_sensor(*name);
-    if (!sensor) return tl::unexpected(sensor.error());
-    plan.camera.id = id.toStdString();
-    plan.camera.ifov_mrad = sensor->ifov_mrad() / sensor->microscan;
-    plan.target.kind = TargetKind::scene;
-    plan.target.black_body.clear();
-    plan.target.stage.clear();
-    plan.simulation.sensor = *name;
+    auto simulated = plan_for_sensor(plan_, *name);
+    if (!simulated) return tl::unexpected(simulated.error());
+    plan = *std::move(simulated);
   } else {
-    plan.camera.id = id.toStdString();
-    if (plan.target.kind == TargetKind::scene) plan.target.kind = TargetKind::prompt;
+    plan = plan_for_camera(plan_, id.toStdString());
   }
   if (device_ != id) stop();
   device_ = id;
-  set_plan(plan);
+  plan_ = std::move(plan);
+  emit plan_changed();
   emit device_selected();
   return {};
 }
@@ -113,6 +141,7 @@ void Workbench::rescan() {
         entries.push_back({.id = id,
                            .group = QString::fromStdString(camera.transport),
                            .label = QString::fromStdString(camera.vendor + " " + camera.model),
+                           .serial = QString::fromStdString(camera.serial),
                            .detail = QString::fromStdString("serial number " + camera.serial +
                                                             (camera.address.empty() ? "" : ", at " + camera.address)),
                            .health = DeviceHealth::ready});
@@ -171,7 +200,7 @@ void Workbench::begin(Activity activity, Devices devices, DeviceJob job) {
           result = tl::unexpected(ready.error());
         }
 #ifdef TODBENCH_WITH_ARAVIS
-        // A laboratory without its camera is useless: the next run starts another.
+        // A laboratory without its camera or an instrument is useless: the next run starts another.
         if (!result && result.error().code == ErrorCode::disconnected) {
           const std::lock_guard lock(laboratory_mutex_);
           laboratory_.reset();
@@ -193,11 +222,11 @@ void Workbench::stop() {
 void Workbench::ended(std::uint64_t run, const Result<void>& result) {
   if (run != run_) return;
   const bool failed = !result && result.error().code != ErrorCode::interrupted;
-  const bool lost =
-      failed && (result.error().code == ErrorCode::disconnected || result.error().code == ErrorCode::not_found);
+  const bool lost = failed && !is_target_failure(result.error()) &&
+                    (result.error().code == ErrorCode::disconnected || result.error().code == ErrorCode::not_found);
   set_health(lost ? DeviceHealth::lost : DeviceHealth::ready);
   set_activity(Activity::idle);
-  if (failed) emit trouble(QString::fromStdString(result.error().message));
+  if (failed) emit trouble(QString::fromStdString(result.error().message), remedy_of(result.error()));
 }
 
 void Workbench::switch_emulated_camera_off() {

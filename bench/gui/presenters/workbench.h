@@ -24,7 +24,9 @@ enum class DeviceHealth { ready, in_use, lost };
 struct DeviceEntry {
   QString id;     ///< of a camera, or `emulated_laboratory`
   QString group;  ///< "Emulated", "Simulated", "GigE Vision", ...
-  QString label, detail;
+  QString label;
+  QString serial{};  ///< empty: has none
+  QString detail;
   DeviceHealth health = DeviceHealth::ready;
 };
 inline constexpr const char* emulated_laboratory = "emulated";
@@ -32,6 +34,13 @@ inline constexpr const char* emulated_laboratory = "emulated";
 /// Present activity of the bench. One at a time.
 enum class Activity { idle, looking, aligning, measuring, replaying };
 [[nodiscard]] QString name_of(Activity activity);
+
+/// What a user can do about a trouble.
+enum class Remedy {
+  try_again,  ///< the same action may succeed the next time: a device is absent, lost or late
+  none,       ///< the same action fails again until a value, a file or a setting is changed
+};
+[[nodiscard]] Remedy remedy_of(const Error& error);
 
 /// Lives in the window's thread; members marked "any thread" may be called from jobs.
 class Workbench final : public QObject {
@@ -43,12 +52,14 @@ class Workbench final : public QObject {
   ~Workbench() override;
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
+  /// Replaces the plan. If it names another camera, that camera becomes the device.
   void set_plan(const Plan& plan);
   [[nodiscard]] const std::filesystem::path& sessions_folder() const { return sessions_; }
 
   [[nodiscard]] const std::vector<DeviceEntry>& devices() const { return devices_; }
   [[nodiscard]] QString device() const { return device_; }
-  /// Puts the device into the plan. Errors: `invalid_input` for an unreadable simulated sensor.
+  /// Puts the device into the plan (bench/gui/presenters/device_plan.h). Errors: `invalid_input` for an unreadable
+  /// simulated sensor.
   [[nodiscard]] Result<void> select_device(const QString& id);
   /// Searches for cameras; devices_changed() follows.
   void rescan();
@@ -82,8 +93,8 @@ class Workbench final : public QObject {
   void device_selected();
   void activity_changed();
   void noted(const QString& sentence);
-  /// An error occurred; the window offers to retry.
-  void trouble(const QString& sentence);
+  /// An error occurred; the window offers the remedy.
+  void trouble(const QString& sentence, Remedy remedy);
 
  private:
   [[nodiscard]] Result<Plan> with_devices(Plan plan, const QString& device, const std::stop_token& stop);

@@ -5,13 +5,16 @@
 #include <QIcon>
 #include <QPixmap>
 #include <QToolButton>
+#include <algorithm>
 
 #include "bench/gui/presenters/person_presenter.h"
 
 namespace todbench {
 namespace {
 
-constexpr int icon_columns = 8;
+constexpr int most_columns = 8;
+/// Width for the icons in the smallest window, 1280 points: the list of views and the side panel stand beside them.
+constexpr int panel_width_px = 780;
 
 /// Key shown before the name: "1" to "9", then "a", "b", ...
 QString key_of_alternative(int alternative) {
@@ -42,9 +45,13 @@ void AlternativesPanel::set_alternatives(const PersonExperiment& experiment) {
     button->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
     button->setFocusPolicy(Qt::NoFocus);  // the page handles the keys
     connect(button, &QToolButton::clicked, this, [this, i] { emit chosen(i); });
-    grid_->addWidget(button, i / icon_columns, i % icon_columns, Qt::AlignCenter);
     buttons_.push_back(button);
   }
+  int widest = 1;
+  for (const QToolButton* button : buttons_) widest = std::max(widest, button->sizeHint().width());
+  const int columns = std::clamp(panel_width_px / (widest + grid_->spacing()), 1, most_columns);
+  for (int i = 0; i < count; ++i)
+    grid_->addWidget(buttons_[static_cast<std::size_t>(i)], i / columns, i % columns, Qt::AlignCenter);
 }
 
 void AlternativesPanel::clear() {

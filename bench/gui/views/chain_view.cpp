@@ -193,9 +193,10 @@ void ChainView::show_pictures() {
   const auto& pictures = presenter_.pictures();
   if (!pictures.empty() && pictures.front().grey_k)
     level = {pictures.front().grey_k->first, pictures.front().grey_k->second};
-  for (std::size_t i = 0; i < pictures.size() && i < pictures_.size(); ++i) {
-    pictures_[i]->set_image(to_image(pictures[i].kelvin, level, ColourMap::white_hot));
-    notes_[i]->setText(pictures[i].note);
+  for (std::size_t i = 0; i < pictures_.size(); ++i) {
+    const bool there = i < pictures.size();
+    pictures_[i]->set_image(there ? to_image(pictures[i].kelvin, level, ColourMap::white_hot) : QImage());
+    notes_[i]->setText(there ? pictures[i].note : QString());
   }
 }
 

@@ -12,6 +12,7 @@
 #include <QMenu>
 #include <QSignalBlocker>
 #include <QSpinBox>
+#include <QStyle>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <vector>
@@ -162,7 +163,16 @@ void FieldEditor::show_problem(const QString& sentence) {
   problem_->setVisible(!sentence.isEmpty());
 }
 
+void FieldEditor::show_idle(const QString& reason) {
+  // Greyed, not disabled: a value may be entered before the line that gives it an effect.
+  part_->setProperty("idle", !reason.isEmpty());
+  part_->setToolTip(reason.isEmpty() ? tool_tip_ : reason + "\n" + tool_tip_);
+  part_->style()->polish(part_);
+}
+
 void FieldEditor::set_part(QWidget* part, const PlanField& field) {
+  part_ = part;
+  tool_tip_ = field.tool_tip;
   part->setObjectName(field.object_name);
   part->setToolTip(field.tool_tip);
   part->setAccessibleName(field.label);
@@ -177,7 +187,10 @@ void FieldEditor::make_line(const PlanField& field) {
   if (field.kind == FieldKind::number) edit->setMaximumWidth(fontMetrics().horizontalAdvance("0000000.000000"));
   layout()->addWidget(edit);
   text_ = [edit] { return edit->text(); };
-  set_text_ = [edit](const QString& text) { edit->setText(text); };
+  set_text_ = [edit](const QString& text) {
+    edit->setText(text);
+    edit->setCursorPosition(0);  // a long number is shown from its beginning
+  };
   typing_ = [edit] { return edit->hasFocus() && edit->isModified(); };
   connect(edit, &QLineEdit::editingFinished, this, [this, edit] {
     if (!edit->isModified()) return;
@@ -236,7 +249,10 @@ void FieldEditor::make_combo(const PlanField& field) {
   set_text_ = [box](const QString& text) {
     const QSignalBlocker quiet(box);
     if (const int index = box->findText(text); index >= 0) box->setCurrentIndex(index);
-    if (box->isEditable()) box->setEditText(text);
+    if (box->isEditable()) {
+      box->setEditText(text);
+      box->lineEdit()->setCursorPosition(0);
+    }
   };
   text_ = [box] { return box->currentText(); };
   connect(box, &QComboBox::activated, this, &FieldEditor::edited);
@@ -298,7 +314,10 @@ void FieldEditor::make_rows(const PlanField& field) {
   table->setEditTriggers(QAbstractItemView::DoubleClicked | QAbstractItemView::EditKeyPressed |
                          QAbstractItemView::AnyKeyPressed | QAbstractItemView::SelectedClicked);
   table->setSelectionBehavior(QAbstractItemView::SelectItems);
-  table->setMinimumWidth(column_widths(*table, longest));
+  constexpr int most_width = 430;  // half of the smallest window; wider tables scroll
+  const int width = column_widths(*table, longest);
+  table->setMinimumWidth(std::min(width, most_width));
+  if (width > most_width) table->setHorizontalScrollMode(QAbstractItemView::ScrollPerPixel);
   auto* buttons = new QHBoxLayout;  // NOLINT
   QPushButton* add = plain_button("Add", field.object_name + "Add");
   QPushButton* remove = plain_button("Remove", field.object_name + "Remove");

@@ -23,6 +23,8 @@ class FieldEditor final : public QWidget {
   /// Sets the text without emitting a signal. While the user is typing, the text stays.
   void show_text(const QString& text);
   void show_problem(const QString& sentence);
+  /// Greys the field and states why it has no effect; empty: it has one.
+  void show_idle(const QString& reason);
 
  signals:
   /// The user changed the value.
@@ -38,6 +40,8 @@ class FieldEditor final : public QWidget {
   void make_rows(const PlanField& field);
   void set_part(QWidget* part, const PlanField& field);
 
+  QWidget* part_ = nullptr;
+  QString tool_tip_;
   std::function<QString()> text_;
   std::function<void(const QString&)> set_text_;
   std::function<bool()> typing_ = [] { return false; };

@@ -277,7 +277,7 @@ void HumanView::begin() {
   if (limited_->isChecked()) options.shown_ms = shown_ms_->value();
   options.seed = bench_.plan().seed;
   const QString problem = presenter_.begin(measured_.trials(), bench_.plan(), measured_.folder(), options);
-  if (!problem.isEmpty()) emit bench_.trouble(problem);
+  if (!problem.isEmpty()) emit bench_.trouble(problem, Remedy::none);
   setFocus();
 }
 
@@ -292,14 +292,15 @@ void HumanView::begin_person() {
                           .seed = bench_.plan().seed};
   const auto ranges = numbers_of(ranges_->text()), frequencies = numbers_of(frequencies_->text());
   if (!ranges || !frequencies) {
-    emit bench_.trouble("Enter ranges and frequencies as numbers separated by commas, for example 400, 800.");
+    emit bench_.trouble("Enter ranges and frequencies as numbers separated by commas, for example 400, 800.",
+                        Remedy::none);
     return;
   }
   question.ranges_m = *ranges;
   question.of_nyquist = *frequencies;
   auto experiment = person_experiment(question);
   if (!experiment) {
-    emit bench_.trouble(QString::fromStdString(experiment.error().message));
+    emit bench_.trouble(QString::fromStdString(experiment.error().message), Remedy::none);
     return;
   }
   alternatives_->set_alternatives(*experiment);

@@ -6,6 +6,7 @@
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QHeaderView>
+#include <QLineEdit>
 #include <QPainter>
 #include <QSignalBlocker>
 #include <QTreeWidget>
@@ -71,8 +72,10 @@ LookView::LookView(Workbench& bench, LookPresenter& presenter, QWidget* parent)
   connect(&bench_, &Workbench::device_selected, this, &LookView::list_devices, Qt::QueuedConnection);
   connect(&bench_, &Workbench::activity_changed, this, &LookView::show_activity);
   connect(&presenter_, &LookPresenter::updated, this, &LookView::show_frame);
+  connect(&presenter_, &LookPresenter::controls_changed, this, &LookView::show_controls);
   connect(picture_, &PictureView::hovered, this, &LookView::show_reading);
   list_devices();
+  show_controls();
   show_activity();
 }
 
@@ -91,6 +94,7 @@ QWidget* LookView::device_panel() {
   layout->addWidget(devices_, 1);
   camera_ = hint_label();
   layout->addWidget(camera_);
+  layout->addWidget(controls_panel());
   start_ = primary_button("Start live picture", "startLooking");
   rescan_ = plain_button("Look for cameras", "rescan");
   layout->addWidget(start_);
@@ -99,7 +103,7 @@ QWidget* LookView::device_panel() {
     const QString id = item == nullptr ? QString() : item->data(0, Qt::UserRole).toString();
     if (id.isEmpty() || id == bench_.device()) return;
     if (auto selected = bench_.select_device(id); !selected)
-      emit bench_.trouble(QString::fromStdString(selected.error().message));
+      emit bench_.trouble(QString::fromStdString(selected.error().message), Remedy::none);
   });
   connect(start_, &QPushButton::clicked, this, [this] {
     if (bench_.activity() == Activity::looking) {
@@ -110,6 +114,68 @@ QWidget* LookView::device_panel() {
   });
   connect(rescan_, &QPushButton::clicked, this, [this] { bench_.rescan(); });
   return panel;
+}
+
+QWidget* LookView::controls_panel() {
+  auto* panel = new QWidget;
+  auto* layout = new QVBoxLayout(panel);
+  layout->setContentsMargins(0, 0, 0, 0);
+  auto* form = new QFormLayout;
+  form->setVerticalSpacing(3);
+  for (const CameraControl control : all_camera_controls) {
+    const QString name = QString::fromUtf8(to_string(control).data(), static_cast<int>(to_string(control).size()));
+    auto* line = new QLineEdit;
+    line->setObjectName("camera" + QString(name).remove(' '));
+    line->setAccessibleName(name);
+    form->addRow(name, line);
+    const std::size_t row = controls_.size();
+    controls_.push_back(line);
+    connect(line, &QLineEdit::editingFinished, this, [this, line, row] {
+      if (row >= presenter_.controls().size()) return;
+      const ControlReading& reading = presenter_.controls()[row];
+      if (line->text().trimmed().toStdString() == reading.value) return;
+      presenter_.change(reading.feature, line->text().trimmed().toStdString());
+    });
+  }
+  layout->addLayout(form);
+  auto* buttons = new QHBoxLayout;
+  correct_ = plain_button("Correct", "correctNow");
+  correct_->setToolTip("Commands a non-uniformity correction now");
+  snapshot_ = plain_button("Snapshot", "takeSnapshot");
+  snapshot_->setToolTip("Writes the latest frame as a TIFF of 16 bits beside the sessions");
+  record_ = plain_button("Record", "recordFrames");
+  record_->setToolTip("Records every frame beside the sessions; the recording can be measured like a camera");
+  buttons->setSpacing(4);
+  for (QPushButton* button : {correct_, snapshot_, record_}) buttons->addWidget(button);
+  layout->addLayout(buttons);
+  connect(correct_, &QPushButton::clicked, this, [this] { presenter_.correct(); });
+  connect(snapshot_, &QPushButton::clicked, this, [this] {
+    const auto file = presenter_.snapshot();
+    if (file) {
+      emit bench_.noted("Snapshot: " + QString::fromStdString(file->string()));
+    } else {
+      emit bench_.trouble(QString::fromStdString(file.error().message), Remedy::none);
+    }
+  });
+  connect(record_, &QPushButton::clicked, this, [this] { presenter_.toggle_recording(); });
+  return panel;
+}
+
+void LookView::show_controls() {
+  const bool looking = !presenter_.controls().empty();
+  for (std::size_t i = 0; i < controls_.size(); ++i) {
+    QLineEdit& line = *controls_[i];
+    const ControlReading reading = looking ? presenter_.controls()[i] : ControlReading{};
+    line.setEnabled(!reading.feature.empty());
+    line.setText(QString::fromStdString(reading.value));
+    line.setToolTip(!looking ? QString("Start the live picture to read the settings of the camera.")
+                    : reading.feature.empty()
+                        ? QString("The camera has no feature with a known name for this. Set a feature by its name in "
+                                  "the plan: [camera] settings.")
+                        : "Feature " + QString::fromStdString(reading.feature) + " of the camera");
+  }
+  for (QPushButton* button : {correct_, snapshot_, record_}) button->setEnabled(looking);
+  record_->setText(presenter_.recording() ? "End" : "Record");
 }
 
 QWidget* LookView::display_panel() {
@@ -186,7 +252,8 @@ void LookView::list_devices() {
       group->setFlags(Qt::ItemIsEnabled);
       group->setExpanded(true);
     }
-    auto* item = new QTreeWidgetItem(group, {device.label + "  –  " + name_of(device.health)});
+    const QString serial = device.serial.isEmpty() ? QString() : "\nserial number " + device.serial;
+    auto* item = new QTreeWidgetItem(group, {device.label + "  –  " + name_of(device.health) + serial});
     item->setIcon(0, badge(device.health));
     item->setToolTip(0, device.detail);
     item->setData(0, Qt::UserRole, device.id);

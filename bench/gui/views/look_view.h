@@ -3,11 +3,13 @@
 #pragma once
 
 #include <QWidget>
+#include <vector>
 
 class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
 class QLabel;
+class QLineEdit;
 class QPushButton;
 class QTreeWidget;
 
@@ -27,10 +29,12 @@ class LookView final : public QWidget {
  private:
   [[nodiscard]] QWidget* device_panel();
   [[nodiscard]] QWidget* display_panel();
+  [[nodiscard]] QWidget* controls_panel();
   void list_devices();
   void show_frame();
   void show_reading(int column, int row);
   void show_activity();
+  void show_controls();
 
   Workbench& bench_;
   LookPresenter& presenter_;
@@ -40,7 +44,8 @@ class LookView final : public QWidget {
   QComboBox *colours_, *mode_;
   QDoubleSpinBox *level_, *span_;
   QCheckBox* marks_;
-  QPushButton *start_, *rescan_;
+  QPushButton *start_, *rescan_, *correct_, *snapshot_, *record_;
+  std::vector<QLineEdit*> controls_;  ///< in the order of all_camera_controls
   QLabel *counters_, *reading_, *camera_;
   QPoint cursor_{-1, -1};
 };

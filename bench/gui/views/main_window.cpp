@@ -14,6 +14,7 @@
 #include <QLineEdit>
 #include <QListWidget>
 #include <QMenuBar>
+#include <QMessageBox>
 #include <QMimeData>
 #include <QPlainTextEdit>
 #include <QSettings>
@@ -26,6 +27,7 @@
 
 #include "bench/gui/views/align_view.h"
 #include "bench/gui/views/chain_view.h"
+#include "bench/gui/views/help_window.h"
 #include "bench/gui/views/history_view.h"
 #include "bench/gui/views/human_view.h"
 #include "bench/gui/views/layout_pieces.h"
@@ -68,6 +70,14 @@ QString columns_key(const QTableWidget& table) {
   return QString("columns/%1-%2").arg(table.objectName()).arg(table.columnCount());
 }
 
+bool ask_in_a_box(QWidget* parent, const QString& question, const QString& action) {
+  QMessageBox box(QMessageBox::Question, "todbench", question, QMessageBox::NoButton, parent);
+  QPushButton* yes = box.addButton(action, QMessageBox::DestructiveRole);
+  box.setDefaultButton(box.addButton("Go on", QMessageBox::RejectRole));
+  box.exec();
+  return box.clickedButton() == yes;
+}
+
 }  // namespace
 
 MainWindow::MainWindow(const std::filesystem::path& sessions, Memory memory, QWidget* parent)
@@ -82,6 +92,7 @@ MainWindow::MainWindow(const std::filesystem::path& sessions, Memory memory, QWi
       sessions_(bench_),
       history_(memory == Memory::remember ? default_history_file() : sessions / "history.sqlite") {
   setWindowTitle("todbench");
+  confirm_ = [this](const QString& question, const QString& action) { return ask_in_a_box(this, question, action); };
   theme_ = desktop_theme();
   make_views();
   make_menu();
@@ -125,7 +136,11 @@ void MainWindow::make_views() {
   views_->addWidget(new AlignView(bench_, align_, look_));
   plan_view_ = new PlanView(plan_);
   views_->addWidget(plan_view_);
-  views_->addWidget(new MeasureView(bench_, measure_));
+  auto* measure = new MeasureView(bench_, measure_);
+  connect(measure, &MeasureView::start_wanted, this, &MainWindow::start_run);
+  connect(measure, &MeasureView::abort_wanted, this, &MainWindow::abort_run);
+  connect(measure, &MeasureView::report_wanted, this, [this] { show_view(View::report); });
+  views_->addWidget(measure);
   views_->addWidget(new HumanView(bench_, human_, person_, measure_));
   views_->addWidget(new ChainView(chain_));
   auto* report = new ReportView(sessions_);
@@ -134,6 +149,11 @@ void MainWindow::make_views() {
     if (!sessions_.current()) return;
     show_view(View::measure);
     measure_.replay(sessions_.current()->folder, sessions_.current()->session.plan);
+  });
+  connect(report, &ReportView::go_on, this, [this] {
+    if (!sessions_.current()) return;
+    show_view(View::measure);
+    measure_.resume_run(sessions_.current()->folder, sessions_.current()->session.plan);
   });
   views_->addWidget(report);
   views_->addWidget(new HistoryView(history_, bench_.sessions_folder()));
@@ -175,8 +195,9 @@ void MainWindow::make_views() {
 QWidget* MainWindow::start_page() {
   auto* page = new StartView;
   connect(page, &StartView::try_without_hardware, this, [this] {
+    if (!may_end("Abort the run")) return;
     if (auto selected = bench_.select_device(bench_.devices().front().id); !selected)
-      show_trouble(QString::fromStdString(selected.error().message));
+      show_trouble(QString::fromStdString(selected.error().message), Remedy::none);
     show_view(View::measure);
   });
   connect(page, &StartView::connect_camera, this, [this] {
@@ -219,7 +240,9 @@ void MainWindow::dropEvent(QDropEvent* event) {
 void MainWindow::make_menu() {
   QMenu* bench = menuBar()->addMenu("&Bench");
   connect(bench->addAction("&Look for cameras"), &QAction::triggered, this, [this] { bench_.rescan(); });
-  connect(bench->addAction("&Stop"), &QAction::triggered, this, [this] { bench_.stop(); });
+  connect(bench->addAction("&Stop"), &QAction::triggered, this, [this] {
+    if (may_end("Abort the run")) bench_.stop();
+  });
   connect(bench->addAction("&Open a session…"), &QAction::triggered, this, &MainWindow::choose_session);
   connect(bench->addAction("S&tart page"), &QAction::triggered, this, [this] { show_view(View::start); });
   QAction* cable = bench->addAction("&Disconnect the emulated camera");
@@ -230,6 +253,29 @@ void MainWindow::make_menu() {
   quit->setShortcut(QKeySequence::Quit);
   connect(quit, &QAction::triggered, this, &QWidget::close);
   QMenu* view = menuBar()->addMenu("&View");
+  QMenu* help = menuBar()->addMenu("&Help");
+  const auto page = [this, help](const QString& title, const QString& file, const QKeySequence& key) {
+    QAction* action = help->addAction(title);
+    if (!key.isEmpty()) action->setShortcut(key);
+    connect(action, &QAction::triggered, this, [this, file] { show_help(file); });
+  };
+  page("The &window", "guide/window.md", QKeySequence::HelpContents);
+  page("The first &hour", "guide/first-hour.md", {});
+  page("&Connect a camera", "guide/connect-a-camera.md", {});
+  page("&Write a plan", "guide/write-a-plan.md", {});
+  page("&Read a report", "guide/read-a-report.md", {});
+  page("&Troubleshooting", "guide/troubleshooting.md", {});
+  page("&Glossary", "glossary.md", {});
+  page("All &pages", "index.md", {});
+  help->addSeparator();
+  connect(help->addAction("&About todbench"), &QAction::triggered, this, [this] {
+    QMessageBox::about(this, "About todbench",
+                       QString("<p><b>todbench %1</b></p><p>Measures the TOD curve of thermal cameras with a model "
+                               "observer and compares it with a simulated sensor.</p><p>Licence: GPL, version 3 or "
+                               "later.</p><p>Sessions: %2</p>")
+                           .arg(QApplication::applicationVersion(),
+                                QString::fromStdString(bench_.sessions_folder().string()).toHtmlEscaped()));
+  });
   auto* themes = new QActionGroup(this);
   for (const auto& [theme, name] : {std::pair{Theme::light, "&Light"}, std::pair{Theme::dark, "&Dark"}}) {
     QAction* action = view->addAction(name);
@@ -242,7 +288,8 @@ void MainWindow::make_menu() {
 
 void MainWindow::connect_parts() {
   connect(&bench_, &Workbench::trouble, this, &MainWindow::show_trouble);
-  connect(&sessions_, &SessionPresenter::problem, this, &MainWindow::show_trouble);
+  connect(&sessions_, &SessionPresenter::problem, this,
+          [this](const QString& sentence) { show_trouble(sentence, Remedy::none); });
   connect(&bench_, &Workbench::noted, this, [this](const QString& text) { statusBar()->showMessage(text, 8000); });
   connect(&bench_, &Workbench::activity_changed, this, [this] {
     statusBar()->clearMessage();  // the message belongs to the ended activity
@@ -260,8 +307,9 @@ void MainWindow::connect_parts() {
     if (last_activity_ == Activity::aligning) align_.start();
     if (last_activity_ == Activity::looking || last_activity_ == Activity::idle) look_.start();
   });
-  connect(abandon_, &QPushButton::clicked, this, [this] { measure_.abort(); });
+  connect(abandon_, &QPushButton::clicked, this, &MainWindow::abort_run);
   connect(other_camera_, &QPushButton::clicked, this, [this] {
+    if (!may_end("Abort the run")) return;
     measure_.abort();
     message_->hide();
     show_view(View::look);
@@ -284,12 +332,12 @@ void MainWindow::connect_parts() {
           [this](const QString& folder) { sessions_.open(folder.toStdString()); });
 }
 
-void MainWindow::show_trouble(const QString& sentence) {
+void MainWindow::show_trouble(const QString& sentence, Remedy remedy) {
   message_text_->setText(sentence);
   message_->setProperty("error", true);
-  retry_->show();
+  retry_->setVisible(remedy == Remedy::try_again);
   abandon_->hide();
-  other_camera_->setVisible(last_activity_ != Activity::replaying);
+  other_camera_->setVisible(remedy == Remedy::try_again && last_activity_ != Activity::replaying);
   away_ = false;
   message_->show();
 }
@@ -368,7 +416,39 @@ void MainWindow::remember() {
   if (const auto* colours = findChild<QComboBox*>("colourMap")) settings.setValue("colourMap", colours->currentIndex());
 }
 
+bool MainWindow::may_end(const QString& action) {
+  QString lost = measure_.under_way();
+  if (!lost.isEmpty()) {
+    lost += ". Its results so far stay in the session. If the frames are recorded, the run can go on later.";
+  } else if (human_.state() == HumanState::showing || human_.state() == HumanState::hidden ||
+             person_.state() == HumanState::showing || person_.state() == HumanState::hidden) {
+    lost = "A person is answering. The answers so far are lost; \"End now\" keeps them.";
+  }
+  return lost.isEmpty() || confirm_(lost, action);
+}
+
+void MainWindow::start_run() {
+  const QString unused = plan_view_->unused_entry();
+  if (!unused.isEmpty() && !confirm_("The plan has an entry that is not valid and not in use: " + unused,
+                                     "Measure with the last valid plan"))
+    return;
+  measure_.start();
+}
+
+void MainWindow::abort_run() {
+  if (may_end("Abort the run")) measure_.abort();
+}
+
+void MainWindow::show_help(const QString& page) {
+  if (help_ == nullptr) help_ = new HelpWindow(this);
+  help_->show_page(page);
+}
+
 void MainWindow::closeEvent(QCloseEvent* event) {
+  if (!may_end("Quit")) {
+    event->ignore();
+    return;
+  }
   if (memory_ == Memory::remember) remember();
   event->accept();
 }

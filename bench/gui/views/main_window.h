@@ -4,7 +4,9 @@
 
 #include <QMainWindow>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include "bench/gui/presenters/align_presenter.h"
 #include "bench/gui/presenters/chain_presenter.h"
@@ -26,6 +28,7 @@ class QStackedWidget;
 
 namespace todbench {
 
+class HelpWindow;
 class PlanView;
 
 enum class View { look, align, plan, measure, human, chain, report, history, start };
@@ -48,6 +51,10 @@ class MainWindow final : public QMainWindow {
   void show_view(View view);
   [[nodiscard]] View view() const;
   void set_theme(Theme theme);
+  /// Asks the user before a run or the answers of a person are lost: `question`, and the words on the button that does
+  /// it. Returns whether to do it. Replaces the message box, for tests.
+  using Confirm = std::function<bool(const QString& question, const QString& action)>;
+  void set_confirm(Confirm confirm) { confirm_ = std::move(confirm); }
   /// Opens a session (its folder or session.toml) or a plan (another TOML file); shows an error if it cannot.
   void open_path(const std::filesystem::path& path);
 
@@ -74,7 +81,12 @@ class MainWindow final : public QMainWindow {
   void make_menu();
   void connect_parts();
   void choose_session();
-  void show_trouble(const QString& sentence);
+  /// Whether the user wants to lose what is under way; true if nothing is.
+  [[nodiscard]] bool may_end(const QString& action);
+  void start_run();
+  void abort_run();
+  void show_help(const QString& page);
+  void show_trouble(const QString& sentence, Remedy remedy);
   /// Shows a message with the remaining time and the possible actions while a lost camera is awaited.
   void show_camera_away();
   void show_state();
@@ -103,6 +115,8 @@ class MainWindow final : public QMainWindow {
   QLabel* message_text_ = nullptr;
   QPushButton *retry_ = nullptr, *abandon_ = nullptr, *other_camera_ = nullptr;
   QLabel* state_ = nullptr;
+  Confirm confirm_;
+  HelpWindow* help_ = nullptr;
 };
 
 }  // namespace todbench

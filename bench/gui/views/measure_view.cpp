@@ -53,8 +53,8 @@ MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget*
   phase_->setWordWrap(true);
   left_ = new QLabel;
   left_->setMinimumWidth(fontMetrics().horizontalAdvance("00 min 00 s left"));
-  for (QWidget* widget : {static_cast<QWidget*>(start_), static_cast<QWidget*>(pause_), static_cast<QWidget*>(abort_)})
-    line->addWidget(widget);
+  report_ = primary_button("Open the report", "showReport");
+  for (QPushButton* button : {start_, pause_, abort_, report_}) line->addWidget(button);
   line->addWidget(progress_, 1);
   line->addWidget(left_);
   layout->addLayout(line);
@@ -97,7 +97,8 @@ MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget*
   middle->setRowStretch(1, 1);
   layout->addLayout(middle, 1);
 
-  connect(start_, &QPushButton::clicked, this, [this] { presenter_.start(); });
+  connect(start_, &QPushButton::clicked, this, &MeasureView::start_wanted);
+  connect(report_, &QPushButton::clicked, this, &MeasureView::report_wanted);
   connect(pause_, &QPushButton::clicked, this, [this] {
     if (presenter_.state() == RunState::paused) {
       presenter_.resume();
@@ -105,7 +106,7 @@ MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget*
       presenter_.pause();
     }
   });
-  connect(abort_, &QPushButton::clicked, this, [this] { presenter_.abort(); });
+  connect(abort_, &QPushButton::clicked, this, &MeasureView::abort_wanted);
   connect(answer_, &QPushButton::clicked, this, [this] { presenter_.operator_done(); });
   connect(log_log_, &QCheckBox::toggled, this, [this] {
     shown_key_.clear();
@@ -172,7 +173,7 @@ void MeasureView::show_all() {
   const auto& request = presenter_.operator_request();
   operator_->setVisible(request.has_value());
   const QString step = presenter_.next_step();
-  request_->setText(request ? step : QString());
+  request_->setText(request ? presenter_.request_number() + "\n" + step : QString());
   step_->setText(request ? QString() : step);
   step_->setVisible(!step_->text().isEmpty());
   if (!isVisible()) return;
@@ -198,6 +199,7 @@ void MeasureView::show_state() {
   pause_->setEnabled(state == RunState::running || state == RunState::paused);
   pause_->setText(state == RunState::paused ? "Resume" : "Pause");
   abort_->setEnabled(state == RunState::running || state == RunState::paused);
+  report_->setVisible(state == RunState::idle && presenter_.outcome().has_value());
 }
 
 void MeasureView::show_log() {

@@ -25,6 +25,12 @@ class MeasureView final : public QWidget {
  public:
   MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget* parent = nullptr);
 
+ signals:
+  /// The user wants to start or abort a run, or to see the report of the run that ended.
+  void start_wanted();
+  void abort_wanted();
+  void report_wanted();
+
  protected:
   void showEvent(QShowEvent* event) override;
 
@@ -39,7 +45,7 @@ class MeasureView final : public QWidget {
 
   Workbench& bench_;
   MeasurePresenter& presenter_;
-  QPushButton *start_, *pause_, *abort_, *answer_;
+  QPushButton *start_, *pause_, *abort_, *answer_, *report_;
   QProgressBar* progress_;
   QLabel *phase_, *left_, *step_, *request_, *judged_text_;
   QFrame* operator_;

@@ -76,7 +76,7 @@ void check_table(const QTableWidget& table, QStringList& faults) {
 void check_tree(const QTreeWidget& tree, QStringList& faults) {
   for (QTreeWidgetItemIterator item(const_cast<QTreeWidget*>(&tree)); *item != nullptr; ++item) {
     const QRect place = tree.visualItemRect(*item);
-    const int needed = tree.fontMetrics().horizontalAdvance((*item)->text(0)) + ((*item)->icon(0).isNull() ? 0 : 20);
+    const int needed = tree.fontMetrics().size(0, (*item)->text(0)).width() + ((*item)->icon(0).isNull() ? 0 : 20);
     if (!place.isEmpty() && needed > place.width()) faults << cut(tree, (*item)->text(0));
   }
 }

@@ -9,8 +9,10 @@
 #include <QPlainTextEdit>
 #include <QScrollArea>
 #include <QShortcut>
+#include <QSignalBlocker>
 #include <QStyle>
 #include <QTabWidget>
+#include <QToolButton>
 
 #include "bench/gui/presenters/plan_presenter.h"
 #include "bench/gui/views/field_editor.h"
@@ -77,10 +79,16 @@ QLayout* PlanView::buttons() {
 
 QWidget* PlanView::form_page() {
   auto* content = new QWidget;
-  auto* form = new QFormLayout(content);
-  form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  auto* sections = new QVBoxLayout(content);
+  QFormLayout* form = nullptr;
+  QString section;
   for (std::size_t i = 0; i < form_.fields().size(); ++i) {
     const PlanField& field = form_.fields()[i];
+    if (form == nullptr || field.section != section) {
+      section = field.section;
+      form = add_section(*sections, section);
+    }
+    folds_of_.push_back(folds_.back());
     auto* editor = new FieldEditor(field);
     auto* label = new QLabel(field.label);
     label->setToolTip(field.tool_tip);
@@ -94,6 +102,7 @@ QWidget* PlanView::form_page() {
     connect(editor, &FieldEditor::edited, this, [this, i] { enter(i); });
     editors_.push_back(editor);
   }
+  sections->addStretch();
   auto* scroll = new QScrollArea;
   scroll->setObjectName("planForm");
   scroll->setWidgetResizable(true);
@@ -107,6 +116,32 @@ QWidget* PlanView::form_page() {
   return scroll;
 }
 
+QFormLayout* PlanView::add_section(QVBoxLayout& sections, const QString& title) {
+  auto* fold = new QToolButton;
+  fold->setObjectName("planSection" + QString(title).remove(' '));
+  fold->setText(title);
+  fold->setAccessibleName("Section " + title);
+  fold->setToolTip("Folds and unfolds the lines of this section");
+  fold->setProperty("role", "fold");
+  fold->setCheckable(true);
+  fold->setChecked(true);
+  fold->setAutoRaise(true);
+  fold->setArrowType(Qt::DownArrow);
+  fold->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  auto* lines = new QWidget;
+  auto* form = new QFormLayout(lines);
+  form->setContentsMargins(0, 0, 0, 0);
+  form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  connect(fold, &QToolButton::toggled, lines, [fold, lines](bool open) {
+    lines->setVisible(open);
+    fold->setArrowType(open ? Qt::DownArrow : Qt::RightArrow);
+  });
+  sections.addWidget(fold);
+  sections.addWidget(lines);
+  folds_.push_back(fold);
+  return form;
+}
+
 QWidget* PlanView::toml_page() {
   auto* page = new QWidget;
   auto* layout = new QVBoxLayout(page);
@@ -116,14 +151,54 @@ QWidget* PlanView::toml_page() {
   toml_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
   toml_->setTabChangesFocus(true);
   layout->addWidget(toml_, 1);
-  auto* apply = primary_button("Use this plan", "applyToml");
+  toml_state_ = new QLabel;
+  toml_state_->setObjectName("tomlState");
+  toml_state_->setWordWrap(true);
+  layout->addWidget(toml_state_);
+  auto* apply = plain_button("Write as the program does", "applyToml");
+  apply->setToolTip("Uses the text and writes it again with every key, in the order of the program");
   layout->addWidget(apply, 0, Qt::AlignLeft);
   connect(apply, &QPushButton::clicked, this, [this] {
-    const QString wrong = presenter_.apply_toml(toml_->toPlainText());
-    if (wrong.isEmpty()) start_afresh();
-    complain(wrong);
+    use_toml();
+    if (toml_wrong_.isEmpty()) start_afresh();
+  });
+  constexpr int pause_ms = 300;
+  toml_delay_.setSingleShot(true);
+  toml_delay_.setInterval(pause_ms);
+  connect(&toml_delay_, &QTimer::timeout, this, &PlanView::use_toml);
+  connect(toml_, &QPlainTextEdit::textChanged, this, [this] {
+    toml_edited_ = true;
+    toml_delay_.start();
   });
   return page;
+}
+
+void PlanView::use_toml() {
+  toml_delay_.stop();
+  if (!toml_edited_) return;
+  toml_wrong_ = presenter_.apply_toml(toml_->toPlainText());
+  if (toml_wrong_.isEmpty()) form_.reset(presenter_.plan());
+  complain({});
+  show_plan();
+}
+
+QString PlanView::unused_entry() const {
+  if (toml_edited_ && !toml_wrong_.isEmpty()) return toml_wrong_;
+  return form_.right() || !form_.changed() ? QString() : problem_->text();
+}
+
+void PlanView::show_toml() {
+  const bool replace = !toml_edited_ || (toml_wrong_.isEmpty() && !toml_delay_.isActive() && !toml_->hasFocus());
+  if (const QString text = presenter_.toml(); replace && text != toml_->toPlainText()) {
+    const QSignalBlocker quiet(toml_);
+    toml_->setPlainText(text);
+    toml_edited_ = false;
+  }
+  const bool wrong = toml_edited_ && !toml_wrong_.isEmpty();
+  toml_state_->setProperty("role", wrong ? "problem" : "hint");
+  toml_state_->style()->polish(toml_state_);
+  toml_state_->setText(wrong ? "✗ Not in use: " + toml_wrong_ : "✓ In use. Edits are checked as you type.");
+  tabs_->setTabText(tabs_->count() - 1, wrong ? "TOML ✗" : "TOML");
 }
 
 void PlanView::open_plan(const QString& reference) {
@@ -145,6 +220,8 @@ void PlanView::redo() {
 
 void PlanView::start_afresh() {
   form_.reset(presenter_.plan());
+  toml_edited_ = false;
+  toml_wrong_.clear();
   complain({});
   show_plan();
 }
@@ -163,7 +240,8 @@ void PlanView::enter(std::size_t line) {
 void PlanView::complain(const QString& sentence) {
   QString text = sentence;
   if (text.isEmpty() && !form_.right()) {
-    text = "The bench still uses the last valid plan.";
+    text = form_.changed() ? "The bench still uses the last valid plan."
+                           : "The plan is incomplete. A measurement needs the marked lines.";
     for (const QString& other : form_.other_problems()) text += "\n" + other;
   }
   problem_->setText(text.isEmpty() ? QString() : "✗ " + text);
@@ -180,8 +258,10 @@ void PlanView::show_plan() {
   for (std::size_t i = 0; i < editors_.size(); ++i) {
     editors_[i]->show_text(form_.text(i));
     editors_[i]->show_problem(form_.problem(i));
+    editors_[i]->show_idle(idle_reason(form_.fields()[i], form_.draft()));
+    if (!form_.problem(i).isEmpty()) folds_of_[i]->setChecked(true);
   }
-  if (const QString text = presenter_.toml(); text != toml_->toPlainText()) toml_->setPlainText(text);
+  show_toml();
   undo_->setEnabled(presenter_.can_undo() || !form_.right());
   redo_->setEnabled(presenter_.can_redo());
 }

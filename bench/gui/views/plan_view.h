@@ -2,16 +2,20 @@
 // Plan view: the form, its TOML, and next to them the predicted cost.
 #pragma once
 
+#include <QTimer>
 #include <QWidget>
 #include <vector>
 
 #include "bench/gui/presenters/plan_form.h"
 
+class QFormLayout;
 class QLabel;
 class QLayout;
 class QPlainTextEdit;
 class QPushButton;
 class QTabWidget;
+class QToolButton;
+class QVBoxLayout;
 
 namespace todbench {
 
@@ -25,9 +29,13 @@ class PlanView final : public QWidget {
   explicit PlanView(PlanPresenter& presenter, QWidget* parent = nullptr);
   /// Opens a file or a shipped plan by name; shows an error below the form if it cannot be read.
   void open_plan(const QString& reference);
+  /// Reason why an entry of the form or an edit of the TOML text is not in use; empty: all are in use.
+  [[nodiscard]] QString unused_entry() const;
 
  private:
   [[nodiscard]] QWidget* form_page();
+  /// Adds a heading that folds the lines below it; returns the layout of these lines.
+  [[nodiscard]] QFormLayout* add_section(QVBoxLayout& sections, const QString& title);
   [[nodiscard]] QWidget* toml_page();
   [[nodiscard]] QLayout* buttons();
   void undo();
@@ -36,14 +44,22 @@ class PlanView final : public QWidget {
   void enter(std::size_t line);
   void plan_updated();
   void show_plan();
+  void show_toml();
+  /// Uses the edited text, or marks it with the reason why it is not in use.
+  void use_toml();
   void complain(const QString& sentence);
 
   PlanPresenter& presenter_;
   PlanForm form_;
   Plan shown_;
-  std::vector<FieldEditor*> editors_;  ///< in the order of the form's fields
+  std::vector<FieldEditor*> editors_;           ///< in the order of the form's fields
+  std::vector<QToolButton*> folds_, folds_of_;  ///< one for each section; one for each field
   QTabWidget* tabs_;
   QPlainTextEdit* toml_;
+  QLabel* toml_state_;
+  QTimer toml_delay_;         ///< after the last key
+  bool toml_edited_ = false;  ///< the text is the user's; it is not replaced while it is edited
+  QString toml_wrong_;        ///< reason why the text is not in use
   QLabel* problem_;
   QPushButton *undo_, *redo_;
 };

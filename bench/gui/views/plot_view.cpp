@@ -93,8 +93,9 @@ PlotView::PlotView(QWidget* parent) : QCustomPlot(parent) {
   legend->setBorderPen(Qt::NoPen);
   legend->setBrush(Qt::NoBrush);
   legend->setMargins({8, 4, 8, 0});
-  // An empty legend would limit the width of its column, including the axes.
-  legend->setMaximumSize(QWIDGETSIZE_MAX - 1, QWIDGETSIZE_MAX);
+  // An empty legend would limit the width of its column, including the axes. Margins are added to the maximum, and the
+  // sum has to stay below QWIDGETSIZE_MAX: at this value, QCustomPlot takes the legend's preferred width instead.
+  legend->setMaximumSize(QWIDGETSIZE_MAX / 2, QWIDGETSIZE_MAX / 2);
 }
 
 void PlotView::show_plot(const Plot& plot) {

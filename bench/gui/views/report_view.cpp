@@ -4,10 +4,12 @@
 #include <QCheckBox>
 #include <QDesktopServices>
 #include <QHBoxLayout>
+#include <QHeaderView>
 #include <QLineEdit>
 #include <QPixmap>
 #include <QSplitter>
 #include <QUrl>
+#include <algorithm>
 
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/plot_view.h"
@@ -46,6 +48,12 @@ QString verdict_text(ReportVerdict verdict) {
 /// Adds a sign, because some users cannot distinguish the colours.
 QString in_a_list(const QString& verdict) {
   return (verdict == "pass" ? "✓ " : verdict == "fail" ? "✗ " : "? ") + verdict;
+}
+
+/// Cells of a session in the list.
+QStringList cells_of(const SessionEntry& session) {
+  return {session.when, session.verdict.isEmpty() ? session.state : in_a_list(session.verdict),
+          session.serial.isEmpty() ? session.unit : session.unit + ", " + session.serial, session.name};
 }
 
 /// Rows of the ratios that decide the comparison.
@@ -99,6 +107,11 @@ QWidget* ReportView::browser() {
   sessions_ = plain_table({"Started (UTC)", "Verdict", "Unit, serial number", "Session"}, "sessionTable");
   column_widths(*sessions_, {"2026-11-22", "? inconclusive", "Emulated sc2000"});
   wrap_words(*sessions_);
+  QHeaderView& heads = *sessions_->horizontalHeader();
+  heads.setSectionsClickable(true);
+  heads.setSortIndicatorShown(true);
+  heads.setSortIndicator(0, Qt::DescendingOrder);
+  connect(&heads, &QHeaderView::sortIndicatorChanged, this, &ReportView::list_sessions);
   layout->addWidget(sessions_, 1);
   auto* buttons = new QHBoxLayout;
   auto* open = primary_button("Open", "openSession");
@@ -155,7 +168,11 @@ QWidget* ReportView::session_panel() {
   replay_->setToolTip("Judges the recorded frames of the session again and reports whether all answers are the same.");
   again_ = plain_button("Measure this plan again", "measureAgain");
   again_->setToolTip("Loads the plan of this session for a new measurement with the selected camera.");
-  for (QPushButton* button : {export_, page_, replay_, again_}) {
+  go_on_ = plain_button("Go on", "resumeSession");
+  go_on_->setToolTip(
+      "Measures the rest of a run that ended early, with the same plan and camera, into a new session. Its frames must "
+      "have been recorded.");
+  for (QPushButton* button : {export_, page_, replay_, again_, go_on_}) {
     button->setEnabled(false);
     buttons->addWidget(button);
   }
@@ -170,17 +187,27 @@ QWidget* ReportView::session_panel() {
   layout->addWidget(files_);
   connect(log_log_, &QCheckBox::toggled, this, &ReportView::show_plot);
   connect(export_, &QPushButton::clicked, this, [this] { presenter_.export_reports(); });
-  connect(page_, &QPushButton::clicked, this, [this] {
-    if (presenter_.current())
-      QDesktopServices::openUrl(
-          QUrl::fromLocalFile(QString::fromStdString((presenter_.current()->folder / "report.pdf").string())));
-  });
+  connect(page_, &QPushButton::clicked, this, &ReportView::show_pdf);
   connect(replay_, &QPushButton::clicked, this, &ReportView::replay);
+  connect(go_on_, &QPushButton::clicked, this, &ReportView::go_on);
   connect(again_, &QPushButton::clicked, this, [this] {
     presenter_.use_plan_again();
     emit again();
   });
   return panel;
+}
+
+void ReportView::show_pdf() {
+  if (!presenter_.current()) return;
+  // A relative file name would become an address of the host "report.pdf".
+  const auto file = std::filesystem::absolute(presenter_.current()->folder / "report.pdf");
+  const QString name = QString::fromStdString(file.string());
+  std::error_code none;
+  if (!std::filesystem::exists(file, none)) {
+    emit presenter_.problem(name + " does not exist. Press \"Write HTML and PDF\".");
+  } else if (!QDesktopServices::openUrl(QUrl::fromLocalFile(name))) {
+    emit presenter_.problem("No program of this desktop opens PDF files. The report is " + name);
+  }
 }
 
 QWidget* ReportView::letterhead_line() {
@@ -230,11 +257,14 @@ std::optional<std::filesystem::path> ReportView::chosen() const {
 
 void ReportView::list_sessions() {
   listed_ = matching(presenter_.sessions(), filter_->text());
+  const int column = sessions_->horizontalHeader()->sortIndicatorSection();
+  const bool rising = sessions_->horizontalHeader()->sortIndicatorOrder() == Qt::AscendingOrder;
+  std::stable_sort(listed_.begin(), listed_.end(), [&](const SessionEntry& a, const SessionEntry& b) {
+    const QString of_a = cells_of(a).value(column), of_b = cells_of(b).value(column);
+    return rising ? of_a < of_b : of_b < of_a;
+  });
   QList<QStringList> rows;
-  for (const auto& s : listed_) {
-    rows << QStringList{s.when, s.verdict.isEmpty() ? s.state : in_a_list(s.verdict),
-                        s.serial.isEmpty() ? s.unit : s.unit + ", " + s.serial, s.name};
-  }
+  for (const auto& s : listed_) rows << cells_of(s);
   fill_table(*sessions_, rows);
   if (sessions_->currentRow() < 0 && !rows.isEmpty()) sessions_->selectRow(0);
 }
@@ -264,6 +294,7 @@ void ReportView::show_session() {
   files_->clear();
   for (QPushButton* button : {export_, again_, compare_}) button->setEnabled(true);
   replay_->setEnabled(opened.recorded);
+  go_on_->setEnabled(opened.recorded && opened.session.provenance.state != SessionState::complete);
   frames_->setText(opened.recorded
                        ? "The session contains its frames. Replay judges them again."
                        : "No frames were recorded in this session. It cannot be replayed, only measured again. "

@@ -31,6 +31,8 @@ class ReportView final : public QWidget {
   void replay();
   /// The plan of the open session has to be measured again.
   void again();
+  /// The run of the open session, which ended early, has to go on.
+  void go_on();
 
  protected:
   void showEvent(QShowEvent* event) override;
@@ -48,6 +50,7 @@ class ReportView final : public QWidget {
   void show_comparison();
   void show_ratios(const std::optional<Comparison>& comparison);
   void show_plot();
+  void show_pdf();
 
   SessionPresenter& presenter_;
   std::vector<SessionEntry> listed_;  ///< one per row
@@ -56,7 +59,7 @@ class ReportView final : public QWidget {
   QLabel *title_, *verdict_, *frames_, *files_;
   QWidget* letterhead_;
   QLabel *logo_, *laboratory_;
-  QPushButton *compare_, *export_, *replay_, *again_, *page_;
+  QPushButton *compare_, *export_, *replay_, *again_, *page_, *go_on_;
   QCheckBox* log_log_;
   PlotView* plot_;
 };

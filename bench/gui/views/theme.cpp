@@ -82,6 +82,8 @@ QString style_sheet(Theme theme) {
     QLabel[role="verdict"] { font-weight: bold; }
     QLabel[role="hint"] { color: %6; }
     QLabel[role="problem"] { color: %9; }
+    *[idle="true"] { color: %6; }
+    QToolButton[role="fold"] { font-weight: bold; border: 0; }
     QLabel[role="step"] { font-size: 24px; font-weight: bold; }
     QPushButton[role="primary"] { background: %2; color: white; padding: 5px 14px; border: 0; border-radius: 3px; }
     QPushButton[role="primary"]:disabled { background: %7; }

@@ -34,6 +34,8 @@ Plan small_plan(Plan plan, int phases) {
 }
 
 ShownWindow::ShownWindow(const QString& device, int phases) : window_(folder_.path(), Memory::forget) {
+  // A test that closes or aborts does not wait for an answer in a box.
+  window_.set_confirm([](const QString&, const QString&) { return true; });
   EXPECT_TRUE(window_.bench().select_device(device));
   window_.bench().set_plan(small_plan(window_.bench().plan(), phases));
   window_.resize(1366, 700);

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Controls of the camera of the live picture: the window asks, the thread of the camera carries out.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/core/frame_source.h"
+#include "acquisition/recording/frame_stream.h"
+
+namespace todbench {
+
+/// Settings that people expect beside a live picture.
+enum class CameraControl { frame_rate, gain, range, exposure };
+inline constexpr std::array all_camera_controls{CameraControl::frame_rate, CameraControl::gain, CameraControl::range,
+                                                CameraControl::exposure};
+[[nodiscard]] std::string_view to_string(CameraControl control);
+
+/// The feature of a camera behind a control. Cameras name them differently: SFNC, older and vendor names of GenICam,
+/// controls of V4L2 drivers.
+struct ControlReading {
+  CameraControl control = CameraControl::frame_rate;
+  std::string feature;  ///< empty: the camera has none with a known name
+  std::string value;    ///< read back
+};
+
+/// Returns a reading for each control. A feature that cannot be read counts as absent.
+[[nodiscard]] std::vector<ControlReading> read_controls(FrameSource& camera);
+
+/// Sets a feature and reads it back. Cameras that refuse while they stream are stopped, set and started again. Errors:
+/// those of FrameSource::set(), with the camera streaming again; `disconnected`.
+[[nodiscard]] Result<std::string> change_feature(FrameSource& camera, const std::string& feature,
+                                                 const std::string& value);
+
+/// Requests from the window to the thread of the camera, and the recording of its frames. Thread-safe.
+class CameraDesk {
+ public:
+  using Request = std::function<void(FrameSource&)>;
+
+  /// A camera was opened: requests to another one are discarded.
+  void open();
+  void ask(Request request);
+  /// Carries out the requests. Called by the thread of the camera.
+  void serve(FrameSource& camera);
+
+  /// Starts a recording of the frames that follow. Errors: `io` with the path.
+  [[nodiscard]] Result<void> record(const std::filesystem::path& file, const SourceInfo& info);
+  [[nodiscard]] bool recording() const;
+  /// Appends a frame to the recording, if there is one. An error ends the recording.
+  [[nodiscard]] Result<void> append(const Frame& frame);
+  /// Ends the recording and reads it again. Returns its number of frames; empty without a recording. Errors: `io`.
+  [[nodiscard]] Result<std::optional<std::uint64_t>> end_recording();
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<Request> requests_;
+  std::optional<FrameStreamWriter> stream_;
+};
+
+}  // namespace todbench

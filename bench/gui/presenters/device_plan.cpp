@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/gui/presenters/device_plan.h"
+
+#include "acquisition/core/camera_id.h"
+#include "bench/plan/descriptions.h"
+
+namespace todbench {
+namespace {
+
+/// The demonstration, or an empty plan if it cannot be read.
+Plan demonstration() {
+  return load_plan("demo").value_or(Plan{});
+}
+
+/// A plan without statements about a laboratory.
+Plan unstated() {
+  Plan plan;
+  plan.name = "measurement";
+  plan.target.kind = TargetKind::prompt;
+  return plan;
+}
+
+/// Replaces a value that was not changed since it was filled in.
+template <typename T>
+void replace(T& value, const T& from, const T& to) {
+  if (value == from) value = to;
+}
+
+void replace_words(Plan& plan, const Plan& from, const Plan& to) {
+  replace(plan.description, from.description, to.description);
+  replace(plan.unit, from.unit, to.unit);
+}
+
+void replace_laboratory(Plan& plan, const Plan& from, const Plan& to) {
+  replace_words(plan, from, to);
+  replace(plan.name, from.name, to.name);
+  replace(plan.operator_name, from.operator_name, to.operator_name);
+  replace(plan.place, from.place, to.place);
+  replace(plan.target.plate_change_s, from.target.plate_change_s, to.target.plate_change_s);
+  replace(plan.target.mounting_change_s, from.target.mounting_change_s, to.target.mounting_change_s);
+  replace(plan.target.contrast_change_s, from.target.contrast_change_s, to.target.contrast_change_s);
+  replace(plan.target.shift_change_s, from.target.shift_change_s, to.target.shift_change_s);
+  replace(plan.limits.acuity, from.limits.acuity, to.limits.acuity);
+}
+
+Result<double> sensor_ifov_mrad(const std::string& name) {
+  auto sensor = load_sensor(name);
+  if (!sensor) return tl::unexpected(sensor.error());
+  return sensor->ifov_mrad() / sensor->microscan;
+}
+
+}  // namespace
+
+Plan plan_for_camera(Plan plan, const std::string& id) {
+  const Plan demo = demonstration();
+  replace_laboratory(plan, demo, unstated());
+  if (plan.camera.id != id) {
+    const CameraPlan before = plan.camera;
+    plan.camera = {};
+    plan.camera.reconnect_s = before.reconnect_s;
+    plan.camera.nuc_interval_s = before.nuc_interval_s;
+    plan.camera.nuc_wait_s = before.nuc_wait_s;
+    plan.camera.id = id;
+    plan.unit.clear();
+  }
+  const bool emulated = plan.target.black_body == demo.target.black_body && plan.target.stage == demo.target.stage;
+  if (emulated) {
+    plan.target.black_body.clear();
+    plan.target.stage.clear();
+  }
+  if (plan.target.kind == TargetKind::scene || (plan.target.kind == TargetKind::scpi && emulated))
+    plan.target.kind = TargetKind::prompt;
+  return plan;
+}
+
+Plan plan_for_laboratory(Plan plan) {
+  const Plan demo = demonstration();
+  replace_laboratory(plan, unstated(), demo);
+  plan.camera.id = demo.camera.id;
+  plan.camera.ifov_mrad = sensor_ifov_mrad(plan.simulation.sensor).value_or(demo.camera.ifov_mrad);
+  plan.target.kind = TargetKind::scpi;
+  plan.target.black_body = demo.target.black_body;
+  plan.target.stage = demo.target.stage;
+  return plan;
+}
+
+Result<Plan> plan_for_sensor(Plan plan, const std::string& name) {
+  auto ifov_mrad = sensor_ifov_mrad(name);
+  if (!ifov_mrad) return tl::unexpected(ifov_mrad.error());
+  replace_words(plan, demonstration(), Plan{});
+  plan.camera.id = camera_id(camera_scheme::sim, name);
+  plan.camera.ifov_mrad = *ifov_mrad;
+  plan.target.kind = TargetKind::scene;
+  plan.target.black_body.clear();
+  plan.target.stage.clear();
+  plan.simulation.sensor = name;
+  return plan;
+}
+
+}  // namespace todbench

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pages of the documentation inside the program, readable without a network.
+#pragma once
+
+#include <QDialog>
+
+class QTextBrowser;
+
+namespace todbench {
+
+class HelpWindow final : public QDialog {
+  Q_OBJECT
+
+ public:
+  explicit HelpWindow(QWidget* parent = nullptr);
+  /// Shows a page of docs/, for example "guide/first-hour.md".
+  void show_page(const QString& page);
+  [[nodiscard]] const QTextBrowser& browser() const { return *browser_; }
+
+ private:
+  QTextBrowser* browser_;
+};
+
+}  // namespace todbench
