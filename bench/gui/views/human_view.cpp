@@ -313,13 +313,13 @@ void HumanView::begin_naked_eye() {
   const auto contrasts = numbers_of(contrasts_->text()), noise = numbers_of(noise_->text());
   if (!contrasts || !noise || noise->size() != 1) {
     emit bench_.trouble(
-        "Enter contrasts as numbers separated by commas, for example 0.4, 0.1, and one number as noise.");
+        "Enter contrasts as numbers separated by commas, for example 0.4, 0.1, and one number as noise.", Remedy::none);
     return;
   }
   const QString problem = naked_eye_->begin(
       bench_.plan(), {.contrasts = *contrasts, .noise = noise->front(), .per_size = per_size_->value()},
       bench_.sessions_folder(), limited_->isChecked() ? std::optional(shown_ms_->value()) : std::nullopt);
-  if (!problem.isEmpty()) emit bench_.trouble(problem);
+  if (!problem.isEmpty()) emit bench_.trouble(problem, Remedy::none);
   setFocus();
 }
 
