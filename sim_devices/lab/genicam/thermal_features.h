@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@ struct ThermalCameraOptions {
   int significant_bits = 14;
   double frame_rate_hz = 50;
   double kelvin_per_count = 0.01, offset_k = 0;
+  std::optional<PixelFormat> only_format{};  ///< in place of those of the model
 };
 
 /// Options from the configuration of a camera.

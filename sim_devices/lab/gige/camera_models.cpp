@@ -72,10 +72,12 @@ Features chunk_control(std::uint32_t mode) {
 Features image_control(const ThermalCameraOptions& o, const ModelRegisters& r,
                        const std::vector<PixelFormat>& formats) {
   const auto width = static_cast<std::uint32_t>(o.width), height = static_cast<std::uint32_t>(o.height);
+  const auto payload =
+      o.only_format ? bytes_of_pixels(*o.only_format, std::size_t{width} * height) : 2 * width * height;
   return {locked_while_streaming(state("Width", r.width, width)),
           state("Height", r.height, height),
-          locked_while_streaming(pixel_format(r.pixel_format, formats)),
-          state("PayloadSize", r.payload_size, 2 * width * height),
+          locked_while_streaming(pixel_format(r.pixel_format, o.only_format ? std::vector{*o.only_format} : formats)),
+          state("PayloadSize", r.payload_size, static_cast<std::uint32_t>(payload)),
           choice("AcquisitionMode", r.payload_size + 4, 0, {{"Continuous", 0}, {"SingleFrame", 1}, {"MultiFrame", 2}}),
           command("AcquisitionStart", r.acquisition_start, 1),
           command("AcquisitionStop", r.acquisition_stop, 1)};

@@ -34,7 +34,8 @@ ModelDescription described(const GvspCameraConfig& c) {
                                    .width = c.width,
                                    .height = c.height + c.rows_not_sent,
                                    .significant_bits = c.significant_bits,
-                                   .frame_rate_hz = c.frame_rate_hz});
+                                   .frame_rate_hz = c.frame_rate_hz,
+                                   .only_format = c.only_format});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 
 #include "acquisition/base/result.h"
@@ -41,6 +42,7 @@ struct GvspCameraConfig {
   PlanckScale radiometric{366545, 1428, 1, 342};  ///< scale of counts that are not linear in temperature
   int nuc_freeze_frames = 25;            ///< frames for which the last picture is repeated after a correction: 0.5 s
   unsigned automatic_nuc_frames = 3600;  ///< between automatic corrections
+  std::optional<PixelFormat> only_format{};           ///< in place of those of the model
   std::chrono::milliseconds heartbeat_timeout{3000};  ///< at power-up
   std::uint16_t first_block_id = 65400;               ///< the 16-bit id wraps from 65535 to 1
   int row_padding_bytes = 0;                          ///< sent after every row, counted in the payload size

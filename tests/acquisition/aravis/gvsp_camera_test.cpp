@@ -39,6 +39,36 @@ TEST(GvspCamera, SendsItsExposuresByteForByte) {
   EXPECT_EQ(got.gaps, 0);
 }
 
+class PackedPixels : public testing::TestWithParam<PixelFormat> {};
+
+std::string packed_name(const testing::TestParamInfo<PixelFormat>& info) {
+  return std::string(to_string(info.param));
+}
+INSTANTIATE_TEST_SUITE_P(Gvsp, PackedPixels,
+                         testing::Values(PixelFormat::mono10p, PixelFormat::mono12p, PixelFormat::mono10_packed,
+                                         PixelFormat::mono12_packed),
+                         packed_name);
+
+// 159 pixels of 10 bits do not fill whole bytes: rows of a picture without padding then share a byte.
+TEST_P(PackedPixels, OfACameraThatOffersNothingElseAreItsExposures) {
+  for (const int width : {160, 159}) {
+    auto config = quick(CameraModel::unlisted);
+    config.width = width;
+    config.only_format = GetParam();
+    config.significant_bits = significant_bits(GetParam());
+    const auto camera = start_gvsp_camera(config);
+    const auto source = open_started();
+    ASSERT_TRUE(source);
+
+    const Received got = receive(*source, config, 10);
+
+    EXPECT_EQ(source->info().pixel_format, to_string(GetParam()));
+    EXPECT_EQ(source->info().significant_bits, significant_bits(GetParam()));
+    EXPECT_EQ(got.complete, 10) << width;
+    EXPECT_EQ(got.false_pixels, 0) << width;
+  }
+}
+
 TEST(GvspCamera, SendsChunksThatAravisUnderstands) {
   const auto camera = start_gvsp_camera(quick());
   GErrorSlot error;
