@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // todbench doctor
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -7,6 +9,7 @@
 #include "bench/cli/simulation_plan.h"
 #include "bench/doctor/doctor.h"
 #include "bench/run/acuity_limits.h"
+#include "bench/run/devices.h"
 
 namespace todbench {
 namespace {
@@ -39,12 +42,24 @@ DoctorCheck check_acuity(const AcuityLimits& limits) {
           .command = {}};
 }
 
+/// Known faults of the library behind GigE Vision and USB3 Vision cameras.
+DoctorCheck check_camera_library(const CameraLibrary& library) {
+  DoctorCheck check{.name = "aravis", .finding = Finding::ok, .found = library.version};
+  if (library.faults.empty()) return check;
+  check.finding = Finding::warning;
+  check.found += fmt::format(", {} known faults", library.faults.size());
+  check.explanation = "Aravis mended these faults in later versions:";
+  for (const auto& fault : library.faults) check.explanation += " " + fault + ".";
+  return check;
+}
+
 /// Returns 0 if no problem prevents a run, otherwise 1.
 int run_doctor(Console& console, const DoctorArguments& arguments, const Program& program) {
   SystemFacts facts = live_facts(arguments.folder);
   // The firewall rules of this system do not apply to another root.
   if (arguments.root != "/") facts.firewall_rules.reset();
   auto checks = examine(arguments.root, facts, arguments.demand);
+  if (const auto library = camera_library()) checks.push_back(check_camera_library(*library));
   std::vector<AcuityLimits> limits;
   if (!arguments.plan.empty()) {
     auto found = limits_of_plan(arguments.plan, program.stop->token());

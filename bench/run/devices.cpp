@@ -18,6 +18,7 @@
 #include "tod/instruments/scpi_target.h"
 #ifdef TODBENCH_WITH_ARAVIS
 #include "acquisition/aravis/aravis_backend.h"
+#include "acquisition/aravis/aravis_version.h"
 #endif
 #ifdef TODBENCH_WITH_USB
 #include "acquisition/usb/usb_backend.h"
@@ -123,6 +124,15 @@ Result<void> write_settings(FrameSource& camera, const std::map<std::string, std
 }
 
 }  // namespace
+
+std::optional<CameraLibrary> camera_library() {
+#ifdef TODBENCH_WITH_ARAVIS
+  const AravisVersion version = running_aravis();
+  return CameraLibrary{"Aravis " + to_string(version), aravis_faults(version)};
+#else
+  return std::nullopt;
+#endif
+}
 
 CameraRegistry camera_registry([[maybe_unused]] std::stop_token stop, [[maybe_unused]] const SayProgress& on_progress) {
   CameraRegistry registry;

@@ -6,8 +6,11 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stop_token>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "acquisition/core/camera_registry.h"
 #include "bench/plan/loaded_plan.h"
@@ -25,6 +28,14 @@ using SayProgress = std::function<void(std::string_view sentence)>;
 /// All back ends of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors. `stop` aborts a slow
 /// opening (`interrupted`); `on_progress` is called about once a second.
 [[nodiscard]] CameraRegistry camera_registry(std::stop_token stop = {}, const SayProgress& on_progress = {});
+
+/// The library behind GigE Vision and USB3 Vision cameras.
+struct CameraLibrary {
+  std::string version;              ///< "Aravis 0.8.26", the one that runs
+  std::vector<std::string> faults;  ///< known faults of this version, one sentence each
+};
+/// Empty: this build has none.
+[[nodiscard]] std::optional<CameraLibrary> camera_library();
 
 /// A camera, the target in front of it, and the host that controls a measurement with them.
 struct OpenedBench {
