@@ -52,9 +52,6 @@ PlanSection collimator_section() {
       .name = "target.collimator",
       .sentence = "A collimator between target and camera, in place of distance_m: it shows the plate at infinity.",
       .keys = {
-          optional_key("focal_length_mm", NumberKey{NumberRange::between(0, 1e6)}, "mm",
-                       "Focal length. The angle of a triangle is its size over the focal length",
-                       of(&CollimatorPlan::focal_length_mm)),
           optional_key("focal_length_u_mm", NumberKey{not_negative}, "mm", "Standard uncertainty of the focal length",
                        of(&CollimatorPlan::focal_length_u_mm)),
           optional_key("transmission", NumberKey{NumberRange::above_to(0, 1)}, "",
@@ -72,8 +69,12 @@ PlanSection collimator_section() {
                        "Temperature of the mirrors; absent: that of the air",
                        of(&CollimatorPlan::mirror_temperature_c)),
           optional_key("blur_mrad", NumberKey{NumberRange::between(0, 1000)}, "mrad",
-                       "Aberration: standard deviation of a normal blur per axis", of(&CollimatorPlan::blur_mrad))}};
-  section.keys.front().check = check_focal_length;
+                       "Aberration: standard deviation of a normal blur per axis", of(&CollimatorPlan::blur_mrad)),
+          optional_key("focal_length_mm", NumberKey{NumberRange::between(0, 1e6)}, "mm",
+                       "Focal length. The angle of a triangle is its size over the focal length",
+                       of(&CollimatorPlan::focal_length_mm))}};
+  // The last key: a value out of its range is reported before a missing focal length.
+  section.keys.back().check = check_focal_length;
   for (PlanKey& key : section.keys) {
     if (key.name == "transmissions") key.check = check_collimator_table;
   }
