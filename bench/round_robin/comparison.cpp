@@ -159,7 +159,7 @@ ItemComparison compared(ComparedItem&& from, const std::vector<bool>& kept, std:
   out.all = consistency(out.item.results);
   out.kept = consistency(values);
   out.weighted = weighted_mean(values);
-  const MedianConsensus median = monte_carlo_median(values, seed);
+  MedianConsensus median = monte_carlo_median(values, seed, MedianDetail::median);
   out.median = median.median;
   const double dersimonian_laird = dersimonian_laird_variance(values), paule_mandel = paule_mandel_variance(values);
   out.dersimonian_laird = random_effects(values, dersimonian_laird);
@@ -171,9 +171,12 @@ ItemComparison compared(ComparedItem&& from, const std::vector<bool>& kept, std:
   for (const auto& member : subset) out.consistent_laboratories.push_back(member.laboratory);
   out.consistent_subset = weighted_mean(subset);
   out.reference = reference_of(values, out, median);
+  if (out.reference.method == ReferenceMethod::median)
+    median = monte_carlo_median(values, seed, MedianDetail::differences);
   std::size_t next = 0;
   for (std::size_t i = 0; i < out.item.results.size(); ++i) {
-    out.degrees.push_back(degree_of(out, kept, i, kept[i] ? median.difference_half95[next] : 0));
+    const bool from_draws = kept[i] && !median.difference_half95.empty();
+    out.degrees.push_back(degree_of(out, kept, i, from_draws ? median.difference_half95[next] : 0));
     next += kept[i] ? 1 : 0;
   }
   return out;

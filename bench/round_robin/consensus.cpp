@@ -114,11 +114,11 @@ std::vector<std::size_t> largest_consistent_subset(std::span<const LaboratoryVal
   return values.size() <= most_tried ? by_every_subset(values) : by_removal(values);
 }
 
-MedianConsensus monte_carlo_median(std::span<const LaboratoryValue> values, std::uint64_t seed) {
+MedianConsensus monte_carlo_median(std::span<const LaboratoryValue> values, std::uint64_t seed, MedianDetail detail) {
   const RandomStream stream(seed, "round_robin.median");
   const std::size_t n = values.size();
   std::vector<double> medians, drawn(n);
-  std::vector<std::vector<double>> differences(n);
+  std::vector<std::vector<double>> differences(detail == MedianDetail::differences ? n : 0);
   std::vector<float> noise(n * median_draws);
   stream.fill_normal(noise);
   double sum = 0, squares = 0;
@@ -129,7 +129,7 @@ MedianConsensus monte_carlo_median(std::span<const LaboratoryValue> values, std:
     const double middle = median(drawn);
     medians.push_back(middle);
     sum += middle;
-    for (std::size_t i = 0; i < n; ++i) differences[i].push_back(drawn[i] - middle);
+    for (std::size_t i = 0; i < differences.size(); ++i) differences[i].push_back(drawn[i] - middle);
   }
   const double mean = sum / median_draws;
   for (const double m : medians) squares += (m - mean) * (m - mean);

@@ -48,12 +48,15 @@ struct ConsistencyCheck {
 
 /// Median by Monte Carlo (Cox 2002, procedure B). Same seed, same draws.
 struct MedianConsensus {
-  Consensus median;                       ///< mean and standard deviation of the medians of the draws
-  Interval ci95;                          ///< shortest interval with 95 % of the medians
-  std::vector<double> difference_half95;  ///< by value: half of the shortest interval with 95 % of value minus median
+  Consensus median;  ///< mean and standard deviation of the medians of the draws
+  Interval ci95;     ///< shortest interval with 95 % of the medians
+  /// By value: half of the shortest interval with 95 % of value minus median; empty unless requested.
+  std::vector<double> difference_half95;
 };
+enum class MedianDetail { median, differences };
 inline constexpr int median_draws = 20'000;
-[[nodiscard]] MedianConsensus monte_carlo_median(std::span<const LaboratoryValue> values, std::uint64_t seed);
+[[nodiscard]] MedianConsensus monte_carlo_median(std::span<const LaboratoryValue> values, std::uint64_t seed,
+                                                 MedianDetail detail);
 
 /// Variance between laboratories in excess of their uncertainties, 0 or more: the estimate of moments by DerSimonian
 /// and Laird 1986 (equation 8), and that by Paule and Mandel 1982, at which the generalised chi2 equals its expectation

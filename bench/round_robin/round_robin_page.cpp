@@ -20,6 +20,11 @@ std::string with_expanded(double value, double expanded) {
   return shown(value, decimals) + " ± " + shown(expanded, decimals);
 }
 
+std::string p_text(double p) {
+  const std::string text = probability(p);
+  return (text.starts_with('<') ? "p " : "p = ") + text;
+}
+
 std::string label_of(const ComparedItem& item) {
   return item.quantity + (item.unit.empty() ? "" : " (" + item.unit + ")");
 }
@@ -101,8 +106,8 @@ Table degrees_table(const ItemComparison& item) {
 
 ValueTable reference_table(const ItemComparison& item, const TruthCheck* truth) {
   const auto check = [](const ConsistencyCheck& c) {
-    return plain(fmt::format("chi2 = {} with {} degrees of freedom, p = {}, Birge ratio {}", shown(c.chi2, 2),
-                             c.degrees_of_freedom, probability(c.p), shown(c.birge_ratio, 2)));
+    return plain(fmt::format("chi2 = {} with {} degrees of freedom, {}, Birge ratio {}", shown(c.chi2, 2),
+                             c.degrees_of_freedom, p_text(c.p), shown(c.birge_ratio, 2)));
   };
   const auto estimate = [](const Consensus& c, double expanded) { return unbroken(with_expanded(c.value, expanded)); };
   ValueTable table{.caption = "Reference value and consistency", .values = {}};
@@ -158,7 +163,7 @@ VerdictBox round_robin_verdict(const RoundRobin& found) {
       box.paragraphs.push_back(
           strong(one.laboratory) +
           plain((one.item.empty() ? ", over all its items" : ", item " + one.item + ", " + one.quantity) + ": zeta = " +
-                shown(one.zeta, 2) + ". Chance gives any laboratory so much with p = " + probability(one.p) + "."));
+                shown(one.zeta, 2) + ". Chance gives any laboratory so much with " + p_text(one.p) + "."));
     }
   } else {
     box.word = "? INCONSISTENT", box.mood = Mood::open;

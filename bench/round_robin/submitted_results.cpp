@@ -106,6 +106,17 @@ class RowReader {
   const Places& places_;
 };
 
+/// Relative variance of an acuity that is common to a series of units of one bench. It cancels in the history of that
+/// bench, but not between laboratories.
+double series_variance(const Session& session, const HistoryValue& acuity) {
+  if (!session.uncertainty || acuity.measure != "acuity") return 0;
+  for (const PointUncertainty& point : session.uncertainty->points) {
+    if (acuity.condition != "dT=" + number_text(point.set_delta_t_k) + "K") continue;
+    return std::max(0.0, point.u_stated * point.u_stated - point.u_not_series * point.u_not_series);
+  }
+  return 0;
+}
+
 }  // namespace
 
 Result<std::vector<SubmittedResult>> parse_submitted_results(std::string_view text, std::string_view name) {
@@ -143,7 +154,8 @@ Result<std::vector<SubmittedResult>> session_results(const std::filesystem::path
   for (const HistoryValue& found : history.values) {
     const bool logarithm = found.scale == "ln";
     const double linear = logarithm ? std::exp(found.value) : found.value;
-    const double uncertainty = logarithm ? linear * found.u : found.u;
+    const double uncertainty =
+        logarithm ? linear * std::sqrt(found.u * found.u + series_variance(session, found)) : found.u;
     if (!std::isfinite(linear) || !(uncertainty >= smallest && uncertainty <= largest)) continue;
     out.push_back({one_line(plan.place), one_line(plan.unit),
                    found.measure + (found.condition.empty() ? "" : " at " + found.condition), found.unit, linear,

@@ -27,8 +27,8 @@ struct SubmittedResult {
 
 /// Reads the values of one session folder: the laboratory is the place of its plan, the item the unit of its plan, and
 /// the quantities are the acuity by set contrast and the measures that have an uncertainty. Logarithms are transformed
-/// back. Errors: those of read_history_session() and open_session(); `invalid_input` if the plan names no place or no
-/// unit.
+/// back. The uncertainty of an acuity contains the rows that are common to a series. Errors: those of
+/// read_history_session() and open_session(); `invalid_input` if the plan names no place or no unit.
 [[nodiscard]] Result<std::vector<SubmittedResult>> session_results(const std::filesystem::path& folder);
 
 /// Groups results by item and quantity, in the order of their names. Errors: `invalid_input` (a laboratory twice for

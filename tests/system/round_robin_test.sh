@@ -47,6 +47,42 @@ sed 's/^lab 1/lab 4/' results-1.csv | awk -F, -v OFS=, 'NR > 1 { $5 *= 1.3 } { p
 ends 1 "$program" round-robin evaluate results-1.csv results-2.csv results-3.csv results-4.csv
 grep -q "outlying: lab 4" out || wrong "lab 4 is not named: $(cat out)"
 
+# Sessions: the place is the laboratory, the unit the item. The error of a distance is common to the units of one bench, not to two laboratories.
+for n in 1 2; do
+  cat >plan$n.toml <<PLAN
+name = "compared"
+place = "bench $n"
+unit = "camera 7"
+[camera]
+id = "sim:sc2000"
+ifov_mrad = 1.3085
+[target]
+kind = "scene"
+distance_m = 2
+plates = ["tcat-a", "tcat-b"]
+mountings = ["identity"]
+delta_t_k = [16.9]
+phases = 4
+[simulation]
+accuracy = "draft"
+phases = 4
+PLAN
+done
+cat >>plan2.toml <<PLAN
+[[uncertainty.component]]
+name = "distance"
+value = 60
+unit = "mm"
+source = "estimate"
+common = ["series"]
+PLAN
+for n in 1 2; do ends 0 "$program" simulate ./plan$n.toml --seed 4 --out session-$n --quiet; done
+ends 0 "$program" round-robin evaluate session-1 session-2 --out sessions
+# 60 mm of 2 m: u^2 of the two differ by 0.03^2, the second order of the distance by 0.1 % of it.
+awk -F, 'NR > 1 { u[$4] = $6 / $5 } END { more = u["bench 2"] ^ 2 - u["bench 1"] ^ 2; exit !(more > 0.0299 ^ 2 && more < 0.0301 ^ 2) }' sessions/degrees.csv ||
+  wrong "uncertainties of sessions: $(cat sessions/degrees.csv)"
+refused "has a second result" "$program" round-robin evaluate session-1 session-1
+
 head="laboratory,item,quantity,value,u"
 printf '%s\nA,i,q,1,0\nB,i,q,1,1\n' $head >zero.csv
 printf '%s\nA,i,q,1,-1\nB,i,q,1,1\n' $head >negative.csv

@@ -121,8 +121,8 @@ TEST(RandomEffectsOfLaboratories, AgreeWithTheRestrictedLikelihoodOfThePeople) {
 TEST(MonteCarloMedian, OfEqualLaboratoriesHasTheVarianceOfOrderStatistics) {
   // Variance of the median of 3 and 5 standard normals: 0.448671 and 0.286834 (Sarhan and Greenberg 1962, table 10C.1).
   // Relative standard error of a standard deviation from 20000 draws: 1 / sqrt(2 * 20000) = 0.5 %; of the mean 0.005.
-  const auto three = monte_carlo_median(laboratories({{7, 1}, {7, 1}, {7, 1}}), 3);
-  const auto five = monte_carlo_median(laboratories({{0, 2}, {0, 2}, {0, 2}, {0, 2}, {0, 2}}), 3);
+  const auto three = monte_carlo_median(laboratories({{7, 1}, {7, 1}, {7, 1}}), 3, MedianDetail::median);
+  const auto five = monte_carlo_median(laboratories({{0, 2}, {0, 2}, {0, 2}, {0, 2}, {0, 2}}), 3, MedianDetail::median);
 
   EXPECT_NEAR(three.median.u, std::sqrt(0.448671), 4 * 0.005 * 0.67);
   EXPECT_NEAR(three.median.value, 7, 4 * 0.005);
@@ -134,7 +134,8 @@ TEST(MonteCarloMedian, OfEqualLaboratoriesHasTheVarianceOfOrderStatistics) {
 TEST(MonteCarloMedian, IsTheSameForASeedAndIgnoresAFarLaboratory) {
   const auto values = laboratories({{1, 0.1}, {1.05, 0.1}, {0.95, 0.1}, {1, 0.1}, {90, 0.1}});
 
-  const auto first = monte_carlo_median(values, 5), again = monte_carlo_median(values, 5);
+  const auto first = monte_carlo_median(values, 5, MedianDetail::differences),
+             again = monte_carlo_median(values, 5, MedianDetail::median);
 
   EXPECT_EQ(first.median.value, again.median.value);
   EXPECT_NEAR(first.median.value, 1.05, 0.05);
