@@ -105,7 +105,7 @@ QWidget* ReportView::browser() {
   layout->addWidget(filter_);
   connect(filter_, &QLineEdit::textChanged, this, &ReportView::list_sessions);
   sessions_ = plain_table({"Started (UTC)", "Verdict", "Unit, serial number", "Session"}, "sessionTable");
-  column_widths(*sessions_, {"2026-11-22", "? inconclusive", "Emulated sc2000"});
+  column_widths(*sessions_, {"Started (UTC)  __", "? inconclusive", "Emulated sc2000"});
   wrap_words(*sessions_);
   QHeaderView& heads = *sessions_->horizontalHeader();
   heads.setSectionsClickable(true);
