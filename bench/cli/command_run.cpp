@@ -77,16 +77,22 @@ ExperimentOptions folder_of(const RunArguments& arguments, const Plan& plan) {
           .existing = arguments.overwrite ? ExistingFolder::overwrite : ExistingFolder::refuse};
 }
 
+/// "2.0911 ± 0.0016": a direct estimate with its standard error.
+std::string with_error(const std::optional<double>& value, const std::optional<double>& se) {
+  const std::string text = fixed(value, 4);
+  return value && se ? text + " ± " + fixed(*se, 4) : text;
+}
+
 void print_curve(const Console& console, const TodCurve& curve) {
   std::vector<TableRow> rows;
   for (const auto& point : curve.points) {
     rows.push_back({fixed(point.delta_t_k, 3), fixed(point.fit.threshold, 4), range(point.fit.ci95, 4),
                     fixed(acuity_per_mrad(point.fit), 4), range(acuity_interval(point.fit.ci95), 4),
-                    fixed(point.direct_s75_mrad, 4), fixed(point.fit.trials, 0),
+                    with_error(point.direct_s75_mrad, point.direct_s75_se_mrad), fixed(point.fit.trials, 0),
                     std::string(to_string(point.fit.verdict))});
   }
   console.text("TOD of " + curve.sensor + ", observer " + curve.observer);
-  console.table({"dT [K]", "S75 [mrad]", "95 %", "acuity [1/mrad]", "95 %", "S75 direct [mrad]", "trials", "fit"},
+  console.table({"dT [K]", "S75 [mrad]", "95 %", "acuity [1/mrad]", "95 %", "S75 direct ± SE [mrad]", "trials", "fit"},
                 rows);
   for (const auto& point : curve.points) {
     if (!point.s75_spread_mrad) continue;

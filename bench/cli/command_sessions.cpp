@@ -108,7 +108,8 @@ int run_revision(Console& console, const std::string& folder, const std::string&
 }
 
 int run_report(Console& console, const std::string& folder, Opening opening, const std::string& reason,
-               const std::string& key, const std::string& letterhead_path, const std::stop_token& stop) {
+               const std::string& key, const std::string& letterhead_path, const std::string& order,
+               const std::stop_token& stop) {
   if (!reason.empty()) return run_revision(console, folder, reason, key, stop);
   std::optional<Letterhead> letterhead;
   if (!letterhead_path.empty()) {
@@ -119,12 +120,18 @@ int run_report(Console& console, const std::string& folder, Opening opening, con
   opening.accept_cut_off = true;
   const auto session = opened(console, folder, opening);
   if (!session) return report_error(console, session.error());
-  if (letterhead && (session->cut_off || !session->accepted_changes.empty()))
-    return report_error(console,
-                        {ErrorCode::invalid_input,
-                         folder + ": the files of the session cannot be verified, so a letterhead cannot be added"});
+  if ((letterhead || !order.empty()) && (session->cut_off || !session->accepted_changes.empty()))
+    return report_error(
+        console, {ErrorCode::invalid_input, folder + ": the files of the session cannot be verified, so " +
+                                                (letterhead ? "a letterhead" : "an order") + " cannot be added"});
   const auto path = std::filesystem::path(folder);
-  const auto data = rebuild_report(*session, path, letterhead ? html_page_with(path, *letterhead) : html_page(path));
+  PageWriter write = letterhead ? html_page_with(path, *letterhead) : html_page(path);
+  if (!order.empty()) {
+    auto ordered = with_order(path, order, std::move(write));
+    if (!ordered) return report_error(console, ordered.error());
+    write = *std::move(ordered);
+  }
+  const auto data = rebuild_report(*session, path, write);
   if (!data) return report_error(console, data.error());
   const bool afterwards = data->verdict->judged == JudgedWhen::afterwards;
   if (afterwards) console.note(std::string(remark_on(data->verdict->judged)));
@@ -261,8 +268,14 @@ void add_report_command(CLI::App& app, Program& program) {
       ->add_option("--letterhead", *letterhead,
                    "TOML file with the logo and texts of the laboratory; the session keeps a copy")
       ->excludes("--reason");
-  finish_command(*command, program, [&program, folder, opening, reason, key, letterhead](Console& console) {
-    return run_report(console, *folder, *opening, *reason, *key, *letterhead, program.stop->token());
+  auto order = std::make_shared<std::string>();
+  command
+      ->add_option("--order", *order,
+                   "TOML file with a section [order], as for 'certificate': customer, report number, item, dates. It "
+                   "stands on the first page; the session keeps a copy")
+      ->excludes("--reason");
+  finish_command(*command, program, [&program, folder, opening, reason, key, letterhead, order](Console& console) {
+    return run_report(console, *folder, *opening, *reason, *key, *letterhead, *order, program.stop->token());
   });
 }
 

@@ -42,6 +42,14 @@ void add_letterhead(const Letterhead& letterhead, Document& document) {
   document.opening.insert(document.opening.begin(), introduction.begin(), introduction.end());
 }
 
+/// Returns the entries of ISO/IEC 17025:2017, 7.8.2, for the first page.
+std::optional<Section> order_section(const ReportData& data) {
+  if (!data.order) return {};
+  ValueTable table;
+  for (const auto& [name, text] : order_lines(*data.order)) table.values.push_back({name, plain(text)});
+  return Section{"Order", {std::move(table), note(plain(std::string(not_in_part)))}};
+}
+
 std::optional<Section> closing_section(const ReportData& data) {
   if (!data.letterhead || data.letterhead->closing_title.empty()) return {};
   Section section{data.letterhead->closing_title, {}};
@@ -77,6 +85,7 @@ Document report_document(const ReportData& data) {
   const auto add = [&](std::optional<Section> section) {
     if (section) document.sections.push_back(*std::move(section));
   };
+  add(order_section(data));
   add(identification_section(data));
   add(limits_section(data));
   const bool curve = data.measured || data.simulated || !data.measures;

@@ -13,9 +13,11 @@
 #include "bench/judgement/acuity_uncertainty.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/letterhead.h"
+#include "bench/plan/order.h"
 #include "bench/report/document.h"
 #include "bench/report/plot.h"
 #include "bench/session/display_record.h"
+#include "bench/session/human_record.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/signature.h"
 #include "sim_devices/prediction/cost_frontier.h"
@@ -63,7 +65,8 @@ struct ReportData {
   FitOptions fit;
   std::optional<TodCurve> measured;  ///< by the camera
   std::optional<TodCurve> simulated;
-  std::optional<TodCurve> human;         ///< a person's answers to patches of the camera's frames
+  std::optional<TodCurve> human;         ///< answers of the first person to patches of the camera's frames
+  std::vector<PersonRecord> people;      ///< all people, without their trials and pictures
   std::optional<Comparison> comparison;  ///< A is measured, B is simulated
 
   std::optional<SessionMeasures> measures;  ///< physical measures; empty: not requested
@@ -71,6 +74,8 @@ struct ReportData {
   std::optional<DisplayRecord> at_display;  ///< beside the results, never in the verdict
 
   std::optional<CurveUncertainty> uncertainty;  ///< of the measured curve, or of the simulated one alone
+
+  std::optional<OrderPlan> order;  ///< the order behind the test; empty: not stated
 
   std::optional<Verdict> verdict;  ///< of the session
 

@@ -16,6 +16,44 @@ const std::optional<TodCurve>& model_curve(const ReportData& data) {
   return data.measured ? data.measured : data.simulated;
 }
 
+/// "P2, 34 years, acuity 1.2, 0.6 m from EIZO, white 120 cd/m²"
+std::string facts_in_words(const PersonFacts& person, std::size_t number) {
+  std::string text = person.code.empty() ? "person " + std::to_string(number) : person.code;
+  if (person.age_years) text += ", " + shown(*person.age_years, 0) + " years";
+  if (person.acuity_decimal) text += ", acuity " + stated(*person.acuity_decimal);
+  if (person.distance_m) text += ", " + stated(*person.distance_m) + " m from the screen";
+  if (!person.screen.empty()) text += ", " + person.screen;
+  if (person.luminance_cd_m2) text += ", white " + stated(*person.luminance_cd_m2) + " cd/m²";
+  if (person.training_answers > 0) text += ", " + std::to_string(person.training_answers) + " answers of training";
+  return text;
+}
+
+/// All people with their thresholds, and their mean.
+Table people_table(const ReportData& data) {
+  Table rows;
+  rows.caption = "All people. Mean: geometric, every person once; its interval contains the scatter between people";
+  rows.header = {"Person", "Day (UTC)"};
+  const std::vector<PeopleMean> means = mean_over_people(data.people);
+  for (const PeopleMean& mean : means) rows.header.push_back("S₇₅ at " + stated(mean.set_delta_t_k) + " K (mrad)");
+  for (std::size_t i = 0; i < data.people.size(); ++i) {
+    const PersonRecord& one = data.people[i];
+    std::vector<RichText> row{plain(facts_in_words(one.person, i + 1)), plain(one.person.judged_utc.substr(0, 10))};
+    for (const PeopleMean& mean : means) {
+      const TodPoint* point = point_at(one.record.curve, mean.set_delta_t_k);
+      row.push_back(point == nullptr ? missing("not asked") : threshold_cell(point->fit));
+    }
+    rows.rows.push_back(std::move(row));
+  }
+  std::vector<RichText> last{plain("mean"), plain("")};
+  for (const PeopleMean& mean : means) {
+    Interval interval;
+    if (mean.ci95_mrad) interval = {mean.ci95_mrad->first, mean.ci95_mrad->second};
+    last.push_back(interval_or_missing(mean.s75_mrad, interval, "one person"));
+  }
+  rows.rows.push_back(std::move(last));
+  return rows;
+}
+
 }  // namespace
 
 std::vector<Plot> human_plots(const ReportData& data) {
@@ -48,10 +86,19 @@ std::optional<Section> human_section(const ReportData& data) {
   for (std::size_t i = 0; i < plots.size(); ++i)
     figures.figures.push_back(
         {drawn(plots[i]), "Set contrast ΔT = " + stated(data.human->points[i].set_delta_t_k) + " K"});
-  return Section{"Human observer",
-                 {std::move(rows), std::move(figures),
-                  note(plain("Task: four alternatives, no feedback, patches in random order. The answers of the model "
-                             "were not shown."))}};
+  Section section{"Human observer", {}};
+  if (data.people.size() > 1) {
+    section.blocks.emplace_back(people_table(data));
+    rows.caption = "The first person and the model observer on the same frames; brackets: 95 % interval";
+  } else if (!data.people.empty() && !data.people.front().person.code.empty()) {
+    section.blocks.emplace_back(note(plain("Person: " + facts_in_words(data.people.front().person, 1) + ".")));
+  }
+  section.blocks.emplace_back(std::move(rows));
+  section.blocks.emplace_back(std::move(figures));
+  section.blocks.emplace_back(
+      note(plain("Task: four alternatives, no feedback, patches in random order. The answers of "
+                 "the model were not shown.")));
+  return section;
 }
 
 }  // namespace todbench

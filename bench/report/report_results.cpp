@@ -309,6 +309,13 @@ RichText resumption(const Interruption& loss, std::size_t segment) {
                            segment, loss.presentation, loss.away_s, loss.reason, loss.moved_px));
 }
 
+/// "the model observer hvs-1, not a person". The gain of hvs-1 is that of the EO-VISTA experiment.
+std::string judge_in_words(const std::string& observer) {
+  return "the model observer " + observer +
+         (observer.starts_with("hvs-1") ? ", tuned to the gain of the EO-VISTA experiment, not a person"
+                                        : ", not a person");
+}
+
 }  // namespace
 
 VerdictBox verdict_box(const ReportData& data) {
@@ -330,6 +337,8 @@ VerdictBox verdict_box(const ReportData& data) {
   if (verdict != ReportVerdict::not_judged && verdict != ReportVerdict::changed)
     box.paragraphs.push_back(strong("Decision rule:") + plain(" ") +
                              text_or_missing(data.verdict ? data.verdict->rule_in_words : "", "not stated"));
+  if (!data.observer.empty())
+    box.paragraphs.push_back(strong("Judged by:") + plain(" " + judge_in_words(data.observer)));
   if (data.verdict && data.verdict->judged == JudgedWhen::afterwards)
     box.paragraphs.push_back(plain(remark_on(data.verdict->judged)));
   if (data.interrupted)

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "acquisition/base/try.h"
+#include "bench/plan/order.h"
 #include "bench/report/report_csv.h"
 #include "bench/run/report_data.h"
 #include "bench/session/foreign_files.h"
@@ -17,12 +19,21 @@ namespace todbench {
 Result<ReportData> report_data_of(const Session& session, const std::filesystem::path& folder) {
   auto data = report_data(session, session_name(folder));
   if (!data) return data;
-  auto human = read_human(folder);
-  if (!human) return tl::unexpected(human.error());
-  if (*human) data->human = std::move((*human)->curve);
+  auto people = read_people(folder);
+  if (!people) return tl::unexpected(people.error());
+  for (PersonRecord& person : *people) {
+    person.record.trials.clear();
+    person.record.shown.clear();
+  }
+  if (!people->empty()) data->human = people->front().record.curve;
+  data->people = *std::move(people);
   auto letterhead = kept_letterhead(folder);
   if (!letterhead) return tl::unexpected(letterhead.error());
   if (*letterhead) data->letterhead = *std::move(letterhead);
+  std::error_code none;
+  if (std::filesystem::exists(folder / order_file, none)) {
+    TODBENCH_TRY(data->order, load_order(folder / order_file));
+  }
   return data;
 }
 
@@ -79,6 +90,21 @@ PageWriter html_page_with(std::filesystem::path folder, Letterhead letterhead) {
     if (!kept) return kept;
     auto pages = html_page(folder)(with);
     if (pages) pages->insert(pages->end(), kept->begin(), kept->end());
+    return pages;
+  };
+}
+
+Result<PageWriter> with_order(std::filesystem::path folder, const std::filesystem::path& order, PageWriter write) {
+  TODBENCH_TRY(auto entries, load_order(order));
+  TODBENCH_TRY(auto text, read_text_file(order));
+  return [folder = std::move(folder), entries = std::move(entries), text = std::move(text),
+          write = std::move(write)](const ReportData& data) -> Result<std::vector<std::string>> {
+    ReportData with = data;
+    with.order = entries;
+    if (auto made = make_folder(folder / "inputs"); !made) return tl::unexpected(made.error());
+    if (auto kept = write_file_atomically(folder / order_file, text); !kept) return tl::unexpected(kept.error());
+    auto pages = write(with);
+    if (pages) pages->emplace_back(order_file);
     return pages;
   };
 }

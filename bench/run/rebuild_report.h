@@ -6,6 +6,7 @@
 #include <functional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "acquisition/base/result.h"
@@ -32,6 +33,12 @@ using PageWriter = std::function<Result<std::vector<std::string>>(const ReportDa
                                                const std::string& reason, const std::string& utc,
                                                const std::filesystem::path& secret_key,
                                                const std::stop_token& stop = {});
+/// File of the order in a session.
+inline constexpr std::string_view order_file = "inputs/order.toml";
+/// Calls `write` with an order (a file with a section [order]) that the session stores for later reports. Errors: those
+/// of load_order(), `io`.
+[[nodiscard]] Result<PageWriter> with_order(std::filesystem::path folder, const std::filesystem::path& order,
+                                            PageWriter write);
 /// Writes report.html and report.csv.
 [[nodiscard]] PageWriter html_page(std::filesystem::path folder);
 /// The same with a letterhead, which the session stores for later reports.

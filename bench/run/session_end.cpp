@@ -143,8 +143,11 @@ ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const O
   if (outcome.measures || outcome.twin_measures)
     refused.keep(open.folder.write_measures(outcome.measures, outcome.twin_measures));
   if (!outcome.ended_by) outcome.ended_by = refused.first();
+  // A simulated curve has no twin: equivalence to one is not demanded of it.
+  LimitsPlan limits = plan.limits;
+  if (!provenance.camera) limits.equivalence_margin_percent.reset();
   outcome.verdict = judge(
-      {.limits = plan.limits,
+      {.limits = limits,
        .curve = outcome.curve,
        .comparison = outcome.comparison,
        .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt,

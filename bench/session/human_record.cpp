@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
 #include <string>
 #include <system_error>
 #include <utility>
 
+#include "acquisition/base/distributions.h"
 #include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
 #include "bench/session/fit_record.h"
@@ -95,6 +100,67 @@ Result<std::vector<ShownPatch>> read_shown(const std::filesystem::path& file, st
   return out;
 }
 
+constexpr const char* people_folder = "people";
+constexpr const char* facts_name = "people/people.json";
+
+/// Files of the N-th person, from 1. The first one has the names of versions that knew one person.
+struct PersonFiles {
+  std::string trials, shown, fits;
+};
+PersonFiles files_of(std::size_t number) {
+  if (number == 1) return {trials_name, shown_name, fits_name};
+  const std::string stem = std::string(people_folder) + "/" + std::to_string(number) + "-";
+  return {stem + "trials.csv", stem + "shown.csv", stem + "fits.json"};
+}
+
+Result<HumanRecord> read_record_of(const std::filesystem::path& session, const PersonFiles& files) {
+  TODBENCH_TRY(auto trials, read_trials(session / files.trials));
+  TODBENCH_TRY(const auto text, read_text_file(session / files.fits));
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return fail(ErrorCode::invalid_input, (session / files.fits).string() + ": not valid JSON");
+  TODBENCH_TRY(auto curve, curve_from(json));
+  std::vector<ShownPatch> shown;
+  std::error_code none;
+  if (std::filesystem::exists(session / files.shown, none)) {
+    TODBENCH_TRY(shown, read_shown(session / files.shown, trials.size()));
+  }
+  return HumanRecord{std::move(trials), std::move(curve), std::move(shown)};
+}
+
+/// people.json.
+struct People {
+  std::vector<PersonFacts> people;
+};
+void person_fields(JsonFields& json, PersonFacts& person) {
+  json.value("code", person.code);
+  json.value("age_years", person.age_years);
+  json.value("acuity_decimal", person.acuity_decimal);
+  json.value("distance_m", person.distance_m);
+  json.value("luminance_cd_m2", person.luminance_cd_m2);
+  json.value("screen", person.screen);
+  json.value("judged_utc", person.judged_utc);
+  json.value("training_answers", person.training_answers);
+}
+void people_fields(JsonFields& json, People& people) {
+  json.value("people", people.people, person_fields);
+}
+
+/// Returns the facts of all people; one without facts for answers of a version that knew one person.
+Result<People> read_facts(const std::filesystem::path& session) {
+  std::error_code none;
+  if (!std::filesystem::exists(session / facts_name, none)) {
+    People one;
+    if (std::filesystem::exists(session / trials_name, none)) one.people.emplace_back();
+    return one;
+  }
+  TODBENCH_TRY(const auto text, read_text_file(session / facts_name));
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return fail(ErrorCode::invalid_input, (session / facts_name).string() + ": not valid JSON");
+  auto people = from_json<People>(json, people_fields);
+  if (!people) return fail((session / facts_name).string(), people.error());
+  return people;
+}
+
 }  // namespace
 
 Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPatch> shown, const Plan& plan) {
@@ -109,31 +175,76 @@ Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPa
   return HumanRecord{std::move(answers), std::move(curve), std::move(shown)};
 }
 
-Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record) {
+Result<void> add_person(const std::filesystem::path& session, const PersonRecord& person) {
   if (auto intact = require_intact(session); !intact) return intact;
-  TODBENCH_TRY(auto writer, TrialsWriter::create(session / trials_name));
+  TODBENCH_TRY(People people, read_facts(session));
+  people.people.push_back(person.person);
+  const PersonFiles files = files_of(people.people.size());
+  std::error_code problem;
+  std::filesystem::create_directories(session / people_folder, problem);
+  if (problem) return fail(ErrorCode::io, (session / people_folder).string() + ": " + problem.message());
+  const HumanRecord& record = person.record;
+  TODBENCH_TRY(auto writer, TrialsWriter::create(session / files.trials));
   for (const Trial& trial : record.trials) {
     if (auto written = writer.append(trial); !written) return written;
   }
   if (auto synced = writer.sync(); !synced) return synced;
-  if (auto written = write_json_file(session / fits_name, curve_record(record.curve)); !written) return written;
-  if (auto written = write_file_atomically(session / shown_name, shown_text(record)); !written) return written;
-  return refresh_manifest(session, {trials_name, shown_name, fits_name});
+  if (auto written = write_json_file(session / files.fits, curve_record(record.curve)); !written) return written;
+  if (auto written = write_file_atomically(session / files.shown, shown_text(record)); !written) return written;
+  TODBENCH_TRY(const Json facts, json_of(people, people_fields));
+  if (auto written = write_json_file(session / facts_name, facts); !written) return written;
+  return refresh_manifest(session, {files.trials, files.shown, files.fits, facts_name});
+}
+
+Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record) {
+  return add_person(session, {.person = {}, .record = record});
 }
 
 Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session) {
   std::error_code none;
   if (!std::filesystem::exists(session / trials_name, none)) return std::nullopt;
-  TODBENCH_TRY(auto trials, read_trials(session / trials_name));
-  TODBENCH_TRY(const auto text, read_text_file(session / fits_name));
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, (session / fits_name).string() + ": not valid JSON");
-  TODBENCH_TRY(auto curve, curve_from(json));
-  std::vector<ShownPatch> shown;
-  if (std::filesystem::exists(session / shown_name, none)) {
-    TODBENCH_TRY(shown, read_shown(session / shown_name, trials.size()));
+  TODBENCH_TRY(auto record, read_record_of(session, files_of(1)));
+  return record;
+}
+
+Result<std::vector<PersonRecord>> read_people(const std::filesystem::path& session) {
+  TODBENCH_TRY(const People people, read_facts(session));
+  std::vector<PersonRecord> out;
+  for (std::size_t i = 0; i < people.people.size(); ++i) {
+    TODBENCH_TRY(auto record, read_record_of(session, files_of(i + 1)));
+    out.push_back({people.people[i], std::move(record)});
   }
-  return HumanRecord{std::move(trials), std::move(curve), std::move(shown)};
+  return out;
+}
+
+std::vector<PeopleMean> mean_over_people(const std::vector<PersonRecord>& people) {
+  // ln S75 of the sittings, by contrast and person; a person without a code has a key of their own.
+  std::map<double, std::map<std::string, std::vector<double>>, std::greater<>> thresholds;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const std::string& code = people[i].person.code;
+    const std::string key = code.empty() ? "\n" + std::to_string(i) : code;
+    for (const TodPoint& point : people[i].record.curve.points) {
+      if (point.fit.threshold && *point.fit.threshold > 0)
+        thresholds[point.set_delta_t_k][key].push_back(std::log(*point.fit.threshold));
+    }
+  }
+  std::vector<PeopleMean> means;
+  for (const auto& [contrast, persons] : thresholds) {
+    std::vector<double> logs;
+    for (const auto& [key, sittings] : persons)
+      logs.push_back(std::accumulate(sittings.begin(), sittings.end(), 0.0) / static_cast<double>(sittings.size()));
+    const auto n = static_cast<double>(logs.size());
+    const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / n;
+    PeopleMean out{.set_delta_t_k = contrast, .people = static_cast<int>(logs.size()), .s75_mrad = std::exp(mean)};
+    if (logs.size() > 1) {
+      double squares = 0;
+      for (const double value : logs) squares += (value - mean) * (value - mean);
+      const double half = distribution::quantile_above(0.025, n - 1) * std::sqrt(squares / (n - 1) / n);
+      out.ci95_mrad = std::pair(std::exp(mean - half), std::exp(mean + half));
+    }
+    means.push_back(out);
+  }
+  return means;
 }
 
 }  // namespace todbench

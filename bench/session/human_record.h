@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "acquisition/base/result.h"
@@ -32,15 +34,48 @@ struct HumanRecord {
   std::vector<ShownPatch> shown;  ///< one per trial, in order
 };
 
+/// The person behind answers. Empty values: not stated.
+struct PersonFacts {
+  std::string code;  ///< a name, or a code in its place; empty in records of earlier versions
+  std::optional<double> age_years, acuity_decimal;
+  std::optional<double> distance_m, luminance_cd_m2;  ///< from the eye to the screen; of its white
+  std::string screen;                                 ///< in free text
+  std::string judged_utc;                             ///< end of the answers
+  int training_answers = 0;                           ///< with feedback, before the first answer
+};
+
+/// A person with the answers given at one sitting.
+struct PersonRecord {
+  PersonFacts person;
+  HumanRecord record;
+};
+
+/// Mean threshold of several people at one contrast: the geometric mean, every person once. The interval contains the
+/// scatter between people (Student's t of ln S75).
+struct PeopleMean {
+  double set_delta_t_k = 0;
+  int people = 0;  ///< with an identified threshold
+  double s75_mrad = 0;
+  std::optional<std::pair<double, double>> ci95_mrad{};  ///< empty: fewer than two people
+};
+
 /// Fits the answers like those of the model. Precondition: one patch per answer. Errors: `invalid_input` (no answers).
 [[nodiscard]] Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPatch> shown,
                                                const Plan& plan);
-/// Writes trials_human.csv, shown_human.csv and fits_human.json into a finished session, replaces earlier ones and
-/// lists them in the manifest. Errors: `io`; `invalid_input` (no manifest, or files that differ from it), in which case
-/// no file is written.
+/// Adds the answers of a person to a finished session and lists the files in the manifest: trials_human.csv,
+/// shown_human.csv and fits_human.json for the first person, people/N-trials.csv, people/N-shown.csv and
+/// people/N-fits.json for the N-th, and people/people.json with the facts of all. Replaces no earlier answers. Errors:
+/// `io`; `invalid_input` (no manifest, or files that differ from it), in which case no file is written.
+[[nodiscard]] Result<void> add_person(const std::filesystem::path& session, const PersonRecord& person);
+/// add_person() for a person without facts.
 [[nodiscard]] Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record);
-/// Reads the record from a session that open_session() accepted; empty if no person has answered. Errors:
-/// `invalid_input` with file and line or key.
+/// Reads the record of the first person from a session that open_session() accepted; empty if no person has answered.
+/// Errors: `invalid_input` with file and line or key.
 [[nodiscard]] Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session);
+/// Reads the records of all people, in the order of their answers. Errors: as read_human().
+[[nodiscard]] Result<std::vector<PersonRecord>> read_people(const std::filesystem::path& session);
+/// Returns the mean at every contrast of the people. Several sittings of a person (the same code) count as their
+/// geometric mean; people without a code count one by one.
+[[nodiscard]] std::vector<PeopleMean> mean_over_people(const std::vector<PersonRecord>& people);
 
 }  // namespace todbench

@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 26> known_files{"measures.json",    "comp
                                                        "grey-levels.csv",  "moving-trials.csv",
                                                        "dynamic.json",     "scene-dependence.json",
                                                        "naked_eye.json",   "naked_eye_comparison.json"};
-constexpr std::array<std::string_view, 3> known_folders{"inputs", "frames", "pictures"};
+constexpr std::array<std::string_view, 4> known_folders{"inputs", "frames", "people", "pictures"};
 constexpr std::string_view schema = "todbench-manifest-1";
 
 constexpr std::array<std::string_view, 3> report_pages{"report.csv", "report.html", "report.pdf"};

@@ -9,6 +9,7 @@
 
 #include "acquisition/base/rng.h"
 #include "bench/gui/presenters/colour_map.h"
+#include "bench/session/provenance.h"
 #include "hvs/eye/display_levels.h"
 
 namespace todbench {
@@ -45,6 +46,21 @@ std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& tr
   std::vector<JudgedTrial> out;
   out.reserve(chosen.size());
   for (const std::size_t i : chosen) out.push_back(trials[i]);
+  return out;
+}
+
+std::vector<JudgedTrial> patches_for_training(const std::vector<JudgedTrial>& trials, const HumanOptions& options) {
+  std::vector<std::size_t> order(trials.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  shuffle(order, RandomStream(options.seed, "human training"));
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const Trial &one = trials[a].trial, &other = trials[b].trial;
+    return std::pair(-std::abs(one.set_delta_t_k), -std::round(one.size_mm * 1000)) <
+           std::pair(-std::abs(other.set_delta_t_k), -std::round(other.size_mm * 1000));
+  });
+  const auto count = std::min(order.size(), static_cast<std::size_t>(std::max(options.training, 0)));
+  std::vector<JudgedTrial> out;
+  for (std::size_t i = 0; i < count; ++i) out.push_back(trials[order[i]]);
   return out;
 }
 
@@ -101,6 +117,10 @@ QString HumanPresenter::begin(const std::vector<JudgedTrial>& trials, const Plan
   plan_ = plan;
   session_ = session;
   patches_ = patches_for_a_person(trials, options);
+  training_ = patches_for_training(trials, options);
+  trained_ = 0;
+  feedback_.clear();
+  means_.clear();
   answers_.clear();
   shown_.clear();
   record_.reset();
@@ -114,9 +134,9 @@ void HumanPresenter::show_next() {
     finish();
     return;
   }
-  const JudgedTrial& patch = patches_[answers_.size()];
+  const JudgedTrial& next = training_left() > 0 ? training_[trained_] : patches_[answers_.size()];
   picture_ =
-      at_display() ? picture_at_display(patch, plan_.display) : picture_for_a_person(patch, options_.magnification);
+      at_display() ? picture_at_display(next, plan_.display) : picture_for_a_person(next, options_.magnification);
   state_ = HumanState::showing;
   since_shown_.start();
   if (options_.shown_ms) hide_.start(*options_.shown_ms);
@@ -126,6 +146,16 @@ void HumanPresenter::show_next() {
 void HumanPresenter::answer(Apex apex) {
   if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
   hide_.stop();
+  if (training_left() > 0) {
+    const Apex truth = training_[trained_++].trial.truth;
+    const auto word = to_string(truth);
+    feedback_ = (apex == truth ? "✓ right: " : "✗ it pointed ") +
+                QString::fromUtf8(word.data(), static_cast<qsizetype>(word.size()));
+    if (training_left() == 0) feedback_ += ". From now on the answers count, without feedback.";
+    show_next();
+    return;
+  }
+  feedback_.clear();
   const JudgedTrial& patch = patches_[answers_.size()];
   const LevelSpan grey = at_display() ? grey_levels(patch, plan_.display) : grey_levels(patch);
   shown_.push_back({.kelvin = patch.patch_k,
@@ -164,8 +194,14 @@ void HumanPresenter::finish() {
     problem_ = QString::fromStdString(record.error().message);
   } else {
     record_ = std::move(*record);
-    if (auto written = write_human(session_, *record_); !written)
+    PersonRecord person{.person = options_.person, .record = *record_};
+    person.person.judged_utc = utc_now();
+    person.person.training_answers = static_cast<int>(trained_);
+    if (auto written = add_person(session_, person); !written) {
       problem_ = QString::fromStdString(written.error().message);
+    } else if (const auto people = read_people(session_)) {
+      means_ = mean_over_people(*people);
+    }
   }
   emit updated();
   emit finished(QString::fromStdString(session_.string()));

@@ -20,12 +20,18 @@ struct HumanOptions {
   std::optional<int> shown_ms;  ///< empty: until answered
   int magnification = 24;       ///< screen pixels per displayed sample: far more than display and eye resolve
   std::uint64_t seed = 1;
+  int training = 0;      ///< patches with feedback before the first one that counts
+  PersonFacts person{};  ///< stored with the answers
 };
 
 enum class HumanState { idle, showing, hidden, finished };
 
 /// Returns a balanced random choice of the camera's patches in random order.
 [[nodiscard]] std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials,
+                                                            const HumanOptions& options);
+/// Returns `options.training` patches for the training: the largest triangles at the highest contrasts, in random
+/// order, so that the task becomes clear before it becomes hard.
+[[nodiscard]] std::vector<JudgedTrial> patches_for_training(const std::vector<JudgedTrial>& trials,
                                                             const HumanOptions& options);
 /// Returns the temperatures of black and white.
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged);
@@ -59,6 +65,12 @@ class HumanPresenter final : public QObject {
   [[nodiscard]] bool at_display() const { return has_display(plan_); }
   [[nodiscard]] std::size_t done() const { return answers_.size(); }
   [[nodiscard]] std::size_t planned() const { return patches_.size(); }
+  /// Patches of the training that are still to be answered; 0: the answers count.
+  [[nodiscard]] std::size_t training_left() const { return training_.size() - trained_; }
+  /// Whether the last answer of the training was right, in words; empty outside the training.
+  [[nodiscard]] const QString& feedback() const { return feedback_; }
+  /// When finished: the mean over all people of the session.
+  [[nodiscard]] const std::vector<PeopleMean>& means() const { return means_; }
   /// When finished: the record written to the session.
   [[nodiscard]] const std::optional<HumanRecord>& record() const { return record_; }
   /// Reason why the answers could not be stored; otherwise empty.
@@ -75,7 +87,10 @@ class HumanPresenter final : public QObject {
   HumanOptions options_;
   Plan plan_;
   std::filesystem::path session_;
-  std::vector<JudgedTrial> patches_;
+  std::vector<JudgedTrial> patches_, training_;
+  std::size_t trained_ = 0;
+  QString feedback_;
+  std::vector<PeopleMean> means_;
   std::vector<Trial> answers_;
   std::vector<ShownPatch> shown_;
   QElapsedTimer since_shown_;

@@ -94,19 +94,24 @@ std::vector<SessionEntry> matching(const std::vector<SessionEntry>& sessions, co
   return out;
 }
 
-Result<Exported> export_reports(const OpenedSession& opened) {
+Result<Exported> export_reports(const OpenedSession& opened, const std::optional<std::filesystem::path>& order) {
   // The files may have changed since the session was opened.
   if (!opened.session.cut_off) {
     if (auto intact = require_intact(opened.folder); !intact) return tl::unexpected(intact.error());
   }
   const auto pdf = opened.folder / "report.pdf";
-  const auto write_both = [&](const ReportData& data) -> Result<std::vector<std::string>> {
+  PageWriter write_both = [&](const ReportData& data) -> Result<std::vector<std::string>> {
     auto pages = html_page(opened.folder)(data);
     if (!pages) return pages;
     if (auto written = write_pdf_report(data, pdf); !written) return tl::unexpected(written.error());
     pages->emplace_back("report.pdf");
     return pages;
   };
+  if (order) {
+    auto ordered = with_order(opened.folder, *order, std::move(write_both));
+    if (!ordered) return tl::unexpected(ordered.error());
+    write_both = *std::move(ordered);
+  }
   if (auto rebuilt = rebuild_report(opened.session, opened.folder, write_both); !rebuilt)
     return tl::unexpected(rebuilt.error());
   return Exported{QString::fromStdString((opened.folder / "report.html").string()),
@@ -179,6 +184,20 @@ void SessionPresenter::open(const std::filesystem::path& folder) {
                                });
 }
 
+void SessionPresenter::open_and_export(const std::filesystem::path& folder) {
+  open(folder);
+  // The jobs run in the order of the requests: this one reads what the first one has checked.
+  in_background<Exported>(
+      [folder]() -> Result<Exported> {
+        const auto opened = read_opened_session(folder);
+        if (!opened) return tl::unexpected(opened.error());
+        return todbench::export_reports(*opened);
+      },
+      [this](const Result<Exported>& files) {
+        if (files) emit exported(files->html, files->pdf);
+      });
+}
+
 void SessionPresenter::compare_with(const std::filesystem::path& other) {
   if (opening_ > 0) {
     compare_when_opened_ = other;
@@ -211,6 +230,14 @@ void SessionPresenter::compare(const std::filesystem::path& other) {
 void SessionPresenter::export_reports() {
   if (!current_) return;
   in_background<Exported>([opened = *current_] { return todbench::export_reports(opened); },
+                          [this](const Result<Exported>& files) {
+                            if (files) emit exported(files->html, files->pdf);
+                          });
+}
+
+void SessionPresenter::export_with_order(const std::filesystem::path& order) {
+  if (!current_) return;
+  in_background<Exported>([opened = *current_, order] { return todbench::export_reports(opened, order); },
                           [this](const Result<Exported>& files) {
                             if (files) emit exported(files->html, files->pdf);
                           });

@@ -56,6 +56,8 @@ class SessionPresenter final : public QObject {
   [[nodiscard]] const std::vector<SessionEntry>& sessions() const { return sessions_; }
   /// Reads a session; opened() or problem() follows.
   void open(const std::filesystem::path& folder);
+  /// The same, and writes its reports again: the session has new answers of a person. exported() follows opened().
+  void open_and_export(const std::filesystem::path& folder);
   [[nodiscard]] const std::optional<OpenedSession>& current() const { return current_; }
   /// Compares the open session (or the one being opened) with another, with the margin of its plan; compared() or
   /// problem() follows.
@@ -63,6 +65,8 @@ class SessionPresenter final : public QObject {
   [[nodiscard]] const std::optional<ComparedSessions>& compared_sessions() const { return compared_; }
   /// Writes report.html and report.pdf into the open session; exported() or problem() follows.
   void export_reports();
+  /// The same with an order, a file with a section [order], which the session keeps.
+  void export_with_order(const std::filesystem::path& order);
   /// Puts the plan of the open session back on the bench, for another run.
   void use_plan_again();
 
@@ -97,7 +101,9 @@ struct Exported {
 };
 /// Writes report.html and report.pdf into the session's folder and their hashes into its manifest. Any thread. Errors:
 /// `io` with the path; `invalid_input` if files of the session were changed.
-[[nodiscard]] Result<Exported> export_reports(const OpenedSession& opened);
+/// An order (bench/plan/order.h) stands on the first page, and the session keeps it.
+[[nodiscard]] Result<Exported> export_reports(const OpenedSession& opened,
+                                              const std::optional<std::filesystem::path>& order = std::nullopt);
 /// Returns the sessions directly in a folder, newest first; unreadable ones are left out.
 [[nodiscard]] std::vector<SessionEntry> sessions_below(const std::filesystem::path& folder);
 

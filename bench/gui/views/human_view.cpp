@@ -7,6 +7,7 @@
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLineEdit>
+#include <QLocale>
 #include <QSpinBox>
 #include <algorithm>
 #include <array>
@@ -160,6 +161,7 @@ QWidget* HumanView::side_panel() {
   shown_ms_->setSuffix(" ms");
   shown_ms_->setAccessibleName("Display time of a patch");
   shown_ms_->setEnabled(false);
+  add_person_rows(*form);
   form->addRow("Repetitions", per_size_);
   form->addRow(limited_, shown_ms_);
   side->addLayout(form);
@@ -180,6 +182,52 @@ QWidget* HumanView::side_panel() {
   side->addWidget(result_);
   side->addStretch();
   return panel;
+}
+
+void HumanView::add_person_rows(QFormLayout& form) {
+  form.setVerticalSpacing(3);
+  const auto line = [&form](const QString& label, const char* name, const QString& tool_tip) {
+    auto* edit = new QLineEdit;
+    edit->setObjectName(name);
+    edit->setToolTip(tool_tip);
+    edit->setAccessibleName(label);
+    form.addRow(label, edit);
+    return edit;
+  };
+  code_ = line("Person", "personCode", "A code will do: the person decides whether a name is stored");
+  age_ = line("Age (years)", "personAge", "May be empty");
+  acuity_ =
+      line("Acuity (decimal)", "personAcuity", "Visual acuity with the correction worn now, 1.0 is 6/6; may be empty");
+  distance_ = line("Distance (m)", "personDistance", "From the eye to the screen; may be empty");
+  screen_ = line("Screen", "personScreen", "Maker and model; may be empty");
+  luminance_ = line("White (cd/m²)", "personLuminance", "Luminance of the white of the screen; may be empty");
+  training_ = new QSpinBox;
+  training_->setObjectName("humanTraining");
+  training_->setRange(0, 200);
+  training_->setToolTip("Patches with feedback before the answers count. They are not stored.");
+  form.addRow("Training", training_);
+}
+
+std::optional<PersonFacts> HumanView::person_facts() {
+  PersonFacts facts;
+  facts.code = code_->text().trimmed().toStdString();
+  facts.screen = screen_->text().trimmed().toStdString();
+  const auto read = [this](const QLineEdit& edit, std::optional<double>& value) {
+    const QString text = edit.text().trimmed();
+    if (text.isEmpty()) return true;
+    bool good = false;
+    const double number = QLocale::c().toDouble(text, &good);
+    if (good && number > 0) {
+      value = number;
+      return true;
+    }
+    emit bench_.trouble(
+        edit.accessibleName() + ": expected a number above 0 with a decimal point, found '" + text + "'", Remedy::none);
+    return false;
+  };
+  const bool good = read(*age_, facts.age_years) && read(*acuity_, facts.acuity_decimal) &&
+                    read(*distance_, facts.distance_m) && read(*luminance_, facts.luminance_cd_m2);
+  return good ? std::optional(facts) : std::nullopt;
 }
 
 void HumanView::add_questions(QFormLayout& form) {
@@ -241,6 +289,9 @@ void HumanView::show_question() {
   form_->setRowVisible(axis_, question == of_bars);
   form_->setRowVisible(contrasts_, question == of_naked_eye);
   form_->setRowVisible(noise_, question == of_naked_eye);
+  for (QWidget* of_person :
+       std::initializer_list<QWidget*>{code_, age_, acuity_, distance_, screen_, luminance_, training_})
+    form_->setRowVisible(of_person, question == of_triangles);
   title_->setText(question == of_set    ? "Which one is it?"
                   : question == of_bars ? question_title(criterion())
                                         : "Which way does it point?");
@@ -272,11 +323,15 @@ void HumanView::begin() {
     begin_person();
     return;
   }
+  const auto facts = person_facts();
+  if (!facts) return;
   HumanOptions options;
+  options.person = *facts;
+  options.training = training_->value();
   options.per_size = per_size_->value();
   if (limited_->isChecked()) options.shown_ms = shown_ms_->value();
   options.seed = bench_.plan().seed;
-  const QString problem = presenter_.begin(measured_.trials(), bench_.plan(), measured_.folder(), options);
+  const QString problem = presenter_.begin(measured_.trials(), bench_.plan(), measured_.judged_session(), options);
   if (!problem.isEmpty()) emit bench_.trouble(problem, Remedy::none);
   setFocus();
 }
@@ -431,7 +486,12 @@ void HumanView::show_triangles() {
   // A fixed number of screen pixels per sample: the size of the window does not affect the picture.
   picture_->set_image(state == HumanState::showing ? presenter_.picture() : QImage());
   picture_->set_zoom(presenter_.at_display() ? 1 / devicePixelRatioF() : 1);
-  progress_->setText(running ? QString("%1 of %2").arg(presenter_.done()).arg(presenter_.planned()) : QString());
+  const QString count = presenter_.training_left() > 0
+                            ? QString("Training: %1 to go").arg(presenter_.training_left())
+                            : QString("%1 of %2").arg(presenter_.done()).arg(presenter_.planned());
+  progress_->setText(!running                          ? QString()
+                     : presenter_.feedback().isEmpty() ? count
+                                                       : presenter_.feedback() + "\n" + count);
   if (!presenter_.record() || running) {
     result_->setText(presenter_.problem());
     return;
@@ -445,9 +505,20 @@ void HumanView::show_triangles() {
                 .arg(model == nullptr ? QString("–")
                                       : QString::fromStdString(with_interval(model->fit.threshold, model->fit.ci95)));
   }
+  QString means;
+  for (const PeopleMean& mean : presenter_.means()) {
+    if (mean.people < 2 || !mean.ci95_mrad) continue;
+    means += QString("<tr><td>%1 K&nbsp;</td><td>%2</td><td>%3 people</td></tr>")
+                 .arg(mean.set_delta_t_k)
+                 .arg(QString::fromStdString(
+                     with_interval(mean.s75_mrad, Interval{mean.ci95_mrad->first, mean.ci95_mrad->second})))
+                 .arg(mean.people);
+  }
+  if (!means.isEmpty())
+    means = "<p>Mean over people, interval between people:</p><table cellspacing=4>" + means + "</table>";
   result_->setText("<p>" + presenter_.problem() +
                    "</p><table cellspacing=4><tr><th>ΔT</th><th>S75 human (mrad)</th><th>model (mrad)</th></tr>" +
-                   rows + "</table>");
+                   rows + "</table>" + means);
 }
 
 }  // namespace todbench

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <QWidget>
+#include <optional>
+
+#include "bench/session/human_record.h"
 
 class QCheckBox;
 class QComboBox;
@@ -41,6 +44,9 @@ class HumanView final : public QWidget {
   void begin();
   void begin_person();
   void begin_naked_eye();
+  void add_person_rows(QFormLayout& form);
+  /// Reads the facts of the person; empty after a message about a value that is no number.
+  [[nodiscard]] std::optional<PersonFacts> person_facts();
   void show_question();
   void show_state();
   void show_triangles();
@@ -57,8 +63,9 @@ class HumanView final : public QWidget {
   AlternativesPanel* alternatives_;
   QComboBox *question_, *set_, *air_, *criterion_, *axis_;
   QLineEdit *ranges_, *frequencies_, *contrasts_, *noise_;
+  QLineEdit *code_, *age_, *acuity_, *distance_, *luminance_, *screen_;
   QLabel *title_, *hint_;
-  QSpinBox *per_size_, *shown_ms_;
+  QSpinBox *per_size_, *shown_ms_, *training_;
   QCheckBox* limited_;
   QPushButton *begin_, *abort_;
   QLabel *progress_, *result_;

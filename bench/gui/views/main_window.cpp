@@ -328,8 +328,13 @@ void MainWindow::connect_parts() {
     QApplication::beep();
     QApplication::alert(this);
   });
-  connect(&human_, &HumanPresenter::finished, this,
-          [this](const QString& folder) { sessions_.open(folder.toStdString()); });
+  connect(&human_, &HumanPresenter::finished, this, [this](const QString& folder) {
+    if (human_.problem().isEmpty()) {
+      sessions_.open_and_export(folder.toStdString());
+    } else {
+      sessions_.open(folder.toStdString());
+    }
+  });
 }
 
 void MainWindow::show_trouble(const QString& sentence, Remedy remedy) {

@@ -3,6 +3,7 @@
 
 #include <QCheckBox>
 #include <QDesktopServices>
+#include <QFileDialog>
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLineEdit>
@@ -172,7 +173,12 @@ QWidget* ReportView::session_panel() {
   go_on_->setToolTip(
       "Measures the rest of a run that ended early, with the same plan and camera, into a new session. Its frames must "
       "have been recorded.");
-  for (QPushButton* button : {export_, page_, replay_, again_, go_on_}) {
+  order_ = plain_button("Order…", "orderOfSession");
+  order_->setToolTip(
+      "Puts the order of a file with a section [order] on the first page of both reports: customer, report number, "
+      "item, "
+      "dates. The session keeps a copy.");
+  for (QPushButton* button : {export_, order_, page_, replay_, again_, go_on_}) {
     button->setEnabled(false);
     buttons->addWidget(button);
   }
@@ -189,6 +195,10 @@ QWidget* ReportView::session_panel() {
   connect(export_, &QPushButton::clicked, this, [this] { presenter_.export_reports(); });
   connect(page_, &QPushButton::clicked, this, &ReportView::show_pdf);
   connect(replay_, &QPushButton::clicked, this, &ReportView::replay);
+  connect(order_, &QPushButton::clicked, this, [this] {
+    const QString file = QFileDialog::getOpenFileName(this, "Order", {}, "Orders (*.toml)");
+    if (!file.isEmpty()) presenter_.export_with_order(file.toStdString());
+  });
   connect(go_on_, &QPushButton::clicked, this, &ReportView::go_on);
   connect(again_, &QPushButton::clicked, this, [this] {
     presenter_.use_plan_again();
@@ -292,7 +302,7 @@ void ReportView::show_session() {
   }
   fill_table(*limits_, rows);
   files_->clear();
-  for (QPushButton* button : {export_, again_, compare_}) button->setEnabled(true);
+  for (QPushButton* button : {export_, order_, again_, compare_}) button->setEnabled(true);
   replay_->setEnabled(opened.recorded);
   go_on_->setEnabled(opened.recorded && opened.session.provenance.state != SessionState::complete);
   frames_->setText(opened.recorded

@@ -59,7 +59,7 @@ class ReportView final : public QWidget {
   QLabel *title_, *verdict_, *frames_, *files_;
   QWidget* letterhead_;
   QLabel *logo_, *laboratory_;
-  QPushButton *compare_, *export_, *replay_, *again_, *page_, *go_on_;
+  QPushButton *compare_, *export_, *replay_, *again_, *page_, *go_on_, *order_;
   QCheckBox* log_log_;
   PlotView* plot_;
 };

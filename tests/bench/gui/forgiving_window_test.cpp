@@ -207,6 +207,28 @@ TEST(ForgivingWindow, SaysThatThereIsNoPdf) {
   EXPECT_THAT(window.part<QLabel>("messageText").text().toStdString(), HasSubstr("/report.pdf does not exist"));
 }
 
+TEST(ForgivingWindow, PutsTheOrderOnTheFirstPageAndKeepsIt) {
+  ShownWindow window("sim:sc2000", 1);
+  window.measure();
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  const auto file = window.sessions() / "order.toml";
+  ASSERT_TRUE(write_file_atomically(file, "[order]\ncustomer = \"Example <Ltd>\"\nreport_number = \"R-17\"\n"));
+
+  window->sessions().export_with_order(file);
+  ASSERT_TRUE(wait_until([&] { return !window.part<QLabel>("exportedFiles").text().isEmpty(); }));
+
+  const auto folder = window->sessions().current()->folder;
+  const auto page = read_text_file(folder / "report.html");
+  ASSERT_TRUE(page);
+  EXPECT_LT(page->find("Example &lt;Ltd&gt;"), page->find("Unit under test"));
+  EXPECT_THAT(*page, HasSubstr("R-17"));
+  EXPECT_THAT(*page, HasSubstr("Judged by:"));
+  const auto again = read_opened_session(folder);
+  ASSERT_TRUE(again) << again.error().message;
+  ASSERT_TRUE(again->report.order);
+  EXPECT_EQ(again->report.order->report_number, "R-17");
+}
+
 TEST(ForgivingWindow, ShowsItsPagesWithoutANetwork) {
   ShownWindow window("sim:sc2000");
   window->activateWindow();

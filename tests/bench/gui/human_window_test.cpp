@@ -6,6 +6,8 @@
 #include <QSpinBox>
 #include <QStackedWidget>
 #include <QToolButton>
+#include <algorithm>
+#include <cmath>
 
 #include "bench/gui/presenters/naked_eye_presenter.h"
 #include "bench/gui/views/human_view.h"
@@ -47,6 +49,8 @@ TEST(HumanObserver, LeavesItsAnswersBesideTheModelsInTheSameSession) {
   const auto record = read_human(folder);
   ASSERT_TRUE(record && *record) << (record ? "" : record.error().message);
   EXPECT_EQ((*record)->curve.observer, "human");
+  ASSERT_TRUE(wait_until([&] { return !window.part<QLabel>("exportedFiles").text().isEmpty(); }))
+      << "report, PDF and manifest are made again";
   const auto changed = verify_manifest(folder);
   ASSERT_TRUE(changed) << changed.error().message;
   EXPECT_THAT(*changed, ::testing::IsEmpty());
@@ -140,6 +144,132 @@ TEST(HumanObserver, StandsInTheReportBesideTheModel) {
   EXPECT_THAT(page, ::testing::HasSubstr("<h2>Human observer</h2>"));
   EXPECT_EQ(human_plots(opened->report).size(), 2u);
   EXPECT_EQ(human_plots(opened->report).front().series.empty(), false);
+}
+
+TEST(HumanObserver, KeepsEveryPersonWithFactsAndStatesTheirMean) {
+  ShownWindow window("sim:sc2000", 6);
+  window.measure();
+  const auto folder = window->measure().folder();
+  const auto judge = [&](const char* code, double sees_mrad, std::optional<double> age) {
+    HumanOptions options{.per_size = 12, .shown_ms = {}, .seed = 3};
+    options.person.code = code;
+    options.person.age_years = age;
+    ASSERT_EQ(window->human().begin(window->measure().trials(), window->bench().plan(), folder, options), "");
+    const auto chosen = patches_for_a_person(window->measure().trials(), options);
+    std::size_t guess = 0;
+    for (const auto& patch : chosen)
+      window->human().answer(patch.trial.size_mrad > sees_mrad ? patch.trial.truth : all_apexes[guess++ % 4]);
+    EXPECT_EQ(window->human().problem().toStdString(), "");
+  };
+
+  judge("P1", 2, 34);
+  judge("P2", 3, {});
+  judge("P1", 2, 34);  // another day
+
+  const auto people = read_people(folder);
+  ASSERT_TRUE(people) << people.error().message;
+  ASSERT_EQ(people->size(), 3u);
+  EXPECT_EQ((*people)[0].person.code, "P1");
+  EXPECT_EQ((*people)[0].person.age_years, std::optional(34.0));
+  EXPECT_EQ((*people)[1].person.code, "P2");
+  EXPECT_FALSE((*people)[1].person.age_years);
+  EXPECT_NE((*people)[0].record.trials.size(), 0u);
+  for (const PeopleMean& mean : mean_over_people(*people)) EXPECT_EQ(mean.people, 2) << "a person counts once";
+  ASSERT_TRUE(wait_until([&] {
+    return window->sessions().current() && window->sessions().current()->report.people.size() == 3 &&
+           !window.part<QLabel>("exportedFiles").text().isEmpty();
+  }));
+  const std::string page = render_report(window->sessions().current()->report);
+  EXPECT_THAT(page, ::testing::HasSubstr("P1, 34 years"));
+  EXPECT_THAT(page, ::testing::HasSubstr("mean"));
+  ASSERT_TRUE(wait_until([&] {
+    const auto changed = verify_manifest(folder);
+    return changed && changed->empty();
+  }));
+}
+
+TEST(HumanObserver, TrainsWithFeedbackBeforeAndGivesNoneDuringTheTest) {
+  ShownWindow window("sim:sc2000", 3);
+  window.measure();
+  HumanOptions options{.per_size = 1, .shown_ms = {}, .seed = 3};
+  options.training = 4;
+  const auto training = patches_for_training(window->measure().trials(), options);
+  ASSERT_EQ(training.size(), 4u);
+  double largest = 0;
+  for (const auto& judged : window->measure().trials()) largest = std::max(largest, judged.trial.size_mrad);
+  for (const auto& patch : training) {
+    EXPECT_EQ(patch.trial.set_delta_t_k, 16.9);
+    EXPECT_NEAR(patch.trial.size_mrad, largest, 1e-6);
+  }
+  ASSERT_EQ(
+      window->human().begin(window->measure().trials(), window->bench().plan(), window->measure().folder(), options),
+      "");
+
+  window->human().answer(training[0].trial.truth);
+  EXPECT_TRUE(window->human().feedback().startsWith("✓"));
+  window->human().answer(training[1].trial.truth == Apex::up ? Apex::down : Apex::up);
+  EXPECT_TRUE(window->human().feedback().startsWith("✗"));
+  window->human().answer(Apex::up);
+  window->human().answer(Apex::up);
+  EXPECT_EQ(window->human().training_left(), 0u);
+  EXPECT_EQ(window->human().done(), 0u) << "the training does not count";
+  while (window->human().state() == HumanState::showing) {
+    window->human().answer(Apex::up);
+    EXPECT_EQ(window->human().feedback().toStdString(), "");
+  }
+  const auto people = read_people(window->measure().folder());
+  ASSERT_TRUE(people && people->size() == 1);
+  EXPECT_EQ(people->front().person.training_answers, 4);
+  EXPECT_EQ(people->front().record.trials.size(), window->human().planned());
+}
+
+TEST(HumanObserver, AddsToTheRecordedSessionOnAnotherDay) {
+  ShownWindow window("sim:sc2000", 2);
+  Plan plan = window->bench().plan();
+  plan.measurement.record_frames = true;
+  window->bench().set_plan(plan);
+  window.measure();
+  const auto recorded = window->measure().folder();
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  window->show_view(View::report);
+  window.click("replaySession");
+  ASSERT_TRUE(wait_until([&] { return window->measure().state() == RunState::idle; }));
+  ASSERT_EQ(window->measure().same_as_recorded(), std::optional(true));
+
+  window->show_view(View::human);
+  window.part<QLineEdit>("personCode").setText("P7");
+  window.part<QSpinBox>("humanPerSize").setValue(1);
+  window.click("beginHuman");
+  while (window->human().state() == HumanState::showing) window->human().answer(Apex::up);
+
+  const auto people = read_people(recorded);
+  ASSERT_TRUE(people && people->size() == 1) << "the answers belong to the recorded session, not to its replay";
+  EXPECT_EQ(people->front().person.code, "P7");
+}
+
+TEST(MeanOverPeople, HasAnIntervalThatContainsTheScatterBetweenPeople) {
+  const auto person = [](const char* code, double s75_mrad) {
+    PersonRecord out;
+    out.person.code = code;
+    TodPoint point;
+    point.set_delta_t_k = 1;
+    point.fit.threshold = s75_mrad;
+    out.record.curve.points.push_back(point);
+    return out;
+  };
+
+  const auto one = mean_over_people({person("A", 2)});
+  const auto three = mean_over_people({person("A", 1), person("B", 2), person("C", 4), person("C", 4)});
+
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_FALSE(one.front().ci95_mrad) << "one person has no scatter";
+  ASSERT_EQ(three.size(), 1u);
+  EXPECT_EQ(three.front().people, 3);
+  EXPECT_NEAR(three.front().s75_mrad, 2, 1e-12);
+  // ln S75 = 0, ln 2, ln 4: standard deviation ln 2; t(0.975, 2) = 4.302653 (tables of Student's t).
+  const double factor = std::exp(4.302653 * std::log(2.0) / std::sqrt(3.0));
+  EXPECT_NEAR(three.front().ci95_mrad->second, 2 * factor, 1e-4);
+  EXPECT_NEAR(three.front().ci95_mrad->first, 2 / factor, 1e-5);
 }
 
 TEST(HumanObserver, SeesThePatchesOfTheCameraInRandomOrderAndNothingElse) {
