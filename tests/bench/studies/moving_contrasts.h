@@ -52,10 +52,17 @@ class SlowBlackBody final : public Target {
   double time_constant_s_, presentation_s_, body_k_ = 0;
 };
 
+/// A sensor without a name is not valid, so that no surrogate could have its values.
+inline SensorSpec plain_sensor() {
+  SensorSpec spec;
+  spec.name = "plain";
+  return spec;
+}
+
 /// A camera in front of a slow black body, and its twin.
 struct MovingContrasts {
   std::string name;
-  SensorSpec camera{}, twin{};
+  SensorSpec camera = plain_sensor(), twin = plain_sensor();
   bool ramp = true;  ///< otherwise within a settling band
   double time_constant_s = 2.2;
   std::vector<double> judged_k{10, 3.5, 1.2, 0.5, 0.3};  ///< contrasts of the result; of a ramp, none of the plan
@@ -218,7 +225,7 @@ inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::u
 }
 
 inline std::vector<MovingContrasts> moving_designs() {
-  SensorSpec blurred, noisy, columns;
+  SensorSpec blurred = plain_sensor(), noisy = blurred, columns = blurred;
   blurred.aberration_sigma_pitch = 0.35;
   noisy.netd_k *= 2;
   columns.column_noise_k = 0.035;
