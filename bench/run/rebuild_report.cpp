@@ -13,6 +13,7 @@
 #include "bench/session/signature.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 

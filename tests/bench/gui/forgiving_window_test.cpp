@@ -16,6 +16,7 @@
 #include "bench/gui/views/help_window.h"
 #include "bench/gui/views/plot_view.h"
 #include "bench/text/files.h"
+#include "bench/text/text.h"
 #include "tests/bench/gui/gui_test_support.h"
 
 namespace todbench::testing {

@@ -37,7 +37,9 @@ TEST(UnlikeCameras, WithTwiceTheNoiseOfTheTwinHaveTheirOwnFunction) {
   ASSERT_EQ(s.runs, 1);
   EXPECT_LT(std::abs(s.bias_percent), 3 * s.half_width_percent / 1.96);
   for (const GradedResult& row : rows) {
-    if (row.estimator == "fit") EXPECT_EQ(row.slope_fitted, 0) << row.delta_t_k;
+    if (row.estimator == "fit") {
+      EXPECT_EQ(row.slope_fitted, 0) << row.delta_t_k;
+    }
   }
 }
 
