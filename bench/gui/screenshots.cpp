@@ -102,7 +102,6 @@ bool ask_the_naked_eye(MainWindow& window, const std::filesystem::path& folder) 
     eye->answer(eye->session()->trial().truth);
   }
   eye->abort();
-  good &= save(window, folder, "human-naked-eye-end");
   question->setCurrentIndex(0);
   window.bench().set_plan(before);
   return good;

@@ -2,6 +2,8 @@
 // An observer fitted to people, as a user asks for it.
 #include <gmock/gmock.h>
 
+#include <functional>
+
 #include "bench/plan/descriptions.h"
 #include "bench/run/experiment.h"
 #include "bench/session/human_record.h"
@@ -19,7 +21,9 @@ using ::testing::HasSubstr;
 class ObserverFitCommand : public ::testing::Test {
  protected:
   /// Every fifth patch of a small session: 64.
-  void answer(const std::string& name, const TemplateObserverSpec& person, std::uint64_t seed) const {
+  /// `change`: of the answer with this number, from 1 on.
+  void answer(const std::string& name, const TemplateObserverSpec& person, std::uint64_t seed,
+              const std::function<void(Trial&, std::size_t)>& change = {}) const {
     const auto plan = read_plan(folder_.write(name + ".toml", small_plan(16)).string());
     ASSERT_TRUE(plan) << plan.error().message;
     Plan own = plan->plan();
@@ -38,6 +42,7 @@ class ObserverFitCommand : public ::testing::Test {
       answered.answer = static_cast<Apex>(
           prepared->choose(patch, trial.delta_t_k, RandomStream(seed, "person").sub(number)).alternative);
       answered.scores = {};
+      if (change) change(answered, answers.size() + 1);
       answers.push_back(answered);
       shown.push_back(kept);
     };
@@ -117,13 +122,9 @@ TEST_F(ObserverFitCommand, RefusesWhatCannotBeFittedInOneSentence) {
 
 TEST_F(ObserverFitCommand, WritesNoObserverForAnswersOfAnotherKind) {
   // Somebody who names the opposite direction now and then is no template observer with noise.
-  answer("a", {}, 3);
-  auto record = **read_human(at("a"));
-  std::uint64_t number = 0;
-  for (Trial& trial : record.trials) {
-    if (++number % 4 == 0) trial.answer = static_cast<Apex>((static_cast<int>(trial.truth) + 2) % 4);
-  }
-  ASSERT_TRUE(write_human(at("a"), record));
+  answer("a", {}, 3, [](Trial& trial, std::size_t number) {
+    if (number % 4 == 0) trial.answer = static_cast<Apex>((static_cast<int>(trial.truth) + 2) % 4);
+  });
 
   const Ended ended = run(with(quick, {"--out", "x.toml"}));
 

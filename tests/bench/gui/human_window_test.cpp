@@ -174,7 +174,11 @@ TEST(HumanObserver, KeepsEveryPersonWithFactsAndStatesTheirMean) {
   EXPECT_EQ((*people)[1].person.code, "P2");
   EXPECT_FALSE((*people)[1].person.age_years);
   EXPECT_NE((*people)[0].record.trials.size(), 0u);
-  for (const PeopleMean& mean : mean_over_people(*people)) EXPECT_EQ(mean.people, 2) << "a person counts once";
+  // A person counts once. The second one has a threshold at the contrast whose sizes reach far enough.
+  const std::vector<PeopleMean> means = mean_over_people(*people);
+  ASSERT_FALSE(means.empty());
+  for (const PeopleMean& mean : means) EXPECT_LE(mean.people, 2);
+  EXPECT_EQ(std::ranges::max(means, {}, &PeopleMean::people).people, 2);
   ASSERT_TRUE(wait_until([&] {
     return window->sessions().current() && window->sessions().current()->report.people.size() == 3 &&
            !window.part<QLabel>("exportedFiles").text().isEmpty();

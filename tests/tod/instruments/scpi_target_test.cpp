@@ -108,12 +108,14 @@ TEST_F(ScpiTargetTest, ABandEndsTheWaitWhereAFirstOrderApproachIsNearAndSlow) {
   options_.settling_band = 0.1;
   options_.max_relative_rate_per_s = 0.06;
   const auto bench = target();
+  // The change of the plate takes longer than the wait below.
+  ASSERT_TRUE(bench->present({.plate = "fine", .delta_t_k = 0}, {}));
 
   const auto presented = bench->present({.plate = "fine", .delta_t_k = 2, .wait = ContrastWait::within_band}, {});
 
   ASSERT_TRUE(presented) << presented.error().message;
   // 2 exp(-t) K are missing: below 10 % after 2.3 s, and slower than 0.06 / s after ln(1 / 0.06) = 2.8 s; a rate takes
-  // at least 0.2 s of readings. The stage needs less. To settle takes 8.1 s.
+  // at least 0.2 s of readings. To settle takes 8.1 s.
   EXPECT_NEAR(presented->settling_s, std::log(1 / 0.06), 0.7);
   EXPECT_NEAR(presented->state.delta_t_k, 2 * (1 - 0.06), 0.06);
   EXPECT_FALSE(black_body_->state().is_stable);
