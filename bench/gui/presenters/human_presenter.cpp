@@ -9,6 +9,7 @@
 
 #include "acquisition/base/rng.h"
 #include "bench/gui/presenters/colour_map.h"
+#include "bench/session/open_session.h"
 #include "bench/session/provenance.h"
 #include "hvs/eye/display_levels.h"
 
@@ -113,6 +114,8 @@ HumanPresenter::HumanPresenter(QObject* parent) : QObject(parent) {
 QString HumanPresenter::begin(const std::vector<JudgedTrial>& trials, const Plan& plan,
                               const std::filesystem::path& session, const HumanOptions& options) {
   if (trials.empty()) return "There are no frames to show. Run a measurement first.";
+  // Answers to a session that takes none would be lost; its report may just be written.
+  if (const auto intact = require_intact(session); !intact) return QString::fromStdString(intact.error().message);
   options_ = options;
   plan_ = plan;
   session_ = session;
