@@ -99,7 +99,6 @@ struct ContinuousPoint {
   double delta_t_k = 0;
   double s75_mrad = 0;
   Interval ci95;
-  bool operator==(const ContinuousPoint&) const = default;
 };
 
 /// A measured or simulated TOD curve. Acuity is 1 / S75.
