@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "acquisition/base/rng.h"
 #include "hvs/eye/display_levels.h"
@@ -56,6 +57,16 @@ ViewedDisplay linear_display(const ViewedDisplay& display) {
   return out;
 }
 
+TemplateObserverSpec model_at_linear_display(const NakedEyeTask& task) {
+  TemplateObserverSpec model = task.model;
+  model.display = linear_display(*task.model.display);
+  return model;
+}
+
+double mrad_per_sample(const ViewedDisplay& display) {
+  return arcmin_per_sample(display) / 60 * std::numbers::pi / 180 * 1000;
+}
+
 NakedEyePicture naked_eye_picture(const NakedEyeTask& task, const NakedEyeTrial& trial, int window_samples) {
   const auto contrasts = level_contrasts(*task.model.display);
   const RandomStream numbers = RandomStream(task.seed, "naked-eye.picture").sub(trial.number);
@@ -63,8 +74,6 @@ NakedEyePicture naked_eye_picture(const NakedEyeTask& task, const NakedEyeTrial&
   const cv::Mat1d covered = pixel_coverage(triangle(trial.size_samples, trial.truth, middle + trial.centroid),
                                            {window_samples, window_samples});
   NakedEyePicture out{.levels = cv::Mat1b(covered.size()), .contrast = cv::Mat1f(covered.size())};
-  const BetweenLevels background = between_levels(contrasts, 0);
-  out.mean_level = background.below + background.share;
   double rounding = 0;
   std::uint64_t index = 0;
   for (int i = 0; i < covered.rows; ++i) {

@@ -30,6 +30,11 @@ struct NakedEyeTask {
 /// through the measured luminances, so this is what the person sees. Precondition: validate() of the display succeeds.
 [[nodiscard]] ViewedDisplay linear_display(const ViewedDisplay& display);
 
+/// The model before that display. Precondition: validate() of the task succeeds.
+[[nodiscard]] TemplateObserverSpec model_at_linear_display(const NakedEyeTask& task);
+/// Angle of a displayed sample at the eye, in mrad.
+[[nodiscard]] double mrad_per_sample(const ViewedDisplay& display);
+
 /// Number of sizes at each contrast, and the ratio of neighbouring ones; the fourth is near the predicted threshold.
 inline constexpr int naked_eye_sizes = 8;
 inline constexpr double naked_eye_size_ratio = 1.22;
@@ -44,10 +49,9 @@ struct NakedEyeTrial {
 
 /// A picture as the display shows it.
 struct NakedEyePicture {
-  cv::Mat1b levels;       ///< one per displayed sample
-  cv::Mat1f contrast;     ///< luminance contrast of every sample to the background, by its level
-  double noise = 0;       ///< standard deviation per sample: the noise of the task, and that of rounding to levels
-  double mean_level = 0;  ///< of the background, 0 to 255
+  cv::Mat1b levels;    ///< one per displayed sample
+  cv::Mat1f contrast;  ///< luminance contrast of every sample to the background, by its level
+  double noise = 0;    ///< standard deviation per sample: the noise of the task, and that of rounding to levels
 };
 
 /// Draws a square picture of `window_samples` on a side. A sample's luminance is that of the covered share of it. It is

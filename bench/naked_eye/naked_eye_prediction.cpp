@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "acquisition/base/rng.h"
 #include "acquisition/base/try.h"
@@ -100,17 +99,12 @@ Result<std::optional<FoundSize>> threshold_of(ShareOverSize& shares, int start, 
       FoundSize{samples, samples * found->standard_error, static_cast<int>(std::lround(std::log(samples) / ratio))});
 }
 
-double mrad_per_sample(const ViewedDisplay& display) {
-  return arcmin_per_sample(display) / 60 * std::numbers::pi / 180 * 1000;
-}
-
 /// Observers of a prediction: the model, and both ends of its open parameters.
 struct ModelRange {
   TemplateObserverSpec model, best, worst;
 };
 ModelRange models_of(const NakedEyeTask& task) {
-  TemplateObserverSpec model = task.model;
-  model.display = linear_display(*task.model.display);
+  const TemplateObserverSpec model = model_at_linear_display(task);
   const auto range = open_parameter_range(model);
   return {model, range ? range->best : model, range ? range->worst : model};
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "acquisition/base/try.h"
@@ -86,9 +85,7 @@ Result<NakedEyeSession> NakedEyeSession::begin(const NakedEyeTask& task, const s
   out.task_ = task;
   out.prediction_ = std::move(prediction);
   out.folder_ = folder;
-  TemplateObserverSpec model = task.model;
-  model.display = linear_display(*task.model.display);
-  out.windows_ = std::make_shared<TemplateObserver>(model, triangle_alternatives());
+  out.windows_ = std::make_shared<TemplateObserver>(model_at_linear_display(task), triangle_alternatives());
   if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
   const NakedEyeRecord record{.observer = task.model.name,
                               .display = recorded_display(*task.model.display),
@@ -114,7 +111,7 @@ void NakedEyeSession::draw_next() {
 
 void NakedEyeSession::answer(Apex answer, double response_s, std::optional<int> limit_ms) {
   const NakedEyeTrial& asked = trial();
-  const double mrad = prediction_.arcmin_per_sample / 60 * std::numbers::pi / 180 * 1000;
+  const double mrad = mrad_per_sample(*task_.model.display);
   const double distance_m = task_.model.display->viewing_distance_m;
   answers_.push_back({.presentation = static_cast<std::int64_t>(answers_.size()),
                       .plate = "naked-eye",

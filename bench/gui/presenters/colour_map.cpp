@@ -112,6 +112,11 @@ QImage to_image(const cv::Mat1d& values, const LevelSpan& level, ColourMap map) 
   return image;
 }
 
+QImage grey_image(const cv::Mat1b& levels) {
+  return QImage(levels.data, levels.cols, levels.rows, static_cast<qsizetype>(levels.step), QImage::Format_Grayscale8)
+      .copy();
+}
+
 std::vector<int> histogram(const cv::Mat1w& counts, const LevelSpan& level, int bins) {
   std::vector<int> out(static_cast<std::size_t>(bins));
   const double factor = bins / level.span();

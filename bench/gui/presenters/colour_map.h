@@ -36,6 +36,9 @@ struct PictureMarks {
 /// The same for values of any unit, without marks.
 [[nodiscard]] QImage to_image(const cv::Mat1d& values, const LevelSpan& level, ColourMap map);
 
+/// Returns grey levels as they are, one pixel for each.
+[[nodiscard]] QImage grey_image(const cv::Mat1b& levels);
+
 /// Pixels per bin between the ends of `level`; values outside fall into the first and last bin.
 [[nodiscard]] std::vector<int> histogram(const cv::Mat1w& counts, const LevelSpan& level, int bins);
 

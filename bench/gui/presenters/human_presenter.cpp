@@ -92,10 +92,8 @@ LevelSpan grey_levels(const JudgedTrial& judged, const ViewedDisplay& display) {
 }
 
 QImage picture_at_display(const JudgedTrial& judged, const ViewedDisplay& display) {
-  const cv::Mat1b levels =
-      operator_picture(display, cv::Mat1d(judged.patch_k) - median(judged.patch_k), judged.trial.delta_t_k);
-  return QImage(levels.data, levels.cols, levels.rows, static_cast<qsizetype>(levels.step), QImage::Format_Grayscale8)
-      .copy();
+  return grey_image(
+      operator_picture(display, cv::Mat1d(judged.patch_k) - median(judged.patch_k), judged.trial.delta_t_k));
 }
 
 int HumanPresenter::background_level() const {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/naked_eye_presenter.h"
 
-#include <cmath>
 #include <memory>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <utility>
 
+#include "bench/gui/presenters/colour_map.h"
 #include "bench/gui/presenters/person_presenter.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/resources.h"
+#include "hvs/eye/display_levels.h"
 
 namespace todbench {
 namespace {
@@ -18,12 +20,13 @@ constexpr int pictures_of_the_prediction = 48;
 }  // namespace
 
 QImage screen_picture(const NakedEyePicture& picture, int zoom) {
-  QImage out(picture.levels.cols * zoom, picture.levels.rows * zoom, QImage::Format_Grayscale8);
-  for (int y = 0; y < out.height(); ++y) {
-    unsigned char* row = out.scanLine(y);
-    for (int x = 0; x < out.width(); ++x) row[x] = picture.levels(y / zoom, x / zoom);
-  }
-  return out;
+  cv::Mat1b pixels;
+  cv::resize(picture.levels, pixels, {}, zoom, zoom, cv::INTER_NEAREST);
+  return grey_image(pixels);
+}
+
+int NakedEyePresenter::background_level() const {
+  return session_ ? background_level_of(*session_->task().model.display) : 128;
 }
 
 NakedEyePresenter::NakedEyePresenter(QObject* parent) : QObject(parent) {
@@ -83,7 +86,6 @@ void NakedEyePresenter::show_next() {
     finish();
     return;
   }
-  background_level_ = static_cast<int>(std::lround(session_->picture().mean_level));
   picture_ = screen_picture(session_->picture(), static_cast<int>(session_->task().model.display->zoom));
   state_ = HumanState::showing;
   since_shown_.start();

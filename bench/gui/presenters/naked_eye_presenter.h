@@ -48,7 +48,7 @@ class NakedEyePresenter final : public QObject {
   [[nodiscard]] HumanState state() const { return state_; }
   [[nodiscard]] const QImage& picture() const { return picture_; }
   /// Level around the picture, 0 to 255.
-  [[nodiscard]] int background_level() const { return background_level_; }
+  [[nodiscard]] int background_level() const;
   [[nodiscard]] const std::optional<NakedEyeSession>& session() const { return session_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// Reason why nothing was shown or stored; otherwise empty.
@@ -67,7 +67,6 @@ class NakedEyePresenter final : public QObject {
   std::optional<NakedEyeSession> session_;
   QElapsedTimer since_shown_;
   QImage picture_;
-  int background_level_ = 128;
   HumanState state_ = HumanState::idle;
   bool predicting_ = false;
   QString problem_;
