@@ -197,7 +197,7 @@ Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
 
 std::optional<Error> AravisSource::misstated_size(const Frame& frame, cv::Size sent) {
   constexpr int enough = 16;
-  const bool whole = frame.status == FrameStatus::wrong_size && sent.area() > 0;
+  const bool whole = frame.status == FrameStatus::wrong_size && !sent.empty();
   if (frames_of_wrong_size_ < 0 || frame.status == FrameStatus::incomplete) return std::nullopt;
   if (!whole || sent == cv::Size(format_.width, format_.height)) {
     frames_of_wrong_size_ = frame.status == FrameStatus::complete ? -1 : 0;

@@ -84,8 +84,7 @@ bool same_camera(const FlirSeqFrame& a, const FlirSeqFrame& b) {
 
 /// Reads the bytes of the pixels.
 Result<std::string> stored_bytes(const FlirBytes& bytes, const FlirSeqFrame& frame) {
-  const cv::Size size(frame.width, frame.height);
-  const std::uint64_t pixels = static_cast<std::uint64_t>(size.area());
+  const std::uint64_t pixels = static_cast<std::uint64_t>(frame.width) * static_cast<std::uint64_t>(frame.height);
   if (frame.storage != FlirStorage::raw && frame.pixel_bytes > most_bytes_per_pixel * pixels + most_extra_bytes)
     return fail(ErrorCode::invalid_input, "the compressed picture is longer than its pixels");
   const std::string stored = bytes.read(frame.pixel_offset, static_cast<std::size_t>(frame.pixel_bytes));

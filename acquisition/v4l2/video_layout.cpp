@@ -2,6 +2,7 @@
 #include "acquisition/v4l2/video_layout.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "acquisition/core/control_text.h"
 #include "acquisition/pixel_formats/pixel_formats.h"
@@ -78,7 +79,8 @@ std::optional<VideoLayout> layout_of(const VideoMode& mode, const std::vector<Vi
 /// Whether layout `a` is better than `b`.
 bool is_better(const VideoLayout& a, const VideoLayout& b) {
   if (a.significant_bits != b.significant_bits) return a.significant_bits > b.significant_bits;
-  if (a.picture.area() != b.picture.area()) return a.picture.area() > b.picture.area();
+  const auto pixels = [](cv::Rect area) { return static_cast<std::int64_t>(area.width) * area.height; };
+  if (pixels(a.picture) != pixels(b.picture)) return pixels(a.picture) > pixels(b.picture);
   if (a.telemetry_rows != b.telemetry_rows) return a.telemetry_rows > b.telemetry_rows;
   return a.foreign_rows < b.foreign_rows;
 }
