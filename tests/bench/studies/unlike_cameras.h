@@ -28,6 +28,13 @@ inline std::vector<GradedDesign> unlike_designs() {
     return GradedDesign{
         .name = name, .camera = camera, .twin = twin, .phases = phases, .delta_t_k = unlike_contrasts_k};
   };
+  const auto midwave = [&](double blur_pitch) {
+    return sensor([&](SensorSpec& s) {
+      s.pitch_um = 15, s.detector_um = 13.5, s.focal_length_mm = 15 / (47.5 / 36.3);
+      s.f_number = 4, s.wavelength_min_um = 3, s.wavelength_max_um = 5, s.netd_k = 0.03;
+      s.aberration_sigma_pitch = blur_pitch;
+    });
+  };
   const SensorSpec plain = sensor([](SensorSpec& /*spec*/) {});
   const SensorSpec blurred = sensor([](SensorSpec& s) { s.aberration_sigma_pitch = 0.35; });
   const SensorSpec more = sensor([](SensorSpec& s) { s.aberration_sigma_pitch = 0.5; });
@@ -50,7 +57,18 @@ inline std::vector<GradedDesign> unlike_designs() {
           row("blur 0.5 / 0.35, 3 phases", more, blurred, 3),
           row("f/2 / f/1, 3 phases", slow, plain, 3),
           row("column noise 70 mK / none, 3 phases", columns, plain, 3),
-          row("NETD x 2, 3 phases", noisy, plain, 3)};
+          row("NETD x 2, 3 phases", noisy, plain, 3),
+          row("halo 3 % / none", sensor([](SensorSpec& s) { s.halo_share = 0.03, s.halo_sigma_pitch = 8; }), plain),
+          row("detector 30 / 42.5 um", sensor([](SensorSpec& s) { s.detector_um = 30; }), plain),
+          row("row noise 50 mK / none", sensor([](SensorSpec& s) { s.row_noise_k = 0.05; }), plain),
+          row("fixed pattern 0.1 K / none", sensor([](SensorSpec& s) { s.fixed_pattern_k = 0.1; }), plain),
+          row("NETD / 2", sensor([](SensorSpec& s) { s.netd_k = 0.035; }), plain),
+          row("display blur 0.6 samples / none", sensor([](SensorSpec& s) { s.display_blur_samples = 0.6; }), plain),
+          row("1 % of the detectors dead / none", sensor([](SensorSpec& s) { s.dead_pixel_share = 0.01; }), plain),
+          row("time constant 12 ms / none", sensor([](SensorSpec& s) { s.time_constant_ms = 12; }), plain),
+          row("two frames averaged / none", sensor([](SensorSpec& s) { s.frames_averaged = 2; }), plain),
+          row("MWIR, f/4, 15 um, blur 0.6 / 0", midwave(0.6), midwave(0)),
+          row("distortion 2 % / none", sensor([](SensorSpec& s) { s.distortion_percent = 2; }), plain)};
 }
 
 inline SensorSpec camera_of(const GradedDesign& design) {

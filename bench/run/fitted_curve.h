@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From trials to the fitted and examined curve of a camera or of a simulated sensor.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "bench/run/background_task.h"
+#include "bench/run/background_twin_functions.h"
+#include "bench/run/camera_surrogate.h"
+#include "bench/run/experiment_inputs.h"
+#include "bench/run/measured_run.h"
+#include "bench/run/session_end.h"
+#include "bench/run/twin_shapes.h"
+#include "tod/measurement/measurement.h"
+#include "tod/psychometric/contrast_surface.h"
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+
+/// Answers of a run as they are fitted, and the function over contrast if presentations have contrasts of their own.
+struct FittedTrials {
+  std::vector<Trial> own{};                  ///< at the set contrasts
+  std::optional<ContrastSurface> surface{};  ///< empty: contrasts were settled
+  std::optional<Error> failed{};
+
+  [[nodiscard]] std::span<const Trial> of(const MeasurementResult& run) const {
+    return surface ? std::span<const Trial>(own) : std::span<const Trial>(run.trials);
+  }
+};
+
+[[nodiscard]] FittedTrials trials_to_fit(const MeasurementResult& run, const Plan& plan, const ExperimentInputs& inputs,
+                                         const std::stop_token& stop);
+
+/// Fits a curve with the functions of its simulated sensor, if the plan requests it and the run is complete. `known`:
+/// of fit_twin_shapes().
+[[nodiscard]] TwinShapesOutcome take_shape(TodCurve& curve, std::span<const Trial> trials, bool complete,
+                                           const Plan& plan, const ExperimentInputs& inputs,
+                                           const std::map<double, double>& shown_delta_t_k, const TodCurve* known,
+                                           std::stop_token stop);
+
+/// Gives the curve the fit over all contrasts of a ramp. Returns its finding; notes and errors go to `said`.
+[[nodiscard]] std::optional<AdequacyFinding> take_ramp_of(TodCurve& curve, TwinShapesOutcome& said,
+                                                          const MeasurementResult& run, const FittedTrials& fitted,
+                                                          const Plan& plan);
+
+/// Tests every point, and adds the finding that concerns all of them.
+void examine_all(TodCurve& curve, const Plan& plan, const std::optional<AdequacyFinding>& of_all);
+
+/// Reports that a complete run is now fitted with the functions of the simulated sensor.
+void report_fit(const MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,
+                const OpenSession& open);
+
+/// Stores the outcome of the fit in the result and the log.
+void keep_shape(MeasurementResult& result, const TwinShapesOutcome& outcome, const OpenSession& open);
+
+/// Returns the observed contrast for each set contrast.
+[[nodiscard]] std::map<double, double> contrasts_seen(const TodCurve& curve);
+
+/// The fitted curve of a camera.
+struct FittedCurve {
+  TodCurve curve;
+  TwinShapesOutcome said;
+  std::optional<TodCurve> by_twin{};   ///< with the function of the twin, if `curve` has that of the surrogate
+  std::map<double, double> model_u{};  ///< by set contrast, if the pictures contradict the model
+
+  [[nodiscard]] const TodCurve& functions_of_twin() const { return by_twin ? *by_twin : curve; }
+};
+
+/// Fits on its own thread: an effective contrast that differs by more than 2 % from the set one needs its own function,
+/// which takes a second. Borrowed objects outlive it. `functions`: null if an adaptive schedule stopped by those of
+/// `measured`.
+[[nodiscard]] std::unique_ptr<BackgroundTask<FittedCurve>> fit_in_background(
+    TodCurve curve, const MeasuredRun& measured, const FittedTrials& to_fit, const Plan& plan,
+    const ExperimentInputs& inputs, BackgroundTwinFunctions* functions, const CameraSurrogate& surrogate);
+
+}  // namespace todbench

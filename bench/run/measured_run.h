@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The trials of a camera, its curve before the fit, and its physical measures.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/recording/frame_stream.h"
+#include "bench/run/camera_settings.h"
+#include "bench/run/camera_surrogate.h"
+#include "bench/run/devices.h"
+#include "bench/run/experiment_host.h"
+#include "bench/run/experiment_inputs.h"
+#include "bench/run/session_end.h"
+#include "tod/camera_measures/camera_measures.h"
+#include "tod/measurement/measurement.h"
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+
+/// Trials of the camera.
+struct MeasuredRun {
+  MeasurementResult result;
+  MeasurementOptions options;
+  std::map<double, ProportionTable> functions{};  ///< of an adaptive schedule's stopping rule
+  std::vector<ChangedSetting> changed{};          ///< of the camera, from its opening to the last frame
+};
+
+/// Returns the response of the contrast estimator for the plates, by the twin of the plan.
+[[nodiscard]] Result<std::map<std::string, double>> responses_of_camera(const Plan& plan,
+                                                                        const ExperimentInputs& inputs,
+                                                                        std::stop_token stop);
+
+/// Measures with the camera of the plan, into the session. `surrogate` learns from its frames.
+[[nodiscard]] Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& inputs,
+                                               CameraSurrogate& surrogate, OpenedBench& bench, const OpenSession& open,
+                                               const AddedStages& added, std::stop_token stop);
+
+/// Returns the curve of these trials without the shape of the twin. Fails if they make none.
+[[nodiscard]] Result<TodCurve> curve_of_camera(MeasurementResult& result, std::span<const Trial> trials,
+                                               const Plan& plan, const ExperimentInputs& inputs, const SourceInfo& info,
+                                               const OpenSession& open);
+
+/// Takes the camera's physical measures, then checks that the recording is complete on disk. `recording`: null if none
+/// is made. An error ends the run.
+[[nodiscard]] std::optional<CameraMeasures> measures_of_camera(MeasuredRun& measured, const Plan& plan,
+                                                               const ExperimentInputs& inputs, OpenedBench& bench,
+                                                               FrameStreamWriter* recording, const OpenSession& open,
+                                                               std::stop_token stop);
+
+/// Waits for the warm-up of [camera.warm_up] and returns its sentence. A camera that warms up corrects itself often.
+[[nodiscard]] Result<std::string> warmed_up(FrameSource& camera, const Plan& plan, const std::stop_token& stop);
+
+}  // namespace todbench

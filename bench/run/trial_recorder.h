@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures into a session: trials and presentations are on the disk as soon as they are made.
+#pragma once
+
+#include <stop_token>
+#include <vector>
+
+#include "bench/run/devices.h"
+#include "bench/run/experiment_host.h"
+#include "bench/run/module_chain.h"
+#include "bench/run/session_end.h"
+#include "tod/measurement/measurement.h"
+
+namespace todbench {
+
+/// Measures as measure() does, and writes trials and presentations one by one. A disk error stops the run with `io`;
+/// then the trials on the disk count. `kept`: binary reduces graded answers to those to the first frame.
+[[nodiscard]] Result<MeasurementResult> record_trials(const OpenSession& open, OpenedBench& bench, Observer& observer,
+                                                      TrialSchedule& schedule, const MeasurementOptions& options,
+                                                      SessionCurve which, AnswerKind kept, std::stop_token stop);
+
+/// Writes the first thousand lines of the modules' standard error to the log of the session.
+[[nodiscard]] ModuleLine module_log(SessionFolder& folder);
+
+/// Passes the frames of a bench through the modules, then through the added stages.
+void put_behind(OpenedBench& bench, const std::vector<ModulePlan>& modules, const AddedStages& added,
+                const ModuleLine& log_line, MeasurementOptions& options);
+
+}  // namespace todbench

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the simulated twin adds to the results of a camera: its curve, the comparison, its physical measures.
+#pragma once
+
+#include <stop_token>
+
+#include "bench/run/background_task.h"
+#include "bench/run/experiment.h"
+#include "bench/run/paired_comparison.h"
+#include "bench/run/physical_measures.h"
+#include "bench/run/simulated_run.h"
+
+namespace todbench {
+
+/// Work started in parallel to the camera.
+struct BackgroundWork {
+  BackgroundTask<Pairs>* pairs;  ///< null: none are made
+  BackgroundMeasures& measures;
+};
+
+/// Simulates the twin at the contrasts that the camera observed, and adds its run, the comparison and its physical
+/// measures. An error ends the session early (`outcome.ended_by`).
+void add_twin(ExperimentOutcome& outcome, Provenance& provenance, const FromCamera& camera, const LoadedPlan& loaded,
+              const Plan& plan, const ExperimentInputs& inputs, const BackgroundWork& background,
+              const ExperimentHost& host, const OpenSession& open, const std::stop_token& stop);
+
+}  // namespace todbench
