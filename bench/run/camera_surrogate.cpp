@@ -44,6 +44,7 @@ CameraSurrogate::CameraSurrogate(const LoadedPlan& loaded, const ExperimentInput
       twin_responses_(responses),
       responses_(std::move(responses)),
       fit_(loaded.sensor(), samples_of(loaded), wavelengths_of(loaded, inputs)),
+      halo_fit_(loaded.sensor(), samples_of(loaded)),
       samples_per_pitch_(samples_of(loaded)) {
   const Plan& plan = loaded.plan();
   for (const double delta_t_k : plan.target.delta_t_k) largest_k_ = std::max(largest_k_, std::abs(delta_t_k));
@@ -80,12 +81,13 @@ void CameraSurrogate::add_to_fit(const SetUpPicture& found) {
   // For first-order noise, successive frames show 1 - rho of its variance, and the variance of the mean is (1 + rho) /
   // (1 - rho) times that of independent frames.
   const double averaged = found.picture.temporal_noise_k * std::sqrt((1 + rho) / found.frames) / (1 - rho);
-  const bool added = fit_.add({.picture = found.picture.kelvin,
-                               .mounted_plate = found.mounted_plate,
-                               .registration = found.registration,
-                               .min_size_px = camera_options(loaded_.plan(), inputs_.plates).min_reference_px,
-                               .averaged_noise_k = averaged});
-  if (!added) return;
+  const OpticsPicture picture{.picture = found.picture.kelvin,
+                              .mounted_plate = found.mounted_plate,
+                              .registration = found.registration,
+                              .min_size_px = camera_options(loaded_.plan(), inputs_.plates).min_reference_px,
+                              .averaged_noise_k = averaged};
+  if (!fit_.add(picture)) return;
+  halo_fit_.add(picture, found.state.delta_t_k);
   const double looks = static_cast<double>(set_ups_of(loaded_.plan().target));
   optics_differ_ = optics_differ_ || fit_.result()->differs(false_alarm / std::max(1.0, looks));
 }
@@ -187,8 +189,14 @@ bool CameraSurrogate::refused() const {
   return possible_ && optics && (!optics->fits() || (differs() && !validate(sensor(true))));
 }
 
+std::optional<CameraHalo> CameraSurrogate::halo() const {
+  const auto optics = fit_.result();
+  return possible_ && optics ? halo_fit_.result(optics->f_number_ratio) : std::nullopt;
+}
+
 double CameraSurrogate::response_shift() const {
-  double largest = 0;
+  const auto halo = this->halo();
+  double largest = halo ? std::abs(halo->share) : 0;
   for (const auto& [plate, response] : responses_) {
     const auto twin = twin_responses_.find(plate);
     if (twin != twin_responses_.end()) largest = std::max(largest, std::abs(std::log(response / twin->second)));
@@ -211,6 +219,11 @@ std::optional<CameraOpticsRecord> CameraSurrogate::record() const {
                          .refused = refused(),
                          .surrogate_taken = lent().has_value(),
                          .contrast_response = responses_};
+  if (const auto halo = this->halo()) {
+    out.halo_share = halo->share;
+    out.halo_share_se = halo->share_se;
+    out.halo_sigma_px = halo->sigma_px;
+  }
   if (const auto found = noise()) {
     out.netd_k = std::sqrt(std::max(0.0, found->pixel));
     out.row_noise_k = std::sqrt(std::max(0.0, found->row));
@@ -240,6 +253,16 @@ AdequacyFinding CameraSurrogate::finding() const {
             .sentence =
                 "the frames do not show whether the camera has the optics and the noise of its twin. The fit uses the "
                 "twin's function, so the interval is wider by the effect of another slope",
+            .unfit = false};
+  }
+  if (const auto halo = this->halo(); halo && !refused()) {
+    return {.kind = FindingKind::surrogate,
+            .value = halo->share,
+            .sentence = fmt::format(
+                "the plate between the triangles shows {:.1f} +- {:.1f} % of their light (halo of {:g} px) that the "
+                "twin does not spread, or a plate that is warm beside its openings. The contrast of small triangles is "
+                "lower by up to this share, so the interval is wider. Measure the size-of-source effect",
+                100 * halo->share, 196 * halo->share_se, halo->sigma_px),
             .unfit = false};
   }
   if (optics && optics->fits()) {

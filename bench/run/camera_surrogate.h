@@ -10,6 +10,7 @@
 #include "bench/plan/loaded_plan.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/session/provenance.h"
+#include "sim_devices/prediction/camera_halo.h"
 #include "sim_devices/prediction/camera_optics.h"
 #include "tod/measurement/measurement.h"
 #include "tod/psychometric/tod_curve.h"
@@ -38,13 +39,17 @@ class CameraSurrogate {
   /// Whether the frames could not be compared with the twin's optics: contrasts in grey levels, a program in the twin,
   /// or no triangle large enough.
   [[nodiscard]] bool unseen() const { return !possible_ || !fit_.result(); }
-  /// ln of the learnt response over that of the twin, the largest by magnitude.
+  /// Light that the camera spreads round the triangles and its twin does not; empty if the frames show none.
+  [[nodiscard]] std::optional<CameraHalo> halo() const;
+  /// Whether the frames do not confirm the function and the response: refused(), unseen() or a halo().
+  [[nodiscard]] bool unconfirmed() const { return refused() || unseen() || halo(); }
+  /// ln of the learnt response over that of the twin, the largest by magnitude; at least the share of halo().
   [[nodiscard]] double response_shift() const;
   /// Empty if no set-up could be evaluated.
   [[nodiscard]] std::optional<CameraOpticsRecord> record() const;
   /// For report and log.
   [[nodiscard]] std::optional<std::string> sentence() const;
-  /// The finding of a surrogate that is refused() or unseen().
+  /// The finding of a surrogate that is unconfirmed().
   [[nodiscard]] AdequacyFinding finding() const;
 
  private:
@@ -70,6 +75,7 @@ class CameraSurrogate {
   std::map<std::string, double> twin_responses_, responses_;
   std::map<std::string, Learnt> learnt_;
   CameraOpticsFit fit_;
+  CameraHaloFit halo_fit_;
   int samples_per_pitch_ = 1;
   bool possible_ = false, optics_differ_ = false;
   double largest_k_ = 0;

@@ -91,9 +91,9 @@ std::vector<AdequacyFinding> findings_of(const std::vector<ChangedSetting>& chan
 /// distribution is the largest of: the difference between the functions or responses of twin and surrogate, and the
 /// effect of another slope.
 void widen_where_not_verified(FittedCurve& fitted, const CameraSurrogate& surrogate) {
-  if (!surrogate.refused() && !surrogate.unseen()) return;
+  if (!surrogate.unconfirmed()) return;
   for (TodPoint& point : fitted.curve.points) {
-    if (!surrogate.refused() && !point.fit.twin_shape) continue;
+    if (surrogate.unseen() && !point.fit.twin_shape) continue;
     double shift = surrogate.response_shift();
     if (point.fit.twin_shape) shift = std::max(shift, std::abs(point.fit.twin_shape->departure_shift));
     const TodPoint* twin = fitted.by_twin ? point_at(*fitted.by_twin, point.set_delta_t_k) : nullptr;

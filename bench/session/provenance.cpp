@@ -105,6 +105,9 @@ void optics_fields(JsonFields& json, CameraOpticsRecord& optics) {
   json.number_or("column_noise_k", optics.column_noise_k, 0);
   json.number_or("fixed_pattern_k", optics.fixed_pattern_k, 0);
   json.number_or("noise_correlation", optics.noise_correlation, 0);
+  json.if_any("halo_share", optics.halo_share);
+  json.if_any("halo_share_se", optics.halo_share_se);
+  json.if_any("halo_sigma_px", optics.halo_sigma_px);
   json.value("samples_per_pitch", optics.samples_per_pitch);
   json.value("refused", optics.refused);
   json.value("surrogate_taken", optics.surrogate_taken);

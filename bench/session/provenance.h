@@ -58,7 +58,8 @@ struct CameraOpticsRecord {
   int samples_per_pitch = 1;
   double chi2 = 0, chi2_limit = 0, degrees_of_freedom = 0;
   double netd_k = 0, row_noise_k = 0, column_noise_k = 0, fixed_pattern_k = 0, noise_correlation = 0;
-  bool refused = false;                               ///< chi2 exceeds its limit
+  std::optional<double> halo_share{}, halo_share_se{}, halo_sigma_px{};  ///< beyond the halo of the twin
+  bool refused = false;                                                  ///< chi2 exceeds its limit
   bool surrogate_taken = false;                       ///< the camera's fit uses the function of the surrogate
   std::map<std::string, double> contrast_response{};  ///< by plate; contrasts were divided by it
   bool operator==(const CameraOpticsRecord&) const = default;

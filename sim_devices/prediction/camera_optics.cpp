@@ -17,15 +17,16 @@
 namespace todbench {
 namespace {
 
-constexpr double reach_px = 3;                             ///< outside a triangle
-constexpr double least_ratio = 0.45, most_ratio = 2.2;     ///< of f-numbers
-constexpr double most_variance = 4;                        ///< of the aberration, pitch^2
-constexpr double variance_step = 0.01, ratio_step = 0.02;  ///< of the derivatives
-constexpr double model_error = 1e-4;                       ///< of a picture of contrast 1
-constexpr double outlier = 8, robust_outlier = 4;          ///< standard deviations
-constexpr double most_outliers = 0.05;                     ///< share of the pixels
-constexpr int nuisances = 6;                               ///< of a triangle: amplitude, plane, shift
-constexpr int most_iterations = 20;
+constexpr double reach_px = 3;                                     ///< outside a triangle
+constexpr double least_ratio = 0.45, most_ratio = 2.2;             ///< of f-numbers
+constexpr double most_variance = 4;                                ///< of the aberration, pitch^2
+constexpr double variance_step = 0.01, ratio_step = 0.02;          ///< of the derivatives
+constexpr double model_error = 1e-4;                               ///< of a picture of contrast 1
+constexpr double outlier = 8, robust_outlier = 4;                  ///< standard deviations
+constexpr double most_outliers = 0.05;                             ///< share of the pixels
+constexpr int nuisances = 6;                                       ///< of a triangle: amplitude, plane, shift
+constexpr double most_variance_move = 0.1, most_ratio_move = 0.3;  ///< of an iteration
+constexpr int most_iterations = 40;
 
 double signed_distance(const Polygon& polygon, cv::Point2d at) {
   double inside = std::numeric_limits<double>::infinity(), nearest = inside;
@@ -377,10 +378,11 @@ std::optional<CameraOpticsFit::Parabola> CameraOpticsFit::parabola(const OpticsP
       shift_by_theta.emplace_back(back.middleRows(4, 2));
     }
     Theta next = joint(&out);
-    // Far from the optimum the parabola is unreliable.
-    next[1] = std::clamp(next[1], theta[1] - 0.3, theta[1] + 0.3);
-    next[0] = std::clamp(next[0], theta[0] - 0.1, theta[0] + 0.1);
-    const Theta change = next - theta;
+    // Far from the optimum the parabola is unreliable. The direction stays: sigma and f-number replace each other.
+    Theta change = next - theta;
+    change *= std::min({1.0, most_variance_move / std::max(std::abs(change[0]), 1e-9),
+                        most_ratio_move / std::max(std::abs(change[1]), 1e-9)});
+    next = theta + change;
     double moved = 0;
     for (std::size_t k = 0; k < windows.size(); ++k) {
       const Eigen::Vector2d with = shift_by_theta[k] * Eigen::Vector2d(change[0], change[1]);

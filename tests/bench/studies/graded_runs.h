@@ -273,20 +273,21 @@ class GradedRecord {
     std::ifstream in(file);
     std::string line;
     while (std::getline(in, line)) {
-      std::istringstream fields(line);
+      std::istringstream text(line);
+      std::vector<std::string> fields;
+      for (std::string field; std::getline(text, field, ',');) fields.push_back(field);
+      // The name of a design may contain commas.
+      constexpr std::size_t numbers = 9;
+      const std::size_t names = fields.size() - numbers;
       GradedResult row;
-      std::getline(fields, row.design, ',');
-      std::string text;
-      std::getline(fields, text, ',');
-      row.seed = std::stoull(text);
-      std::getline(fields, text, ',');
-      row.delta_t_k = std::stod(text);
-      std::getline(fields, row.estimator, ',');
+      for (std::size_t i = 0; i < names; ++i) row.design += (i > 0 ? "," : "") + fields[i];
+      row.seed = std::stoull(fields[names]);
+      row.delta_t_k = std::stod(fields[names + 1]);
+      row.estimator = fields[names + 2];
+      std::size_t next = names + 3;
       for (double* value :
-           {&row.s75_mrad, &row.low_mrad, &row.high_mrad, &row.se_percent, &row.clusters, &row.slope_fitted}) {
-        std::getline(fields, text, ',');
-        *value = std::stod(text);
-      }
+           {&row.s75_mrad, &row.low_mrad, &row.high_mrad, &row.se_percent, &row.clusters, &row.slope_fitted})
+        *value = std::stod(fields[next++]);
       rows_.push_back(std::move(row));
     }
   }

@@ -67,7 +67,7 @@ inline std::vector<GradedDesign> unlike_designs() {
           row("1 % of the detectors dead / none", sensor([](SensorSpec& s) { s.dead_pixel_share = 0.01; }), plain),
           row("time constant 12 ms / none", sensor([](SensorSpec& s) { s.time_constant_ms = 12; }), plain),
           row("two frames averaged / none", sensor([](SensorSpec& s) { s.frames_averaged = 2; }), plain),
-          row("MWIR, f/4, 15 um, blur 0.6 / 0", midwave(0.6), midwave(0)),
+          row("MWIR f/4 15 um, blur 0.6 / 0", midwave(0.6), midwave(0)),
           row("distortion 2 % / none", sensor([](SensorSpec& s) { s.distortion_percent = 2; }), plain)};
 }
 

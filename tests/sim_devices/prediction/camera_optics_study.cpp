@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "tests/sim_devices/prediction/optics_sessions.h"
+#include "tests/sim_devices/prediction/camera_halos.h"
 
 namespace todbench::test {
 namespace {
@@ -62,6 +62,32 @@ TEST(CameraOpticsStudy, FalseAlarmsOfRightSessions) {
   const double most = 0.01 + 3 * std::sqrt(0.01 * 0.99 / all);
   EXPECT_LE(differ, most * all);
   EXPECT_LE(refused, most * all);
+}
+
+TEST(CameraHaloStudy, FalseAlarmsAndPower) {
+  const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
+  const std::uint64_t runs = asked != nullptr ? std::strtoull(asked, nullptr, 10) : 250;
+  std::vector<HaloCamera> cameras = cameras_without_halo();
+  const std::size_t without = cameras.size();
+  for (const auto& [share, sigma] : {std::pair(0.01, 8.0), {0.03, 4.0}, {0.03, 8.0}, {0.03, 14.0}})
+    cameras.push_back({std::to_string(share) + " at " + std::to_string(sigma), camera_with_halo(share, sigma)});
+  std::uint64_t all = 0, alarms = 0;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const HaloCamera& one = cameras[i];
+    const OpticsSessions sessions({.camera = one.camera});
+    std::uint64_t found = 0;
+    double share = 0;
+    for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+      const auto halo = sessions.halo(one.twin, 1000 + seed, one.f_number_ratio);
+      found += halo ? 1 : 0;
+      share += halo ? halo->share : 0;
+    }
+    std::printf("| %s | %d | found %d | mean share %.4f |\n", one.name.c_str(), static_cast<int>(runs),
+                static_cast<int>(found), found > 0 ? share / static_cast<double>(found) : 0);
+    std::fflush(stdout);
+    if (i < without) all += runs, alarms += found;
+  }
+  EXPECT_LE(alarms, all / 100);
 }
 
 }  // namespace

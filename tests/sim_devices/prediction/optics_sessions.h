@@ -10,6 +10,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "sim_devices/prediction/camera_halo.h"
 #include "sim_devices/prediction/camera_optics.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tests/sim_devices/test_plates.h"
@@ -61,25 +62,47 @@ class OpticsSessions {
     bool differs = false;
   };
 
-  [[nodiscard]] std::optional<Outcome> fitted(const SensorSpec& twin, std::uint64_t seed) const {
-    CameraOpticsFit fit(twin, session_.camera.samples_per_pitch());
+  /// Gives `use(picture, delta_t_k)` every set-up with its noise. Returns false if a plate is not found.
+  template <typename Use>
+  [[nodiscard]] bool for_every_picture(const SensorSpec& twin, std::uint64_t seed, Use use) const {
     cv::RNG random(seed);
-    Outcome out;
     const cv::Mat1d pattern = noise(random, session_.camera.fixed_pattern_k);
+    const double rho = session_.camera.noise_correlation;
     for (std::size_t i = 0; i < pictures_.size(); ++i) {
       const cv::Mat1d picture = average(pictures_[i] + pattern, random);
       RegistrationOptions registration;
       registration.expected_scale_px_per_mm = session_.camera.samples_per_pitch() / (2 * twin.ifov_mrad());
       const auto found = register_plate(picture, plates_[i], registration);
-      const double rho = session_.camera.noise_correlation;
-      if (!found || !fit.add({.picture = picture,
-                              .mounted_plate = plates_[i],
-                              .registration = *found,
-                              .averaged_noise_k = session_.camera.netd_k * std::sqrt((1 + rho) / (1 - rho) / frames)}))
-        return std::nullopt;
+      if (!found) return false;
+      use(OpticsPicture{.picture = picture,
+                        .mounted_plate = plates_[i],
+                        .registration = *found,
+                        .averaged_noise_k = session_.camera.netd_k * std::sqrt((1 + rho) / (1 - rho) / frames)},
+          session_.delta_t_k);
+    }
+    return true;
+  }
+
+  /// Halo of the camera by its pictures.
+  [[nodiscard]] std::optional<CameraHalo> halo(const SensorSpec& twin, std::uint64_t seed,
+                                               double f_number_ratio = 1) const {
+    CameraHaloFit fit(twin, session_.camera.samples_per_pitch());
+    EXPECT_TRUE(for_every_picture(
+        twin, seed, [&](const OpticsPicture& picture, double delta_t_k) { fit.add(picture, delta_t_k); }));
+    return fit.result(f_number_ratio);
+  }
+
+  [[nodiscard]] std::optional<Outcome> fitted(const SensorSpec& twin, std::uint64_t seed) const {
+    CameraOpticsFit fit(twin, session_.camera.samples_per_pitch());
+    Outcome out;
+    bool added = true;
+    const bool found = for_every_picture(twin, seed, [&](const OpticsPicture& picture, double /*delta_t_k*/) {
+      added = added && fit.add(picture);
+      if (!added) return;
       out.optics = *fit.result();
       out.differs = out.differs || out.optics.differs(0.002 / 8);
-    }
+    });
+    if (!found || !added) return std::nullopt;
     return out;
   }
 
