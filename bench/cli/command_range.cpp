@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "acquisition/base/normal.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/range_options.h"
@@ -23,7 +24,7 @@ namespace {
 struct RangeArguments {
   std::string tod;
   RangeTask task;
-  std::optional<double> v50;
+  std::optional<double> m75, v50;
   RangeOptions more;
   Opening opening{};
 };
@@ -41,8 +42,10 @@ bool any_probability(const RangePrediction& prediction) {
                      [](const RangePoint& point) { return point.probability.has_value(); });
 }
 
-Json range_json(const TodAnswer& tod, const RangeTask& task) {
+Json range_json(const TodAnswer& tod, const RangeTask& task, const RangeQuestion& question) {
   const RangePrediction& prediction = tod.prediction;
+  const double u_percent = question.m75_u_percent;
+  const std::string m75_origin = criterion_origin(question, RangeModel::tod);
   Json points = Json::array();
   const std::vector<RangePoint> none;
   for (const auto& point : any_probability(prediction) ? prediction.curve : none) {
@@ -61,17 +64,23 @@ Json range_json(const TodAnswer& tod, const RangeTask& task) {
           {"size_m", task.size_m},
           {"delta_t_k", task.delta_t_k},
           {"m75", task.m75},
+          {"m75_ci95", u_percent > 0 ? json_interval(Interval{task.m75 * std::exp(-normal_z95 * u_percent / 100),
+                                                              task.m75 * std::exp(normal_z95 * u_percent / 100)})
+                                     : Json()},
+          {"m75_origin", m75_origin},
           {"extinction_per_km", task.extinction_per_km},
           {"curve", points}};
 }
 
-void print_range(Console& console, const TodAnswer& tod, const RangeTask& task, const Atmosphere& air) {
+void print_range(Console& console, const TodAnswer& tod, const RangeTask& task, const RangeQuestion& question,
+                 const Atmosphere& air) {
   const RangePrediction& prediction = tod.prediction;
   console.text("identification range, TOD of " + tod.sensor + ", observer " + tod.observer);
   const std::string through =
       task.air ? "atmosphere: " + air.source : "extinction " + number_text(task.extinction_per_km) + " per km";
   console.text("target " + number_text(task.size_m) + " m, " + number_text(task.delta_t_k) + " K, M75 " +
                number_text(task.m75) + ", " + through);
+  console.text("M75: " + criterion_origin(question, RangeModel::tod));
   std::vector<TableRow> rows;
   for (const auto& p : prediction.curve) {
     if (!p.probability) continue;
@@ -229,6 +238,10 @@ int run_range(Console& console, const RangeArguments& arguments) {
   RangeOptions options = arguments.more;
   options.asked_delta_t_k = task.delta_t_k;
   if (arguments.v50) task.m75 = m75_from_v50(*arguments.v50);
+  if (arguments.m75) task.m75 = *arguments.m75;
+  options.criterion_source = arguments.v50   ? CriterionSource::v50_stated
+                             : arguments.m75 ? CriterionSource::m75_stated
+                                             : CriterionSource::published;
   const auto session = session_of(console, arguments);
   if (!session) return report_error(console, session.error());
   const auto sensor = options.sensor_of(*session);
@@ -247,7 +260,16 @@ int run_range(Console& console, const RangeArguments& arguments) {
     tod.prediction.reason = "no TOD curve is given (--tod)";
   }
   for (const auto& sentence : tod.prediction.notes) console.note(sentence);
+  options.curve_observer = tod.observer;
   RangeQuestion question = options.question(task, arguments.v50, *air);
+  if (tod.prediction.r75_m) {
+    tod.prediction.r75_ci95_m = joined_with_m75(selection.thresholds, task, *tod.prediction.r75_m,
+                                                tod.prediction.r75_ci95_m, question.m75_u_percent);
+  }
+  if (const auto sentence = observers_differ(question); !sentence.empty()) {
+    tod.prediction.notes.push_back(sentence);
+    console.note(sentence);
+  }
   if (*session && (*session)->uncertainty) {
     const CurveUncertainty& budget = *(*session)->uncertainty;
     question.scale_u_percent = 100 * std::hypot(budget.u_scale, budget.u_camera_scale);
@@ -273,7 +295,7 @@ int run_range(Console& console, const RangeArguments& arguments) {
   if (auto written = options.write(*models, question, said, *grid); !written)
     return report_error(console, written.error());
   if (console.json()) {
-    Json json = range_json(tod, task);
+    Json json = range_json(tod, task, question);
     json["delta_t_k"] = options.asked_delta_t_k;
     json["atmosphere"] = atmosphere_json(*air, task, tod.prediction.r75_m, options, *sensor);
     json["models"] = models_json(*models, *sources, question, tod.twin_r75_m);
@@ -286,7 +308,7 @@ int run_range(Console& console, const RangeArguments& arguments) {
     if (*session) add_accepted_changes(json, arguments.opening, (*session)->accepted_changes);
     console.object(json);
   } else {
-    if (arguments.more.asks(RangeModel::tod)) print_range(console, tod, task, *air);
+    if (arguments.more.asks(RangeModel::tod)) print_range(console, tod, task, question, *air);
     if (arguments.more.models.size() > 1 || !arguments.more.asks(RangeModel::tod)) print_models(console, *models);
     if (!grid->is_null()) print_grid(console, *grid);
     if (!accepted.empty()) console.text(accepted);
@@ -309,11 +331,11 @@ void add_range_command(CLI::App& app, Program& program) {
   command->add_option("--delta-t-k", a->task.delta_t_k, "contrast of the target in K")
       ->required()
       ->check(number_in(-5000, 5000));
-  auto* m75 = command
-                  ->add_option("--m75", a->task.m75,
-                               "criterion M75 of the TOD model; 5.1 is that of small craft seen from the side")
-                  ->check(number_in(1e-6, 1e6))
-                  ->capture_default_str();
+  auto* m75 =
+      command
+          ->add_option("--m75", a->m75, "criterion M75 of the TOD model; 5.1 is that of small craft seen from the side")
+          ->check(number_in(1e-6, 1e6))
+          ->default_str("5.1");
   command->add_option("--v50", a->v50, "criterion V50 of NVThermIP in place of --m75: M75 = 0.6 V50")
       ->check(number_in(1e-6, 1e6))
       ->excludes(m75);

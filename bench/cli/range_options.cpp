@@ -87,7 +87,10 @@ Result<void> read_curve(const std::string& file, const std::string& column, std:
 }
 
 Json criterion_json(const ModelRange& model) {
-  return {{"name", model.criterion}, {"value", model.criterion_value}, {"probability_form", model.probability_form}};
+  return {{"name", model.criterion},
+          {"value", model.criterion_value},
+          {"probability_form", model.probability_form},
+          {"origin", model.criterion_origin}};
 }
 
 /// Returns the ranges of the TTP model by both forms of P.
@@ -212,6 +215,12 @@ void RangeOptions::add_to(CLI::App& command) {
           ->needs(sizes);
   sizes->needs(contrasts);
   sizes->excludes(turbulence);
+  command
+      .add_option("--m75-u-percent", m75_u_percent,
+                  "relative standard uncertainty of M75 in percent; it widens the interval of the TOD model")
+      ->check(number_in(0, 50))
+      ->excludes(turbulence)
+      ->capture_default_str();
   command.add_option("--grid-ranges-m", grid.ranges_m, "ranges in m for which the grid gives P, separated by commas")
       ->delimiter(',')
       ->check(number_in(1e-3, 1e8))
@@ -289,6 +298,9 @@ RangeQuestion RangeOptions::question(const RangeTask& task, std::optional<double
   return {.size_m = task.size_m,
           .delta_t_k = task.delta_t_k,
           .m75 = task.m75,
+          .criterion_source = criterion_source,
+          .m75_u_percent = m75_u_percent,
+          .curve_observer = curve_observer,
           .n50 = n50,
           .mtdp_n50 = mtdp_n50,
           .v50 = v50.value_or(task.m75 / m75_from_v50(1)),
@@ -428,6 +440,7 @@ Json models_json(const std::vector<ModelRange>& models, const RangeSources& sour
                {"sensitivity_to_contrast",
                 json_number(model.sensitivity ? std::optional(model.sensitivity->to_contrast) : std::nullopt)},
                {"reads", model.reads},
+               {"display", model.display},
                {"reason", model.reason.empty() ? Json() : Json(model.reason)},
                {"notes", model.notes},
                {"curve", curve}};
@@ -475,6 +488,8 @@ void print_models(Console& console, const std::vector<ModelRange>& models) {
   console.table({"model", "criterion", "form of P", "R50 [m]", "R75 [m]", "95 %", "limited by"}, rows);
   for (const auto& model : models) {
     console.text(model.title + " uses " + model.reads);
+    console.text(model.title + ", " + model.criterion + ": " + model.criterion_origin);
+    console.text(model.title + ", display: " + model.display);
     if (!model.reason.empty()) console.text(model.title + ": " + model.reason);
     for (const auto& sentence : model.notes) console.note(model.title + ": " + sentence);
   }

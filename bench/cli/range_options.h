@@ -20,7 +20,10 @@ struct RangeOptions {
   std::optional<double> background_k, air_k, surround_k, target_contrast;
   double emissivity = 1;
   double asked_delta_t_k = 0;  ///< as on the command line
+  CriterionSource criterion_source = CriterionSource::published;
+  std::string curve_observer{};  ///< of the session; empty: none
   double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0, curve_u_percent = 0;
+  double m75_u_percent = 0;
   double cn2 = 0, tolerance_percent = 1;
   RangeGridAxes grid{};  ///< no sizes: no grid is requested
   FormulaConditions formula{};

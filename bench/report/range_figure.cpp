@@ -106,6 +106,10 @@ Document range_page(std::span<const ModelRange> models, const RangePage& page) {
   section.blocks.emplace_back(range_table(models));
   std::vector<std::string> notes = page.notes;
   for (const auto& model : models) {
+    notes.push_back(model.title + ", " + model.criterion + ": " + model.criterion_origin);
+    notes.push_back(model.title + ", contrast on the display: " + model.display);
+  }
+  for (const auto& model : models) {
     for (const auto& sentence : model.notes) notes.push_back(model.title + ": " + sentence);
   }
   if (!notes.empty()) section.blocks.emplace_back(list_of(notes));

@@ -45,7 +45,11 @@ Prepared prepared_tod(const RangeSources& sources, const RangeQuestion& question
                 .criterion = "M75",
                 .criterion_value = question.m75,
                 .probability_form = std::string(to_string(ProbabilityForm::ttp_2004)),
-                .reads = "1 / S75 of the session's TOD curve"};
+                .reads = "1 / S75 of the session's TOD curve",
+                .criterion_origin = criterion_origin(question, RangeModel::tod),
+                .display =
+                    "none: the range has the display, if any, of the observer who judged the curve; no contrast is "
+                    "lost on it"};
   std::vector<TodThreshold> sorted = sources.thresholds;
   std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.delta_t_k < b.delta_t_k; });
   if (sorted.empty()) {
@@ -76,7 +80,9 @@ Prepared prepared_cycles(RangeModel which, const RangeSources& sources, const Ra
                 .criterion = "N50",
                 .criterion_value = acquire ? question.n50 : question.mtdp_n50,
                 .probability_form = std::string(to_string(ProbabilityForm::johnson)),
-                .reads = ""};
+                .reads = "",
+                .criterion_origin = "people, vehicles: Johnson's cycles; no interval is published",
+                .display = "none: the gain is free, and every contrast can be made visible"};
   if (given) {
     model.head.reads = acquire ? "the given MRTD" : "the given MTDP";
   } else {
@@ -115,6 +121,13 @@ Prepared prepared_ttp(const RangeSources& sources, const RangeQuestion& question
                                  "per sample at the eye, {:g} K for the mean luminance",
                                  viewing.eye.luminance_cd_m2, viewing.sample_at_eye_mrad, viewing.scene_contrast_k)};
   const double contrast = contrast_for(RangeModel::ttp, sources, question);
+  model.head.criterion_origin = criterion_origin(question, RangeModel::ttp);
+  model.head.display =
+      question.target_contrast
+          ? fmt::format("a stated contrast of {:.3g} before the air", contrast)
+          : fmt::format(
+                "a contrast of {:.3g} before the air: |dT| = {:.3g} K over twice the {:g} K of its mean luminance",
+                contrast, std::abs(question.delta_t_k), viewing.scene_contrast_k);
   if (contrast > 1) {
     model.head.notes.push_back(fmt::format(
         "the contrast of {:.3g} at the target exceeds the display: after the air it is limited to 1", contrast));
@@ -201,6 +214,11 @@ Result<void> predict_tod(Prepared& model, const RangeSources& sources, const Ran
   model.head.reason = predicted->reason;
   model.head.r75_ci95_m = predicted->r75_ci95_m;
   model.head.notes = predicted->notes;
+  if (predicted->r75_m) {
+    model.head.r75_ci95_m =
+        joined_with_m75(sources.thresholds, task, *predicted->r75_m, predicted->r75_ci95_m, question.m75_u_percent);
+  }
+  if (auto sentence = observers_differ(question); !sentence.empty()) model.head.notes.push_back(std::move(sentence));
   return {};
 }
 
@@ -344,6 +362,50 @@ Result<std::vector<RangeGrid>> range_grid(std::span<const RangeModel> asked, con
     grids.push_back(std::move(grid));
   }
   return grids;
+}
+
+std::string criterion_origin(const RangeQuestion& question, RangeModel which) {
+  const bool tod = which == RangeModel::tod;
+  switch (question.criterion_source) {
+    case CriterionSource::published:
+      return tod ? "people, small craft in side view: 0.6 V50 with V50 = 8.5 (EO-VISTA, 4.2.3; Krapels et al. 2006); "
+                   "no "
+                   "interval is published"
+                 : "people, small craft in side view: V50 = 8.5 (Krapels et al. 2006, in EO-VISTA, 4.2.3); no interval "
+                   "is "
+                   "published";
+    case CriterionSource::m75_stated:
+      return tod ? "stated by the user" : "stated M75 / 0.6, the ratio of one published pair (EO-VISTA, 4.2.3)";
+    case CriterionSource::v50_stated:
+      return tod ? "0.6 of the stated V50, the ratio of one published pair (EO-VISTA, 4.2.3)" : "stated by the user";
+  }
+  return "";
+}
+
+Interval joined_with_m75(std::span<const TodThreshold> thresholds, const RangeTask& task, double r75_m,
+                         const Interval& of_curve, double m75_u_percent) {
+  if (m75_u_percent <= 0) return of_curve;
+  const auto side = [&](double direction, const std::optional<double>& bound) -> std::optional<double> {
+    RangeTask changed = task;
+    changed.m75 *= std::exp(-direction * normal_z95 * m75_u_percent / 100);
+    const auto other = predict_range(thresholds, changed);
+    if (!bound || !other || !other->r75_m) return std::nullopt;
+    return r75_m * std::exp(direction * std::hypot(std::log(*other->r75_m / r75_m), std::log(*bound / r75_m)));
+  };
+  return {side(-1, of_curve.low), side(1, of_curve.high)};
+}
+
+std::string observers_differ(const RangeQuestion& question) {
+  if (question.curve_observer.empty() || question.curve_observer == "human" ||
+      question.criterion_source == CriterionSource::m75_stated)
+    return "";
+  return fmt::format(
+      "the curve is judged by {}, but M75 = {:.4g} is a criterion of people: in the published experiment their acuity "
+      "was "
+      "18 % above that of a model observer at high contrast and 35 % below at low contrast (EO-VISTA, figure 10), and "
+      "the "
+      "range follows it. 'todbench identify' gives the M75 of {} for a set of targets",
+      question.curve_observer, question.m75, question.curve_observer);
 }
 
 TtpRanges ttp_ranges(const RangeSources& sources, const RangeQuestion& question, ProbabilityForm form) {

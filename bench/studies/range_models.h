@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,13 +20,24 @@ enum class RangeModel { tod, acquire, ttp, mtdp };
 inline constexpr std::array all_range_models{RangeModel::tod, RangeModel::acquire, RangeModel::ttp, RangeModel::mtdp};
 [[nodiscard]] std::string_view to_string(RangeModel model);
 
+/// Where M75 and V50 come from.
+enum class CriterionSource {
+  published,   ///< V50 = 8.5 of people with small craft (Krapels et al. 2006), M75 = 5.1 by EO-VISTA, 4.2.3
+  m75_stated,  ///< V50 is M75 / 0.6
+  v50_stated,  ///< M75 is 0.6 V50
+};
+
 /// Inputs common to the models.
 struct RangeQuestion {
   double size_m = 0;     ///< square root of the projected area, > 0
   double delta_t_k = 0;  ///< at the target, in kelvin at the scale of the NETD; the sign is ignored
   double m75 = 5.1;
-  double n50 = 6;       ///< cycles of ACQUIRE (2-D) for 50 %; 6: identification
-  double mtdp_n50 = 6;  ///< cycles of the MTDP-like curve for 50 %; 6: identification
+  CriterionSource criterion_source = CriterionSource::published;
+  /// Relative standard uncertainty of M75, for the interval of TOD. The published value has none.
+  double m75_u_percent = 0;
+  std::string curve_observer{};  ///< of the TOD curve; empty: not known
+  double n50 = 6;                ///< cycles of ACQUIRE (2-D) for 50 %; 6: identification
+  double mtdp_n50 = 6;           ///< cycles of the MTDP-like curve for 50 %; 6: identification
   double v50 = 8.5;
   Atmosphere air{};
   double extinction_u_percent = 0;  ///< relative standard uncertainty of the extinction
@@ -49,6 +61,16 @@ struct RangeSources {
 /// uncertainty added to its interval. Errors: `invalid_input` (a number of the question out of range).
 [[nodiscard]] Result<std::vector<ModelRange>> range_models(std::span<const RangeModel> asked,
                                                            const RangeSources& sources, const RangeQuestion& question);
+
+/// Returns an interval of the TOD range joined with the uncertainty of M75, in quadrature in ln R: the change of R75 by
+/// M75 exp(+-1.96 u). A side that leaves the curve is open.
+[[nodiscard]] Interval joined_with_m75(std::span<const TodThreshold> thresholds, const RangeTask& task, double r75_m,
+                                       const Interval& of_curve, double m75_u_percent);
+/// Returns whose criterion M75 or V50 of a model is, for which targets, and its source, as a phrase.
+[[nodiscard]] std::string criterion_origin(const RangeQuestion& question, RangeModel which);
+/// Returns a sentence if the curve of the question is judged by a model observer and M75 belongs to people; otherwise
+/// empty.
+[[nodiscard]] std::string observers_differ(const RangeQuestion& question);
 
 /// Axes of a grid of targets; each has at least one value above 0.
 struct RangeGridAxes {

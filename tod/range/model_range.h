@@ -21,8 +21,10 @@ struct ModelRange {
   std::string title;      ///< "TOD"
   std::string criterion;  ///< name of the criterion: "M75", "N50", "V50"
   double criterion_value = 0;
-  std::string probability_form;  ///< by name
-  std::string reads;             ///< input of the model and its source: a sentence
+  std::string probability_form;    ///< by name
+  std::string reads;               ///< input of the model and its source: a sentence
+  std::string criterion_origin{};  ///< whose answers, to which targets, by which source: a phrase
+  std::string display{};           ///< contrast on the display that the model assumes: a sentence
   std::optional<double> r50_m{}, r75_m{};
   Interval r75_ci95_m{};  ///< of the curve and the air; a side is open if unknown
   std::optional<RangeSensitivity> sensitivity{};

@@ -61,6 +61,44 @@ TEST(RangeModels, TodInClearAirIsTheRangeOfTheTodCurve) {
   EXPECT_EQ(models->front().r75_ci95_m.low, plain->r75_ci95_m.low);
 }
 
+TEST(RangeModels, TheRangeOnTheAsymptoteHasTheUncertaintyOfM75InFull) {
+  // Above the highest contrast the acuity is constant, so that in clear air R75 is proportional to 1 / M75.
+  RangeQuestion exact = question("clear"), stated = exact;
+  exact.delta_t_k = stated.delta_t_k = 30;
+  stated.m75_u_percent = 8;
+
+  const auto without = range_models(std::array{RangeModel::tod}, sources(), exact);
+  const auto with = range_models(std::array{RangeModel::tod}, sources(), stated);
+
+  ASSERT_TRUE(without && with);
+  const double r75_m = *with->front().r75_m, reach = 1.959963984540054 * 0.08;
+  EXPECT_EQ(r75_m, *without->front().r75_m);
+  const double low = std::log(r75_m / *without->front().r75_ci95_m.low);
+  const double high = std::log(*without->front().r75_ci95_m.high / r75_m);
+  EXPECT_NEAR(std::log(r75_m / *with->front().r75_ci95_m.low), std::hypot(low, reach), 1e-6);
+  EXPECT_NEAR(std::log(*with->front().r75_ci95_m.high / r75_m), std::hypot(high, reach), 1e-6);
+}
+
+TEST(RangeModels, NameTheObserversOfCurveAndCriterionIfTheyDiffer) {
+  RangeQuestion asked = question("clear");
+  EXPECT_EQ(observers_differ(asked), "");
+  asked.curve_observer = "human";
+  EXPECT_EQ(observers_differ(asked), "");
+
+  asked.curve_observer = "hvs-1";
+
+  EXPECT_THAT(observers_differ(asked), HasSubstr("judged by hvs-1"));
+  EXPECT_THAT(criterion_origin(asked, RangeModel::tod), HasSubstr("people, small craft"));
+  EXPECT_THAT(criterion_origin(asked, RangeModel::ttp), HasSubstr("V50 = 8.5"));
+  const auto models = range_models(std::array{RangeModel::tod, RangeModel::ttp}, sources(), asked);
+  ASSERT_TRUE(models);
+  EXPECT_THAT(models->front().notes, ::testing::Contains(HasSubstr("hvs-1")));
+  // 3 K over twice 10 K.
+  EXPECT_THAT(models->back().display, HasSubstr("0.15 before the air"));
+  asked.criterion_source = CriterionSource::m75_stated;
+  EXPECT_EQ(observers_differ(asked), "");
+}
+
 TEST(RangeGrid, IsEveryModelAtEveryTargetOnItsOwn) {
   const RangeGridAxes axes{.sizes_m = {2, 4.9}, .contrasts_k = {1, 30}, .ranges_m = {200, 700}};
 
