@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "bench/cli/effect_decisions.h"
 #include "bench/cli/scene_files.h"
 #include "bench/enhance/decidable.h"
 #include "bench/judgement/verdict.h"
@@ -23,6 +24,7 @@ namespace {
 struct CompareModelsArguments {
   std::string a, b, plan = "demo", out = "models";
   bool overwrite = false;
+  EffectDecisionOptions decisions;
 };
 
 Json model_json(const ComparedModel& model, const PackageResult& result) {
@@ -108,6 +110,18 @@ void say_models(Console& console, const ModelComparison& comparison) {
   for (const auto& sentence : comparison.notes) console.note(sentence);
 }
 
+/// Effects of both models.
+std::vector<DecidedEffects> effects_of(const LoadedPlan& loaded, const ComparedModel& a, const ComparedModel& b) {
+  const auto of = [&](const ComparedModel& model) {
+    const SensorSpec& sensor = model.kind == ModelKind::sensor ? model.sensor : loaded.sensor();
+    const SimulationPlan& simulation = loaded.plan().simulation;
+    return DecidedEffects{model.name, full_plan(sensor, simulation.skip, simulation.force, simulation.motion),
+                          "every effect that is not neutral is simulated in both models, so that their difference is "
+                          "that of the descriptions alone"};
+  };
+  return {of(a), of(b)};
+}
+
 int run_compare_models(Console& console, const CompareModelsArguments& a, const Program& program) {
   auto first = read_compared_model(a.a);
   if (!first) return report_error(console, first.error());
@@ -118,6 +132,8 @@ int run_compare_models(Console& console, const CompareModelsArguments& a, const 
   if (program.common.seed_given) plan->seed = program.common.seed;
   const auto loaded = LoadedPlan::load(*plan);
   if (!loaded) return report_error(console, loaded.error());
+  const auto effects = effects_of(*loaded, *first, *second);
+  if (a.decisions.dry_run) return dry_run(console, effects, a.decisions);
   const std::filesystem::path folder = a.out;
   const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
   if (auto made = make_result_folder(folder, existing); !made) return report_error(console, made.error());
@@ -135,6 +151,7 @@ int run_compare_models(Console& console, const CompareModelsArguments& a, const 
     return report_error(console, written.error());
   if (console.json()) console.object(json);
   say_models(console, *found);
+  for (const DecidedEffects& one : effects) print_effects(console, one, a.decisions);
   console.text("page: " + (folder / "models.html").string());
   for (const PackageResult* result : {&found->result_a, &found->result_b}) {
     if (!result->error) continue;
@@ -167,6 +184,7 @@ void add_compare_models_command(CLI::App& app, Program& program) {
       ->capture_default_str();
   command->add_option("--out", a->out, "folder for the page and the numbers")->capture_default_str();
   command->add_flag("--force", a->overwrite, "overwrites the results in an existing folder");
+  a->decisions.add_to(*command);
   finish_command(*command, program,
                  [a, &program](Console& console) { return run_compare_models(console, *a, program); });
 }

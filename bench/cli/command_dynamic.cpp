@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "bench/cli/effect_decisions.h"
 #include "bench/cli/run_display.h"
 #include "bench/cli/seeded_plan.h"
 #include "bench/judgement/verdict_record.h"
@@ -15,6 +18,7 @@
 #include "bench/session/json_output.h"
 #include "bench/session/session_folder.h"
 #include "bench/text/text.h"
+#include "sim_devices/prediction/effect_planner.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/acuity.h"
 
@@ -28,6 +32,8 @@ struct DynamicArguments {
   std::vector<double> speeds_mrad_s, sizes_pitch;
   int passes = 48, frames = 8;
   double time_constant_ms = -1, exposure_ms = -1, row_time_us = -1;
+  std::optional<double> tolerance_percent;
+  EffectDecisionOptions decisions;
 };
 
 void add_rows(std::vector<TableRow>& rows, const std::vector<DynamicAcuity>& found, const TableRow& first) {
@@ -108,6 +114,47 @@ Json dynamic_json(const std::vector<DynamicAcuity>& found, const SensorSpec& sen
           {"speeds", speeds_json(found)}};
 }
 
+/// Effects of the sensor with the plate at rest and at the highest speed. Without a tolerance every effect that is not
+/// neutral is simulated.
+Result<DecidedEffects> planned_for(const SensorSpec& sensor, const TemplateObserverSpec& observer,
+                                   const DynamicArguments& a) {
+  const SceneMotion fastest{.x_mrad_s = *std::ranges::max_element(a.speeds_mrad_s), .y_mrad_s = 0};
+  if (!a.tolerance_percent) {
+    return DecidedEffects{
+        sensor.name, full_plan(sensor, {}, {}, fastest),
+        "every effect that is not neutral is simulated; --tolerance-percent leaves out negligible ones"};
+  }
+  if (!a.package.empty())
+    return fail(ErrorCode::invalid_input,
+                "--tolerance-percent: the criteria of the planner hold for the sensor alone, not behind --package");
+  EffectPlanner planner;
+  EffectPlannerOptions tolerance;
+  tolerance.tolerance_percent = *a.tolerance_percent;
+  DecidedEffects decided{sensor.name, {}, ""};
+  double change_percent = 0;
+  for (const SceneMotion& motion : {SceneMotion{}, fastest}) {
+    const auto plan = planner.plan(sensor, observer, {.delta_t_k = {a.delta_t_k}, .motion = motion}, tolerance);
+    if (!plan) return tl::unexpected(plan.error());
+    change_percent = std::max(change_percent, plan->skipped_change_percent);
+    if (decided.plan.decisions.empty()) decided.plan = plan->plan;
+    for (std::size_t i = 0; i < plan->plan.decisions.size(); ++i) {
+      const EffectDecision& other = plan->plan.decisions[i];
+      EffectDecision& one = decided.plan.decisions[i];
+      // An effect that matters at rest or in motion is simulated at every speed.
+      if (one.decision == Decision::skip &&
+          (other.decision == Decision::simulate ||
+           other.predicted_change_percent.value_or(0) > one.predicted_change_percent.value_or(0)))
+        one = other;
+    }
+  }
+  decided.promise = fmt::format(
+      "the effects that are left out change the acuity by at most {:.2g} % together, at rest and at {:g} mrad/s; {:g} "
+      "% "
+      "are allowed",
+      change_percent, fastest.x_mrad_s, *a.tolerance_percent);
+  return decided;
+}
+
 int run_dynamic(Console& console, const DynamicArguments& a, const Program& program) {
   if (!a.plan.empty()) return run_dynamic_plan(console, a, program);
   if (a.speeds_mrad_s.empty())
@@ -120,6 +167,9 @@ int run_dynamic(Console& console, const DynamicArguments& a, const Program& prog
   if (auto valid = validate(*sensor); !valid) return report_error(console, valid.error());
   const auto spec = load_observer(a.observer);
   if (!spec) return report_error(console, spec.error());
+  const auto effects = planned_for(*sensor, *spec, a);
+  if (!effects) return report_error(console, effects.error());
+  if (a.decisions.dry_run) return dry_run(console, {*effects}, a.decisions);
   TemplateObserver observer(*spec, triangle_alternatives());
   DynamicTrialOptions options{.delta_t_k = a.delta_t_k,
                               .sizes_pitch = a.sizes_pitch,
@@ -139,12 +189,18 @@ int run_dynamic(Console& console, const DynamicArguments& a, const Program& prog
     options.stages = [&package] { return made_stages(package, {}); };
   }
   console.phase("simulating " + sensor->name + " with a moving target");
-  const auto found = dynamic_acuity(*sensor, observer, std::move(options));
+  const SensorSpec simulated = a.tolerance_percent ? as_planned(*sensor, effects->plan) : *sensor;
+  const auto found = dynamic_acuity(simulated, observer, std::move(options));
   if (!found) return report_error(console, found.error());
-  if (console.json()) console.object(dynamic_json(*found, *sensor, a, program.common.seed));
+  if (console.json()) {
+    Json json = dynamic_json(*found, *sensor, a, program.common.seed);
+    add_effects(json, *effects);
+    console.object(json);
+  }
   std::vector<TableRow> rows;
   add_rows(rows, *found, {});
   console.table({"speed (mrad/s)", "px/frame", "observer", "acuity (1/mrad)", "95 %", "ratio to rest", "95 %"}, rows);
+  print_effects(console, *effects, a.decisions);
   return 0;
 }
 
@@ -188,6 +244,12 @@ void add_dynamic_command(CLI::App& app, Program& program) {
       ->check(number_in(0, 1e4));
   command->add_option("--package", a->package,
                       "package of stages behind the camera, a file; the lag of the stages is not removed");
+  command
+      ->add_option("--tolerance-percent", a->tolerance_percent,
+                   "leaves out effects that change the acuity by at most this together, in percent, at rest and at the "
+                   "highest speed; default: none")
+      ->check(number_in(0.01, 50));
+  a->decisions.add_to(*command);
   command->add_option("--accuracy", a->accuracy, "accuracy of the simulation")
       ->capture_default_str()
       ->check(CLI::IsMember({"draft", "normal"}));

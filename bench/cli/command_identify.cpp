@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "bench/cli/chain_options.h"
+#include "bench/cli/effect_decisions.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/report/tod_figures.h"
@@ -24,6 +25,7 @@ struct IdentifyArguments {
   int decisions = 2000;
   bool plan = false;
   std::string templates = "camera", cues = "all";
+  EffectDecisionOptions shown;
 };
 
 Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, const Program& program) {
@@ -154,6 +156,9 @@ int run_identify(Console& console, const IdentifyArguments& a, const Program& pr
   const auto task = identification_task(a, program);
   if (!task) return report_error(console, task.error());
   for (const auto& sentence : task->air.notes) console.note(sentence);
+  const DecidedEffects effects{task->sensor.name, full_plan(task->sensor, {}, {}),
+                               no_criterion_for("the identification of targets")};
+  if (a.shown.dry_run) return dry_run(console, {effects}, a.shown);
   const auto experiment = experiment_of(*task);
   if (!experiment) return report_error(console, experiment.error());
   const auto effort = planned_effort(*experiment);
@@ -173,9 +178,12 @@ int run_identify(Console& console, const IdentifyArguments& a, const Program& pr
   if (!study) return report_error(console, study.error());
   for (const auto& sentence : study->notes) console.note(sentence);
   if (console.json()) {
-    console.object(identification_json(*task, *effort, *study));
+    Json json = identification_json(*task, *effort, *study);
+    add_effects(json, effects);
+    console.object(json);
   } else {
     print_identification(console, *task, *study);
+    print_effects(console, effects, a.shown);
   }
   return exit_code(study->r75_m.value ? VerdictKind::pass : VerdictKind::inconclusive);
 }
@@ -213,6 +221,7 @@ void add_identify_command(CLI::App& app, Program& program) {
           "structure parameter of the turbulence along the path to every range, in m^(-2/3); default: the value "
           "of the sensor")
       ->check(number_in(0, 1e-11));
+  a->shown.add_to(*command);
   command->add_flag("--plan", a->plan, "prints the predicted effort and ends");
   command->add_option("--m75", a->m75, "criterion M75 for the range that the TOD curve predicts")
       ->check(number_in(1e-6, 1e6))

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "bench/cli/chain_options.h"
+#include "bench/cli/effect_decisions.h"
 #include "bench/judgement/verdict.h"
 #include "bench/report/html.h"
 #include "bench/report/svg.h"
@@ -24,6 +25,7 @@ struct MrtdArguments {
   int draws = 2000;
   double range_m = 0;
   FormulaConditions formula{};
+  EffectDecisionOptions decisions;
 };
 
 Result<MrtdStudyTask> mrtd_task(const MrtdArguments& a, const Program& program) {
@@ -128,6 +130,8 @@ int run_mrtd(Console& console, const MrtdArguments& a, const Program& program) {
   const auto task = mrtd_task(a, program);
   if (!task) return report_error(console, task.error());
   for (const auto& sentence : task->air.notes) console.note(sentence);
+  const DecidedEffects effects{task->trial.sensor.name, task->trial.plan, no_criterion_for("the threshold of bars")};
+  if (a.decisions.dry_run) return dry_run(console, {effects}, a.decisions);
   console.phase("simulating the MRTD");
   const auto study = study_mrtd(*task);
   console.end_progress();
@@ -143,9 +147,12 @@ int run_mrtd(Console& console, const MrtdArguments& a, const Program& program) {
       return report_error(console, written.error());
   }
   if (console.json()) {
-    console.object(mrtd_json(*task, *study));
+    Json json = mrtd_json(*task, *study);
+    add_effects(json, effects);
+    console.object(json);
   } else {
     print_mrtd(console, *task, *study);
+    print_effects(console, effects, a.decisions);
   }
   // Frequencies beyond Nyquist have no MRTD by rule; any other requested frequency without a threshold is inconclusive.
   const bool all = std::all_of(study->curves.begin(), study->curves.end(), [](const auto& curve) {
@@ -203,6 +210,7 @@ void add_mrtd_command(CLI::App& app, Program& program) {
                    "integration time of the eye in the MRTD formula, in s")
       ->check(number_in(1e-4, 10))
       ->capture_default_str();
+  a->decisions.add_to(*command);
   command->add_option("--svg", a->svg, "writes the figure to this SVG file");
   command->add_option("--page", a->page, "writes figure and tables to this HTML file");
   finish_command(*command, program, [a, &program](Console& console) { return run_mrtd(console, *a, program); });

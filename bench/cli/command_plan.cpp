@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/effect_decisions.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/plan_decisions.h"
 #include "bench/cli/simulation_plan.h"
@@ -17,28 +18,8 @@
 namespace todbench {
 namespace {
 
-enum class NeutralEffects { folded, with_reasons };
-
-/// Prints the decisions; effects that are neutral in the sensor in one line, or with their reasons.
-void print_effect_table(const Console& console, const SensorPlan& plan, NeutralEffects neutral_effects) {
-  std::vector<TableRow> effects, last;
-  std::string neutral;
-  for (const auto& d : plan.decisions) {
-    TableRow row{std::string(to_string(d.effect)), d.decision == Decision::simulate ? "simulate" : "skip",
-                 fixed(d.predicted_change_percent, 3), d.reason};
-    (d.changes_nothing() ? last : effects).push_back(std::move(row));
-    if (d.changes_nothing()) neutral += (neutral.empty() ? "" : ", ") + std::string(to_string(d.effect));
-  }
-  const bool folded = neutral_effects == NeutralEffects::folded;
-  if (!folded) effects.insert(effects.end(), last.begin(), last.end());
-  console.table({"effect", "decision", "change if skipped [%]", "reason"}, effects);
-  if (folded && !neutral.empty())
-    console.text("neutral in this sensor, so skipped without a change (--why states each reason): " + neutral);
-}
-
-void print_plan(const Console& console, const ExperimentInputs& inputs, const PlanPrediction& prediction,
-                NeutralEffects neutral_effects) {
-  print_effect_table(console, inputs.effects, neutral_effects);
+void print_plan(const Console& console, const ExperimentInputs& inputs, const PlanPrediction& prediction, bool why) {
+  print_effect_table(console, inputs.effects, why);
   console.text("");
   std::vector<TableRow> contrasts;
   for (const auto& c : prediction.contrasts)
@@ -187,7 +168,7 @@ int run_plan(Console& console, const PlanArguments& asked, const Program& progra
     if (asked.decide) json["decide"] = decisions_json(decisions);
     console.object(json);
   } else {
-    print_plan(console, *inputs, *prediction, asked.why ? NeutralEffects::with_reasons : NeutralEffects::folded);
+    print_plan(console, *inputs, *prediction, asked.why);
     if (frontier) print_frontier(console, *frontier);
     if (bill) print_bill_forecast(console, *bill);
     for (const AcuityLimits& at : acuity) console.text(in_words(at));
