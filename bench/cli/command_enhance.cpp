@@ -7,12 +7,14 @@
 #include <filesystem>
 #include <memory>
 
+#include "bench/cli/effect_decisions.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/run_display.h"
 #include "bench/cli/scene_files.h"
 #include "bench/cli/session_argument.h"
 #include "bench/enhance/decidable.h"
 #include "bench/enhance/enhancement_page.h"
+#include "bench/enhance/stage_scan.h"
 #include "bench/judgement/verdict.h"
 #include "bench/picture_files/encoded_picture.h"
 #include "bench/report/html.h"
@@ -32,6 +34,7 @@ struct EnhanceArguments {
   bool overwrite = false, live = false;
   int dither = 1;
   Opening opening{};
+  EffectDecisionOptions decisions;
 };
 
 Json enhanced_points_json(const PackageResult& result) {
@@ -137,18 +140,38 @@ Result<LoadedPlan> live_plan(const EnhanceArguments& a, const std::vector<Enhanc
   plan.schedule.frames_per_presentation = SchedulePlan{}.frames_per_presentation;
   for (const auto& package : packages)
     plan.measurement.frames_after_change = std::max(plan.measurement.frames_after_change, memory_frames({}, package));
+  if (a.dither > 1) {
+    if (auto same = check_scans(packages, a.dither); !same) return tl::unexpected(same.error());
+    // Single frames show the plate at other places of the pixel. The scan is checked by the packages (ScanWatch).
+    plan.target.max_shift_error_px = 0;
+    plan.measures = {};
+  }
   return loaded->with(std::move(plan));
 }
 
 /// Measures with the camera of the plan; returns the folder of the session.
+/// `scan`: places of a pixel along each axis that the stage visits in turn.
 Result<std::filesystem::path> measured_session(Console& console, const LoadedPlan& loaded,
-                                               const std::filesystem::path& folder, const std::stop_token& stop) {
+                                               const std::filesystem::path& folder, int scan,
+                                               const std::stop_token& stop) {
   RunDisplay shown(console, loaded.plan());
-  const auto outcome = measure_plan(loaded, {.folder = folder / "session"}, shown.listener(), stop);
+  const ExperimentOptions options{.folder = folder / "session"};
+  const auto outcome = scan > 1 ? measure_scanned(loaded, scan, options, shown.listener(), stop)
+                                : measure_plan(loaded, options, shown.listener(), stop);
   console.end_progress();
   if (!outcome) return tl::unexpected(outcome.error());
   if (outcome->ended_by) return tl::unexpected(*outcome->ended_by);
   return outcome->folder;
+}
+
+/// Effects of the sensor behind the packages. Recorded frames have those of their camera.
+Result<DecidedEffects> simulated_effects(const LoadedPlan& loaded, bool recorded) {
+  if (recorded) return DecidedEffects{"the camera", {}, "the frames are those of a camera: no effect is simulated"};
+  const auto inputs = full_inputs(loaded);
+  if (!inputs) return tl::unexpected(inputs.error());
+  return DecidedEffects{loaded.sensor().name, inputs->effects,
+                        "every effect that is not neutral is simulated: the criteria of the planner hold for the "
+                        "sensor alone, and a package may amplify an effect that is negligible without it"};
 }
 
 int run_enhance(Console& console, const EnhanceArguments& a, const Program& program) {
@@ -164,20 +187,23 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
     return report_error(
         console, {ErrorCode::invalid_input, "--live needs a plan with a camera, but " + a.plan + " is a folder"});
   const bool recorded = folder_given || a.live;
-  if (recorded && a.dither > 1)
-    return report_error(
-        console, {ErrorCode::invalid_input, "--dither needs a simulated sensor; recorded frames cannot be dithered"});
+  if (folder_given && a.dither > 1)
+    return report_error(console, {ErrorCode::invalid_input,
+                                  "--dither needs a simulated sensor or --live; recorded frames cannot be dithered"});
   auto loaded = a.live     ? live_plan(a, packages, program)
                 : recorded ? recorded_plan(a.plan, a.opening)
                            : read_plan(a.plan);
   if (!loaded) return report_error(console, loaded.error());
+  const auto effects = simulated_effects(*loaded, recorded);
+  if (!effects) return report_error(console, effects.error());
+  if (a.decisions.dry_run) return dry_run(console, {*effects}, a.decisions);
   const std::filesystem::path folder = a.out;
   const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
   if (auto made = make_result_folder(folder, existing); !made) return report_error(console, made.error());
   const auto stop = program.stop->token();
   std::filesystem::path session = a.plan;
   if (a.live) {
-    const auto measured = measured_session(console, *loaded, folder, stop);
+    const auto measured = measured_session(console, *loaded, folder, a.dither, stop);
     if (!measured) return report_error(console, measured.error());
     session = *measured;
     loaded = recorded_plan(session, a.opening);
@@ -194,8 +220,13 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
   if (!found) return report_error(console, found.error());
   if (auto written = write_folder(folder, *loaded, packages, *found); !written)
     return report_error(console, written.error());
-  if (console.json()) console.object(enhancement_json(*found, folder.string()));
+  if (console.json()) {
+    Json json = enhancement_json(*found, folder.string());
+    add_effects(json, *effects);
+    console.object(json);
+  }
   say_enhancement(console, *found);
+  print_effects(console, *effects, a.decisions);
   for (const auto& sentence : found->warnings) console.note(sentence);
   console.text("page: " + (folder / "enhancement.html").string());
   int code = 0;
@@ -229,8 +260,10 @@ void add_enhance_command(CLI::App& app, Program& program) {
   command->add_option("--packages", a->packages, "files of the packages")->required()->expected(1, 16);
   command->add_option("--out", a->out, "folder for the page, the numbers and the pictures")->capture_default_str();
   command
-      ->add_option("--dither", a->dither,
-                   "number of subpixel positions per axis that the simulated sensor visits in turn: n gives n x n")
+      ->add_option(
+          "--dither", a->dither,
+          "number of subpixel positions per axis that the simulated sensor, or with --live the stage, visits in "
+          "turn, one frame at each: n gives n x n")
       ->capture_default_str()
       ->check(whole_number(1, 4));
   command->add_flag(
@@ -238,6 +271,7 @@ void add_enhance_command(CLI::App& app, Program& program) {
       "first measures once with the camera of the plan, into the folder 'session' of --out; the packages process "
       "these frames");
   command->add_flag("--force", a->overwrite, "overwrites the results in an existing folder");
+  a->decisions.add_to(*command);
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_enhance(console, *a, program); });
 }

@@ -13,6 +13,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "bench/enhance/decidable.h"
+#include "bench/enhance/stage_scan.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/experiment_inputs.h"
 #include "bench/run/module_chain.h"
@@ -297,22 +298,6 @@ std::vector<PairedRatio> paired_ratios(std::span<const Trial> with, std::span<co
 
 namespace {
 
-/// Rejects packages whose scan differs from the dither of the sensor: super-resolution would combine wrong places.
-Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither) {
-  for (const EnhancementPackage& package : packages) {
-    for (const StagePlan& stage : package.stages) {
-      const SuperResolutionStageOptions& finer = stage.super_resolution;
-      if (stage.kind != StagePlan::Kind::super_resolution || finer.shifts != FrameShifts::scan ||
-          finer.factor == dither)
-        continue;
-      return fail(ErrorCode::invalid_input,
-                  fmt::format("package {}: its scan needs a sensor that is dithered over {} x {} positions (--dither)",
-                              package.name, finer.factor, finer.factor));
-    }
-  }
-  return {};
-}
-
 /// Runs without a package first, then every package, with the ratios to the first.
 Result<Enhancement> through_all(
     const Plan& plan, const std::vector<EnhancementPackage>& packages, const EnhancementOptions& options,
@@ -380,6 +365,7 @@ Result<Enhancement> compare_packages_recorded(const std::filesystem::path& sessi
   });
   if (!enhancement) return enhancement;
   enhancement->settle_frames = plan.measurement.frames_after_change;
+  enhancement->dither = options.dither;
   enhancement->camera = info.model + " " + info.serial;
   enhancement->frame_rate_hz = info.frame_rate_hz;
   for (const auto& package : packages) {

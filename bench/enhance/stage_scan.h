@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A stage that scans a pixel for super-resolution: it moves the plate between the frames of a camera.
+#pragma once
+
+#include "acquisition/base/result.h"
+#include "bench/enhance/package_file.h"
+#include "bench/run/experiment.h"
+
+namespace todbench {
+
+struct StageScan {
+  int steps = 2;              ///< places of a pixel along each axis; a presentation needs at least steps^2 frames
+  double pixel_mm = 0;        ///< of the plate: distance times the angle of a pixel
+  int frames_after_move = 2;  ///< exposures of a free-running camera that are dropped after each move (in flight)
+};
+
+/// Replaces camera and target of the bench: before frame k the stage moves the plate by dither_px(steps, k) from the
+/// requested place, as super_resolution_stage() assumes with FrameShifts::scan. Frames taken while the target changes
+/// count, but the plate is not moved for them. Sequence numbers continue without the dropped frames, so that lost
+/// frames remain visible. Whether the plate really moves, the frames show (ScanWatch). Call before the bench is
+/// recorded. Errors: `invalid_input` if the target does not set shifts, or the pixel has no size. A move that fails
+/// ends the run with `integrity`, or `interrupted`.
+[[nodiscard]] Result<void> scan_with_stage(OpenedBench& bench, const StageScan& scan);
+
+/// `invalid_input` for a package with a scan that differs from the dither of sensor or stage: super-resolution would
+/// combine wrong places.
+[[nodiscard]] Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither);
+
+/// measure_plan() with a stage that scans steps x steps places of a pixel. Errors: those of measure_plan() and
+/// scan_with_stage().
+[[nodiscard]] Result<ExperimentOutcome> measure_scanned(const LoadedPlan& loaded, int steps,
+                                                        const ExperimentOptions& options,
+                                                        const ExperimentListener& listener, std::stop_token stop);
+
+}  // namespace todbench
