@@ -2,6 +2,7 @@
 #include "sim_devices/prediction/cost_frontier.h"
 
 #include <fmt/format.h>
+#include <time.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -42,6 +43,13 @@ class Deadline {
   std::jthread timer_;  // last: joined before the members that it uses are destroyed
 };
 
+/// Processor time of all threads of the program.
+double processor_s() {
+  timespec now{};
+  (void)::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 using Estimate = std::function<Result<std::vector<ThresholdEstimate>>(std::stop_token)>;
 
 /// One way of computing, with its reference.
@@ -54,6 +62,8 @@ struct Way {
 struct Timed {
   std::vector<ThresholdEstimate> found;
   double wall_s = 0;
+  /// On an idle machine: other programs lengthen the wall time of one thread, not its processor time.
+  double idle_s = 0;
 };
 
 double largest_error_percent(const std::vector<ThresholdEstimate>& found,
@@ -157,9 +167,12 @@ double Frontier::expected_s(const Accuracy& accuracy) const {
 Result<Timed> Frontier::timed(const Estimate& estimate) const {
   const Deadline deadline(left_s(), stop_);
   const auto start = task_.now();
+  const double processor_start_s = processor_s();
   auto found = estimate(deadline.token());
   if (!found) return tl::unexpected(found.error());
-  return Timed{.found = std::move(*found), .wall_s = seconds_since(start)};
+  const double wall_s = seconds_since(start);
+  return Timed{
+      .found = std::move(*found), .wall_s = wall_s, .idle_s = std::min(wall_s, processor_s() - processor_start_s)};
 }
 
 /// Draft estimate at every contrast: finds the contrasts with a threshold, its size, and the speed of the machine.
@@ -223,7 +236,7 @@ Result<void> Frontier::measure_references() {
   speed_ = whole->wall_s / formula_s(reference.noise_draws, reference.phases_per_axis);
   out_.reference_draws = reference.noise_draws;
   out_.reference = std::move(whole->found);
-  out_.reference_s = whole->wall_s;
+  out_.reference_s = whole->idle_s;
   out_.reference_standard_error_percent = largest_standard_error_percent(out_.reference).value_or(0);
   out_.paired_draws = paired_draws;
   reference.noise_draws = paired_draws;
@@ -256,9 +269,9 @@ void Frontier::measure(Way way) {
                       : found.error().message);
   }
   if (found->wall_s < worth_repeating_s && left_s() > task_.budget_s / 2) {
-    if (const auto again = timed(way.estimate)) found->wall_s = std::min(found->wall_s, again->wall_s);
+    if (const auto again = timed(way.estimate)) found->idle_s = std::min(found->idle_s, again->idle_s);
   }
-  point.wall_s = found->wall_s;
+  point.wall_s = found->idle_s;
   point.error_percent = largest_error_percent(found->found, point.paired ? paired_reference_ : out_.reference);
   point.standard_error_percent = largest_standard_error_percent(found->found);
   out_.points.push_back(point);

@@ -96,6 +96,27 @@ TEST(CostFrontier, LeavesUnmeasuredWhatDoesNotFitIntoTheBudget) {
   }
 }
 
+TEST(CostFrontier, DoesNotCountTheTimeOfOtherPrograms) {
+  FakeClock clock(1e-3);
+  CostTask task = quick_task();
+  task.now = clock.now();
+  task.choices.resize(1);
+  // Half a minute passes in which this program has no processor.
+  task.trials.front().measure = [&](std::stop_token) -> Result<std::vector<ThresholdEstimate>> {
+    clock.advance(30);
+    return std::vector<ThresholdEstimate>{{16.9, 1.6, std::nullopt}};
+  };
+
+  const auto frontier = cost_frontier(task, {}, {});
+
+  ASSERT_TRUE(frontier) << frontier.error().message;
+  const auto trials = std::ranges::find(frontier->points, "trials", &CostPoint::knob);
+  ASSERT_NE(trials, frontier->points.end());
+  ASSERT_TRUE(trials->measured()) << trials->not_measured;
+  EXPECT_LT(*trials->wall_s, 1);
+  EXPECT_GT(frontier->spent_s, 30) << "the budget is one of wall time";
+}
+
 TEST(CostFrontier, IsEmptyWithAReasonWhereNoContrastHasAThreshold) {
   CostTask task = quick_task();
   task.delta_t_k = {0.001};
