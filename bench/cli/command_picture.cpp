@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "bench/cli/chain_options.h"
+#include "bench/cli/effect_decisions.h"
 #include "bench/cli/scene_files.h"
 #include "bench/picture_files/encoded_picture.h"
 #include "bench/plan/descriptions.h"
@@ -24,8 +25,10 @@ struct PictureArguments {
   ChainOptions chain;
   double range_m = 0, rotation_deg = 0, x_pitch = 0, y_pitch = 0, tolerance_percent = 1;
   std::optional<double> cn2{};
+  std::vector<double> motion_mrad_s{};
   int field_pitch = 0;
   bool overwrite = false;
+  EffectDecisionOptions decisions;
 };
 
 Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t seed) {
@@ -45,6 +48,7 @@ Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t 
   task.air = std::move(chain->air);
   task.accuracy = chain->accuracy;
   task.view = {.range_m = a.range_m, .rotation_deg = a.rotation_deg, .centre_pitch = {a.x_pitch, a.y_pitch}};
+  if (!a.motion_mrad_s.empty()) task.motion = {.x_mrad_s = a.motion_mrad_s[0], .y_mrad_s = a.motion_mrad_s[1]};
   task.effects.tolerance_percent = a.tolerance_percent;
   task.seed = seed;
   task.field_pitch = a.field_pitch;
@@ -66,6 +70,9 @@ Document picture_document(const ScenePicturesTask& task, const ScenePictures& pi
   const int samples = task.sensor.samples_per_pitch();
   add("sensor", fmt::format("{}, {} {} per pitch", task.sensor.name, samples, samples == 1 ? "sample" : "samples"));
   add("range", fmt::format("{:g} m", task.view.range_m));
+  if (task.motion.x_mrad_s != 0 || task.motion.y_mrad_s != 0)
+    add("motion of the picture",
+        fmt::format("{:g} mrad/s to the right, {:g} mrad/s downwards", task.motion.x_mrad_s, task.motion.y_mrad_s));
   add("atmosphere", fmt::format("{}; transmittance {:.4f}", task.air.source.empty() ? task.air.name : task.air.source,
                                 pictures.transmittance));
   if (pictures.signature) {
@@ -141,6 +148,7 @@ Json picture_json(const ScenePicturesTask& task, const ScenePictures& pictures) 
       {"sensor", task.sensor.name},
       {"samples_per_pitch", task.sensor.samples_per_pitch()},
       {"range_m", json_number(task.view.range_m)},
+      {"motion_mrad_s", {json_number(task.motion.x_mrad_s), json_number(task.motion.y_mrad_s)}},
       {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}, {"decisions", air}}},
       {"turbulence", turbulence},
       {"transmittance", json_number(pictures.transmittance)},
@@ -181,6 +189,14 @@ Result<void> write_pictures(const std::filesystem::path& folder, const ScenePict
   return write_file_atomically(folder / "pictures.html", html);
 }
 
+/// Bound of the planner for the effects that the picture leaves out.
+std::string promise_of(const ScenePictures& pictures, double tolerance_percent) {
+  return fmt::format(
+      "the effects that are left out change the acuity at the contrast of the target by at most {:.2g} % "
+      "together; {:g} % are allowed",
+      pictures.effects.skipped_change_percent, tolerance_percent);
+}
+
 int run_picture(Console& console, const PictureArguments& a, std::uint64_t seed) {
   const auto existing = a.overwrite ? ExistingResults::overwritten : ExistingResults::refused;
   if (auto can = check_result_folder(a.out, existing); !can) return report_error(console, can.error());
@@ -189,11 +205,15 @@ int run_picture(Console& console, const PictureArguments& a, std::uint64_t seed)
   for (const auto& sentence : task->air.notes) console.note(sentence);
   const auto pictures = scene_pictures(*task);
   if (!pictures) return report_error(console, {pictures.error().code, a.scene + ": " + pictures.error().message});
+  const DecidedEffects effects{task->sensor.name, pictures->effects.plan, promise_of(*pictures, a.tolerance_percent)};
+  if (a.decisions.dry_run) return dry_run(console, {effects}, a.decisions);
   if (auto made = make_result_folder(a.out, existing); !made) return report_error(console, made.error());
   if (auto written = write_pictures(a.out, *task, *pictures); !written) return report_error(console, written.error());
   for (const auto& warning : pictures->effects.warnings) console.note(warning);
   if (console.json()) {
-    console.object(picture_json(*task, *pictures));
+    Json json = picture_json(*task, *pictures);
+    json["promise"] = effects.promise;
+    console.object(json);
     return 0;
   }
   std::vector<TableRow> rows;
@@ -208,6 +228,7 @@ int run_picture(Console& console, const PictureArguments& a, std::uint64_t seed)
       "transmittance {:.4f}; apparent contrast {:.3g} K; background temperature shown by the camera {:.2f} K",
       pictures->transmittance, pictures->apparent_dt_k, pictures->background_k));
   console.text(grey_sentence(*pictures));
+  print_effects(console, effects, a.decisions);
   console.text("page: " + (std::filesystem::path(a.out) / "pictures.html").string());
   return 0;
 }
@@ -236,6 +257,13 @@ void add_picture_command(CLI::App& app, Program& program) {
                    "position of the scene's origin below the middle of the frame, in detector pitches")
       ->check(number_in(-1e5, 1e5));
   command
+      ->add_option(
+          "--motion-mrad-s", a->motion_mrad_s,
+          "motion of the picture to the right and downwards in mrad/s: the target moves, or the camera turns the "
+          "other way; smears by time constant and exposure of the sensor")
+      ->expected(2)
+      ->check(number_in(-1e4, 1e4));
+  command
       ->add_option("--field-pitch", a->field_pitch,
                    "side of the shown field in detector pitches; default: the target and a margin")
       ->check(whole_number(8, 4096));
@@ -249,6 +277,7 @@ void add_picture_command(CLI::App& app, Program& program) {
                    "structure parameter Cn2 of the turbulence along the path in m^(-2/3); default: that of the sensor")
       ->check(number_in(0, 1e-11));
   command->add_flag("--force", a->overwrite, "overwrites the files in the folder");
+  a->decisions.add_to(*command);
   finish_command(*command, program,
                  [a, &program](Console& console) { return run_picture(console, *a, program.common.seed); });
 }

@@ -84,11 +84,11 @@ double contrast_of(const std::optional<TargetSignature>& signature, const cv::Ma
 EffectPlan planned(const ScenePicturesTask& task, double contrast_k) {
   TemplateObserver observer(task.observer, triangle_alternatives());
   if (contrast_k > 0) {
-    auto plan = plan_effects(task.sensor, observer, {.delta_t_k = {contrast_k}, .motion = {}}, task.effects);
+    auto plan = plan_effects(task.sensor, observer, {.delta_t_k = {contrast_k}, .motion = task.motion}, task.effects);
     if (plan) return *std::move(plan);
   }
   EffectPlan all;
-  all.plan = full_plan(task.sensor, task.effects.skip, task.effects.force);
+  all.plan = full_plan(task.sensor, task.effects.skip, task.effects.force, task.motion);
   all.warnings.push_back(fmt::format("at {:.3g} K there is no threshold size: every effect is simulated", contrast_k));
   return all;
 }
@@ -143,6 +143,15 @@ std::optional<TurbulenceSeen> turbulence_seen(const SensorSpec& sensor) {
       .tilt_sd_pitch = tilt_mrad / sensor.ifov_mrad()};
 }
 
+/// Filters of the second picture.
+std::string optics_note(const SensorPlan& plan) {
+  std::string note = plan.simulates(Effect::turbulence) ? "turbulence, diffraction, and aberration if it is simulated"
+                                                        : "diffraction, and aberration if it is simulated";
+  if (plan.simulates(Effect::motion) || plan.simulates(Effect::exposure))
+    note += "; smear of the motion by time constant and exposure";
+  return note;
+}
+
 }  // namespace
 
 Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
@@ -173,13 +182,16 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   out.apparent_dt_k = *tau * contrast_of(out.signature, levels);
   out.effects = planned(task, out.apparent_dt_k);
   if (distorts(task.sensor)) out.effects.warnings.emplace_back("the pictures do not show the distortion of the lens");
+  if (out.effects.plan.simulates(Effect::readout))
+    out.effects.warnings.emplace_back(
+        "the pictures do not show that rows are read one after another while the scene moves");
   out.air = air_decisions(task, out, scale.kelvin(seen - radiance));
   out.turbulence = turbulence_seen(task.sensor);
   const SensorPlan& plan = out.effects.plan;
   const SensorModel model(task.sensor, plan, task.accuracy, task.seed);
   const SensorSpec& spec = model.spec();
 
-  const SceneImager imager(spec, plan, task.accuracy);
+  const SceneImager imager(spec, plan, task.accuracy, task.motion);
   std::vector<cv::Point2d> displacements_pitch = model.displacements_px(0);
   for (cv::Point2d& displacement : displacements_pitch) displacement /= spec.samples_per_pitch();
   const auto signal = danced_signal_k(imager, spec, task, scale, task.view, model.size(), displacements_pitch);
@@ -199,8 +211,8 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   // Centre of the displayed field relative to that of the frame.
   fine_view.centre_pitch += cv::Point2d((spec.width - field) % 2, (spec.height - field) % 2) / 2;
   const auto filtered_scene = [&](const SensorPlan& filters) {
-    return danced_signal_k(SceneImager(fine, filters, task.accuracy), fine, task, scale, fine_view, fine_size,
-                           displacements_pitch);
+    return danced_signal_k(SceneImager(fine, filters, task.accuracy, task.motion), fine, task, scale, fine_view,
+                           fine_size, displacements_pitch);
   };
   const auto behind_optics = filtered_scene(with_decision(plan, Effect::detector, Decision::skip));
   if (!behind_optics) return tl::unexpected(behind_optics.error());
@@ -221,10 +233,8 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   out.stages = {
       {"1-scene", "At the sensor", air_note, as_float(bare_scene(task, fine, scale, fine_view, fine_size), *tau),
        static_cast<double>(fine_per_pitch)},
-      {"2-optics", "Behind the optics",
-       plan.simulates(Effect::turbulence) ? "turbulence, diffraction, and aberration if it is simulated"
-                                          : "diffraction, and aberration if it is simulated",
-       as_float(*behind_optics, *tau), static_cast<double>(fine_per_pitch)},
+      {"2-optics", "Behind the optics", optics_note(plan), as_float(*behind_optics, *tau),
+       static_cast<double>(fine_per_pitch)},
       {"3-detector", "On the detectors", "mean over the sensitive area around each position",
        as_float(*behind_detector, *tau), static_cast<double>(fine_per_pitch)},
       {"4-sampled", "Sampled", fmt::format("{} {} per pitch and axis", n, n == 1 ? "sample" : "samples"),

@@ -23,6 +23,7 @@ struct ScenePicturesTask {
   TemplateObserverSpec observer{};
   Atmosphere air{};
   SceneView view{};
+  SceneMotion motion{};  ///< of the picture across the detectors: the target moves, or the camera turns
   Accuracy accuracy{};
   EffectPlannerOptions effects{};
   std::uint64_t seed = 1;

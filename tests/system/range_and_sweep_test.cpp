@@ -2,12 +2,14 @@
 // Ranges through air, test pictures and sweeps as a user runs them.
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "acquisition/recording/picture_file.h"
 #include "acquisition/recording/tiff_writer.h"
 #include "bench/picture_files/encoded_picture.h"
 #include "bench/plan/descriptions.h"
+#include "tests/support/source_file.h"
 #include "tests/system/system_test_support.h"
 
 namespace todbench::testing {
@@ -85,15 +87,25 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   EXPECT_NEAR(grid["models"]["tod"]["r75_m"][1][1].get<double>() / plain["r75_m"].get<double>(), 1, 1e-9);
   expect_refused(range({"--grid-sizes-m", "2,4.9"}), 2, "--grid-contrasts-k");
   expect_refused(range({"--grid-sizes-m", "2", "--grid-contrasts-k", "0"}), 2, "no contrast");
+  const Json own = one_object(range({"--m75", "5.1", "--m75-u-percent", "10"}));
+  EXPECT_THAT(plain["m75_origin"].get<std::string>(), HasSubstr("people"));
+  EXPECT_TRUE(plain["m75_ci95"].is_null());
+  EXPECT_EQ(own["m75_origin"], "stated by the user");
+  EXPECT_NEAR(own["m75_ci95"][0].get<double>(), 5.1 * std::exp(-0.195996), 1e-4);
+  EXPECT_EQ(own["r75_m"], plain["r75_m"]);
+  EXPECT_LT(own["r75_ci95_m"][0].get<double>(), plain["r75_ci95_m"][0].get<double>());
+  EXPECT_EQ(own["models"]["tod"]["r75_ci95_m"], own["r75_ci95_m"]);
   EXPECT_EQ(clear["r75_m"], plain["r75_m"]);
   EXPECT_EQ(clear["curve"], plain["curve"]);
   EXPECT_EQ(plain["models"]["tod"]["r75_m"], plain["r75_m"]);
   EXPECT_NEAR(tabulated["r75_m"].get<double>() / lambert["r75_m"].get<double>(), 1, 1e-9);
   for (const char* name : {"tod", "acquire", "ttp", "mtdp"}) {
     EXPECT_TRUE(all["models"][name]["r75_m"].is_number()) << name;
-    EXPECT_TRUE(all["models"][name].contains("criterion"));
+    EXPECT_FALSE(all["models"][name]["criterion"]["origin"].get<std::string>().empty());
+    EXPECT_FALSE(all["models"][name]["display"].get<std::string>().empty());
   }
   EXPECT_THAT(content(folder.path() / "p.html"), HasSubstr("ACQUIRE"));
+  EXPECT_THAT(content(folder.path() / "p.html"), HasSubstr("M75: people, small craft"));
   EXPECT_EQ(beyond.code, 3);
   EXPECT_TRUE(one_object(beyond)["r75_m"].is_null());
   EXPECT_EQ(one_object(beyond)["r75_ci95_m"][0], 50.0);
@@ -203,6 +215,73 @@ TEST(SweepCommand, HasTheSameTableHoweverItWasRun) {
   EXPECT_THAT(content(folder.path() / "a/page.html"), HasSubstr("</html>"));
 }
 
+/// Every effect with its decision.
+std::map<std::string, std::string> decisions_of(const Json& effects) {
+  std::map<std::string, std::string> decisions;
+  for (const auto& effect : effects) decisions[effect["name"]] = effect["decision"];
+  return decisions;
+}
+
+TEST(EffectDecisions, AreStatedByEveryCommandThatSimulatesWithoutSimulating) {
+  const TemporaryFolder folder;
+  folder.write("plan.toml", small_plan(8));
+  folder.write("p.toml", "[[stage]]\nkind = \"median\"\n");
+  folder.write("noisy.toml", content(source_file("sim_devices/sensors/sc2000.toml")) +
+                                 "\nhalo_share = 0.02\nhalo_sigma_pitch = 10\n");
+  const std::vector<std::vector<std::string>> commands{
+      {"enhance", "./plan.toml", "--packages", "p.toml"},
+      {"identify", "small-craft", "--sensor", "sc2000", "--ranges", "100,200"},
+      {"mrtd", "--sensor", "sc2000"},
+      {"picture", "craft-at-sea", "--sensor", "sc2000", "--range-m", "300", "--out", "pictures", "--accuracy", "draft"},
+      {"dynamic", "--speeds-mrad-s", "5"}};
+  for (std::vector<std::string> command : commands) {
+    const std::string name = command.front();
+    command.emplace_back("--dry-run");
+    const Ended said = todbench(command, {.folder = folder.path()});
+    command.emplace_back("--why");
+    const Ended why = todbench(command, {.folder = folder.path()});
+    command.emplace_back("--json");
+    const Ended json = todbench(command, {.folder = folder.path()});
+
+    ASSERT_EQ(said.code, 0) << name << said.err;
+    ASSERT_EQ(json.code, 0) << name << json.err;
+    const auto decisions = decisions_of(one_object(json)["effects"]);
+    EXPECT_EQ(decisions.at("diffraction"), "simulate") << name;
+    EXPECT_EQ(decisions.at("halo"), "skip") << name;
+    EXPECT_THAT(said.out, HasSubstr("neutral in this sensor, so skipped without a change")) << name;
+    EXPECT_LT(said.out.find("diffraction"), said.out.find("halo")) << name << ": decided effects come first";
+    EXPECT_EQ(why.out.find("neutral in this sensor, so skipped"), std::string::npos) << name;
+    EXPECT_GT(occurrences(why.out, "\n"), occurrences(said.out, "\n")) << name;
+    EXPECT_THAT(said.out, HasSubstr(one_object(json)["promise"].get<std::string>())) << name;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "pictures"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "enhancement"));
+  const Json models = one_object(
+      todbench({"compare-models", "sc2000", "./noisy.toml", "--dry-run", "--json"}, {.folder = folder.path()}));
+  EXPECT_EQ(decisions_of(models["models"][0]["effects"]).at("halo"), "skip");
+  EXPECT_EQ(decisions_of(models["models"][1]["effects"]).at("halo"), "simulate");
+}
+
+TEST(EffectDecisions, OfAMovingTargetKeepTheToleranceAtRestAndInMotion) {
+  const auto acuities = [](const std::vector<std::string>& more) {
+    std::vector<std::string> command{"dynamic", "--speeds-mrad-s", "3", "--delta-t-k", "1.93",  "--passes",
+                                     "24",      "--frames",        "2", "--accuracy",  "draft", "--json"};
+    command.insert(command.end(), more.begin(), more.end());
+    return one_object(todbench(command));
+  };
+  const Json every = acuities({}), planned = acuities({"--tolerance-percent", "2"});
+
+  EXPECT_THAT(planned["promise"].get<std::string>(), HasSubstr("2 % are allowed"));
+  int skipped = 0;
+  for (const auto& effect : planned["effects"])
+    skipped += effect["decision"] == "skip" && effect["predicted_change_percent"] != 0 ? 1 : 0;
+  EXPECT_GT(skipped, 0);
+  ASSERT_EQ(every["speeds"].size(), planned["speeds"].size());
+  expect_refused(todbench({"dynamic", "--speeds-mrad-s", "3", "--tolerance-percent", "1", "--package",
+                           source_file("docs/examples/packages/sharpen.toml")}),
+                 2, "sensor alone");
+}
+
 TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
   const TemporaryFolder folder;
   const std::vector<std::string> asked{
@@ -234,6 +313,20 @@ TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
   }
   EXPECT_EQ(read_picture(folder.path() / "p/frame.tiff")->picture.size(), cv::Size(320, 240));
   EXPECT_EQ(content(folder.path() / "p/pictures.html").find("<script"), std::string::npos);
+
+  auto moving = asked;
+  moving.insert(moving.end(), {"--force", "--motion-mrad-s", "40", "0"});
+  folder.write("slow.toml", content(source_file("sim_devices/sensors/sc2000.toml")) + "\ntime_constant_ms = 10\n");
+  moving[3] = "./slow.toml";
+  const Json smeared = one_object(todbench(moving, {.folder = folder.path()}));
+  moving[moving.size() - 2] = "0";
+  const Json resting = one_object(todbench(moving, {.folder = folder.path()}));
+  EXPECT_EQ(decisions_of(smeared["effects"]).at("motion"), "simulate");
+  EXPECT_EQ(decisions_of(resting["effects"]).at("motion"), "skip");
+  // A smear of 40 mrad/s x 10 ms is a third of a pitch and only lowers the contrast of the samples.
+  EXPECT_LT(smeared["stages"][3]["max_k"].get<double>(), resting["stages"][3]["max_k"].get<double>());
+  EXPECT_GT(smeared["stages"][3]["max_k"].get<double>(), 0.5 * resting["stages"][3]["max_k"].get<double>());
+  EXPECT_EQ(resting["stages"][3]["max_k"], json["stages"][3]["max_k"]);
 
   auto turbulent = asked;
   turbulent.insert(turbulent.end(), {"--force", "--cn2", "1e-11"});
