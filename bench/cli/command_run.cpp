@@ -230,13 +230,14 @@ AccuracyBill bill_of(const ExperimentOutcome& outcome, const LoadedPlan* loaded 
 /// Prints what the time of the run bought.
 void print_bill(const Console& console, const ExperimentOutcome& outcome, const LoadedPlan* loaded = nullptr) {
   const AccuracyBill bill = bill_of(outcome, loaded);
-  const bool forecast = std::ranges::any_of(bill.rows, [](const BillRow& row) { return row.forecast_s.has_value(); });
+  const bool forecast = bill.forecast_s.has_value();
   std::vector<TableRow> rows;
   for (const BillRow& row : bill.rows) {
     rows.push_back({row.part, fixed(row.seconds, 1), row.bought});
     if (forecast) rows.back().insert(rows.back().begin() + 2, row.forecast_s ? fixed(row.forecast_s, 1) : "");
   }
   rows.push_back({"total", fixed(bill.total_s, 1), ""});
+  if (forecast) rows.back().insert(rows.back().begin() + 2, fixed(bill.forecast_s, 1));
   TableRow header{"part of the run", "time [s]", "result"};
   if (forecast) header.insert(header.begin() + 2, "forecast [s]");
   console.text("");

@@ -229,6 +229,20 @@ void add_forecast(AccuracyBill& bill, const AccuracyBill& forecast) {
     const auto found = std::ranges::find(forecast.rows, row.part, &BillRow::part);
     if (found != forecast.rows.end()) row.forecast_s = found->seconds;
   }
+  if (forecast.total_s > 0) bill.forecast_s = forecast.total_s;
+}
+
+std::string forecast_and_outcome(const AccuracyBill& bill) {
+  if (!bill.forecast_s) return "";
+  std::string text = fmt::format(
+      "forecast of the plan and outcome of the run: {} s without computing, and {} s ({} times)",
+      significant(*bill.forecast_s, 3), significant(bill.total_s, 3), significant(bill.total_s / *bill.forecast_s, 2));
+  for (const BillRow& row : bill.rows) {
+    if (!row.forecast_s || !row.seconds) continue;
+    text +=
+        fmt::format("; {}: {} s, and {} s", row.part, significant(*row.forecast_s, 3), significant(*row.seconds, 3));
+  }
+  return text;
 }
 
 Json bill_json(const AccuracyBill& bill) {
@@ -237,7 +251,9 @@ Json bill_json(const AccuracyBill& bill) {
     rows.push_back({{"part", row.part}, {"seconds", json_number(row.seconds)}, {"bought", row.bought}});
     if (row.forecast_s) rows.back()["forecast_s"] = json_number(row.forecast_s);
   }
-  return {{"total_s", json_number(bill.total_s)}, {"rows", rows}, {"sentences", bill.sentences}};
+  Json json{{"total_s", json_number(bill.total_s)}, {"rows", rows}, {"sentences", bill.sentences}};
+  if (bill.forecast_s) json["forecast_s"] = json_number(bill.forecast_s);
+  return json;
 }
 
 Section bill_section(const AccuracyBill& bill) {

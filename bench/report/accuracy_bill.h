@@ -27,6 +27,7 @@ struct BillRow {
 struct AccuracyBill {
   std::vector<BillRow> rows;
   double total_s = 0;
+  std::optional<double> forecast_s{};  ///< of the total, without computing; empty: not forecast
   std::vector<std::string> sentences;  ///< limits of accuracy, least time for the verdict, effects left out
 };
 
@@ -52,11 +53,13 @@ inline constexpr std::string_view changes_part = "Changes of the target";
 inline constexpr std::string_view location_part = "Location of the plate, contrasts";
 [[nodiscard]] std::string presentations_part(double set_delta_t_k);
 
-/// Adds the times of a forecast to the rows of the same parts.
+/// Adds the times of a forecast to the rows of the same parts, and the total.
 void add_forecast(AccuracyBill& bill, const AccuracyBill& forecast);
+/// Returns a sentence with the total and every part of a bill, forecast beside outcome. Empty without a forecast.
+[[nodiscard]] std::string forecast_and_outcome(const AccuracyBill& bill);
 
-/// Returns {"total_s", "rows": [{"part", "seconds", "bought"}], "sentences": [...]}; a row that was forecast also has
-/// "forecast_s".
+/// Returns {"total_s", "rows": [{"part", "seconds", "bought"}], "sentences": [...]}; the bill and a row that were
+/// forecast also have "forecast_s".
 [[nodiscard]] Json bill_json(const AccuracyBill& bill);
 /// Returns the section of the report.
 [[nodiscard]] Section bill_section(const AccuracyBill& bill);

@@ -5,9 +5,11 @@
 #include <memory>
 #include <utility>
 
+#include "acquisition/base/host_clock.h"
 #include "acquisition/recording/frame_stream.h"
 #include "bench/run/acuity_limits.h"
 #include "bench/run/background_twin_functions.h"
+#include "bench/run/bill_forecast.h"
 #include "bench/run/camera_surrogate.h"
 #include "bench/run/comparison_forecast.h"
 #include "bench/run/experiment_inputs.h"
@@ -40,6 +42,20 @@ Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
   if (has_modules(plan, inputs.sensor)) return {};
   if (const auto prediction = predict_plan(plan, inputs); !prediction) return tl::unexpected(prediction.error());
   return {};
+}
+
+/// Forecast of the plan beside the outcome of the run, which has ended. Empty for a simulated scene, and for recorded
+/// frames, whose presentations were before the run. `begin_ns`: start of the run, on the clock of the presentations.
+std::string forecast_beside_outcome(const AccuracyBill& forecast, const MeasurementResult& result,
+                                    const TodCurve& curve, const SensorPlan& effects, double wall_s,
+                                    std::int64_t begin_ns) {
+  const auto& shown = result.presentations;
+  if (result.ended_by || shown.empty() || !shown.front().host_time_ns || !shown.back().host_time_ns) return "";
+  const double span_s = static_cast<double>(*shown.back().host_time_ns - *shown.front().host_time_ns) * 1e-9;
+  if (*shown.front().host_time_ns < begin_ns || span_s > wall_s) return "";
+  AccuracyBill bill = accuracy_bill({.presentations = shown, .curve = curve, .effects = effects, .wall_s = wall_s});
+  add_forecast(bill, forecast);
+  return forecast_and_outcome(bill);
 }
 
 /// Adds what stands beside the results for an observer with an eye. Without it the session is complete, too.
@@ -232,7 +248,11 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   auto start = start_run(plan, inputs, bench, options.host.added, open, stop);
   if (!start) return abandon(open, plan, provenance, start.error());
 
+  // Made before the run: the report states how good it was.
+  const auto bench_forecast = bill_forecast(plan, inputs);
+
   const auto begin = Clock::now();
+  const std::int64_t begin_ns = monotonic_ns();
   phase(*folder, listener, "measuring " + info.model + " " + info.serial);
   auto responses = responses_of_camera(plan, inputs, stop);
   if (!responses) return abandon(open, plan, provenance, with_context("measuring", responses.error()));
@@ -266,7 +286,16 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   report_fit(result, plan, inputs, open);
   const FittedCurve& fitted = fit->get(stop);
   keep_shape(result, fitted.said, open);
-  provenance.run = run_record(result, seconds_since(begin));
+  const double wall_s = seconds_since(begin);
+  if (bench_forecast) {
+    const auto sentence =
+        forecast_beside_outcome(*bench_forecast, result, fitted.curve, inputs.effects, wall_s, begin_ns);
+    if (!sentence.empty()) {
+      note(*folder, listener, sentence);
+      result.notes.push_back(sentence);
+    }
+  }
+  provenance.run = run_record(result, wall_s);
   ExperimentOutcome outcome = outcome_of(open, fitted.curve, result, std::move(measures), inputs, *provenance.run);
   if (!outcome.ended_by) {
     FromCamera camera{.curve = &fitted.curve,

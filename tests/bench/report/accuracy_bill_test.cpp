@@ -82,6 +82,25 @@ TEST(AccuracyBill, DividesTheTimeOfARunWithoutARest) {
   EXPECT_THAT(bill.rows[1].bought, HasSubstr("0.20 %"));
 }
 
+TEST(AccuracyBill, PutsTheForecastBesideTheOutcome) {
+  const auto presentations = run_of_twelve();
+  const TodCurve curve = curve_of_two();
+  const SensorPlan effects;
+  AccuracyBill bill = accuracy_bill({.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60});
+  EXPECT_EQ(forecast_and_outcome(bill), "");
+  EXPECT_FALSE(bill_json(bill).contains("forecast_s"));
+  AccuracyBill forecast;
+  forecast.total_s = 50;
+  forecast.rows = {{std::string(changes_part), 25, ""}, {presentations_part(16.9), 5, ""}, {"Another part", 3, ""}};
+
+  add_forecast(bill, forecast);
+
+  EXPECT_EQ(bill_json(bill)["forecast_s"], 50);
+  EXPECT_EQ(forecast_and_outcome(bill),
+            "forecast of the plan and outcome of the run: 50.0 s without computing, and 60.0 s (1.2 times); Changes of "
+            "the target: 25.0 s, and 24.0 s; Presentations at 16.9 K: 5.00 s, and 6.00 s");
+}
+
 TEST(AccuracyBill, OfASimulatedSceneIsComputing) {
   auto presentations = run_of_twelve();
   for (Presentation& shown : presentations) shown.host_time_ns.reset();
