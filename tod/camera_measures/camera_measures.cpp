@@ -317,27 +317,30 @@ class Run {
   /// The source plate at a contrast: the target's report and the mean picture.
   struct Shown {
     double said_delta_t_k = 0;
+    std::optional<double> plate_k{};  ///< of the plate, if a sensor reports it
     cv::Mat1d picture;
   };
   Result<Shown> source_at(double delta_t_k) {
     TODBENCH_TRY(const PresentedTarget shown, show(options_.source_plate->name, delta_t_k));
     TODBENCH_TRY(const AveragedPicture picture, taker_.average(options_.source_frames, stop_));
-    return Shown{shown.state.delta_t_k, picture.kelvin.clone()};
+    return Shown{shown.state.delta_t_k, shown.plate_temperature_k, picture.kelvin.clone()};
   }
 
   Result<void> measure_source(CameraMeasures& measures) {
     TODBENCH_TRY(const Shown before, source_at(0));
     TODBENCH_TRY(const Shown lit, source_at(options_.source_delta_t_k));
     TODBENCH_TRY(const Shown after, source_at(0));
-    TODBENCH_TRY(SourceSize effect,
-                 source_size({before.picture, lit.picture, after.picture}, *options_.source_plate, where_));
-    measures.source =
-        SourceSizeMeasure{.plate = options_.source_plate->name,
-                          .frames = options_.source_frames,
-                          .set_delta_t_k = options_.source_delta_t_k,
-                          .said_delta_t_k = lit.said_delta_t_k - 0.5 * (before.said_delta_t_k + after.said_delta_t_k),
-                          .stated_px = options_.source_size_px,
-                          .effect = std::move(effect)};
+    const double said_k = lit.said_delta_t_k - 0.5 * (before.said_delta_t_k + after.said_delta_t_k);
+    SourcePictures pictures{before.picture, lit.picture, after.picture};
+    if (before.plate_k && lit.plate_k && after.plate_k && said_k != 0)
+      pictures.plate_rise = (*lit.plate_k - 0.5 * (*before.plate_k + *after.plate_k)) / said_k;
+    TODBENCH_TRY(SourceSize effect, source_size(pictures, *options_.source_plate, where_));
+    measures.source = SourceSizeMeasure{.plate = options_.source_plate->name,
+                                        .frames = options_.source_frames,
+                                        .set_delta_t_k = options_.source_delta_t_k,
+                                        .said_delta_t_k = said_k,
+                                        .stated_px = options_.source_size_px,
+                                        .effect = std::move(effect)};
     return {};
   }
 

@@ -213,7 +213,8 @@ Estimate SourceSize::loss(double side_px) const {
 
 Result<SourceSize> source_size(const SourcePictures& pictures, const TargetPlate& mounted_plate,
                                const Registration& where) {
-  const cv::Mat1d signal = signal_of(pictures), change = pictures.after - pictures.before;
+  const cv::Mat1d change = pictures.after - pictures.before;
+  cv::Mat1d signal = signal_of(pictures);
   if (!cv::checkRange(signal) || !cv::checkRange(change))
     return fail(ErrorCode::invalid_input, "the picture contains a value that is not finite");
   std::vector<Polygon> outlines;
@@ -244,6 +245,9 @@ Result<SourceSize> source_size(const SourcePictures& pictures, const TargetPlate
       return fail(ErrorCode::calibration, "'" + place.name + "' of plate '" + mounted_plate.name +
                                               "' is outside the picture: use a smaller plate or a larger distance");
   }
+
+  // Plate and source rise alike: the camera shows the contrast and the rise on the same scale.
+  signal -= cv::mean(signal(window(reference)))[0] * pictures.plate_rise / (1 + pictures.plate_rise);
 
   std::size_t which = 0;
   while (mounted_plate.rectangles[which].name != reference.name) ++which;

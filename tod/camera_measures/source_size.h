@@ -46,6 +46,9 @@ struct SourceSize {
 /// gives the noise.
 struct SourcePictures {
   cv::Mat1d before, lit, after;
+  /// Rise of the plate's own temperature from the outer two to the lit picture, over the contrast, both as reported by
+  /// the target. A radiator heats the plate before it, and the whole picture rises with the plate. 0: not reported.
+  double plate_rise = 0;
 };
 
 /// Locates the plate by its rectangles, takes the signal in the middle of every aperture and spot (direct and inverse
