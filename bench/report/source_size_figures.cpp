@@ -71,7 +71,7 @@ std::optional<FigurePairs> source_size_figures(const SessionMeasures& measures, 
   plot.width = 560, plot.height = 390;
   const double reference = (main ? measures.main : measures.twin)->source->effect.reference_px;
   plot.x = {.label = "Side of the square (px)", .low = 0, .high = 1.05 * reference, .ticks = {}};
-  plot.y = {.label = "Loss of an aperture, gain of a spot (%)", .low = 0, .high = 0.5, .ticks = {}};
+  plot.y = {.label = "Loss or gain (%)", .low = 0, .high = 0.5, .ticks = {}};
   if (twin) add_side(plot, measures.twin->source->effect, "twin", !main);
   if (main) add_side(plot, measures.main->source->effect, camera ? "camera" : "sensor", true);
   FigurePairs figures;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
 
@@ -63,6 +64,21 @@ class TargetAtTemperature final : public Target {
   Target& target_;
   AbsoluteTarget& absolute_;
   double temperature_k_ = 0;
+};
+
+/// A target that first finishes work on earlier frames. Frames are taken meanwhile, so that none is lost.
+class TargetAfterWork final : public Target {
+ public:
+  TargetAfterWork(Target& target, const std::function<void()>& work) : target_(target), work_(work) {}
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return target_.capabilities(); }
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    work_();
+    return target_.present(state, std::move(stop));
+  }
+
+ private:
+  Target& target_;
+  const std::function<void()>& work_;
 };
 
 class Run {
@@ -146,14 +162,7 @@ class Run {
 
   Result<PresentedTarget> show_state(const TargetState& state) {
     if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    auto change = change_target(target_, taker_, host_, state, stop_);
-    if (!change) return tl::unexpected(change.error());
-    if (!change->frames) return tl::unexpected(change->frames.error());
-    if (!change->presented) return target_failure("presenting the target", change->presented.error());
-    const auto there_ns = host_.now_ns(Moment::scene_changed);
-    if (!there_ns) return tl::unexpected(there_ns.error());
-    taker_.scene_changed(*there_ns);
-    return *change->presented;
+    return present(target_, taker_, state);
   }
 
   [[nodiscard]] double largest_step() const {
@@ -406,9 +415,11 @@ class Run {
     mrtd.registration_frames = options_.measurement.registration_frames;
     mrtd.response = response_;
     mrtd.locating_k = largest_step();
-    TODBENCH_TRY(MrtdMeasure found,
-                 measure_mrtd(
-                     taker_, [this](const TargetState& state) { return show_state(state); }, where_, mrtd, stop_));
+    const ShowState show = [this](const TargetState& state, const std::function<void()>& work) {
+      TargetAfterWork target(target_, work);
+      return present(target, taker_, state);
+    };
+    TODBENCH_TRY(MrtdMeasure found, measure_mrtd(taker_, show, where_, mrtd, stop_));
     measures.reasons.insert(measures.reasons.end(), found.reasons.begin(), found.reasons.end());
     measures.mrtd = std::move(found);
     return {};

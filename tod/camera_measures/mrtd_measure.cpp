@@ -122,22 +122,38 @@ std::vector<MrtdPresentation> mrtd_presentations(const MrtdOptions& options, dou
 
 Result<MrtdMeasure> measure_mrtd(FrameTaker& taker, const ShowState& show, const Registration& where,
                                  const MrtdOptions& options, std::stop_token stop) {
-  TODBENCH_TRY(BarsJudge judge, BarsJudge::create(options, where));
   cv::Point2d moved_px(0, 0);
+  // Making the templates takes seconds, and the observer takes longer for a frame than the camera: it judges the frames
+  // of a presentation during the next one.
+  std::optional<Result<BarsJudge>> judge;
+  ShownBars bars;
+  std::vector<cv::Mat1d> frames;
+  const auto judge_frames = [&] {
+    if (!judge) judge.emplace(BarsJudge::create(options, where));
+    if (!*judge) return;
+    for (const cv::Mat1d& kelvin : frames) (*judge)->add(kelvin, bars);
+    frames.clear();
+  };
   for (const MrtdPresentation& one : mrtd_presentations(options, 1 / where.scale_px_per_mm)) {
-    TODBENCH_TRY(const PresentedTarget shown, show(one.state));
+    const auto shown = show(one.state, judge_frames);
+    if (judge && !*judge) return tl::unexpected(judge->error());
+    if (!shown) return tl::unexpected(shown.error());
     if (one.set_up < 0) {
       TODBENCH_TRY(const AveragedPicture picture, taker.average(options.registration_frames, stop));
       TODBENCH_TRY(moved_px, located(picture.kelvin, mounted(options.plate, one.state.mounting), where));
       continue;
     }
-    const ShownBars bars{one.set_up, one.level, shown.state.delta_t_k, one.state.mounting,
-                         where.shifted(one.state.shift_mm).moved(moved_px)};
-    const auto judged =
-        taker.average(options.frames, stop, [&](const Frame&, const cv::Mat1d& kelvin) { judge.add(kelvin, bars); });
-    if (!judged) return tl::unexpected(judged.error());
+    bars = {one.set_up, one.level, shown->state.delta_t_k, one.state.mounting,
+            where.shifted(one.state.shift_mm).moved(moved_px)};
+    for (int k = 0; k < options.frames; ++k) {
+      TODBENCH_TRY(const Frame frame, taker.next(stop));
+      TODBENCH_TRY(cv::Mat1d kelvin, to_kelvin(frame));
+      frames.push_back(std::move(kelvin));
+    }
   }
-  return judge.result();
+  judge_frames();
+  if (!*judge) return tl::unexpected(judge->error());
+  return (*judge)->result();
 }
 
 }  // namespace todbench

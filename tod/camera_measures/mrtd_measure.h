@@ -87,8 +87,9 @@ struct BarPair {
 /// Rectangles that are not part of a group of five bars.
 [[nodiscard]] std::vector<PlateRectangle> spots_of(const TargetPlate& plate);
 
-/// Shows a state of the target and waits until frames of it can be taken.
-using ShowState = std::function<Result<PresentedTarget>(const TargetState&)>;
+/// Calls `work`, shows a state of the target and waits until frames of it can be taken. Frames that arrive during the
+/// work are taken from the camera.
+using ShowState = std::function<Result<PresentedTarget>(const TargetState&, const std::function<void()>& work)>;
 
 /// States that the measure shows, in order: in each mounting first the contrast by which the plate is located, then
 /// every contrast from large to small and of both polarities, at the set-ups of this mounting.
