@@ -2,10 +2,12 @@
 // Absolute temperatures in measures.json.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/normal.h"
 #include "bench/session/measure_row.h"
 
 namespace todbench {
@@ -20,7 +22,14 @@ Interval repeatability_interval(const AbsoluteMeasure& measure) {
   return {.low = end(0.975), .high = end(0.025)};
 }
 
-void add_lines(MeasureLines& out, const AbsoluteMeasure& measure) {
+/// By the error of white noise from successive differences of frames: 1.5 times the variance of independent frames.
+Interval dynamic_range_interval(double value_db, int frames, double pixels) {
+  const double half = 20 * std::log10(1 + normal_z95 * std::sqrt(0.75 / (pixels * std::max(1, frames - 1))));
+  return {.low = value_db - half, .high = value_db + half};
+}
+
+/// `pixels`: of the picture.
+void add_lines(MeasureLines& out, const AbsoluteMeasure& measure, double pixels) {
   const auto add = [&](const char* name, const Estimate& found, const std::string& conditions) {
     out.lines.push_back(measure_line(name, found.value, found.interval(), conditions));
   };
@@ -42,10 +51,14 @@ void add_lines(MeasureLines& out, const AbsoluteMeasure& measure) {
     add("camera_pattern", *measure.camera_pattern_k, apart);
     add("source_pattern", *measure.source_pattern_k, apart);
   }
-  if (measure.lowest_k) out.lines.push_back(measure_line("range_low", measure.lowest_k, {}, "lowest count"));
-  if (measure.highest_k) out.lines.push_back(measure_line("range_high", measure.highest_k, {}, "highest count"));
+  const auto exact = [](double value) { return Interval{.low = value, .high = value}; };
+  if (measure.lowest_k)
+    out.lines.push_back(measure_line("range_low", measure.lowest_k, exact(*measure.lowest_k), "lowest count"));
+  if (measure.highest_k)
+    out.lines.push_back(measure_line("range_high", measure.highest_k, exact(*measure.highest_k), "highest count"));
   if (measure.dynamic_range_db)
-    out.lines.push_back(measure_line("dynamic_range", measure.dynamic_range_db, {},
+    out.lines.push_back(measure_line("dynamic_range", measure.dynamic_range_db,
+                                     dynamic_range_interval(*measure.dynamic_range_db, measure.frames, pixels),
                                      "from the lowest to the highest count, over the temporal noise of a pixel"));
 }
 
@@ -77,7 +90,8 @@ MeasureRow absolute_row() {
   return {.key = "absolute",
           .add =
               [](MeasureLines& out, const CameraMeasures& measures) {
-                if (measures.absolute) add_lines(out, *measures.absolute);
+                const double pixels = measures.view ? std::max(1, measures.view->picture.area()) : 1;
+                if (measures.absolute) add_lines(out, *measures.absolute, pixels);
               },
           .to_json =
               [](const CameraMeasures& measures) {
