@@ -20,6 +20,16 @@ double normal_below(double z) {
 }
 
 constexpr std::size_t most_parameters = 4;
+constexpr double least_energy = 0.02;  // of the mean: a threshold seven times the level
+
+double energy_of(const ContrastFunction& function, double phase) {
+  const double angle = 2 * std::numbers::pi * phase;
+  return 1 + function.swing[0] * std::cos(angle) + function.swing[1] * std::cos(2 * angle);
+}
+
+double energy_at(const ContrastFunction& function, double phase) {
+  return std::max(energy_of(function, phase), least_energy);
+}
 
 /// Share by a function, and its derivatives by ln level, exponent and swings.
 struct FittedShare {
@@ -32,7 +42,16 @@ FittedShare fitted_share(const ContrastFunction& of, const ContrastShare& at) {
   const double z = z75 * std::exp(of.exponent * u);
   const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
   const double by_u = density * z * of.exponent, angle = 2 * std::numbers::pi * at.phase;
-  return {normal_below(z), {-by_u, density * z * u, -by_u * std::cos(angle), -by_u * std::cos(2 * angle)}};
+  const double by_energy = 0.5 * by_u / energy_at(of, at.phase);
+  return {normal_below(z), {-by_u, density * z * u, by_energy * std::cos(angle), by_energy * std::cos(2 * angle)}};
+}
+
+/// Reduces the swing until the energy is positive at every phase.
+void keep_positive(ContrastFunction& function) {
+  double lowest = 1;
+  for (int i = 0; i <= 32; ++i) lowest = std::min(lowest, energy_of(function, i / 64.0));
+  if (lowest >= least_energy) return;
+  for (double& swing : function.swing) swing *= (1 - least_energy) / (1 - lowest);
 }
 
 }  // namespace
@@ -86,8 +105,7 @@ PassedContrast passed_contrast(std::span<const double> contrasts_k, std::span<co
 }
 
 double ContrastFunction::ln_ratio_at(double phase) const {
-  const double angle = 2 * std::numbers::pi * phase;
-  return swing[0] * std::cos(angle) + swing[1] * std::cos(2 * angle);
+  return -0.5 * std::log(energy_at(*this, phase));
 }
 
 double ContrastFunction::best_phase() const {
@@ -125,7 +143,10 @@ std::optional<ContrastFunction> fit_contrast(std::span<const ContrastShare> shar
     if (longest > largest_step) step *= largest_step / longest;
     found.level_k *= std::exp(step(0));
     found.exponent = std::clamp(found.exponent + step(1), least_exponent, most_exponent);
-    if (parameters == 4) found.swing[0] += step(2), found.swing[1] += step(3);
+    if (parameters == 4) {
+      found.swing[0] += step(2), found.swing[1] += step(3);
+      keep_positive(found);
+    }
     if (longest < 1e-9) break;
   }
   if (!(std::abs(std::log(found.level_k / near_k)) <= std::log(fitted_span))) return std::nullopt;

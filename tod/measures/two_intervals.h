@@ -32,10 +32,11 @@ struct PassedContrast {
 [[nodiscard]] PassedContrast passed_contrast(std::span<const double> contrasts_k, std::span<const ShareOfPairs> shares);
 
 /// Psychometric function of contrast, Phi(z75 (c / threshold)^exponent): the distance between sensitivity and contrast
-/// grows as a power (Foley and Legge 1981). Sampling changes the threshold with the phase p of a symmetric pattern:
-/// ln threshold = ln level + swing[0] cos(2 pi p) + swing[1] cos(4 pi p).
+/// grows as a power (Foley and Legge 1981). Sampling changes the energy of a symmetric pattern with its phase p, by the
+/// interference of its spectrum with the repeats at whole cycles per sample. The threshold falls with the root of the
+/// energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] cos(4 pi p)).
 struct ContrastFunction {
-  double level_k = 0;             ///< geometric mean of the thresholds over the phases
+  double level_k = 0;             ///< threshold of the mean energy over the phases
   double exponent = 1;            ///< between 0.3 and 8
   std::array<double, 2> swing{};  ///< 0 if phases were not fitted
 

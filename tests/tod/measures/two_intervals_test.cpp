@@ -52,7 +52,7 @@ TEST(FitContrast, FindsTheFunctionThatMadeTheShares) {
   for (const double phase : {-0.4, -0.2, 0.0, 0.1, 0.3}) {
     for (const double contrast : {0.01, 0.02, 0.04, 0.08, 0.16}) {
       const double angle = 2 * std::numbers::pi * phase;
-      const double threshold = 0.035 * std::exp(0.2 * std::cos(angle) - 0.1 * std::cos(2 * angle));
+      const double threshold = 0.035 / std::sqrt(1 - 0.7 * std::cos(angle) + 0.15 * std::cos(2 * angle));
       shares.push_back({contrast, below_normal(z75 * std::pow(contrast / threshold, 1.7)), phase});
     }
   }
@@ -62,10 +62,11 @@ TEST(FitContrast, FindsTheFunctionThatMadeTheShares) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->level_k, 0.035, 1e-6);
   EXPECT_NEAR(found->exponent, 1.7, 1e-4);
-  EXPECT_NEAR(found->swing[0], 0.2, 1e-4);
-  EXPECT_NEAR(found->swing[1], -0.1, 1e-4);
-  // 0.2 cos a - 0.1 cos 2a is lowest at a = pi: -0.3.
+  EXPECT_NEAR(found->swing[0], -0.7, 1e-4);
+  EXPECT_NEAR(found->swing[1], 0.15, 1e-4);
+  // The energy 1 - 0.7 cos a + 0.15 cos 2a is largest at a = pi: 1.85.
   EXPECT_EQ(found->best_phase(), 0.5);
+  EXPECT_NEAR(found->ln_ratio_at(0.5), -0.5 * std::log(1.85), 1e-4);
 }
 
 TEST(FitContrast, FindsNoThresholdWhereNoneIs) {
