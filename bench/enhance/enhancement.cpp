@@ -89,6 +89,10 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
     result.curve.sensor = inputs.sensor.name;
     result.curve.observer = observer_name(plan, inputs);
     if (measured) keep_noise(*measured, result.curve);
+    if (options.dither > 1) {
+      // Successive frames differ by their places within a pixel, which is no memory of the noise.
+      for (TodPoint& point : result.curve.points) point.lag1_correlation.reset();
+    }
     for (TodPoint& point : result.curve.points) {
       point.estimator_reason =
           plan.fit.estimator == EstimatorChoice::automatic ? EstimatorReason::package : EstimatorReason::plan;

@@ -134,7 +134,8 @@ Result<void> scan_with_stage(OpenedBench& bench, const StageScan& scan) {
   if (!(scan.pixel_mm > 0) || scan.steps < 2)
     return fail(ErrorCode::invalid_input, "a scan needs two places or more and a pixel above 0 mm");
   bench.warnings.push_back(
-      fmt::format("the stage visits {0} x {0} places of a pixel in turn, one frame at each, in steps of {1:.4g} mm",
+      fmt::format("the stage visits {0} x {0} places of a pixel in turn, one frame at each, in steps of {1:.4g} mm: "
+                  "curve, blur and noise of this session are those of a scanned picture, not of the camera at rest",
                   scan.steps, scan.pixel_mm / scan.steps));
   const auto shared = std::make_shared<ScanState>();
   shared->target = std::move(bench.target);
@@ -170,11 +171,14 @@ Result<ExperimentOutcome> measure_scanned(const LoadedPlan& loaded, int steps, c
     return fail(ErrorCode::invalid_input,
                 "an observer whose noise is proportional to the sensor noise cannot judge the frames of a scan");
   EffectPlanner planner;
-  TODBENCH_TRY(const auto inputs, experiment_inputs(loaded, planner));
+  TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
   TODBENCH_TRY(OpenedBench bench, open_bench(loaded, stop, options.host, listener.on_phase, listener.on_wait));
   const StageScan scan{.steps = steps, .pixel_mm = plan.target.distance_m * plan.camera.ifov_mrad};
   if (auto scanned = scan_with_stage(bench, scan); !scanned) return tl::unexpected(scanned.error());
+  // Among the notes of the session, which its report shows.
+  inputs.warnings.push_back(std::move(bench.warnings.back()));
+  bench.warnings.pop_back();
   return measure_on_bench(loaded, inputs, std::move(bench), options, listener, std::move(stop));
 }
 

@@ -81,6 +81,10 @@ TEST_F(StageScanTest, OfTheInstrumentsIsProvenByTheFramesAndTheFinerPictureResol
   ASSERT_FALSE(dsr2.error) << dsr2.error->message;
   EXPECT_EQ(dsr2.samples_per_pixel, 2);
   ASSERT_EQ(dsr2.trials.size(), still.trials.size());
+  for (const PackageResult* result : {&still, &dsr2}) {
+    ASSERT_EQ(result->curve.points.size(), 1U);
+    EXPECT_FALSE(result->curve.points.front().lag1_correlation) << "frames differ by their places";
+  }
   const auto right = [](const std::vector<Trial>& trials) {
     return std::ranges::count_if(trials, [](const Trial& trial) { return trial.correct(); });
   };
