@@ -75,6 +75,7 @@ class RemappedTarget final : public Target {
     if (const auto found = shown_.find(state.delta_t_k); found != shown_.end()) actual.delta_t_k = found->second;
     return target_->present(actual, stop);
   }
+  [[nodiscard]] bool asks_again(const std::string& reason) override { return target_->asks_again(reason); }
 
  private:
   std::unique_ptr<Target> target_;

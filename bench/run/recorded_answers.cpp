@@ -17,6 +17,7 @@ constexpr const char* rest_tag = "rest";
 constexpr const char* calls_tag = "calls";
 constexpr const char* recovery_tag = "recovery";
 constexpr const char* target_tag = "target";
+constexpr const char* again_tag = "again";
 
 std::string clock_tag(Moment why) {
   return "clock." + std::string(to_string(why));
@@ -84,6 +85,10 @@ Reading recovery_answer(const Result<void>& back) {
   return {recovery_tag, to_line(json_of(failed, outcome_fields).value_or(Json()))};
 }
 
+Reading again_answer() {
+  return {again_tag, "1"};
+}
+
 Reading target_answer(const TargetState& set, const Result<PresentedTarget>& said) {
   const TargetAnswer answer = said ? TargetAnswer{set, std::nullopt, *said} : TargetAnswer{set, said.error()};
   return {target_tag, to_line(json_of(answer, target_answer_fields).value_or(Json()))};
@@ -145,6 +150,12 @@ Result<PresentedTarget> RecordedAnswers::target(const TargetState& set) {
   if (recorded != set) return refuse("a target set to " + described(set), described(answer->set));
   if (answer->failed) return tl::unexpected(*answer->failed);
   return answer->said;
+}
+
+bool RecordedAnswers::again() {
+  if (disagreement_ || next_ == readings_.size() || readings_[next_].tag != again_tag) return false;
+  ++next_;
+  return true;
 }
 
 Result<void> RecordedAnswers::agreed() const {

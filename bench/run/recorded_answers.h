@@ -23,6 +23,8 @@ inline constexpr std::string_view answers_format = "2";
 [[nodiscard]] Reading rest_answer(bool rests);
 [[nodiscard]] Reading calls_answer(std::int64_t calls);
 [[nodiscard]] Reading recovery_answer(const Result<void>& back);
+/// The target asks for its state again. Recorded only if it does.
+[[nodiscard]] Reading again_answer();
 [[nodiscard]] Reading target_answer(const TargetState& set, const Result<PresentedTarget>& said);
 
 /// Replays the recorded answers in order, to the same questions in the same order. A question that differs from the
@@ -42,6 +44,9 @@ class RecordedAnswers {
   /// The recorded report of the target. Errors: `invalid_input` if the target was set otherwise, because the frames
   /// show another target.
   [[nodiscard]] Result<PresentedTarget> target(const TargetState& set);
+
+  /// Returns whether the target asked for its state again at this point.
+  [[nodiscard]] bool again();
 
   /// Returns whether every recorded answer was given.
   [[nodiscard]] bool at_end() const { return next_ == readings_.size(); }

@@ -72,6 +72,11 @@ class RecordingTarget final : public Target {
     (void)stream_->append_reading(target_answer(state, said));
     return said;
   }
+  [[nodiscard]] bool asks_again(const std::string& reason) override {
+    const bool again = target_->asks_again(reason);
+    if (again) (void)stream_->append_reading(again_answer());
+    return again;
+  }
 
  private:
   std::unique_ptr<Target> target_;
@@ -112,6 +117,7 @@ class ReplayedTarget final : public Target {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the target was presented");
     return answers_->target(state);
   }
+  [[nodiscard]] bool asks_again(const std::string&) override { return answers_->again(); }
 
  private:
   std::shared_ptr<RecordedAnswers> answers_;

@@ -96,6 +96,11 @@ class SplicedTarget final : public Target {
     splice_->live = true;
     return target_->present(state, std::move(stop));
   }
+  /// A slip that ended the first part is mended in the second.
+  [[nodiscard]] bool asks_again(const std::string& reason) override {
+    if (!splice_->live && recorded_->asks_again(reason)) return true;
+    return (splice_->live || answers_->at_end()) && target_->asks_again(reason);
+  }
 
  private:
   std::unique_ptr<Target> recorded_, target_;

@@ -23,7 +23,10 @@ class PromptTarget final : public Target {
         !std::isfinite(state.shift_mm.y))
       return fail(ErrorCode::invalid_input, "a target needs a plate, a finite contrast and a finite shift");
     const auto start = now_();
-    const OperatorRequest request = request_between(std::exchange(last_, std::nullopt), state);
+    OperatorRequest request = request_between(std::exchange(last_, std::nullopt), state);
+    if (!doubt_.empty()) request.steps.insert(request.steps.begin(), CheckAgain{std::exchange(doubt_, {})});
+    if (state != asked_for_) slips_ = 0;
+    asked_for_ = state;
     if (!request.steps.empty()) {
       const auto answer = ask_(request, stop);
       if (!answer) return fail("asking the operator", answer.error());
@@ -37,11 +40,24 @@ class PromptTarget final : public Target {
     return presented;
   }
 
+  bool asks_again(const std::string& reason) override {
+    if (++slips_ > most_slips) return false;
+    last_.reset();
+    doubt_ = reason;
+    return true;
+  }
+
  private:
+  /// In a row for one state: a fault that the operator cannot mend ends the run.
+  static constexpr int most_slips = 3;
+
   AskOperator ask_;
   std::function<std::chrono::steady_clock::time_point()> now_;
   TargetCapabilities capabilities_;
   std::optional<TargetState> last_;  // empty: unknown, request everything
+  std::optional<TargetState> asked_for_;
+  std::string doubt_;  // reason of the next request; empty: none
+  int slips_ = 0;
 };
 
 }  // namespace

@@ -185,6 +185,43 @@ class Run {
       return fail(ErrorCode::invalid_input,
                   "the schedule names the plate '" + state.plate + "', which the plan does not list");
     if (auto corrected = correct_when_due(); !corrected) return corrected;
+    for (;;) {
+      const Kept before{result_.set_ups.size(), result_.contrasts.size(), result_.judged_contrasts.size(),
+                        result_.grey_frames.size()};
+      const auto shown = show(*plate, state);
+      if (shown || shown.error().code != ErrorCode::calibration || target_failed_ ||
+          !target_.asks_again(shown.error().message))
+        return shown;
+      note("presentation " + std::to_string(presentation_) + " is requested again: " + shown.error().message);
+      forget_set_up(state, before);
+    }
+  }
+
+  /// Numbers of results before a presentation.
+  struct Kept {
+    std::size_t set_ups, contrasts, judged_contrasts, grey_frames;
+  };
+
+  /// Drops the results of a set-up that was not the requested one.
+  void forget_set_up(const TargetState& state, const Kept& kept) {
+    const auto cut = [](auto& list, std::size_t count) {
+      if (list.size() > count) list.erase(list.begin() + static_cast<std::ptrdiff_t>(count), list.end());
+    };
+    if (result_.set_ups.size() > kept.set_ups) registered_.erase({state.plate, state.mounting});
+    cut(result_.set_ups, kept.set_ups);
+    cut(result_.contrasts, kept.contrasts);
+    cut(result_.judged_contrasts, kept.judged_contrasts);
+    cut(result_.grey_frames, kept.grey_frames);
+    current_set_up_.reset();
+    current_contrast_.reset();
+    if (!result_.set_ups.empty()) return;
+    // The scale of the run came from this set-up.
+    scale_px_per_mm_ = 0;
+    for (PreparedPlate& plate : plates_) plate = {plate.plate, {}, {}};
+  }
+
+  Result<void> show(PreparedPlate& prepared, const TargetState& state) {
+    PreparedPlate* const plate = &prepared;
     if (auto presented = present(state); !presented) return presented;
     const auto there_ns = host_.now_ns(Moment::scene_changed);
     if (!there_ns) return tl::unexpected(there_ns.error());

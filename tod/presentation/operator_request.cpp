@@ -48,6 +48,10 @@ std::string words(const MoveHotBar& step) {
                  : "take the hot bar out of the picture";
 }
 
+std::string words(const CheckAgain& step) {
+  return "the picture contradicts the last request (" + step.reason + "). Check each step again";
+}
+
 }  // namespace
 
 OperatorRequest request_between(const std::optional<TargetState>& last, const TargetState& next) {

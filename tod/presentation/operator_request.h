@@ -44,7 +44,13 @@ struct MoveHotBar {
   bool operator==(const MoveHotBar&) const = default;
 };
 
-using OperatorStep = std::variant<PutInPlate, Remount, SetContrast, MoveSlightly, MoveHotBar>;
+/// The picture contradicts the last request: its steps follow again.
+struct CheckAgain {
+  std::string reason;
+  bool operator==(const CheckAgain&) const = default;
+};
+
+using OperatorStep = std::variant<PutInPlate, Remount, SetContrast, MoveSlightly, MoveHotBar, CheckAgain>;
 
 /// One request to the operator, to be done in the order of its steps.
 struct OperatorRequest {

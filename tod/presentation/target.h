@@ -59,6 +59,9 @@ class Target {
   /// Returns when the state is reached and stable, or when `stop` is requested (`interrupted`, within a second).
   /// Errors: `timeout` (does not settle), `disconnected`, `not_found`, `invalid_input` (a state it cannot show).
   [[nodiscard]] virtual Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) = 0;
+  /// Called if the frames contradict the last report of present(), with the reason. True: present() asks for the state
+  /// again, because a hand can slip; the same presentation is then repeated. False: the contradiction ends the run.
+  [[nodiscard]] virtual bool asks_again(const std::string& /*reason*/) { return false; }
   /// The same target if it can run, else null. Lives as long as the target.
   [[nodiscard]] virtual MovingTarget* moving() { return nullptr; }
   /// The same target if it can step at once, else null. Lives as long as the target.

@@ -87,6 +87,19 @@ TEST(RecordedAnswers, AnAnswerThatWasDamagedIsRefused) {
   EXPECT_EQ(torn.target(state).error().code, ErrorCode::invalid_input);
 }
 
+TEST(RecordedAnswers, ATargetAsksAgainWhereItDidAndNowhereElse) {
+  PresentedTarget reached;
+  reached.state = state;
+  RecordedAnswers answers("r", {target_answer(state, reached), again_answer(), target_answer(state, reached)});
+
+  ASSERT_TRUE(answers.target(state));
+  EXPECT_TRUE(answers.again());
+  EXPECT_FALSE(answers.again()) << "the next answer is a report";
+  ASSERT_TRUE(answers.target(state));
+  EXPECT_FALSE(answers.again()) << "older recordings end here";
+  EXPECT_TRUE(answers.agreed());
+}
+
 TEST(RecordedAnswers, BehindTheLastOneTheRecordingEndsLikeItsFrames) {
   RecordedAnswers answers("r", {});
 
