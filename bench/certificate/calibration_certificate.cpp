@@ -2,11 +2,14 @@
 #include "bench/certificate/calibration_certificate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "acquisition/base/try.h"
 #include "bench/judgement/demand_kinds.h"
+#include "bench/plan/quantity.h"
 #include "bench/report/markup.h"
+#include "bench/session/answered_instruments.h"
 #include "bench/session/build_info.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
@@ -68,8 +71,9 @@ Result<void> check_order(const OrderPlan& order, const Provenance& provenance) {
   need("issued", order.issued);
   need("authorised_by", order.authorised_by);
   if (!missing.empty()) {
-    return fail(ErrorCode::invalid_input, "a certificate needs " + missing +
-                                              ": state them in section [order] of a file, and name it with --order");
+    return fail(ErrorCode::invalid_input,
+                "a certificate needs " + missing +
+                    ": state them in section [order] of the plan, or of a file named with --order");
   }
   if (order.issued < day_of(provenance.ended_utc)) {
     return fail(ErrorCode::invalid_input,
@@ -86,6 +90,8 @@ Result<void> check_session_state(const Session& session) {
   const auto wrong = [](const std::string& why) { return fail(ErrorCode::invalid_input, why); };
   if (session.cut_off || !session.complete())
     return wrong("the run ended early: a certificate needs a complete session");
+  const auto contradictions = contradicted_instruments(session.provenance.instruments, session.provenance.target);
+  if (!contradictions.empty()) return wrong(contradictions.front());
   if (session.provenance.side != Side::measured || !session.provenance.camera)
     return wrong("no camera was measured: a simulation gets no certificate");
   if (!session.curve || session.curve->points.empty()) return wrong("the session has no curve to certify");
@@ -233,11 +239,50 @@ Result<Markup> point_result(const TodPoint& point, const PointUncertainty& expan
                            dcc("data", dcc("list", contrast + size + inverse)));
 }
 
+/// D-SI units of the units of physical measures.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> si_units{
+    {{"1", "\\one"},
+     {"%", "\\percent"},
+     {"Hz", "\\hertz"},
+     {"K", "\\kelvin"},
+     {"K/K", "\\one"},
+     {"K/min", "\\kelvin\\minute\\tothe{-1}"},
+     {"deg", "\\degree"},
+     {"mrad", "\\milli\\radian"},
+     {"ms", "\\milli\\second"}}};
+
+/// Normal quantile of a two-sided 95 % interval.
+constexpr double normal_k95 = 1.96;
+
+/// A physical measure: its interval with the budget, else its statistical interval. Empty if it has no two-sided
+/// interval or no D-SI unit.
+Result<Markup> measure_result(const MeasureLine& line) {
+  const Interval& interval = line.expanded.value_or(line.ci95);
+  const auto unit = std::find_if(si_units.begin(), si_units.end(), [&](const auto& u) { return u.first == line.unit; });
+  if (!line.value || !interval.low || !interval.high || unit == si_units.end()) return Markup{};
+  const Quantity* known = find_quantity(line.measure);
+  TODBENCH_TRY(const Markup value, quantity(line.measure, unit->second, *line.value,
+                                            CertifiedUncertainty{half_width(*line.value, interval), normal_k95}));
+  const std::string words =
+      (known == nullptr ? "" : std::string(known->definition) + " ") +
+      "Interval of 95 %: " + number_text(*interval.low) + " to " + number_text(*interval.high) + " " + line.unit +
+      (line.expanded ? ", with the uncertainty budget" : ", random variation only: the budget has no row for it") +
+      (line.conditions.empty() ? "" : ". Conditions: " + line.conditions);
+  return dcc("result", dcc_rich("name", known == nullptr ? std::string_view(line.measure) : known->title) +
+                           dcc_rich("description", words) + dcc("data", value));
+}
+
 Result<Markup> results(const Session& session) {
   Markup all;
   for (const TodPoint& point : session.curve->points) {
     TODBENCH_TRY(const Markup one, point_result(point, *point_at(*session.uncertainty, point.set_delta_t_k)));
     all += one;
+  }
+  if (session.measures && session.measures->main) {
+    for (const MeasureLine& line : session.measures->main->lines) {
+      TODBENCH_TRY(const Markup one, measure_result(line));
+      all += one;
+    }
   }
   return dcc("results", all);
 }

@@ -385,7 +385,13 @@ PlanSection instrument_section() {
             .sentence =
                 "Last day on which the calibration is valid, YYYY-MM-DD. If it has passed, the measurement is rejected",
             .place = in_row(rows, &InstrumentPlan::calibration_due),
-            .check = check_due_date}},
+            .check = check_due_date},
+           {.name = "dcc",
+            .type = TextKey{},
+            .sentence = "Digital calibration certificate of a black body (XML). The file gives the serial number, the "
+                        "number of the certificate and the row of the uncertainty budget, which the session keeps",
+            .place = in_row(rows, &InstrumentPlan::dcc),
+            .written_at_default = false}},
       .rows = rows_of(rows),
       .form = {"Instruments", "planInstruments"}};
 }

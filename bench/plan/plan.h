@@ -15,6 +15,7 @@
 #include "acquisition/base/result.h"
 #include "bench/plan/budget_row.h"
 #include "bench/plan/conformity_rule.h"
+#include "bench/plan/order.h"
 #include "bench/plan/resources.h"
 #include "hvs/eye/viewed_display.h"
 #include "sim_devices/module/module_plan.h"
@@ -392,6 +393,8 @@ struct ReportPlan {
 struct InstrumentPlan {
   std::string name, serial, certificate;
   std::string calibration_due;  ///< "YYYY-MM-DD", the last valid day; empty: no due date
+  /// Digital calibration certificate. Empty in a plan that was read: the numbers of the file are then in the plan.
+  std::string dcc{};
   bool operator==(const InstrumentPlan&) const = default;
 };
 
@@ -420,12 +423,17 @@ struct Plan {
   ReportPlan report;
   UncertaintyPlan uncertainty;
   std::vector<InstrumentPlan> instruments;
+  OrderPlan order{};  ///< all defaults: not stated
   /// Rows of [[module]]. Modules of place picture run in this order behind camera and twin. At most one has place
   /// observer.
   std::vector<ModulePlan> modules{};
   bool operator==(const Plan&) const = default;
 };
 
+/// Returns whether the plan states an entry of [order].
+[[nodiscard]] inline bool has_order(const Plan& plan) {
+  return plan.order != OrderPlan{};
+}
 /// Returns whether the plan has a section [display].
 [[nodiscard]] inline bool has_display(const Plan& plan) {
   return plan.display != ViewedDisplay{};

@@ -11,7 +11,7 @@ const std::vector<PlanSection>& plan_sections() {
       fit_section(),           measurement_section(),    measures_section(),    limits_section(),
       acuity_limits_section(), measure_limits_section(), zone_limits_section(), fleet_section(),
       uncertainty_section(),   budget_row_section(),     instrument_section(),  module_section(),
-      motion_section(),        report_section(),         display_section()};
+      motion_section(),        report_section(),         order_section(),       display_section()};
   return sections;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "acquisition/base/try.h"
+#include "bench/plan/certificate_reader.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_keys.h"
 
@@ -57,10 +58,13 @@ class PlanReader {
         for (const PlanKey& key : section.keys) read_key(tables[row], {&section, &key, row});
       }
     }
+    read_certificates();
     for (const PlanMistake& found : mistakes_in(plan_)) {
       // Missing keys have been reported already.
       if (missing_.contains({found.at.key, found.at.row})) continue;
-      reject(tables_.open(*found.at.section)[found.at.row], *found.at.key, found.mistake);
+      std::vector<TomlReader>& tables = tables_.open(*found.at.section);
+      // A row from a certificate is not in the file.
+      if (found.at.row < tables.size()) reject(tables[found.at.row], *found.at.key, found.mistake);
     }
   }
 
@@ -88,6 +92,16 @@ class PlanReader {
     key.place.set(plan_, at.row, read_value(type, table, name, fallback));
     if (std::holds_alternative<ResourceKey>(type) || std::holds_alternative<ResourcesKey>(type))
       read_named(table, at, type);
+  }
+
+  /// Puts the numbers of the certificates of instruments into the plan.
+  void read_certificates() {
+    const KeyAt at = plan_key("instrument.dcc");
+    for (std::size_t row = 0; row < plan_.instruments.size(); ++row) {
+      if (plan_.instruments[row].dcc.empty()) continue;
+      if (auto applied = apply_certificate(plan_, row, folder_); !applied)
+        reject(tables_.open(*at.section)[row], *at.key, {std::nullopt, applied.error().message});
+    }
   }
 
   /// Makes the references of a key absolute in the plan and reads the parts.

@@ -30,6 +30,9 @@ inline constexpr NumberRange share = NumberRange::between(0, 1);
 // display_keys.cpp
 [[nodiscard]] PlanSection display_section();
 
+// order_keys.cpp
+[[nodiscard]] PlanSection order_section();
+
 // run_keys.cpp
 [[nodiscard]] PlanSection observer_section();
 [[nodiscard]] PlanSection simulation_section();

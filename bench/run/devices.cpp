@@ -14,6 +14,7 @@
 #include "bench/run/display_target.h"
 #include "bench/run/reconnecting_source.h"
 #include "bench/run/terminal_operator.h"
+#include "bench/session/answered_instruments.h"
 #include "tod/instruments/prompt_target.h"
 #include "tod/instruments/scpi_target.h"
 #ifdef TODBENCH_WITH_ARAVIS
@@ -255,6 +256,9 @@ Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, c
   auto target = open_target(loaded, stop, host.ask_operator, on_wait);
   if (!target) return target_failure("opening the target", target.error());
   bench.target = std::move(*target);
+  for (std::string& sentence : contradicted_instruments(plan.instruments, bench.target->capabilities().description)) {
+    bench.warnings.push_back(std::move(sentence));
+  }
   return bench;
 }
 

@@ -115,6 +115,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   data.plan = provenance.effects;
   data.cost = session.cost;
   data.letterhead = session.parts.letterhead;
+  if (has_order(plan)) data.order = plan.order;
   data.measures = session.measures;
   if (!session.curve && session.measures) data.title = "Measurement report";
   data.uncertainty = session.uncertainty;

@@ -2,6 +2,7 @@
 """run_control_test.py PROGRAM SOURCE: the client of docs/examples against the program, and a foreign reader of certificates."""
 import json
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -92,7 +93,7 @@ class Certificate(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = Path(tempfile.mkdtemp())
         cls.addClassCleanup(shutil.rmtree, cls.folder)
-        (cls.folder / "plan.toml").write_text(plan(BUDGET))
+        (cls.folder / "plan.toml").write_text(plan(BUDGET, "[measures]\nnoise = true\n", ORDER))
         cls.order = cls.folder / "order.toml"
         cls.order.write_text(ORDER)
         cls.session = cls.folder / "session"
@@ -135,6 +136,51 @@ class Certificate(unittest.TestCase):
         acuity = quantities["75 % acuity"]
         self.assertAlmostEqual(float(acuity.find("si:value", NAMES).text), 1 / value, 12)
 
+    def test_the_order_of_the_plan_makes_the_same_certificate(self):
+        other = self.folder / "of-the-plan.xml"
+        made = run("certificate", self.session, "--dcc", other)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertEqual(other.read_bytes(), self.xml.read_bytes())
+
+    def test_it_contains_the_physical_measures_with_their_intervals(self):
+        lines = json.loads((self.session / "measures.json").read_text())["main"]["quantities"]
+        netd = next(line for line in lines if line["measure"] == "netd")
+        root = ElementTree.parse(self.xml).getroot()
+        found = [q.find("si:real", NAMES) for q in root.findall(".//dcc:result//dcc:quantity", NAMES)
+                 if q.find("dcc:name/dcc:content", NAMES).text == "netd"]
+        self.assertEqual(len(found), 1)
+        value, unit = (found[0].find(f"si:{key}", NAMES).text for key in ("value", "unit"))
+        self.assertEqual((float(value), unit), (netd["value"], "\\kelvin"))
+        low, high = netd.get("expanded_ci95") or netd["ci95"]
+        uncertainty = float(found[0].find("si:expandedUnc/si:uncertainty", NAMES).text)
+        self.assertAlmostEqual(uncertainty, max(netd["value"] - low, high - netd["value"]), 12)
+
+    def test_a_hostile_certificate_of_an_instrument_is_a_sentence(self):
+        hostile = {
+            "bomb.xml": b'<!DOCTYPE l [<!ENTITY a "haha">' +
+                        b"".join(b'<!ENTITY %c "%s">' % (98 + i, b"&%c;" % (97 + i) * 10) for i in range(9)) +
+                        b"]><l>&j;</l>",
+            "external.xml": b'<!DOCTYPE l [<!ENTITY x SYSTEM "file:///etc/passwd">]><l>&x;</l>',
+            "deep.xml": b"<a>" * 1_000_000,
+            "huge.xml": None,
+        }
+        for name, content in hostile.items():
+            file = self.folder / name
+            with open(file, "wb") as out:
+                out.write(content or b"")
+                if content is None:
+                    out.truncate(1 << 30)  # sparse
+            self.folder.joinpath("hostile.toml").write_text(
+                plan(f'[[instrument]]\nname = "black body"\ndcc = "{name}"\n'))
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+            ended = run("plan", self.folder / "hostile.toml")
+            self.assertEqual(ended.returncode, 2, name + ended.stderr)
+            self.assertEqual(ended.stderr.count("\n"), 1, ended.stderr[:500])
+            self.assertIn("key 'dcc' in [instrument]", ended.stderr)
+            self.assertLess(len(ended.stderr), 600)
+            # The largest child so far measured a session; a file of 1 GiB would exceed it.
+            self.assertLess(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, max(before, 400_000))
+
     def test_xmllint_finds_it_well_formed(self):
         if shutil.which("xmllint") is None:
             self.skipTest("xmllint is not installed")
@@ -142,7 +188,8 @@ class Certificate(unittest.TestCase):
 
     def test_an_order_without_what_it_needs_is_refused(self):
         order = self.folder / "other.toml"
-        self.refused("a certificate needs customer, report_number", self.session)
+        order.write_text("[order]\n")
+        self.refused("a certificate needs customer, report_number", self.session, "--order", order)
         order.write_text("[order]\ncustomer = \"A\"\n")
         self.refused("a certificate needs report_number, laboratory, country, issued, authorised_by", self.session,
                      "--order", order)

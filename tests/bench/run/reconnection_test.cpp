@@ -17,7 +17,7 @@ namespace todbench {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(Reconnection, GoesThroughEveryStateWhenAllGoesWell) {
   auto state = next_state(LinkState::streaming, LinkEvent::lost);
@@ -135,7 +135,7 @@ class ScriptedSource final : public FrameSource {
   std::uint64_t frames_ = 0;
 };
 
-class ReconnectingSourceTest : public testing::Test {
+class ReconnectingSourceTest : public ::testing::Test {
  protected:
   ~ReconnectingSourceTest() override { script_->release(); }
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reader of digital calibration certificates of instruments (DCC, XML with D-SI units): serial number, certificate
+// number, and quantities with expanded uncertainty. A subset; see docs/reference/certificate.md.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "bench/plan/budget_row.h"
+#include "bench/plan/plan.h"
+
+namespace todbench {
+
+/// A quantity of the results.
+struct CertifiedValue {
+  std::string name;
+  std::string unit;  ///< D-SI, "\kelvin"
+  double value = 0;
+  double uncertainty = 0;  ///< expanded, in `unit`
+  double coverage_factor = 0;
+};
+
+struct InstrumentCertificate {
+  std::string number;  ///< its unique identifier
+  std::string serial;  ///< of the item
+  std::vector<CertifiedValue> values;
+};
+
+/// Parses a certificate. Errors: `invalid_input` (parse_xml(); another document; no number; a quantity with an
+/// uncertainty that is negative or not a number).
+[[nodiscard]] Result<InstrumentCertificate> parse_certificate(std::string_view xml);
+
+/// Returns the row of the budget of a black body: the largest expanded uncertainty of its temperatures, with its
+/// coverage factor. Errors: `invalid_input` (no temperature has an expanded uncertainty).
+[[nodiscard]] Result<BudgetRow> black_body_row(const InstrumentCertificate& certificate, const std::string& file);
+
+/// Fills in the serial number and the certificate of an instrument from its file `dcc`, relative to `folder`, adds the
+/// row of the black body to the budget, and clears `dcc`: the plan then has all numbers. Errors: `invalid_input` (file
+/// too large, parse_certificate(), another serial number or certificate than stated, a second row for the calibration
+/// of the black body).
+[[nodiscard]] Result<void> apply_certificate(Plan& plan, std::size_t row, const std::filesystem::path& folder);
+
+}  // namespace todbench
