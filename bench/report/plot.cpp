@@ -88,7 +88,7 @@ class Canvas {
 
  private:
   static double fraction(const PlotAxis& axis, double value) {
-    if (axis.scale == AxisScale::linear) return (value - axis.low) / (axis.high - axis.low);
+    if (axis.scale != AxisScale::logarithmic) return (value - axis.low) / (axis.high - axis.low);
     if (value <= 0) return -1;
     return std::log(value / axis.low) / std::log(axis.high / axis.low);
   }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/report/plot_ticks.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <span>
 
@@ -81,6 +84,20 @@ std::vector<Tick> logarithmic_ticks(double low, double high, int most_labels) {
   return labelled;
 }
 
+std::string date_label(double days) {
+  const std::chrono::year_month_day date{std::chrono::sys_days(std::chrono::days(std::lround(days)))};
+  return fmt::format("{:04d}-{:02d}-{:02d}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()));
+}
+
+/// A date is twice as wide as a number.
+std::vector<Tick> date_ticks(double low, double high, int most_labels) {
+  std::vector<Tick> ticks = linear_ticks(low, high, std::max(2, most_labels / 2));
+  std::erase_if(ticks, [](const Tick& tick) { return std::abs(tick.value - std::round(tick.value)) > slack; });
+  for (Tick& tick : ticks) tick.label = date_label(tick.value);
+  return ticks;
+}
+
 }  // namespace
 
 Result<void> validate(const PlotAxis& axis) {
@@ -98,6 +115,7 @@ std::vector<Tick> axis_ticks(const PlotAxis& axis, int most_labels) {
       if (value >= axis.low && value <= axis.high) ticks.push_back({value, stated(value)});
     return ticks;
   }
+  if (axis.scale == AxisScale::dates) return date_ticks(axis.low, axis.high, most_labels);
   return axis.scale == AxisScale::linear ? linear_ticks(axis.low, axis.high, most_labels)
                                          : logarithmic_ticks(axis.low, axis.high, most_labels);
 }

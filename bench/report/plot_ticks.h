@@ -9,7 +9,11 @@
 
 namespace todbench {
 
-enum class AxisScale { linear, logarithmic };
+enum class AxisScale {
+  linear,
+  logarithmic,
+  dates,  ///< days since 1970-01-01, labelled "2026-11-27"
+};
 
 struct PlotAxis {
   std::string label;  ///< with its unit: "Size S (mrad)"
@@ -28,7 +32,7 @@ struct Tick {
 
 /// Returns the ticks inside the axis in increasing order, at most `most_labels` of them labelled. Linear: steps of 1, 2
 /// or 5 times a power of ten. Logarithmic: decades, with 2, 5 or more multiples if there is room; minor ticks at
-/// integer multiples.
+/// integer multiples. Dates: whole days, in linear steps.
 [[nodiscard]] std::vector<Tick> axis_ticks(const PlotAxis& axis, int most_labels);
 
 }  // namespace todbench

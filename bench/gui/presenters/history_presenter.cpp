@@ -12,10 +12,6 @@ namespace {
 
 constexpr double two_sided_95 = 1.959964;
 
-double days_since_first(const HistorySeries& series, double days) {
-  return days - series.values.front().days;
-}
-
 /// Returns an axis that contains these numbers with a margin; never empty.
 PlotAxis axis_around(std::string label, std::vector<double> numbers) {
   const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
@@ -24,12 +20,10 @@ PlotAxis axis_around(std::string label, std::vector<double> numbers) {
 }
 
 PlotAxis time_axis(const HistorySeries& series) {
-  const double last = days_since_first(series, series.values.back().days);
-  const double room = last > 0 ? 0.04 * last : 1;
-  return {.label = "Days since " + series.started_utc.front().substr(0, 10),
-          .low = -room,
-          .high = last + room,
-          .ticks = {}};
+  const double first = series.values.front().days, last = series.values.back().days;
+  // At least a day to either side, so that a date is on the axis.
+  const double room = std::max(1.0, 0.04 * (last - first));
+  return {.label = "Date (UTC)", .scale = AxisScale::dates, .low = first - room, .high = last + room, .ticks = {}};
 }
 
 Plot values_plot(const HistorySeries& series, const std::optional<ControlChart>& chart) {
@@ -38,10 +32,8 @@ Plot values_plot(const HistorySeries& series, const std::optional<ControlChart>&
   for (const ChartValue& value : series.values) {
     const double half = two_sided_95 * value.u;
     const double low = shown_value(series, value.value - half), high = shown_value(series, value.value + half);
-    values.points.push_back({.x = days_since_first(series, value.days),
-                             .y = shown_value(series, value.value),
-                             .x_interval = {},
-                             .y_interval = {low, high}});
+    values.points.push_back(
+        {.x = value.days, .y = shown_value(series, value.value), .x_interval = {}, .y_interval = {low, high}});
     numbers.insert(numbers.end(), {low, high});
   }
   Plot plot;
@@ -73,7 +65,7 @@ Plot standard_plot(const HistorySeries& series, const ControlChart& chart, std::
     PlotSeries line = style;
     for (const ChartPoint& point : chart.points) {
       const double y = value(point);
-      line.points.push_back({.x = days_since_first(series, point.days), .y = y, .x_interval = {}, .y_interval = {}});
+      line.points.push_back({.x = point.days, .y = y, .x_interval = {}, .y_interval = {}});
       numbers.push_back(y);
     }
     plot.series.push_back(std::move(line));

@@ -178,7 +178,7 @@ void PlotView::paintEvent(QPaintEvent* event) {
 
 void PlotView::set_axis(QCPAxis& axis, const PlotAxis& description, bool keep_range) {
   const PlotColours colours = plot_colours_of(theme_of(palette()));
-  axis.setScaleType(description.scale == AxisScale::linear ? QCPAxis::stLinear : QCPAxis::stLogarithmic);
+  axis.setScaleType(description.scale == AxisScale::logarithmic ? QCPAxis::stLogarithmic : QCPAxis::stLinear);
   axis.setTicker(QSharedPointer<QCPAxisTicker>(new ReportTicker(description)));
   if (!keep_range) axis.setRange(description.low, description.high);
   axis.setLabel(QString::fromStdString(description.label));

@@ -141,6 +141,21 @@ TEST(PlotTicks, LogarithmicTicksAreDecadesFilledWhereThereIsRoom) {
   EXPECT_THAT(labels(axis_ticks({"", AxisScale::logarithmic, 1.1, 4.3, {}}, 6)), ElementsAre("1.5", "2", "3"));
 }
 
+TEST(PlotTicks, DatesAreWholeDaysWithTheirNames) {
+  // 2026-11-20 is day 20777 of 1970.
+  const auto month = axis_ticks({.label = "", .scale = AxisScale::dates, .low = 20777, .high = 20807, .ticks = {}}, 6);
+  const auto hours =
+      axis_ticks({.label = "", .scale = AxisScale::dates, .low = 20776.6, .high = 20778.3, .ticks = {}}, 8);
+
+  ASSERT_FALSE(month.empty());
+  EXPECT_LE(month.size(), 3u);
+  EXPECT_EQ(month.front().value, 20780);
+  EXPECT_EQ(month.front().label, "2026-11-23");
+  ASSERT_EQ(hours.size(), 2u) << "half a day has no name";
+  EXPECT_EQ(hours[0].label, "2026-11-20");
+  EXPECT_EQ(hours[1].label, "2026-11-21");
+}
+
 TEST(PlotTicks, NoAxisHasMoreLabelsThanItHasRoomFor) {
   for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic}) {
     for (double high = 0.011; high < 1e6; high *= 1.37) {
