@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <memory>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "acquisition/base/rng.h"
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/session/open_session.h"
 #include "bench/session/provenance.h"
@@ -15,11 +14,6 @@
 
 namespace todbench {
 namespace {
-
-/// Fisher-Yates shuffle with reproducible random numbers.
-void shuffle(std::vector<std::size_t>& items, const RandomStream& stream) {
-  for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[stream.below(i, i)]);
-}
 
 double median(cv::Mat1f values) {
   std::vector<float> sorted(values.begin(), values.end());
@@ -32,17 +26,7 @@ double median(cv::Mat1f values) {
 
 std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials, const HumanOptions& options) {
   const RandomStream stream(options.seed, "human");
-  // Sizes of one row of the plate differ in the last bits of the description; micrometres identify them.
-  std::map<std::pair<double, std::int64_t>, std::vector<std::size_t>> groups;
-  for (std::size_t i = 0; i < trials.size(); ++i)
-    groups[{trials[i].trial.set_delta_t_k, std::llround(trials[i].trial.size_mm * 1000)}].push_back(i);
-  std::vector<std::size_t> chosen;
-  std::uint64_t number = 0;
-  for (auto& [key, members] : groups) {
-    shuffle(members, stream.sub(++number));
-    const auto count = std::min(members.size(), static_cast<std::size_t>(std::max(options.per_size, 0)));
-    chosen.insert(chosen.end(), members.begin(), members.begin() + static_cast<std::ptrdiff_t>(count));
-  }
+  std::vector<std::size_t> chosen = balanced_choice(trials, options.per_size, stream);
   shuffle(chosen, stream.sub(0));
   std::vector<JudgedTrial> out;
   out.reserve(chosen.size());
@@ -101,24 +85,17 @@ int HumanPresenter::background_level() const {
 }
 
 HumanPresenter::HumanPresenter(QObject* parent) : QObject(parent) {
-  hide_.setSingleShot(true);
-  connect(&hide_, &QTimer::timeout, this, [this] {
-    if (state_ != HumanState::showing) return;
-    state_ = HumanState::hidden;
-    emit updated();
-  });
+  connect(&screen_, &TimedPicture::updated, this, &HumanPresenter::updated);
 }
 
-QString HumanPresenter::begin(const std::vector<JudgedTrial>& trials, const Plan& plan,
-                              const std::filesystem::path& session, const HumanOptions& options) {
-  if (trials.empty()) return "There are no frames to show. Run a measurement first.";
-  // Answers to a session that takes none would be lost; its report may just be written.
-  if (const auto intact = require_intact(session); !intact) return QString::fromStdString(intact.error().message);
+void HumanPresenter::start(const Plan& plan, const std::filesystem::path& folder, const HumanOptions& options) {
   options_ = options;
   plan_ = plan;
-  session_ = session;
-  patches_ = patches_for_a_person(trials, options);
-  training_ = patches_for_training(trials, options);
+  session_ = folder;
+  blind_.reset();
+  blind_result_.reset();
+  patches_.clear();
+  training_.clear();
   trained_ = 0;
   feedback_.clear();
   means_.clear();
@@ -126,8 +103,67 @@ QString HumanPresenter::begin(const std::vector<JudgedTrial>& trials, const Plan
   shown_.clear();
   record_.reset();
   problem_.clear();
+}
+
+QString HumanPresenter::begin(const std::vector<JudgedTrial>& trials, const Plan& plan,
+                              const std::filesystem::path& session, const HumanOptions& options) {
+  if (trials.empty()) return "There are no frames to show. Run a measurement first.";
+  // Answers to a session that takes none would be lost; its report may just be written.
+  if (const auto intact = require_intact(session); !intact) return QString::fromStdString(intact.error().message);
+  start(plan, session, options);
+  for (JudgedTrial& judged : patches_for_a_person(trials, options)) patches_.push_back({0, std::move(judged), 1});
+  training_ = patches_for_training(trials, options);
   show_next();
   return {};
+}
+
+QString HumanPresenter::begin_blind(const std::filesystem::path& session, const std::vector<std::string>& packages,
+                                    bool with_twin, const Plan& plan, const std::filesystem::path& folder,
+                                    const HumanOptions& options) {
+  std::vector<EnhancementPackage> read;
+  for (const std::string& file : packages) {
+    auto package = read_package(file);
+    if (!package) return QString::fromStdString(package.error().message);
+    read.push_back(*std::move(package));
+  }
+  if (read.empty() && !with_twin) return "State at least one package, or select the simulated twin.";
+  start(plan, folder, options);
+  screen_.end(HumanState::idle);
+  preparing_ = true;
+  jobs_.start([this, session, read, with_twin, folder, options](const std::stop_token& stop) {
+    auto made = std::make_shared<Result<Blind>>(Blind{});
+    const auto sources = blind_sources(session, read, with_twin, folder, {}, stop);
+    Result<std::vector<BlindPatch>> patches =
+        sources ? blind_order(*sources, options.per_size, options.seed) : tl::unexpected(sources.error());
+    if (!patches) {
+      *made = tl::unexpected(patches.error());
+    } else {
+      for (const BlindSource& source : *sources) (*made)->names.push_back(source.name);
+      (*made)->patches = *std::move(patches);
+    }
+    QMetaObject::invokeMethod(
+        this, [this, made] { take(std::move(*made)); }, Qt::QueuedConnection);
+  });
+  emit updated();
+  return {};
+}
+
+void HumanPresenter::take(Result<Blind> blind) {
+  if (!preparing_) return;
+  preparing_ = false;
+  if (!blind) {
+    problem_ = QString::fromStdString(blind.error().message);
+    emit updated();
+    return;
+  }
+  blind_ = *std::move(blind);
+  patches_ = blind_->patches;
+  std::vector<JudgedTrial> trials;
+  for (const BlindPatch& patch : patches_) {
+    if (patch.samples_per_pixel == 1) trials.push_back(patch.judged);
+  }
+  training_ = patches_for_training(trials, options_);
+  show_next();
 }
 
 void HumanPresenter::show_next() {
@@ -135,18 +171,17 @@ void HumanPresenter::show_next() {
     finish();
     return;
   }
-  const JudgedTrial& next = training_left() > 0 ? training_[trained_] : patches_[answers_.size()];
-  picture_ =
-      at_display() ? picture_at_display(next, plan_.display) : picture_for_a_person(next, options_.magnification);
-  state_ = HumanState::showing;
-  since_shown_.start();
-  if (options_.shown_ms) hide_.start(*options_.shown_ms);
-  emit updated();
+  const bool trains = training_left() > 0;
+  const JudgedTrial& next = trains ? training_[trained_] : patches_[answers_.size()].judged;
+  const int samples = trains ? 1 : patches_[answers_.size()].samples_per_pixel;
+  screen_.show(at_display() ? picture_at_display(next, plan_.display)
+                            : picture_for_a_person(next, std::max(1, options_.magnification / samples)),
+               options_.shown_ms);
 }
 
 void HumanPresenter::answer(Apex apex) {
-  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
-  hide_.stop();
+  const auto response_s = screen_.take_answer();
+  if (!response_s) return;
   if (training_left() > 0) {
     const Apex truth = training_[trained_++].trial.truth;
     const auto word = to_string(truth);
@@ -157,16 +192,17 @@ void HumanPresenter::answer(Apex apex) {
     return;
   }
   feedback_.clear();
-  const JudgedTrial& patch = patches_[answers_.size()];
-  const LevelSpan grey = at_display() ? grey_levels(patch, plan_.display) : grey_levels(patch);
-  shown_.push_back({.kelvin = patch.patch_k,
+  const BlindPatch& patch = patches_[answers_.size()];
+  const LevelSpan grey = at_display() ? grey_levels(patch.judged, plan_.display) : grey_levels(patch.judged);
+  shown_.push_back({.kelvin = patch.judged.patch_k,
                     .black_k = grey.low,
                     .white_k = grey.high,
-                    .magnification = at_display() ? static_cast<int>(plan_.display.zoom) : options_.magnification,
+                    .magnification = at_display() ? static_cast<int>(plan_.display.zoom)
+                                                  : std::max(1, options_.magnification / patch.samples_per_pixel),
                     .limit_ms = options_.shown_ms,
-                    .response_s = static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9,
-                    .noise_k = patch.noise_k});
-  Trial trial = patch.trial;
+                    .response_s = *response_s,
+                    .noise_k = patch.judged.noise_k});
+  Trial trial = patch.judged.trial;
   trial.answer = apex;
   trial.scores = {};
   // Remove the model's answer: this trial is the person's.
@@ -177,10 +213,15 @@ void HumanPresenter::answer(Apex apex) {
 }
 
 void HumanPresenter::abort() {
-  if (state_ == HumanState::idle || state_ == HumanState::finished) return;
-  hide_.stop();
+  if (preparing_) {
+    preparing_ = false;
+    jobs_.stop();
+    emit updated();
+    return;
+  }
+  if (!screen_.awaits_answer()) return;
   if (answers_.empty()) {
-    state_ = HumanState::idle;
+    screen_.end(HumanState::idle);
     emit updated();
     return;
   }
@@ -188,17 +229,27 @@ void HumanPresenter::abort() {
 }
 
 void HumanPresenter::finish() {
-  picture_ = {};
-  state_ = HumanState::finished;
+  screen_.end(HumanState::finished);
+  PersonFacts person = options_.person;
+  person.judged_utc = utc_now();
+  person.training_answers = static_cast<int>(trained_);
+  if (blind_) {
+    std::vector<BlindAnswer> answers;
+    for (std::size_t i = 0; i < answers_.size(); ++i) answers.push_back({patches_[i].source, answers_[i], shown_[i]});
+    auto result = todbench::blind_result(blind_->names, answers, plan_);
+    if (result) blind_result_ = *std::move(result);
+    const Result<void> written = blind_result_ ? write_blind(session_, *blind_result_, answers, person, options_.seed)
+                                               : tl::unexpected(result.error());
+    if (!written) problem_ = QString::fromStdString(written.error().message);
+    emit updated();
+    return;
+  }
   auto record = human_record(answers_, shown_, plan_);
   if (!record) {
     problem_ = QString::fromStdString(record.error().message);
   } else {
     record_ = std::move(*record);
-    PersonRecord person{.person = options_.person, .record = *record_};
-    person.person.judged_utc = utc_now();
-    person.person.training_answers = static_cast<int>(trained_);
-    if (auto written = add_person(session_, person); !written) {
+    if (auto written = add_person(session_, {.person = person, .record = *record_}); !written) {
       problem_ = QString::fromStdString(written.error().message);
     } else if (const auto people = read_people(session_)) {
       means_ = mean_over_people(*people);

@@ -5,12 +5,15 @@
 #include <QImage>
 #include <QObject>
 #include <QString>
-#include <QTimer>
+#include <filesystem>
 #include <optional>
 #include <vector>
 
+#include "bench/enhance/blind_judgement.h"
 #include "bench/gui/presenters/colour_map.h"
+#include "bench/gui/presenters/job_runner.h"
 #include "bench/gui/presenters/measure_presenter.h"
+#include "bench/gui/presenters/timed_picture.h"
 #include "bench/session/human_record.h"
 
 namespace todbench {
@@ -23,8 +26,6 @@ struct HumanOptions {
   int training = 0;      ///< patches with feedback before the first one that counts
   PersonFacts person{};  ///< stored with the answers
 };
-
-enum class HumanState { idle, showing, hidden, finished };
 
 /// Returns a balanced random choice of the camera's patches in random order.
 [[nodiscard]] std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials,
@@ -53,16 +54,23 @@ class HumanPresenter final : public QObject {
   /// Starts with the patches of a finished run. Returns an error sentence; empty: success.
   [[nodiscard]] QString begin(const std::vector<JudgedTrial>& trials, const Plan& plan,
                               const std::filesystem::path& session, const HumanOptions& options);
+  /// Replays a recorded session, also through packages, and shows the patches of all sources in one mixed order. No
+  /// member tells the source of a patch. The answers go to `folder`. Returns an error sentence; empty: it prepares.
+  [[nodiscard]] QString begin_blind(const std::filesystem::path& session, const std::vector<std::string>& packages,
+                                    bool with_twin, const Plan& plan, const std::filesystem::path& folder,
+                                    const HumanOptions& options);
   /// The person's answer to the patch shown now or last.
   void answer(Apex apex);
   void abort();
 
-  [[nodiscard]] HumanState state() const { return state_; }
-  [[nodiscard]] const QImage& picture() const { return picture_; }
+  [[nodiscard]] HumanState state() const { return screen_.state(); }
+  [[nodiscard]] const QImage& picture() const { return screen_.picture(); }
+  /// Whether the sources of begin_blind() are computed.
+  [[nodiscard]] bool preparing() const { return preparing_; }
   /// Level around the picture, 0 to 255: that of the background.
   [[nodiscard]] int background_level() const;
   /// Whether picture() is in pixels of the screen, for the display of the plan.
-  [[nodiscard]] bool at_display() const { return has_display(plan_); }
+  [[nodiscard]] bool at_display() const { return !blind_ && has_display(plan_); }
   [[nodiscard]] std::size_t done() const { return answers_.size(); }
   [[nodiscard]] std::size_t planned() const { return patches_.size(); }
   /// Patches of the training that are still to be answered; 0: the answers count.
@@ -73,6 +81,10 @@ class HumanPresenter final : public QObject {
   [[nodiscard]] const std::vector<PeopleMean>& means() const { return means_; }
   /// When finished: the record written to the session.
   [[nodiscard]] const std::optional<HumanRecord>& record() const { return record_; }
+  /// When a blind judgement is finished: its sources and ratios.
+  [[nodiscard]] const std::optional<BlindResult>& blind_result() const { return blind_result_; }
+  /// Folder of the blind judgement.
+  [[nodiscard]] const std::filesystem::path& folder() const { return session_; }
   /// Reason why the answers could not be stored; otherwise empty.
   [[nodiscard]] QString problem() const { return problem_; }
 
@@ -81,24 +93,33 @@ class HumanPresenter final : public QObject {
   void finished(const QString& session);
 
  private:
+  /// Sources that are ready to be judged.
+  struct Blind {
+    std::vector<std::string> names;
+    std::vector<BlindPatch> patches;
+  };
+  void start(const Plan& plan, const std::filesystem::path& folder, const HumanOptions& options);
+  void take(Result<Blind> blind);
   void show_next();
   void finish();
 
   HumanOptions options_;
   Plan plan_;
   std::filesystem::path session_;
-  std::vector<JudgedTrial> patches_, training_;
+  std::optional<Blind> blind_;
+  std::optional<BlindResult> blind_result_;
+  bool preparing_ = false;
+  std::vector<BlindPatch> patches_;
+  std::vector<JudgedTrial> training_;
   std::size_t trained_ = 0;
   QString feedback_;
   std::vector<PeopleMean> means_;
   std::vector<Trial> answers_;
   std::vector<ShownPatch> shown_;
-  QElapsedTimer since_shown_;
-  QImage picture_;
-  HumanState state_ = HumanState::idle;
+  TimedPicture screen_;
   std::optional<HumanRecord> record_;
   QString problem_;
-  QTimer hide_;
+  JobRunner jobs_;
 };
 
 }  // namespace todbench

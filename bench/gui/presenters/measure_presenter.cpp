@@ -130,7 +130,7 @@ ExperimentHost MeasurePresenter::host() {
     desk_->clear();
     bench_.post([this, request] {
       request_ = request;
-      ++requests_;
+      if (!std::holds_alternative<CheckAgain>(request.steps.front())) ++requests_;
       emit updated();
       emit operator_needed();
     });

@@ -19,17 +19,10 @@
 #include "bench/gui/presenters/workbench.h"
 #include "bench/report/plot.h"
 #include "bench/run/experiment.h"
+#include "bench/run/judged_trial.h"
 #include "bench/run/running_fit.h"
 
 namespace todbench {
-
-/// An answer with the judged patch.
-struct JudgedTrial {
-  SessionCurve curve = SessionCurve::main;
-  Trial trial;
-  cv::Mat1f patch_k;   ///< kelvin
-  double noise_k = 0;  ///< temporal noise of a sample, as passed to the observer
-};
 
 enum class RunState { idle, running, paused, stopping };
 

@@ -30,12 +30,7 @@ int NakedEyePresenter::background_level() const {
 }
 
 NakedEyePresenter::NakedEyePresenter(QObject* parent) : QObject(parent) {
-  hide_.setSingleShot(true);
-  connect(&hide_, &QTimer::timeout, this, [this] {
-    if (state_ != HumanState::showing) return;
-    state_ = HumanState::hidden;
-    emit updated();
-  });
+  connect(&screen_, &TimedPicture::updated, this, &NakedEyePresenter::updated);
 }
 
 QString NakedEyePresenter::begin(const Plan& plan, const NakedEyeQuestion& question,
@@ -56,7 +51,7 @@ QString NakedEyePresenter::begin(const Plan& plan, const NakedEyeQuestion& quest
   shown_ms_ = shown_ms;
   session_.reset();
   problem_.clear();
-  state_ = HumanState::idle;
+  screen_.end(HumanState::idle);
   predicting_ = true;
   jobs_.start([this, task, folder = folder_](const std::stop_token& stop) {
     auto made = std::make_shared<Result<NakedEyeSession>>(
@@ -86,17 +81,13 @@ void NakedEyePresenter::show_next() {
     finish();
     return;
   }
-  picture_ = screen_picture(session_->picture(), static_cast<int>(session_->task().model.display->zoom));
-  state_ = HumanState::showing;
-  since_shown_.start();
-  if (shown_ms_) hide_.start(*shown_ms_);
-  emit updated();
+  screen_.show(screen_picture(session_->picture(), static_cast<int>(session_->task().model.display->zoom)), shown_ms_);
 }
 
 void NakedEyePresenter::answer(Apex apex) {
-  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
-  hide_.stop();
-  session_->answer(apex, static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9, shown_ms_);
+  const auto response_s = screen_.take_answer();
+  if (!response_s) return;
+  session_->answer(apex, *response_s, shown_ms_);
   show_next();
 }
 
@@ -107,20 +98,17 @@ void NakedEyePresenter::abort() {
     emit updated();
     return;
   }
-  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
-  hide_.stop();
+  if (!screen_.awaits_answer()) return;
   if (session_->done() > 0) {
     finish();
     return;
   }
-  state_ = HumanState::idle;
-  picture_ = {};
+  screen_.end(HumanState::idle);
   emit updated();
 }
 
 void NakedEyePresenter::finish() {
-  picture_ = {};
-  state_ = HumanState::finished;
+  screen_.end(HumanState::finished);
   if (const auto written = session_->finish(); !written) problem_ = QString::fromStdString(written.error().message);
   emit updated();
 }

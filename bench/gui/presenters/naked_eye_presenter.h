@@ -2,17 +2,15 @@
 // A person before the calibrated display, without camera and sensor: triangles, arrow keys, no feedback.
 #pragma once
 
-#include <QElapsedTimer>
 #include <QImage>
 #include <QObject>
 #include <QString>
-#include <QTimer>
 #include <filesystem>
 #include <optional>
 #include <vector>
 
-#include "bench/gui/presenters/human_presenter.h"
 #include "bench/gui/presenters/job_runner.h"
+#include "bench/gui/presenters/timed_picture.h"
 #include "bench/naked_eye/naked_eye_session.h"
 #include "bench/plan/plan.h"
 
@@ -45,8 +43,8 @@ class NakedEyePresenter final : public QObject {
   void abort();
 
   [[nodiscard]] bool predicting() const { return predicting_; }
-  [[nodiscard]] HumanState state() const { return state_; }
-  [[nodiscard]] const QImage& picture() const { return picture_; }
+  [[nodiscard]] HumanState state() const { return screen_.state(); }
+  [[nodiscard]] const QImage& picture() const { return screen_.picture(); }
   /// Level around the picture, 0 to 255.
   [[nodiscard]] int background_level() const;
   [[nodiscard]] const std::optional<NakedEyeSession>& session() const { return session_; }
@@ -65,12 +63,9 @@ class NakedEyePresenter final : public QObject {
   std::filesystem::path folder_;
   std::optional<int> shown_ms_;
   std::optional<NakedEyeSession> session_;
-  QElapsedTimer since_shown_;
-  QImage picture_;
-  HumanState state_ = HumanState::idle;
+  TimedPicture screen_;
   bool predicting_ = false;
   QString problem_;
-  QTimer hide_;
   JobRunner jobs_;
 };
 

@@ -72,17 +72,11 @@ Result<PersonExperiment> person_experiment(const PersonQuestion& question) {
 }
 
 PersonPresenter::PersonPresenter(QObject* parent) : QObject(parent) {
-  hide_.setSingleShot(true);
-  connect(&hide_, &QTimer::timeout, this, [this] {
-    if (state_ != HumanState::showing) return;
-    state_ = HumanState::hidden;
-    emit updated();
-  });
+  connect(&screen_, &TimedPicture::updated, this, &PersonPresenter::updated);
 }
 
 void PersonPresenter::begin(PersonExperiment experiment, const std::filesystem::path& sessions,
                             std::optional<int> shown_ms, int magnification) {
-  hide_.stop();
   experiment_ = std::move(experiment);
   sessions_ = sessions;
   shown_ms_ = shown_ms;
@@ -99,38 +93,29 @@ void PersonPresenter::show_next() {
     return;
   }
   const PersonTrial& trial = experiment_->trials()[answers_.size()];
-  picture_ = picture_of(experiment_->picture_k(trial), experiment_->grey(trial), magnification_);
-  state_ = HumanState::showing;
-  since_shown_.start();
-  if (shown_ms_) hide_.start(*shown_ms_);
-  emit updated();
+  screen_.show(picture_of(experiment_->picture_k(trial), experiment_->grey(trial), magnification_), shown_ms_);
 }
 
 void PersonPresenter::answer(std::size_t alternative) {
-  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
-  if (alternative >= experiment_->alternatives().size()) return;
-  hide_.stop();
-  answers_.push_back({.answer = alternative,
-                      .response_s = static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9,
-                      .limit_ms = shown_ms_});
+  if (!experiment_ || alternative >= experiment_->alternatives().size()) return;
+  const auto response_s = screen_.take_answer();
+  if (!response_s) return;
+  answers_.push_back({.answer = alternative, .response_s = *response_s, .limit_ms = shown_ms_});
   show_next();
 }
 
 void PersonPresenter::abort() {
-  if (state_ != HumanState::showing && state_ != HumanState::hidden) return;
-  hide_.stop();
+  if (!screen_.awaits_answer()) return;
   if (!answers_.empty()) {
     finish();
     return;
   }
-  state_ = HumanState::idle;
-  picture_ = {};
+  screen_.end(HumanState::idle);
   emit updated();
 }
 
 void PersonPresenter::finish() {
-  picture_ = {};
-  state_ = HumanState::finished;
+  screen_.end(HumanState::finished);
   const auto folder = new_person_folder(sessions_, to_string(experiment_->task()));
   const bool complete = answers_.size() == experiment_->trials().size();
   if (auto written = write_person(folder, *experiment_, answers_, complete); !written)

@@ -3,17 +3,15 @@
 // without feedback.
 #pragma once
 
-#include <QElapsedTimer>
 #include <QImage>
 #include <QObject>
 #include <QString>
-#include <QTimer>
 #include <filesystem>
 #include <optional>
 #include <string_view>
 #include <vector>
 
-#include "bench/gui/presenters/human_presenter.h"
+#include "bench/gui/presenters/timed_picture.h"
 #include "bench/studies/person_experiment.h"
 
 namespace todbench {
@@ -54,8 +52,8 @@ class PersonPresenter final : public QObject {
   /// Ends with the answers so far.
   void abort();
 
-  [[nodiscard]] HumanState state() const { return state_; }
-  [[nodiscard]] const QImage& picture() const { return picture_; }
+  [[nodiscard]] HumanState state() const { return screen_.state(); }
+  [[nodiscard]] const QImage& picture() const { return screen_.picture(); }
   [[nodiscard]] const std::optional<PersonExperiment>& experiment() const { return experiment_; }
   [[nodiscard]] const std::vector<ExperimentAnswer>& answers() const { return answers_; }
   /// Folder of the written answers; empty before.
@@ -75,11 +73,8 @@ class PersonPresenter final : public QObject {
   std::optional<int> shown_ms_;
   int magnification_ = 24;
   std::vector<ExperimentAnswer> answers_;
-  QElapsedTimer since_shown_;
-  QImage picture_;
-  HumanState state_ = HumanState::idle;
+  TimedPicture screen_;
   QString problem_;
-  QTimer hide_;
 };
 
 }  // namespace todbench

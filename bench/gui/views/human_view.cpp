@@ -30,7 +30,7 @@ namespace todbench {
 namespace {
 
 /// Questions of the page, in the order of the list.
-constexpr int of_triangles = 0, of_set = 1, of_bars = 2, of_naked_eye = 3;
+constexpr int of_triangles = 0, of_set = 1, of_bars = 2, of_naked_eye = 3, of_blind = 4;
 
 /// Parses "400, 800"; empty if a part is not a number.
 std::optional<std::vector<double>> numbers_of(const QString& text) {
@@ -101,6 +101,31 @@ QString result_of_a_person(const PersonPresenter& person) {
   text += false_alarms_in_words(result);
   const QString where = QString::fromStdString(person.folder().filename().string());
   return text + "<p>" + (person.problem().isEmpty() ? "Saved in " + where.toHtmlEscaped() : person.problem()) + "</p>";
+}
+
+/// S75 of each source, and its acuity over that of the first.
+QString result_of_sources(const HumanPresenter& human) {
+  const BlindResult& result = *human.blind_result();
+  QString rows;
+  for (std::size_t s = 0; s < result.sources.size(); ++s) {
+    for (const TodPoint& point : result.records[s].curve.points) {
+      QString ratio;
+      for (const ComparisonPoint& compared : s == 0 ? std::vector<ComparisonPoint>() : result.ratios[s - 1].points) {
+        if (compared.set_delta_t_k == point.set_delta_t_k)
+          ratio = QString::fromStdString(with_interval(compared.ratio, compared.ratio_ci95));
+      }
+      rows += QString("<tr><td>%1, %2 K&nbsp;</td><td>%3&nbsp;</td><td>%4</td></tr>")
+                  .arg(QString::fromStdString(result.sources[s]).toHtmlEscaped())
+                  .arg(point.set_delta_t_k)
+                  .arg(QString::fromStdString(with_interval(point.fit.threshold, point.fit.ci95)), ratio);
+    }
+  }
+  return "<table cellspacing=4><tr><th>Source</th><th>S75 (mrad)</th><th>acuity ratio</th></tr>" + rows +
+         "</table><p>" +
+         (human.problem().isEmpty()
+              ? "Saved in " + QString::fromStdString(human.folder().filename().string()).toHtmlEscaped()
+              : human.problem()) +
+         "</p>";
 }
 
 }  // namespace
@@ -233,7 +258,7 @@ std::optional<PersonFacts> HumanView::person_facts() {
 void HumanView::add_questions(QFormLayout& form) {
   question_ = new QComboBox;
   question_->setObjectName("humanQuestion");
-  question_->addItems({"Triangles of the run", "Targets of a set", "Four bars", "Naked eye"});
+  question_->addItems({"Triangles of the run", "Targets of a set", "Four bars", "Naked eye", "Several sources, blind"});
   set_ = new QComboBox;
   set_->setObjectName("humanSet");
   for (const auto& name : resource_names(ResourceKind::target_set)) set_->addItem(QString::fromStdString(name));
@@ -260,7 +285,15 @@ void HumanView::add_questions(QFormLayout& form) {
   axis_ = new QComboBox;
   axis_->setObjectName("humanAxis");
   axis_->addItems({"horizontal", "vertical"});
+  packages_ = new QLineEdit;
+  packages_->setObjectName("humanPackages");
+  packages_->setToolTip("Files of enhancement packages, separated by commas; each is a source beside the camera");
+  twin_ = new QCheckBox("Simulated twin");
+  twin_->setObjectName("humanTwin");
+  twin_->setChecked(true);
   form.addRow("Question", question_);
+  form.addRow("Packages", packages_);
+  form.addRow(twin_);
   form.addRow("Target set", set_);
   form.addRow("Ranges (m)", ranges_);
   form.addRow("Atmosphere", air_);
@@ -276,7 +309,7 @@ BarCriterion HumanView::criterion() const {
 }
 
 bool HumanView::triangles() const {
-  return question_->currentIndex() == of_triangles || question_->currentIndex() == of_naked_eye;
+  return question_->currentIndex() != of_set && question_->currentIndex() != of_bars;
 }
 
 void HumanView::show_question() {
@@ -287,11 +320,13 @@ void HumanView::show_question() {
   form_->setRowVisible(criterion_, question == of_bars);
   form_->setRowVisible(frequencies_, question == of_bars);
   form_->setRowVisible(axis_, question == of_bars);
+  form_->setRowVisible(packages_, question == of_blind);
+  form_->setRowVisible(twin_, question == of_blind);
   form_->setRowVisible(contrasts_, question == of_naked_eye);
   form_->setRowVisible(noise_, question == of_naked_eye);
   for (QWidget* of_person :
        std::initializer_list<QWidget*>{code_, age_, acuity_, distance_, screen_, luminance_, training_})
-    form_->setRowVisible(of_person, question == of_triangles);
+    form_->setRowVisible(of_person, question == of_triangles || question == of_blind);
   title_->setText(question == of_set    ? "Which one is it?"
                   : question == of_bars ? question_title(criterion())
                                         : "Which way does it point?");
@@ -305,9 +340,11 @@ void HumanView::show_question() {
                  (question == of_naked_eye
                       ? "No camera is used: the triangles are drawn on this display, as its section "
                         "[display] in the plan describes it."
-                  : triangles() ? "You judge the camera's own frames. The answers of the model are not shown."
-                                : "You judge the same frames of the plan's simulated sensor as the model "
-                                  "observer."));
+                  : question == of_blind ? "Camera, twin and packages are mixed, and the page does not tell which is "
+                                           "shown. The recorded frames are replayed first."
+                  : triangles()          ? "You judge the camera's own frames. The answers of the model are not shown."
+                                         : "You judge the same frames of the plan's simulated sensor as the model "
+                                           "observer."));
   per_size_->setToolTip(question == of_set    ? "Frames per target and range"
                         : question == of_bars ? "Questions per contrast and frequency"
                                               : "Patches per contrast and size");
@@ -331,6 +368,17 @@ void HumanView::begin() {
   options.per_size = per_size_->value();
   if (limited_->isChecked()) options.shown_ms = shown_ms_->value();
   options.seed = bench_.plan().seed;
+  if (question_->currentIndex() == of_blind) {
+    std::vector<std::string> packages;
+    for (const QString& file : packages_->text().split(',', Qt::SkipEmptyParts))
+      packages.push_back(file.trimmed().toStdString());
+    const QString wrong =
+        presenter_.begin_blind(measured_.judged_session(), packages, twin_->isChecked(), bench_.plan(),
+                               new_person_folder(bench_.sessions_folder(), "blind"), options);
+    if (!wrong.isEmpty()) emit bench_.trouble(wrong, Remedy::none);
+    setFocus();
+    return;
+  }
   const QString problem = presenter_.begin(measured_.trials(), bench_.plan(), measured_.judged_session(), options);
   if (!problem.isEmpty()) emit bench_.trouble(problem, Remedy::none);
   setFocus();
@@ -402,7 +450,7 @@ void HumanView::keyPressEvent(QKeyEvent* event) {
 void HumanView::show_state() {
   const auto running = [](HumanState state) { return state == HumanState::showing || state == HumanState::hidden; };
   question_->setEnabled(!running(presenter_.state()) && !running(person_.state()) && !running(naked_eye_->state()) &&
-                        !naked_eye_->predicting());
+                        !naked_eye_->predicting() && !presenter_.preparing());
   criterion_->setEnabled(question_->isEnabled());
   alternatives_->setVisible(!triangles() && running(person_.state()));
   if (question_->currentIndex() == of_naked_eye)
@@ -475,12 +523,13 @@ void HumanView::show_triangles() {
   const HumanState state = presenter_.state();
   const bool running = state == HumanState::showing || state == HumanState::hidden;
   const bool ready = measured_.state() == RunState::idle && measured_.outcome() && !measured_.trials().empty();
-  begin_->setEnabled(ready && !running);
-  abort_->setEnabled(running);
-  picture_->set_placeholder(state == HumanState::hidden ? "Which way did it point?"
-                            : running                   ? ""
-                            : ready                     ? "Press Begin when you are ready."
-                                                        : "Run a measurement first. A person then judges its frames.");
+  begin_->setEnabled(ready && !running && !presenter_.preparing());
+  abort_->setEnabled(running || presenter_.preparing());
+  picture_->set_placeholder(presenter_.preparing()        ? "The recorded frames are replayed for each source."
+                            : state == HumanState::hidden ? "Which way did it point?"
+                            : running                     ? ""
+                            : ready                       ? "Press Begin when you are ready."
+                                    : "Run a measurement first. A person then judges its frames.");
   const int level = presenter_.background_level();
   picture_->set_surround(QColor(level, level, level));
   // A fixed number of screen pixels per sample: the size of the window does not affect the picture.
@@ -492,6 +541,10 @@ void HumanView::show_triangles() {
   progress_->setText(!running                          ? QString()
                      : presenter_.feedback().isEmpty() ? count
                                                        : presenter_.feedback() + "\n" + count);
+  if (presenter_.blind_result() && !running) {
+    result_->setText(result_of_sources(presenter_));
+    return;
+  }
   if (!presenter_.record() || running) {
     result_->setText(presenter_.problem());
     return;

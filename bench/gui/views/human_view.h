@@ -62,11 +62,11 @@ class HumanView final : public QWidget {
   PictureView* picture_;
   AlternativesPanel* alternatives_;
   QComboBox *question_, *set_, *air_, *criterion_, *axis_;
-  QLineEdit *ranges_, *frequencies_, *contrasts_, *noise_;
+  QLineEdit *ranges_, *frequencies_, *contrasts_, *noise_, *packages_;
   QLineEdit *code_, *age_, *acuity_, *distance_, *luminance_, *screen_;
   QLabel *title_, *hint_;
   QSpinBox *per_size_, *shown_ms_, *training_;
-  QCheckBox* limited_;
+  QCheckBox *limited_, *twin_;
   QPushButton *begin_, *abort_;
   QLabel *progress_, *result_;
 };

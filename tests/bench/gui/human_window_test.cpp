@@ -14,10 +14,14 @@
 #include "bench/gui/views/page_check.h"
 #include "bench/gui/views/picture_view.h"
 #include "bench/session/trials_csv.h"
+#include "bench/text/files.h"
+#include "bench/text/text.h"
 #include "tests/bench/gui/gui_test_support.h"
 
 namespace todbench::testing {
 namespace {
+
+using ::testing::HasSubstr;
 
 constexpr std::array keys{Qt::Key_Up, Qt::Key_Right, Qt::Key_Down, Qt::Key_Left};
 
@@ -55,6 +59,46 @@ TEST(HumanObserver, LeavesItsAnswersBesideTheModelsInTheSameSession) {
   ASSERT_TRUE(changed) << changed.error().message;
   EXPECT_THAT(*changed, ::testing::IsEmpty());
   EXPECT_TRUE(wait_until([&] { return window->sessions().current() && window->sessions().current()->human; }));
+}
+
+TEST(HumanObserver, JudgesSeveralSourcesBlindInOneMixedOrder) {
+  ShownWindow window("sim:sc2000", 3);
+  Plan plan = window->bench().plan();
+  plan.measurement.record_frames = true;
+  window->bench().set_plan(plan);
+  window.measure();
+  const auto session = window->measure().folder();
+  const std::string before = read_text_file(session / "manifest.json").value();
+  const auto package = window.sessions() / "fine.toml";
+  ASSERT_TRUE(write_file_atomically(package, "name = \"sharp\"\n[[stage]]\nkind = \"sharpen\"\namount = 1\n"));
+  window->show_view(View::human);
+  window.part<QComboBox>("humanQuestion").setCurrentIndex(4);
+  window.part<QLineEdit>("humanPackages").setText(QString::fromStdString(package.string()));
+  window.part<QSpinBox>("humanPerSize").setValue(4);
+
+  window.click("beginHuman");
+  HumanPresenter& human = window->human();
+  ASSERT_TRUE(wait_until([&] { return human.state() == HumanState::showing || !human.problem().isEmpty(); }))
+      << human.problem().toStdString();
+  ASSERT_EQ(human.planned(), 3u * 2 * 5 * 4) << "camera, twin and package; 2 contrasts, 5 sizes, 4 of each";
+  HumanView* view = window->findChild<HumanView*>();
+  QStringList shown;
+  while (human.state() == HumanState::showing) {
+    for (const QLabel* label : view->findChildren<QLabel*>()) {
+      if (label->isVisible()) shown << label->text();
+    }
+    EXPECT_THAT(faults_of(*window).join("; ").toStdString(), ::testing::Not(HasSubstr("cut off")));
+    QTest::keyClick(view, Qt::Key_Up);
+  }
+
+  EXPECT_EQ(human.problem().toStdString(), "");
+  const QString all = shown.join("\n");
+  for (const char* source : {"sharp", "simulated"}) EXPECT_FALSE(all.contains(source)) << source;
+  ASSERT_TRUE(human.blind_result());
+  EXPECT_EQ(human.blind_result()->sources, (std::vector<std::string>{"camera", "simulated", "sharp"}));
+  EXPECT_TRUE(std::filesystem::exists(human.folder() / "blind.json"));
+  EXPECT_TRUE(window.part<QLabel>("humanResult").text().contains("sharp"));
+  EXPECT_EQ(read_text_file(session / "manifest.json").value(), before) << "the recorded session does not change";
 }
 
 TEST(HumanObserver, KeepsWhatWasShownSoThatEveryAnswerCanBeChecked) {

@@ -168,6 +168,28 @@ TEST(MeasurePresenter, AsksTheOperatorAndGoesOnWhenTheTargetIsChanged) {
   EXPECT_TRUE(wait_until([&] { return b.idle(); })) << "a run that waits for a hand can be aborted";
 }
 
+TEST(MeasurePresenter, AsksTheOperatorAgainIfThePictureContradictsTheRequest) {
+  Bench b(1);
+  Plan plan = b.bench.plan();
+  plan.target.kind = TargetKind::prompt;
+  b.bench.set_plan(plan);
+  b.presenter.start();
+  ASSERT_TRUE(wait_until([&] { return b.presenter.operator_request().has_value(); }));
+  const QString number = b.presenter.request_number();
+
+  b.presenter.operator_done();  // nobody has put a plate in
+
+  ASSERT_TRUE(wait_until([&] {
+    return b.presenter.operator_request() && b.presenter.operator_request()->steps.size() > 2 &&
+           std::holds_alternative<CheckAgain>(b.presenter.operator_request()->steps.front());
+  }));
+  EXPECT_TRUE(b.presenter.next_step().startsWith("The picture contradicts the last request"))
+      << b.presenter.next_step().toStdString();
+  EXPECT_EQ(b.presenter.request_number(), number) << "the same request";
+  b.presenter.abort();
+  EXPECT_TRUE(wait_until([&] { return b.idle(); }));
+}
+
 TEST(Pause, RestsUntilResumedOrStopped) {
   Pause pause;
   std::stop_source stop;

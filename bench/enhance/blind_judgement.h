@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A person judges the pictures of several sources (camera, twin, enhanced, super-resolved) blind, in one mixed order.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "bench/enhance/package_file.h"
+#include "bench/run/experiment.h"
+#include "bench/run/judged_trial.h"
+#include "bench/session/human_record.h"
+#include "bench/text/json.h"
+#include "tod/comparison/comparison.h"
+
+namespace todbench {
+
+/// Pictures of one origin.
+struct BlindSource {
+  std::string name;           ///< "camera", "simulated", or the name of a package
+  int samples_per_pixel = 1;  ///< of its patches, along each axis
+  std::vector<JudgedTrial> trials;
+};
+
+/// A patch as shown. The source stays with the program until the last answer.
+struct BlindPatch {
+  std::size_t source = 0;
+  JudgedTrial judged;         ///< cut to the field that all sources have in common
+  int samples_per_pixel = 1;  ///< a person sees a pixel at one size, however many samples it has
+};
+
+struct BlindAnswer {
+  std::size_t source = 0;
+  Trial trial;  ///< with the answer of the person
+  ShownPatch shown{};
+};
+
+/// Each source by itself, and its acuity as a ratio to that of the first one.
+struct BlindResult {
+  std::vector<std::string> sources;
+  std::vector<HumanRecord> records;  ///< one per source
+  std::vector<Comparison> ratios;    ///< of the second and later sources
+};
+
+/// Replays the recorded frames of a session, and again through each package; the sessions of the model observer go to
+/// `folder`/sources. First the camera, then its twin if `with_twin`, then the packages. Errors: those of
+/// replay_session() and judge_again(); `invalid_input` (two packages of one name).
+[[nodiscard]] Result<std::vector<BlindSource>> blind_sources(const std::filesystem::path& session,
+                                                             const std::vector<EnhancementPackage>& packages,
+                                                             bool with_twin, const std::filesystem::path& folder,
+                                                             const ExperimentListener& listener, std::stop_token stop);
+
+/// Returns `per_size` patches of each source for each contrast and size, all in one random order of the seed. Errors:
+/// `invalid_input` (no source, or sources without common contrasts and sizes).
+[[nodiscard]] Result<std::vector<BlindPatch>> blind_order(const std::vector<BlindSource>& sources, int per_size,
+                                                          std::uint64_t seed);
+
+/// Fits the answers of each source and compares each with the first. Errors: `invalid_input` (a source without
+/// answers).
+[[nodiscard]] Result<BlindResult> blind_result(const std::vector<std::string>& sources,
+                                               const std::vector<BlindAnswer>& answers, const Plan& plan);
+
+/// Returns {"sources": [{"name", "answers", "points": [...]}], "ratios": [{"source", "to", "points": [...]}], ...}.
+[[nodiscard]] Json blind_json(const BlindResult& result, const PersonFacts& person, std::uint64_t seed);
+
+/// Writes blind.json and blind.csv, one row per answer in the order of showing. Errors: `io`.
+[[nodiscard]] Result<void> write_blind(const std::filesystem::path& folder, const BlindResult& result,
+                                       const std::vector<BlindAnswer>& answers, const PersonFacts& person,
+                                       std::uint64_t seed);
+
+}  // namespace todbench
