@@ -83,8 +83,9 @@ void fit_rows(QTableWidget& table, int least, int most) {
   };
   fit();
   table.setProperty("whole", true);
-  QObject::connect(table.verticalHeader(), &QHeaderView::sectionResized, &table, fit);
-  QObject::connect(table.verticalHeader(), &QHeaderView::sectionCountChanged, &table, fit);
+  // The signals come before the header knows its new length.
+  QObject::connect(table.verticalHeader(), &QHeaderView::sectionResized, &table, fit, Qt::QueuedConnection);
+  QObject::connect(table.verticalHeader(), &QHeaderView::sectionCountChanged, &table, fit, Qt::QueuedConnection);
 }
 
 void fill_table(QTableWidget& table, const QList<QStringList>& rows) {

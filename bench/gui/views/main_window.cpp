@@ -136,7 +136,7 @@ void MainWindow::make_views() {
   views_->addWidget(new AlignView(bench_, align_, look_));
   plan_view_ = new PlanView(plan_);
   views_->addWidget(plan_view_);
-  auto* measure = new MeasureView(bench_, measure_);
+  auto* measure = new MeasureView(bench_, measure_, look_);
   connect(measure, &MeasureView::start_wanted, this, &MainWindow::start_run);
   connect(measure, &MeasureView::abort_wanted, this, &MainWindow::abort_run);
   connect(measure, &MeasureView::report_wanted, this, [this] { show_view(View::report); });

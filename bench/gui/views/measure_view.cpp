@@ -6,8 +6,10 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QProgressBar>
+#include <QScrollBar>
 
 #include "bench/gui/presenters/human_presenter.h"
+#include "bench/gui/presenters/look_presenter.h"
 #include "bench/gui/presenters/measure_presenter.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
@@ -37,7 +39,7 @@ std::vector<double> key_of(const MeasurePresenter& presenter) {
 
 }  // namespace
 
-MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget* parent)
+MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, LookPresenter& look, QWidget* parent)
     : QWidget(parent), bench_(bench), presenter_(presenter) {
   auto* layout = new QVBoxLayout(this);
   auto* line = new QHBoxLayout;
@@ -73,6 +75,11 @@ MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget*
   request_->setProperty("role", "step");
   request_->setWordWrap(true);
   answer_ = primary_button("Done", "operatorDone");
+  live_ = new PictureView;
+  live_->setObjectName("operatorPicture");
+  live_->set_placeholder("Live picture");
+  live_->setFixedSize(240, 180);
+  ask->addWidget(live_);
   ask->addWidget(request_, 1);
   ask->addWidget(answer_);
   layout->addWidget(operator_);
@@ -108,6 +115,9 @@ MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget*
   });
   connect(abort_, &QPushButton::clicked, this, &MeasureView::abort_wanted);
   connect(answer_, &QPushButton::clicked, this, [this] { presenter_.operator_done(); });
+  connect(&look, &LookPresenter::updated, this, [this, &look] {
+    if (presenter_.operator_request()) live_->set_image(look.image());
+  });
   connect(log_log_, &QCheckBox::toggled, this, [this] {
     shown_key_.clear();
     show_all();
@@ -131,7 +141,9 @@ QWidget* MeasureView::log_panel() {
   layout->setContentsMargins(0, 0, 0, 0);
   log_ = plain_table({"ΔT (K)", "S (mrad)", "Truth", "Answer", "up", "right", "down", "left", "Source"}, "trialLog");
   log_->setToolTip("Scores of the four directions. The observer answers the direction with the highest score.");
-  column_widths(*log_, {"16.900", "", "right", "right ✓", "0.00", "right", "0.00", "0.00", "camera"});
+  const int columns =
+      column_widths(*log_, {"16.900", "", "right", "right ✓", "0.00", "right", "0.00", "0.00", "camera"});
+  log_->setMinimumWidth(columns + log_->verticalScrollBar()->sizeHint().width());
   layout->addWidget(log_, 1);
   auto* side = new QVBoxLayout;
   judged_ = new PictureView;

@@ -14,6 +14,7 @@ class QFrame;
 
 namespace todbench {
 
+class LookPresenter;
 class MeasurePresenter;
 class PictureView;
 class PlotView;
@@ -23,7 +24,7 @@ class MeasureView final : public QWidget {
   Q_OBJECT
 
  public:
-  MeasureView(Workbench& bench, MeasurePresenter& presenter, QWidget* parent = nullptr);
+  MeasureView(Workbench& bench, MeasurePresenter& presenter, LookPresenter& look, QWidget* parent = nullptr);
 
  signals:
   /// The user wants to start or abort a run, or to see the report of the run that ended.
@@ -55,7 +56,7 @@ class MeasureView final : public QWidget {
   PlotView* tod_;
   QCheckBox* log_log_;
   QTableWidget* log_;
-  PictureView* judged_;
+  PictureView *judged_, *live_;
   std::vector<double> shown_key_;
 };
 

@@ -8,6 +8,7 @@
 #include <QHeaderView>
 #include <QLineEdit>
 #include <QPixmap>
+#include <QScrollArea>
 #include <QSplitter>
 #include <QUrl>
 #include <algorithm>
@@ -26,6 +27,7 @@ QString text_of(std::string_view text) {
 }
 
 constexpr int most_ratios = 5;  // visible at once
+constexpr int least_plot_px = 190;
 constexpr int logo_px = 40;
 
 QString verdict_text(ReportVerdict verdict) {
@@ -106,7 +108,8 @@ QWidget* ReportView::browser() {
   layout->addWidget(filter_);
   connect(filter_, &QLineEdit::textChanged, this, &ReportView::list_sessions);
   sessions_ = plain_table({"Started (UTC)", "Verdict", "Unit, serial number", "Session"}, "sessionTable");
-  column_widths(*sessions_, {"Started (UTC)  __", "? inconclusive", "Emulated sc2000"});
+  sessions_->setMinimumWidth(
+      column_widths(*sessions_, {"Started (UTC)  __", "? inconclusive", "Emulated sc2000", "Session"}));
   wrap_words(*sessions_);
   QHeaderView& heads = *sessions_->horizontalHeader();
   heads.setSectionsClickable(true);
@@ -132,6 +135,27 @@ QWidget* ReportView::browser() {
   return panel;
 }
 
+/// Curves and tables have their full height: a plan with many limits scrolls them together.
+QWidget* ReportView::results() {
+  plot_ = new PlotView;
+  plot_->setObjectName("comparePlot");
+  plot_->setMinimumHeight(least_plot_px);
+  log_log_ = new QCheckBox("Logarithmic acuity");
+  auto* content = new QWidget;
+  auto* layout = new QVBoxLayout(content);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(plot_, 1);
+  for (QWidget* part : std::initializer_list<QWidget*>{log_log_, ratios_, limits_}) layout->addWidget(part);
+  auto* scroll = new QScrollArea;
+  scroll->setObjectName("sessionResults");
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setFocusPolicy(Qt::NoFocus);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll->setWidgetResizable(true);
+  scroll->setWidget(content);
+  return scroll;
+}
+
 QWidget* ReportView::session_panel() {
   auto* panel = new QWidget;
   auto* layout = new QVBoxLayout(panel);
@@ -146,11 +170,6 @@ QWidget* ReportView::session_panel() {
   verdict_->setProperty("role", "verdict");
   verdict_->setWordWrap(true);
   layout->addWidget(verdict_);
-  plot_ = new PlotView;
-  plot_->setObjectName("comparePlot");
-  layout->addWidget(plot_, 2);
-  log_log_ = new QCheckBox("Logarithmic acuity");
-  layout->addWidget(log_log_);
   ratios_ = plain_table(
       {"Set ΔT (K)", "Acuity ratio [95 %]", "Acuity ratio [90 %]", "p different", "p equivalent", "Verdict"},
       "ratioTable");
@@ -159,9 +178,8 @@ QWidget* ReportView::session_panel() {
   column_widths(*limits_, {"Acuity at 16.9 K at least", "0.510 [0.468, 0.556] 1/mrad", "? inconclusive"});
   wrap_words(*limits_);
   fit_height(*ratios_, most_ratios);
-  fit_rows(*limits_, 100, 260);
-  layout->addWidget(ratios_);
-  layout->addWidget(limits_);
+  fit_rows(*limits_, 100, QWIDGETSIZE_MAX);
+  layout->addWidget(results(), 1);
   auto* buttons = new QHBoxLayout;
   export_ = primary_button("Write HTML and PDF", "exportReports");
   page_ = plain_button("Show the PDF", "showPdf");

@@ -40,6 +40,7 @@ class ReportView final : public QWidget {
  private:
   [[nodiscard]] QWidget* browser();
   [[nodiscard]] QWidget* session_panel();
+  [[nodiscard]] QWidget* results();
   [[nodiscard]] QWidget* letterhead_line();
   /// The session of the selected row; empty: no selection.
   [[nodiscard]] std::optional<std::filesystem::path> chosen() const;

@@ -15,6 +15,7 @@
 #include <QMimeData>
 #include <QPlainTextEdit>
 #include <QProcess>
+#include <QScrollArea>
 #include <QScrollBar>
 #include <QSettings>
 #include <QSpinBox>
@@ -25,6 +26,7 @@
 #include <ctime>
 
 #include "bench/gui/views/human_view.h"
+#include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/page_check.h"
 #include "bench/gui/views/picture_view.h"
 #include "bench/gui/views/plain_numbers.h"
@@ -96,6 +98,29 @@ TEST(Window, FitsIntoASmallScreen) {
     QApplication::processEvents();
     EXPECT_LE(window->minimumSizeHint().width(), 1280) << name_of(view).toStdString();
     EXPECT_LE(window->minimumSizeHint().height(), 690) << name_of(view).toStdString();  // 720 less a title bar
+  }
+}
+
+TEST(Window, ShowsEveryRowOfALongTableOfLimits) {
+  ShownWindow window("sim:sc2000");
+  window->show_view(View::report);
+  QList<QStringList> rows;
+  for (int row = 0; row < 14; ++row)
+    rows << QStringList{"Acuity at 16.9 K at least 0.4 1/mrad", "0.478 [0.462, 0.496] 1/mrad", "? inconclusive",
+                        "95 % interval 0.4618 to 0.4957 1/mrad: contains the limit"};
+  auto& table = window.part<QTableWidget>("limitTable");
+  auto& results = window.part<QScrollArea>("sessionResults");
+
+  for (const QSize size : {QSize(1280, 690), QSize(1920, 1080)}) {
+    window->resize(size);
+    fill_table(table, rows);
+
+    EXPECT_TRUE(wait_until([&] { return table.verticalScrollBar()->maximum() == 0; }, 5000))
+        << "the page scrolls, not the table";
+    EXPECT_THAT(faults_of(*window).join("; ").toStdString(), ::testing::Not(HasSubstr("limitTable")));
+    results.verticalScrollBar()->setValue(results.verticalScrollBar()->maximum());
+    QApplication::processEvents();
+    EXPECT_EQ(table.visibleRegion().boundingRect().bottom(), table.height() - 1) << size.width();
   }
 }
 
