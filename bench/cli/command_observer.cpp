@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // todbench observer
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -30,6 +32,7 @@ struct ObserverFitArguments {
   std::vector<std::string> sessions;
   std::string from = "hvs-1", out;
   std::vector<std::string> free;
+  std::optional<std::string> person{};
   bool one_person = false, overwrite = false;
   int replicates = 299, draws = 384;
   Opening opening{};
@@ -87,11 +90,25 @@ Result<PeopleFitOptions> options_of(const ObserverFitArguments& arguments, const
   options.from_sha256 = sha256_of(from->text);
   options.name = *name;
   options.free = *free;
-  options.persons = arguments.one_person ? PersonsAre::one : PersonsAre::sessions;
+  options.persons = arguments.one_person ? PersonsAre::one : PersonsAre::codes;
   options.replicates = arguments.replicates;
   options.draws = arguments.draws + arguments.draws % 2;
   options.seed = program.common.seed;
   return options;
+}
+
+void print_people(const Console& console, const PeopleFit& fit) {
+  std::vector<TableRow> rows;
+  for (const FittedPerson& person : fit.people) {
+    std::string who;
+    for (const std::size_t s : person.sessions) who += (who.empty() ? "" : "; ") + label_of(fit.sessions[s]);
+    for (std::size_t k = 0; k < observer_key_count; ++k) {
+      if (person.fit.free[k])
+        rows.push_back({who, fit.options.parameter(k), fixed(person.fit.values[k], 4), range(person.fit.ci95[k], 4),
+                        fixed(person.goodness.p, 3)});
+    }
+  }
+  console.table({"person", "parameter", "value", "95 %", "p of the model"}, rows);
 }
 
 void print_fit(const Console& console, const PeopleFit& fit) {
@@ -102,6 +119,7 @@ void print_fit(const Console& console, const PeopleFit& fit) {
         {fit.options.parameter(k), fixed(fit.values[k], 4), range(fit.ci95[k], 4), fixed(fit.spread[k].between_sd, 3)});
   }
   console.table({"parameter", "value", "95 %", "between persons (sd of ln)"}, rows);
+  if (fit.people.size() > 1) print_people(console, fit);
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     if (const auto spreads = spreads_from_default(fit, k)) {
       console.text(fit.options.parameter(k) + " lies " + fixed(std::abs(*spreads), 2) +
@@ -119,6 +137,8 @@ Result<Json> fitted(Console& console, const ObserverFitArguments& arguments, con
   std::vector<std::string> accepted;
   for (const std::string& folder : arguments.sessions) {
     if (is_naked_eye_session(folder)) {
+      if (arguments.person)
+        return fail(ErrorCode::invalid_input, folder + ": a naked-eye session states no person; leave out --person");
       auto answered = answered_naked_eye(folder);
       if (!answered) return tl::unexpected(answered.error());
       sessions.push_back(*std::move(answered));
@@ -128,9 +148,9 @@ Result<Json> fitted(Console& console, const ObserverFitArguments& arguments, con
     if (!session) return tl::unexpected(session.error());
     for (const std::string& file : session->accepted_changes)
       accepted.push_back((std::filesystem::path(folder) / file).generic_string());
-    auto answered = answered_session(folder, *session);
+    auto answered = answered_sessions(folder, *session, arguments.person);
     if (!answered) return tl::unexpected(answered.error());
-    sessions.push_back(*std::move(answered));
+    std::ranges::move(*answered, std::back_inserter(sessions));
   }
   console.phase("fitting the observer");
   options->on_progress = [&console](std::size_t done, std::size_t planned) { console.progress(done, planned); };
@@ -260,6 +280,10 @@ void add_observer_command(CLI::App& app, Program& program) {
       ->add_option("--out", a->out,
                    "parameter file to write, NAME.toml; the page NAME.html is written to the same folder")
       ->required();
+  command->add_option(
+      "--person", a->person,
+      "code of the one person of the sessions whose answers are fitted, or the number of the sitting of "
+      "a person without a code; default: all people");
   command->add_flag("--one-person", a->one_person, "states that the same person answered in all sessions");
   command->add_option("--replicates", a->replicates, "simulated data sets of the model for the goodness-of-fit test")
       ->check(whole_number(99, 100000))

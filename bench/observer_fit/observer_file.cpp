@@ -105,6 +105,7 @@ std::string observer_file(const PeopleFit& fit) {
           "\n[[fit.session]]\nfolder = {}\nperson = {}\nanswers = {}\nmanifest_sha256 = {}\nshown_sha256 = {}\n",
           toml_text(session.folder), p + 1, session.human.trials.size(), toml_text(session.manifest_sha256),
           toml_text(session.shown_sha256));
+      if (!session.person.empty()) text += "person_code = " + toml_text(session.person) + "\n";
     }
   }
   return text;

@@ -83,7 +83,9 @@ Json people_fit_json(const PeopleFit& fit) {
   for (const FittedPerson& person : fit.people) {
     Json sessions = Json::array();
     for (const std::size_t s : person.sessions) sessions.push_back(fit.sessions[s].folder);
+    const std::string& code = fit.sessions[person.sessions.front()].person;
     people.push_back({{"sessions", std::move(sessions)},
+                      {"person", code.empty() ? Json() : Json(code)},
                       {"answers", person.fit.answers},
                       {"estimates", estimates_json(fit.options, person.fit)},
                       {"correlations", correlations_json(fit.options, person.fit)},

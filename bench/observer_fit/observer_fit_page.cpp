@@ -182,7 +182,7 @@ Section person_section(const PeopleFit& fit, std::size_t index) {
   const std::string id = "person-" + std::to_string(index + 1);
   ValueTable values;
   for (const std::size_t s : person.sessions)
-    values.values.push_back({"Session", plain(fit.sessions[s].folder + ", " +
+    values.values.push_back({"Session", plain(label_of(fit.sessions[s]) + ", " +
                                               std::to_string(fit.sessions[s].human.trials.size()) + " answers")});
   for (std::size_t k = 0; k < observer_key_count; ++k) {
     if (person.fit.free[k])

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "hvs/observer/open_parameters.h"
@@ -55,7 +56,7 @@ PersonQuestion question_of(const std::vector<AnsweredSession>& sessions, const s
 
 std::string folders_of(const std::vector<AnsweredSession>& sessions, const std::vector<std::size_t>& own) {
   std::string text;
-  for (const std::size_t s : own) text += (text.empty() ? "" : ", ") + sessions[s].folder;
+  for (const std::size_t s : own) text += (text.empty() ? "" : ", ") + label_of(sessions[s]);
   return text;
 }
 
@@ -65,7 +66,7 @@ Result<TemplateObserverSpec> seen_by(const std::vector<AnsweredSession>& session
   if (!observer.eye) return observer;
   for (const std::size_t s : own) {
     const auto refuse = [&](const std::string& why) {
-      return fail(ErrorCode::invalid_input, sessions[s].folder + ": " + why);
+      return fail(ErrorCode::invalid_input, label_of(sessions[s]) + ": " + why);
     };
     if (!sessions[s].display)
       return refuse("the plan has no section [display], which observer " + observer.name + " needs");
@@ -83,7 +84,8 @@ Result<FittedPerson> fitted_person(const std::vector<AnsweredSession>& sessions,
   if (!seeing) return tl::unexpected(seeing.error());
   auto lattice = AnswerLattice::create(*seeing, triangle_alternatives(), std::move(question.patches),
                                        {.draws = options.draws, .seed = options.seed});
-  const std::string where = folders_of(sessions, own) + ": shown_human.csv";
+  const bool first = std::ranges::all_of(own, [&](std::size_t s) { return sessions[s].number == 1; });
+  const std::string where = folders_of(sessions, own) + (first ? ": shown_human.csv" : ": shown pictures");
   if (!lattice) return fail(where, lattice.error());
   const PersonFitOptions how{.start = start_values(options.from), .free = options.free};
   auto fit = fit_person(*lattice, question.answers, how);
@@ -145,27 +147,78 @@ void put_together(PeopleFit& out) {
 
 }  // namespace
 
-Result<AnsweredSession> answered_session(const std::filesystem::path& folder, const Session& session) {
-  auto human = read_human(folder);
-  if (!human) return tl::unexpected(human.error());
+std::string label_of(const AnsweredSession& session) {
+  if (session.sittings < 2) return session.folder;
+  return session.folder + ", person " + (session.person.empty() ? std::to_string(session.number) : session.person);
+}
+
+Result<std::vector<AnsweredSession>> answered_sessions(const std::filesystem::path& folder, const Session& session,
+                                                       const std::optional<std::string>& person) {
+  TODBENCH_TRY(auto people, read_people(folder));
   const auto refuse = [&](const std::string& why) {
     return fail(ErrorCode::invalid_input, folder.string() + ": " + why);
   };
-  if (!*human || (*human)->trials.empty()) return refuse("this session has no answers of a person");
-  if ((*human)->shown.empty()) return refuse("the shown pictures were not kept: there is no shown_human.csv");
-  auto sum = sha256_of_file(folder / "shown_human.csv");
-  if (!sum) return tl::unexpected(sum.error());
+  if (std::ranges::all_of(people, [](const PersonRecord& one) { return one.record.trials.empty(); }))
+    return refuse("this session has no answers of a person");
   SensorSpec sensor = session.parts.sensor;
   sensor.microscan = session.plan.simulation.microscan;
   const auto whole = std::filesystem::absolute(folder).lexically_normal();
-  return AnsweredSession{.folder = (whole.has_filename() ? whole : whole.parent_path()).filename().string(),
-                         .manifest_sha256 = session.manifest_sha256,
-                         .shown_sha256 = *std::move(sum),
-                         .samples_per_pitch = sensor.samples_per_pitch(),
-                         .noise_k = session.provenance.run ? session.provenance.run->temporal_noise_k : 0,
-                         .display = has_display(session.plan) ? std::optional(session.plan.display) : std::nullopt,
-                         .human = **std::move(human)};
+  std::vector<AnsweredSession> out;
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const std::string name = people[i].person.code.empty() ? std::to_string(i + 1) : people[i].person.code;
+    if (std::ranges::find(known, name) == known.end()) known.push_back(name);
+    if (people[i].record.trials.empty() || (person && *person != name)) continue;
+    const std::string file = shown_file_of_person(i + 1);
+    if (people[i].record.shown.empty()) return refuse("the shown pictures were not kept: there is no " + file);
+    TODBENCH_TRY(auto sum, sha256_of_file(folder / file));
+    out.push_back({.folder = (whole.has_filename() ? whole : whole.parent_path()).filename().string(),
+                   .person = people[i].person.code,
+                   .number = i + 1,
+                   .sittings = people.size(),
+                   .manifest_sha256 = session.manifest_sha256,
+                   .shown_sha256 = std::move(sum),
+                   .samples_per_pitch = sensor.samples_per_pitch(),
+                   .noise_k = session.provenance.run ? session.provenance.run->temporal_noise_k : 0,
+                   .display = has_display(session.plan) ? std::optional(session.plan.display) : std::nullopt,
+                   .human = std::move(people[i].record)});
+  }
+  if (out.empty())
+    return refuse("no answers of person '" + one_line(person.value_or("")) + "' (answers of: " + quoted_list(known) +
+                  ")");
+  return out;
 }
+
+namespace {
+
+/// Indices of the sessions of every person.
+Result<std::vector<std::vector<std::size_t>>> sessions_of_people(const std::vector<AnsweredSession>& sessions,
+                                                                 PersonsAre persons) {
+  std::vector<std::vector<std::size_t>> people;
+  std::map<std::string, std::size_t> by_code;
+  for (std::size_t s = 0; s < sessions.size(); ++s) {
+    const std::string& code = sessions[s].person;
+    if (persons == PersonsAre::one) {
+      if (people.empty()) people.emplace_back();
+      for (const std::size_t other : people.front()) {
+        const AnsweredSession& before = sessions[other];
+        if (!code.empty() && !before.person.empty() && before.person != code)
+          return fail(ErrorCode::invalid_input, label_of(before) + " and " + label_of(sessions[s]) +
+                                                    " state the people '" + one_line(before.person) + "' and '" +
+                                                    one_line(code) + "'; choose one with --person");
+      }
+      people.front().push_back(s);
+      continue;
+    }
+    const auto [place, added] =
+        code.empty() ? std::pair(by_code.end(), true) : by_code.try_emplace(code, people.size());
+    if (added) people.emplace_back();
+    people[added ? people.size() - 1 : place->second].push_back(s);
+  }
+  return people;
+}
+
+}  // namespace
 
 Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const PeopleFitOptions& options,
                              std::stop_token stop) {
@@ -174,15 +227,11 @@ Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const People
   out.sessions = std::move(sessions);
   std::map<std::string, std::string> seen;
   for (const AnsweredSession& session : out.sessions) {
-    const auto [first, added] = seen.try_emplace(session.shown_sha256, session.folder);
+    const auto [first, added] = seen.try_emplace(session.shown_sha256, label_of(session));
     if (!added)
-      return fail(ErrorCode::invalid_input, session.folder + " and " + first->second + " contain the same answers");
+      return fail(ErrorCode::invalid_input, label_of(session) + " and " + first->second + " contain the same answers");
   }
-  std::vector<std::vector<std::size_t>> people;
-  for (std::size_t s = 0; s < out.sessions.size(); ++s) {
-    if (people.empty() || options.persons == PersonsAre::sessions) people.emplace_back();
-    people.back().push_back(s);
-  }
+  TODBENCH_TRY(auto people, sessions_of_people(out.sessions, options.persons));
   for (auto& own : people) {
     auto person = fitted_person(out.sessions, std::move(own), options, stop);
     if (!person) return tl::unexpected(person.error());

@@ -18,22 +18,31 @@
 
 namespace todbench {
 
-/// The answers of one session.
+/// The answers of one person in one session.
 struct AnsweredSession {
   std::string folder;           ///< its name without the parent folders
+  std::string person{};         ///< code of the person; empty: not stated
+  std::size_t number = 1;       ///< of the sitting in the session, in the order of the answers
+  std::size_t sittings = 1;     ///< of the session
   std::string manifest_sha256;  ///< empty: no manifest
-  std::string shown_sha256;     ///< of shown_human.csv
+  std::string shown_sha256;     ///< of the file with the pictures of this person
   int samples_per_pitch = 1;
   double noise_k = 0;                      ///< temporal noise of the run, for answers that do not state theirs
   std::optional<ViewedDisplay> display{};  ///< of the plan, for an observer with an eye
   HumanRecord human;
 };
-/// Reads the answers of an opened session. `invalid_input`: it has no answers, or the shown pictures were not stored.
-[[nodiscard]] Result<AnsweredSession> answered_session(const std::filesystem::path& folder, const Session& session);
+/// Reads the answers of all people of an opened session, in their order, or those of one person: a code, or for a
+/// person without a code the number of the sitting. `invalid_input`: it has no answers or not this person, or the shown
+/// pictures were not stored.
+[[nodiscard]] Result<std::vector<AnsweredSession>> answered_sessions(const std::filesystem::path& folder,
+                                                                     const Session& session,
+                                                                     const std::optional<std::string>& person);
+/// Folder of the answers, and the person if the session has several.
+[[nodiscard]] std::string label_of(const AnsweredSession& session);
 
 enum class PersonsAre {
-  sessions,  ///< every session is a person
-  one,       ///< one person answered in all sessions
+  codes,  ///< sittings with one code are a person; every sitting without a code is a person
+  one,    ///< one person answered in all sessions
 };
 
 struct PeopleFitOptions {
@@ -41,7 +50,7 @@ struct PeopleFitOptions {
   std::string from_sha256;                      ///< of the text of `from`
   std::string name;                             ///< of the fitted observer
   std::array<bool, observer_key_count> free{};  ///< parameters to fit; the others stay as in `from`
-  PersonsAre persons = PersonsAre::sessions;
+  PersonsAre persons = PersonsAre::codes;
   int replicates = 299;  ///< of the bootstrap of the goodness of fit, at least 19
   int draws = 384;       ///< noise vectors per answer probability, an even number
   std::uint64_t seed = 1;
@@ -82,8 +91,8 @@ struct PeopleFit {
   [[nodiscard]] bool usable() const { return accepted && not_identified.empty(); }
 };
 
-/// Fits the observer. Errors: `invalid_input` (answers that the observer cannot judge, the same answers twice, a
-/// parameter outside the range of the fit), `interrupted`.
+/// Fits the observer. Errors: `invalid_input` (answers that the observer cannot judge, the same answers twice, two
+/// codes for one person, a parameter outside the range of the fit), `interrupted`.
 [[nodiscard]] Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const PeopleFitOptions& options,
                                            std::stop_token stop);
 

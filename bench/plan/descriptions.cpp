@@ -145,6 +145,7 @@ void read_fit(TomlReader fit) {
   }
   for (TomlReader& session : fit.sections("session")) {
     for (const char* key : {"folder", "manifest_sha256", "shown_sha256"}) (void)session.text(key, std::nullopt);
+    (void)session.text("person_code", "");
     for (const char* key : {"person", "answers"})
       (void)session.whole(key, 0, std::numeric_limits<std::int64_t>::max(), std::nullopt);
   }

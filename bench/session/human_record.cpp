@@ -217,6 +217,10 @@ Result<std::vector<PersonRecord>> read_people(const std::filesystem::path& sessi
   return out;
 }
 
+std::string shown_file_of_person(std::size_t number) {
+  return files_of(number).shown;
+}
+
 std::vector<PeopleMean> mean_over_people(const std::vector<PersonRecord>& people) {
   // ln S75 of the sittings, by contrast and person; a person without a code has a key of their own.
   std::map<double, std::map<std::string, std::vector<double>>, std::greater<>> thresholds;

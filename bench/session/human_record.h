@@ -74,6 +74,8 @@ struct PeopleMean {
 [[nodiscard]] Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session);
 /// Reads the records of all people, in the order of their answers. Errors: as read_human().
 [[nodiscard]] Result<std::vector<PersonRecord>> read_people(const std::filesystem::path& session);
+/// File with the pictures of the N-th person, from 1, relative to the session.
+[[nodiscard]] std::string shown_file_of_person(std::size_t number);
 /// Returns the mean at every contrast of the people. Several sittings of a person (the same code) count as their
 /// geometric mean; people without a code count one by one.
 [[nodiscard]] std::vector<PeopleMean> mean_over_people(const std::vector<PersonRecord>& people);

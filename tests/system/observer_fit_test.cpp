@@ -100,6 +100,41 @@ TEST_F(ObserverFitCommand, WritesAnObserverThatPlansTakeWithTheHashesOfItsSessio
   EXPECT_EQ(content_of(at("anna.toml")), text);
 }
 
+TEST_F(ObserverFitCommand, FitsEveryPersonOfASessionAndSittingsWithOneCodeAsOnePerson) {
+  const TemplateObserverSpec person{.name = "person", .blur_sigma_samples = 0.5, .internal_noise = 0.1};
+  answer("one", person, 3);
+  answer("a", person, 3);
+  // Two more sittings of other answers to the same pictures: of bert, and of the first person again.
+  const auto first = read_people(at("a"));
+  ASSERT_TRUE(first) << first.error().message;
+  for (const auto& [code, factor] : {std::pair("bert", 1.5), std::pair("bert", 2.5)}) {
+    PersonRecord other = first->front();
+    other.person.code = code;
+    for (ShownPatch& shown : other.record.shown) shown.response_s += factor;
+    ASSERT_TRUE(add_person(at("a"), other));
+  }
+
+  const Ended alone = run({"observer", "fit", "one", "--free", "internal_noise", "--replicates", "99", "--draws", "48",
+                           "--json", "--out", "alone.toml"});
+  const Ended all = run({"observer", "fit", "a", "--free", "internal_noise", "--replicates", "99", "--draws", "48",
+                         "--json", "--out", "all.toml"});
+  const Ended bert = run({"observer", "fit", "a", "--person", "bert", "--free", "internal_noise", "--replicates", "99",
+                          "--draws", "48", "--json", "--out", "bert.toml"});
+
+  const Json json = one_object(all);
+  ASSERT_EQ(json["persons"].size(), 2u) << all.err;
+  EXPECT_TRUE(json["persons"][0]["person"].is_null());
+  EXPECT_EQ(json["persons"][1]["person"], "bert");
+  const int answers = json["persons"][0]["answers"].get<int>();
+  EXPECT_EQ(json["persons"][1]["answers"], 2 * answers);
+  // The first person is fitted as if nobody else had answered, and bert as if he were alone.
+  EXPECT_EQ(json["persons"][0]["estimates"], one_object(alone)["persons"][0]["estimates"]);
+  EXPECT_EQ(json["persons"][1]["estimates"], one_object(bert)["persons"][0]["estimates"]);
+  EXPECT_EQ(one_object(bert)["persons"].size(), 1u);
+  expect_refused(run({"observer", "fit", "a", "--person", "cleo", "--free", "lapse", "--out", "x.toml"}), 2,
+                 "no answers of person 'cleo'");
+}
+
 TEST_F(ObserverFitCommand, RefusesWhatCannotBeFittedInOneSentence) {
   answer("a", {}, 3);
   const std::vector<std::string> fit{"observer", "fit", "a", "--out", "x.toml", "--free"};
