@@ -3,9 +3,35 @@
 
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
+#include "bench/plan/loaded_plan.h"
+#include "bench/plan/resources.h"
+#include "bench/text/text.h"
 
 namespace todbench {
+
+void add_display_option(CLI::App& command, std::string& display) {
+  command.add_option("--display", display,
+                     "plan, name or file, whose section [display] an observer with an eye (hvs-2) needs");
+}
+
+Result<TemplateObserverSpec> load_observer_at(const std::string& observer, const std::string& display) {
+  TODBENCH_TRY(const Resource resource, find_resource(ResourceKind::observer, observer));
+  TODBENCH_TRY(TemplateObserverSpec spec, parse_observer(resource));
+  if (!spec.eye) return spec;
+  if (display.empty())
+    return fail_at(ErrorCode::invalid_input, observer,
+                   "the observer has an eye and needs a display; state a plan with a section [display] with --display, "
+                   "or use an observer without an eye (hvs-1)");
+  const auto plan = load_plan(display);
+  if (!plan) return tl::unexpected(with_context("--display", plan.error()));
+  if (!has_display(*plan))
+    return fail(ErrorCode::invalid_input, "--display: the plan " + one_line(display) + " has no section [display]");
+  if (auto shown = validate(plan->display); !shown) return tl::unexpected(with_context("--display", shown.error()));
+  spec.display = plan->display;
+  return spec;
+}
 
 void ChainOptions::add_sensor_to(CLI::App& command) {
   command.add_option("--sensor", sensor, "sensor: name or file")->required();
@@ -27,6 +53,7 @@ void ChainOptions::add_to(CLI::App& command, const std::string& sentence_of_obse
   command.add_option("--microscan", microscan, "samples per detector pitch and axis; default: the value of the sensor")
       ->check(whole_number(1, 4));
   command.add_option("--observer", observer, sentence_of_observer)->capture_default_str();
+  add_display_option(command, display);
   command.add_option("--accuracy", accuracy, "accuracy of the simulation: draft, normal or reference")
       ->check(CLI::IsMember({"draft", "normal", "reference"}))
       ->capture_default_str();
@@ -36,7 +63,7 @@ Result<SeeingChain> ChainOptions::load() const {
   auto spec = load_sensor(sensor);
   if (!spec) return tl::unexpected(spec.error());
   if (microscan > 0) spec->microscan = microscan;
-  auto seeing = load_observer(observer);
+  auto seeing = load_observer_at(observer, display);
   if (!seeing) return tl::unexpected(seeing.error());
   const auto level = Accuracy::named(accuracy);
   if (!level) return tl::unexpected(level.error());

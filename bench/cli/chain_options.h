@@ -19,9 +19,15 @@ struct SeeingChain {
   Atmosphere air;
 };
 
+/// Adds --display: the plan with the display of an observer with an eye.
+void add_display_option(CLI::App& command, std::string& display);
+/// Loads an observer. One with an eye needs the name or file of a plan with a section [display]. Errors: those of the
+/// loaders; `invalid_input` for an eye without a display.
+[[nodiscard]] Result<TemplateObserverSpec> load_observer_at(const std::string& observer, const std::string& display);
+
 /// Lives as long as the command.
 struct ChainOptions {
-  std::string sensor, observer = "hvs-1", atmosphere = "clear", haze = "rural-23km", accuracy = "normal";
+  std::string sensor, observer = "hvs-1", display, atmosphere = "clear", haze = "rural-23km", accuracy = "normal";
   double extinction_per_km = 0;
   int microscan = 0;  ///< 0: that of the sensor
 

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/plan_decisions.h"
 #include "bench/cli/simulation_plan.h"
 #include "bench/doctor/doctor.h"
 #include "bench/run/acuity_limits.h"
@@ -19,14 +22,34 @@ struct DoctorArguments {
   DoctorDemand demand;
 };
 
-/// What limits the acuity of the plan's simulated sensor at each contrast.
-Result<std::vector<AcuityLimits>> limits_of_plan(const std::string& plan, const std::stop_token& stop) {
+/// What limits the acuity of the plan's simulated sensor at each contrast, and the proposed viewing.
+struct PlanLimits {
+  std::vector<AcuityLimits> acuity;
+  std::optional<ViewingProposal> viewing;
+  std::optional<ViewedDisplay> display;
+};
+Result<PlanLimits> limits_of_plan(const std::string& plan, const std::stop_token& stop) {
   const auto loaded = simulation_plan({.plan = plan, .seed = {}, .keys = {}}, stop);
   if (!loaded) return tl::unexpected(loaded.error());
   EffectPlanner planner;
   const auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return tl::unexpected(inputs.error());
-  return acuity_limits(*inputs, loaded->plan().target.delta_t_k, stop);
+  auto viewing = viewing_of(loaded->plan().target.delta_t_k, *inputs, stop);
+  if (!viewing) return tl::unexpected(viewing.error());
+  auto acuity = acuity_limits(*inputs, loaded->plan().target.delta_t_k, stop);
+  if (!acuity) return tl::unexpected(acuity.error());
+  return PlanLimits{*std::move(acuity), *std::move(viewing), inputs->observer.display};
+}
+
+/// A warning if a larger picture would gain more acuity than the error of the estimate.
+DoctorCheck check_viewing(const ViewingProposal& viewing, const ViewedDisplay& display) {
+  return {.name = "viewing",
+          .finding = viewing.stated_cost_percent > 2 * viewing_cost_percent ? Finding::warning : Finding::ok,
+          .found = in_words(viewing, display),
+          .explanation =
+              "The picture is so small at the eye that it costs acuity of the camera: enlarge it or come "
+              "closer.",
+          .command = {}};
 }
 
 /// A warning where display, eye or light limit the acuity most: then the test is not one of the camera.
@@ -60,12 +83,13 @@ int run_doctor(Console& console, const DoctorArguments& arguments, const Program
   if (arguments.root != "/") facts.firewall_rules.reset();
   auto checks = examine(arguments.root, facts, arguments.demand);
   if (const auto library = camera_library()) checks.push_back(check_camera_library(*library));
-  std::vector<AcuityLimits> limits;
+  PlanLimits limits;
   if (!arguments.plan.empty()) {
     auto found = limits_of_plan(arguments.plan, program.stop->token());
     if (!found) return report_error(console, found.error());
     limits = *std::move(found);
-    for (const AcuityLimits& at : limits) checks.push_back(check_acuity(at));
+    for (const AcuityLimits& at : limits.acuity) checks.push_back(check_acuity(at));
+    if (limits.viewing) checks.push_back(check_viewing(*limits.viewing, *limits.display));
   }
   const bool trouble =
       std::any_of(checks.begin(), checks.end(), [](const auto& c) { return c.finding == Finding::problem; });
@@ -79,7 +103,8 @@ int run_doctor(Console& console, const DoctorArguments& arguments, const Program
                       {"command", c.command.empty() ? Json() : Json(c.command)}});
     }
     Json json{{"checks", list}, {"verdict", trouble ? "problem" : "ok"}};
-    if (!arguments.plan.empty()) json["acuity_limits"] = acuity_limits_json(limits);
+    if (!arguments.plan.empty()) json["acuity_limits"] = acuity_limits_json(limits.acuity);
+    if (limits.viewing) json["viewing_proposal"] = viewing_json(*limits.viewing);
     console.object(json);
     return trouble ? 1 : 0;
   }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "bench/cli/chain_options.h"
 #include "bench/cli/effect_decisions.h"
 #include "bench/cli/run_display.h"
 #include "bench/cli/seeded_plan.h"
@@ -26,7 +27,7 @@ namespace todbench {
 namespace {
 
 struct DynamicArguments {
-  std::string plan, out, sensor = "sc2000", observer = "hvs-1", accuracy = "normal", package;
+  std::string plan, out, sensor = "sc2000", observer = "hvs-1", display, accuracy = "normal", package;
   bool overwrite = false;
   double delta_t_k = 16.9;
   std::vector<double> speeds_mrad_s, sizes_pitch;
@@ -57,6 +58,8 @@ int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program&
   const auto loaded = with_seed(read_plan(a.plan), program.common);
   if (!loaded) return report_error(console, loaded.error());
   const Plan& plan = loaded->plan();
+  if (loaded->observer().eye)
+    console.note("spread over the open parameters of observer " + loaded->observer().name + " not computed");
   console.phase("measuring a moving target");
   const auto said = [&](const MovingPassRecord& pass) {
     if (!pass.dropped.empty() && !console.json()) console.text(fmt::format("pass {}: {}", pass.pass, pass.dropped));
@@ -110,6 +113,7 @@ Json dynamic_json(const std::vector<DynamicAcuity>& found, const SensorSpec& sen
           {"package", a.package.empty() ? Json() : Json(a.package)},
           {"lag", a.package.empty() ? "removed" : "removed for time constant and exposure, not for the package"},
           {"internal_noise", "per decision"},
+          {"s75_spread", a.display.empty() ? Json() : Json("not computed")},
           {"seed", seed},
           {"speeds", speeds_json(found)}};
 }
@@ -165,7 +169,7 @@ int run_dynamic(Console& console, const DynamicArguments& a, const Program& prog
   if (a.exposure_ms >= 0) sensor->exposure_ms = a.exposure_ms;
   if (a.row_time_us >= 0) sensor->row_time_us = a.row_time_us;
   if (auto valid = validate(*sensor); !valid) return report_error(console, valid.error());
-  const auto spec = load_observer(a.observer);
+  const auto spec = load_observer_at(a.observer, a.display);
   if (!spec) return report_error(console, spec.error());
   const auto effects = planned_for(*sensor, *spec, a);
   if (!effects) return report_error(console, effects.error());
@@ -199,6 +203,7 @@ int run_dynamic(Console& console, const DynamicArguments& a, const Program& prog
   }
   std::vector<TableRow> rows;
   add_rows(rows, *found, {});
+  if (spec->eye) console.note("spread over the open parameters of observer " + spec->name + " not computed");
   console.table({"speed (mrad/s)", "px/frame", "observer", "acuity (1/mrad)", "95 %", "ratio to rest", "95 %"}, rows);
   print_effects(console, *effects, a.decisions);
   return 0;
@@ -219,6 +224,7 @@ void add_dynamic_command(CLI::App& app, Program& program) {
   force->needs(plan);
   command->add_option("--sensor", a->sensor, "sensor: name or file")->capture_default_str();
   command->add_option("--observer", a->observer, "observer: name or file")->capture_default_str();
+  add_display_option(*command, a->display);
   command->add_option("--delta-t-k", a->delta_t_k, "set contrast in K")
       ->capture_default_str()
       ->check(number_in(-1000, 1000));

@@ -86,12 +86,16 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
   Json turbulence;
   if (task.cn2_m_minus_2_3 > 0) turbulence = {{"cn2_m_minus_2_3", task.cn2_m_minus_2_3}};
   for (const auto& point : study.points) {
-    ranges.push_back({{"range_m", json_number(point.range_m)},
-                      {"transmittance", json_number(point.transmittance)},
-                      {"proportion_correct", json_number(point.proportion())},
-                      {"ci95", json_interval(interval_of(point))},
-                      {"draws", point.by_draw.size()},
-                      {"confusion", point.answers}});
+    Json row{{"range_m", json_number(point.range_m)},
+             {"transmittance", json_number(point.transmittance)},
+             {"proportion_correct", json_number(point.proportion())},
+             {"ci95", json_interval(interval_of(point))},
+             {"draws", point.by_draw.size()},
+             {"confusion", point.answers}};
+    // Of an observer with an eye, over its open parameters; no confidence interval.
+    if (point.spread)
+      row["proportion_correct_spread"] = {json_number(point.spread->first), json_number(point.spread->second)};
+    ranges.push_back(std::move(row));
   }
   for (const auto& t : study.tod) {
     tod.push_back({{"delta_t_k", json_number(t.delta_t_k)},
@@ -136,11 +140,15 @@ void print_identification(Console& console, const IdentificationStudyTask& task,
                            task.set.targets.size(), task.set.name, task.sensor.name, task.observer.name, study.size_m,
                            study.dt_rss_k));
   std::vector<TableRow> rows;
+  TableRow header{"range [m]", "transmittance", "P correct", "95 %"};
+  if (task.observer.eye) header.emplace_back("spread of the open parameters");
   for (const auto& point : study.points) {
     rows.push_back({fixed(point.range_m, 0), fixed(point.transmittance, 3), fixed(point.proportion(), 3),
                     range(interval_of(point), 3)});
+    if (point.spread) rows.back().push_back(fixed(point.spread->first, 3) + " to " + fixed(point.spread->second, 3));
   }
-  console.table({"range [m]", "transmittance", "P correct", "95 %"}, rows);
+  console.table(header, rows);
+  if (task.observer.eye) console.text("the range, M75 and V50 state no spread: spread not computed");
   console.text("");
   console.text("75 % correct at " + fixed(study.r75_m.value, 1) + " m, 95 %: " + range(study.r75_m.ci95, 1) + " m");
   console.text("criteria of the set: M75 " + fixed(study.m75.value, 2) + " (" + range(study.m75.ci95, 2) + "), V50 " +

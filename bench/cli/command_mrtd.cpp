@@ -64,22 +64,26 @@ std::optional<double> sampling_spread(const VirtualMrtdPoint& point) {
 
 Json point_json(const MrtdStudyPoint& point) {
   const VirtualMrtdPoint& found = point.found;
-  return {{"frequency_per_mrad", json_number(found.frequency_per_mrad)},
-          {"frequency_over_nyquist", json_number(found.frequency_over_nyquist)},
-          {"mrtd_k", json_number(point.mrtd_k)},
-          {"reason", point.reason.empty() ? Json() : Json(point.reason)},
-          {"threshold_k", json_number(found.threshold_k)},
-          {"threshold_ci95_k", json_interval(point.threshold_ci95_k)},
-          {"best_phase_k", json_number(found.best_phase_k)},
-          {"worst_phase_k", json_number(found.worst_phase_k)},
-          {"sampling_spread", json_number(sampling_spread(found))},
-          {"highest_k", json_number(found.highest_k)},
-          {"proportion_at_highest", json_number(found.proportion_at_most)},
-          {"formula_mrtd_k", json_number(point.formula_k)},
-          {"ideal_k", json_number(found.ideal_k)},
-          {"modulation_best", json_number(found.modulation_best)},
-          {"modulation_worst", json_number(found.modulation_worst)},
-          {"share_of_phases_with_four_bars", json_number(found.share_of_four)}};
+  Json json{{"frequency_per_mrad", json_number(found.frequency_per_mrad)},
+            {"frequency_over_nyquist", json_number(found.frequency_over_nyquist)},
+            {"mrtd_k", json_number(point.mrtd_k)},
+            {"reason", point.reason.empty() ? Json() : Json(point.reason)},
+            {"threshold_k", json_number(found.threshold_k)},
+            {"threshold_ci95_k", json_interval(point.threshold_ci95_k)},
+            {"best_phase_k", json_number(found.best_phase_k)},
+            {"worst_phase_k", json_number(found.worst_phase_k)},
+            {"sampling_spread", json_number(sampling_spread(found))},
+            {"highest_k", json_number(found.highest_k)},
+            {"proportion_at_highest", json_number(found.proportion_at_most)},
+            {"formula_mrtd_k", json_number(point.formula_k)},
+            {"ideal_k", json_number(found.ideal_k)},
+            {"modulation_best", json_number(found.modulation_best)},
+            {"modulation_worst", json_number(found.modulation_worst)},
+            {"share_of_phases_with_four_bars", json_number(found.share_of_four)}};
+  // Of an observer with an eye, over its open parameters; no confidence interval.
+  if (found.spread_k)
+    json["threshold_spread_k"] = {json_number(found.spread_k->first), json_number(found.spread_k->second)};
+  return json;
 }
 
 Json mrtd_json(const MrtdStudyTask& task, const MrtdStudy& study) {
@@ -117,12 +121,18 @@ void print_mrtd(Console& console, const MrtdStudyTask& task, const MrtdStudy& st
                       fixed(p.mrtd_k, 4), range(p.mrtd_k ? p.threshold_ci95_k : Interval{}, 4),
                       fixed(p.found.best_phase_k, 4), fixed(p.found.worst_phase_k, 4), fixed(p.formula_k, 4),
                       p.reason});
+      if (task.trial.observer.eye) {
+        const auto& spread = p.found.spread_k;
+        rows.back().insert(rows.back().begin() + 4,
+                           spread ? fixed(spread->first, 4) + " to " + fixed(spread->second, 4) : std::string("-"));
+      }
     }
     console.text("");
     console.text(curve.axis == BarAxis::horizontal ? "horizontal axis" : "vertical axis");
-    console.table(
-        {"f [/mrad]", "f/Nyquist", "MRTD [K]", "95 %", "best phase [K]", "worst phase [K]", "formula [K]", "reason"},
-        rows);
+    TableRow header{"f [/mrad]",      "f/Nyquist",       "MRTD [K]",    "95 %",
+                    "best phase [K]", "worst phase [K]", "formula [K]", "reason"};
+    if (task.trial.observer.eye) header.insert(header.begin() + 4, "spread, open parameters [K]");
+    console.table(header, rows);
   }
 }
 

@@ -146,6 +146,8 @@ int run_plan(Console& console, const PlanArguments& asked, const Program& progra
     if (!found) return report_error(console, found.error());
     acuity = *std::move(found);
   }
+  const auto viewing = viewing_of(plan.target.delta_t_k, *inputs, program.stop->token());
+  if (!viewing) return report_error(console, viewing.error());
   std::optional<AccuracyBill> bill;
   if (!plan.camera.id.empty() && plan.target.kind != TargetKind::scene) {
     auto found = bill_forecast(plan, *inputs);
@@ -163,6 +165,7 @@ int run_plan(Console& console, const PlanArguments& asked, const Program& progra
     if (!plan.limits.acuity.empty()) json["limits"] = limits_json(*limits);
     if (!measure_limits->empty()) json["measure_limits"] = measure_limits_json(*measure_limits);
     if (!acuity.empty()) json["acuity_limits"] = acuity_limits_json(acuity);
+    if (*viewing) json["viewing_proposal"] = viewing_json(**viewing);
     if (frontier) json["frontier"] = frontier_json(*frontier);
     if (bill) json["bill"] = bill_json(*bill);
     if (asked.decide) json["decide"] = decisions_json(decisions);
@@ -172,6 +175,7 @@ int run_plan(Console& console, const PlanArguments& asked, const Program& progra
     if (frontier) print_frontier(console, *frontier);
     if (bill) print_bill_forecast(console, *bill);
     for (const AcuityLimits& at : acuity) console.text(in_words(at));
+    if (*viewing) console.text(in_words(**viewing, *inputs->observer.display));
     for (const LimitForecast& limit : *limits) console.text("limit at " + in_words(limit));
     for (const MeasureForecast& limit : *measure_limits) console.text("limit on " + in_words(limit));
     if (asked.decide) print_decisions(console, decisions);

@@ -191,4 +191,23 @@ std::string design_toml(const BestDesign& found) {
          to_toml(found.best.plan);
 }
 
+Result<std::optional<ViewingProposal>> viewing_of(const std::vector<double>& delta_t_k, const ExperimentInputs& inputs,
+                                                  std::stop_token stop) {
+  if (!inputs.observer.eye || !inputs.observer.display || delta_t_k.empty()) return std::nullopt;
+  const double largest =
+      std::abs(*std::ranges::max_element(delta_t_k, {}, [](double contrast) { return std::abs(contrast); }));
+  auto found = propose_viewing(inputs.sensor, inputs.effects, inputs.observer, largest, std::move(stop));
+  if (found) return *found;
+  if (found.error().code == ErrorCode::interrupted) return tl::unexpected(found.error());
+  return std::nullopt;
+}
+
+Json viewing_json(const ViewingProposal& viewing) {
+  return {{"stated_arcmin", json_number(viewing.stated_arcmin)},
+          {"stated_cost_percent", json_number(viewing.stated_cost_percent)},
+          {"least_arcmin", json_number(viewing.least_arcmin)},
+          {"zoom", json_number(viewing.zoom)},
+          {"viewing_distance_m", json_number(viewing.viewing_distance_m)}};
+}
+
 }  // namespace todbench

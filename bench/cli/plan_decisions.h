@@ -2,13 +2,17 @@
 // Decision forecasts and the best design as text and JSON, for `todbench plan`.
 #pragma once
 
+#include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "bench/cli/console.h"
 #include "bench/run/decision_forecast.h"
 #include "bench/run/design_search.h"
+#include "bench/run/experiment_inputs.h"
 #include "bench/text/json.h"
+#include "sim_devices/prediction/viewing_proposal.h"
 
 namespace todbench {
 
@@ -23,6 +27,13 @@ void print_design(const Console& console, const BestDesign& found);
 
 /// Returns the object of `plan --optimise --json`.
 [[nodiscard]] Json best_design_json(const BestDesign& found);
+
+/// Returns zoom and distance for an observer with an eye, at the largest contrast; empty for others, and if that
+/// contrast has no threshold. Errors: `interrupted`.
+[[nodiscard]] Result<std::optional<ViewingProposal>> viewing_of(const std::vector<double>& delta_t_k,
+                                                                const ExperimentInputs& inputs, std::stop_token stop);
+/// Key "viewing_proposal" of `plan --json` and `doctor --json`.
+[[nodiscard]] Json viewing_json(const ViewingProposal& viewing);
 
 /// Returns the design as the text of a plan file.
 [[nodiscard]] std::string design_toml(const BestDesign& found);

@@ -16,6 +16,8 @@
 #include "bench/run/module_chain.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "hvs/eye/contrast_sensitivity.h"
+#include "hvs/eye/eye_optics.h"
 #include "sim_devices/prediction/module_response.h"
 #include "sim_devices/sensor/sensor_key.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -33,7 +35,6 @@ Result<ComparedModel> described(ComparedModel model, const Resource& resource) {
   if (model.kind == ModelKind::observer) {
     auto observer = parse_observer_with_module(resource);
     if (!observer) return tl::unexpected(observer.error());
-    if (auto blind = refuse_eye(observer->spec, "compare-models"); !blind) return tl::unexpected(blind.error());
     model.observer = *std::move(observer);
     model.name = model.observer.spec.name;
     if (model.observer.module) model.provenance.push_back(text_of(module_record(*model.observer.module)));
@@ -88,6 +89,18 @@ std::vector<KeyDifference> key_differences(const ComparedModel& a, const Compare
         {"window_margin_pitch", &TemplateObserverSpec::window_margin_pitch}};
     for (const auto& [key, member] : members)
       add(key, number(a.observer.spec.*member), number(b.observer.spec.*member));
+    const std::pair<const char*, double EyeParameters::*> eye_members[] = {
+        {"eye.sensitivity", &EyeParameters::sensitivity},
+        {"eye.photon_noise_td", &EyeParameters::photon_noise_td},
+        {"eye.inhibition_per_degree", &EyeParameters::inhibition_per_degree},
+        {"eye.uncertainty_channels", &EyeParameters::uncertainty_channels},
+        {"eye.contrast_noise", &EyeParameters::contrast_noise},
+        {"eye.age_years", &EyeParameters::age_years},
+        {"eye.field_deg2", &EyeParameters::field_deg2}};
+    const auto of_eye = [&](const ComparedModel& model, double EyeParameters::*member) {
+      return model.observer.spec.eye ? number((*model.observer.spec.eye).*member) : std::string("no eye");
+    };
+    for (const auto& [key, member] : eye_members) add(key, of_eye(a, member), of_eye(b, member));
     const auto command = [](const ComparedModel& model) {
       return model.observer.module ? model.observer.module->command : std::string();
     };
@@ -232,6 +245,16 @@ Result<std::vector<double>> moduli_of(const ComparedModel& model, Chain& chain, 
   std::vector<double> moduli, cycles;
   for (const double f : frequencies_per_mrad) cycles.push_back(f / chain.samples_per_mrad());
   if (model.kind == ModelKind::observer) {
+    if (const TemplateObserverSpec& seeing = loaded.observer(); seeing.eye) {
+      const EyeFilter eye(*seeing.eye, adaptation_luminance_cd_m2(*seeing.display));
+      const double per_sample = 60 / arcmin_per_sample(*seeing.display);
+      for (const double f : cycles) moduli.push_back(eye_mtf(f * per_sample, eye.pupil_mm()));
+      notes.push_back(
+          fmt::format("{}: its MTF is that of the optics of the eye, without display and sensitivity; its "
+                      "acuities are stated without the spread of its open parameters",
+                      model.name));
+      return moduli;
+    }
     const double sigma = model.observer.spec.blur_sigma_samples;
     for (const double f : cycles)
       moduli.push_back(std::exp(-2 * std::numbers::pi * std::numbers::pi * sigma * sigma * f * f));

@@ -86,6 +86,8 @@ VirtualMrtdPoint before_the_air(VirtualMrtdPoint point, double transmittance) {
   for (auto* contrast_k : {&point.threshold_k, &point.best_phase_k, &point.worst_phase_k}) {
     if (*contrast_k) **contrast_k /= transmittance;
   }
+  if (point.spread_k)
+    point.spread_k = std::pair(point.spread_k->first / transmittance, point.spread_k->second / transmittance);
   point.highest_k /= transmittance;
   point.ideal_k /= transmittance;
   return point;

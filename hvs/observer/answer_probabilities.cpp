@@ -99,8 +99,8 @@ Contenders contenders(const ScoreNoise& noise, const ScoreNoiseLevels& levels, c
   return out;
 }
 
-/// Finds the unit direction from the second to the first template, and its product with every template. False if the
-/// two templates are equal.
+/// Finds the unit direction from the second to the first template, and its product with those that can win. False if
+/// the two templates are equal.
 bool find_direction(const ScoreNoise& noise, const ScoreNoiseLevels& levels, const Contenders& able,
                     const AnswerRoom& room) {
   const auto numbers = room.numbers.first(noise.rank());
@@ -114,7 +114,11 @@ bool find_direction(const ScoreNoise& noise, const ScoreNoiseLevels& levels, con
   for (float& number : room.direction) number = static_cast<float>(static_cast<double>(number) / std::sqrt(square));
   std::copy(room.direction.begin(), room.direction.end(), numbers.begin());
   noise.weigh(levels, numbers);
-  noise.scores(numbers, room.along);
+  // Only blocks with templates that can win are drawn.
+  for (std::size_t first = 0; first < noise.size(); first += block) {
+    if (able.blocks[first / block])
+      block_product(noise.factor(first), numbers.data(), noise.rank(), &room.along[first]);
+  }
   return true;
 }
 

@@ -3,6 +3,7 @@
 // of the search.
 #pragma once
 
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <span>
@@ -24,6 +25,10 @@ struct KnownCamera {
   double band_per_sample = 3;
 };
 
+/// Returns a picture without its background: the mean, or for an eye that of the outermost samples, because the eye
+/// sees no uniform field but part of a large target's mean.
+[[nodiscard]] cv::Mat1f without_background(const TemplateObserverSpec& spec, cv::Mat1f picture);
+
 /// Side of the search window, in samples, even.
 [[nodiscard]] int identification_window_samples(const TemplateObserverSpec& spec,
                                                 std::span<const AlternativeAspects> alternatives,
@@ -39,7 +44,12 @@ struct KnownCamera {
 ///
 /// The templates of one picture at all places, 289 in hvs-1, are sums of fewer orthonormal ones: 30 to 70 for triangles
 /// up to 4 samples. The residual of every template is below 1e-4 of its norm, so the error of a score is at most that
-/// fraction of the norm of the patch. Immutable, thread-safe.
+/// fraction of the norm of the patch.
+///
+/// With an eye (hvs-2) a template is the ideal picture behind display and eye, in units of its own norm behind the eye:
+/// as for triangles, which have equal norms, but different shapes do not. Cameras and aspects precede display and eye.
+/// The noise of the eye is white behind H; its scores are those of white pictures on a lattice that is fine enough for
+/// the eye, with the templates behind display and H once. Immutable, thread-safe.
 class IdentificationBank {
  public:
   /// `camera`: empty for ideal templates, as for triangles. Error: `invalid_input` (fewer than two alternatives, one
@@ -59,6 +69,20 @@ class IdentificationBank {
   /// project() of each patch, with the same bits. Faster than single calls: the templates of large targets, hundreds of
   /// megabytes, are read once for all patches.
   [[nodiscard]] std::vector<std::vector<float>> project_all(std::span<const cv::Mat1f> patches) const;
+  /// Side of a picture of the noise of the eye, in points of the fine lattice; 0 without an eye.
+  [[nodiscard]] int eye_points() const { return eye_ ? eye_->window_ : 0; }
+  /// Scores of the noise of the eye, of standard deviation 1: of white pictures of standard deviation 1 with
+  /// eye_points() on a side. Precondition: an eye.
+  [[nodiscard]] std::vector<std::vector<float>> project_eye(std::span<const cv::Mat1f> white) const {
+    return eye_->project_all(white);
+  }
+  /// Standard deviation of the noise of the eye in a score of pictures in kelvin, while a view is shown with the
+  /// contrast `contrast_k`, that is `level` in the unit of its edges. `seeing`: the observer of the bank, or one that
+  /// differs from it in sensitivity, channels or contrast noise only. Precondition: an eye.
+  [[nodiscard]] double eye_noise_k(const TemplateObserverSpec& seeing, std::size_t alternative, std::size_t aspect,
+                                   double contrast_k, double level) const;
+  /// d'^2 of a view at luminance contrast 1, for the observer of the bank; `level` as in eye_noise_k().
+  [[nodiscard]] double eye_energy(std::size_t alternative, std::size_t aspect, double level) const;
   /// Index of the alternative with the largest element of signal + first_scale * first + second_scale * second.
   [[nodiscard]] std::size_t best(std::span<const float> signal, std::span<const float> first, float first_scale,
                                  std::span<const float> second, float second_scale) const;
@@ -68,10 +92,15 @@ class IdentificationBank {
 
  private:
   IdentificationBank() = default;
-  int window_ = 0, places_ = 0;            ///< places per axis
-  std::vector<cv::Mat1f> aspects_;         ///< [place][in the aspect's own part of the basis]
-  std::vector<std::size_t> first_aspect_;  ///< of each alternative, and the end
-  std::vector<float> basis_;               ///< of all aspects: [block][sample][in block], as in TemplateBank
+  struct Views;
+  Result<void> add(const Views& views);
+  int window_ = 0, places_ = 0;                    ///< places per axis
+  std::vector<cv::Mat1f> aspects_;                 ///< [place][in the aspect's own part of the basis]
+  std::vector<std::size_t> first_aspect_;          ///< of each alternative, and the end
+  std::vector<float> basis_;                       ///< of all aspects: [block][sample][in block], as in TemplateBank
+  std::shared_ptr<const IdentificationBank> eye_;  ///< the same views on the lattice of the noise of the eye
+  std::vector<double> energy_;                     ///< of each aspect behind the eye, in samples; only with an eye
+  TemplateObserverSpec spec_;
 };
 
 }  // namespace todbench

@@ -7,30 +7,14 @@
 #include <numbers>
 #include <string>
 
-#include "hvs/eye/contrast_sensitivity.h"
-#include "hvs/eye/eye_optics.h"
 #include "hvs/observer/block_product.h"
 #include "hvs/observer/eye_noise.h"
 #include "hvs/observer/template_observer.h"
+#include "hvs/observer/viewing_filter.h"
 #include "hvs/shape/polygon_image.h"
 
 namespace todbench {
 namespace {
-
-/// Display (sample and hold over one sample) and blur of display and eye together: sinc(u) sinc(w) exp(-2 pi^2 sigma^2
-/// rho^2).
-TransferFunction viewing_filter(double sigma_samples) {
-  return [sigma_samples](double u, double w) -> std::complex<double> {
-    const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); };
-    const double pi_sigma = std::numbers::pi * sigma_samples;
-    return sinc(u) * sinc(w) * std::exp(-2 * pi_sigma * pi_sigma * (u * u + w * w));
-  };
-}
-
-/// Frequency at which the Gaussian has fallen to 1e-12, in cycles per sample: exp(-2 pi^2 sigma^2 f^2) = 1e-12.
-double filter_band(double sigma_samples) {
-  return std::sqrt(27.631 / 2) / (std::numbers::pi * sigma_samples);
-}
 
 /// Removes the mean of a template's samples and scales them to the Euclidean norm 1.
 void normalise(std::vector<double>& values) {
@@ -43,42 +27,6 @@ void normalise(std::vector<double>& values) {
     energy += v * v;
   }
   for (double& v : values) v /= std::sqrt(energy);
-}
-
-/// Filter of an observer's templates, and how far it reaches.
-struct ViewingFilter {
-  TransferFunction transfer;
-  double band_per_sample = 0;  ///< above it the filter passes nothing that counts
-  double reach_samples = 0;    ///< beyond it its response is nearly 0
-};
-
-/// Display twice and H^2: the display draws a sample of the patch, and the template is the shape behind the display.
-ViewingFilter seeing_filter(const TemplateObserverSpec& spec) {
-  const ViewedDisplay& display = *spec.display;
-  const EyeFilter eye(*spec.eye, adaptation_luminance_cd_m2(display));
-  const double per_sample = 60 / arcmin_per_sample(display);  // cycles per degree of one cycle per sample
-  // Values fall with the square of the spectrum of a displayed sample. Those below 1e-6 of the peak change the
-  // covariance of the noise by less than 1e-7, because the spectrum of the shape falls as well.
-  double peak = 0, band = 0;
-  const double limit = diffraction_limit_per_degree(eye.pupil_mm());
-  for (double f = limit / 400; f < limit; f += limit / 400) {
-    const double envelope = std::min(1.0, std::pow(std::numbers::pi * f / per_sample, -2));
-    const double value = eye.identification_power(f) * envelope;
-    peak = std::max(peak, value);
-    if (value > 1e-6 * peak) band = f;
-  }
-  // The cusp of the diffraction MTF leaves an algebraic tail: copies this far away change the covariance by 5e-7.
-  constexpr double reach_arcmin = 24;
-  return {[display, eye, per_sample](double u, double w) -> std::complex<double> {
-            const double transfer = display_transfer(display, u, w);
-            return eye.identification_power(per_sample * std::hypot(u, w)) * transfer * transfer;
-          },
-          band / per_sample, reach_arcmin / arcmin_per_sample(display) + 1};
-}
-
-ViewingFilter filter_of(const TemplateObserverSpec& spec) {
-  if (spec.eye) return seeing_filter(spec);
-  return {viewing_filter(spec.blur_sigma_samples), filter_band(spec.blur_sigma_samples), 7 * spec.blur_sigma_samples};
 }
 
 }  // namespace
@@ -111,7 +59,7 @@ Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const
   bank.window_ = 2 * half;
 
   // Sample centres lie on half samples, search places on 1 / steps: one fine grid contains both.
-  const ViewingFilter viewing = filter_of(spec);
+  const ViewingFilter viewing = viewing_filter(spec);
   // The next copy of the shape must stay outside the window: shape, seven sigma of blur, the display sample, and the
   // search range.
   const int period = static_cast<int>(std::ceil((spec.eye ? 2 : 1) * (half + spec.search_range_samples) +

@@ -2,6 +2,7 @@
 #include "sim_devices/prediction/identification.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <numeric>
@@ -9,6 +10,8 @@
 #include <thread>
 
 #include "hvs/observer/identification_bank.h"
+#include "hvs/observer/open_parameters.h"
+#include "hvs/observer/viewing_filter.h"
 #include "sim_devices/prediction/seen_window.h"
 #include "sim_devices/prediction/window_noise.h"
 #include "sim_devices/sensor/effect_display.h"
@@ -148,29 +151,58 @@ class RangeTrial {
                               .transmittance = range_.transmittance,
                               .answers = std::vector(targets.size(), std::vector<int>(targets.size(), 0)),
                               .by_draw = std::vector<double>(draws, 0.0)};
+    if (auto answered = answer(targets, task_.observer, point); !answered) return tl::unexpected(answered.error());
+    const auto range = open_parameter_range(task_.observer);
+    if (!range) return point;
+    std::array<double, 2> ends{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      IdentificationPoint end = point;
+      for (auto& row : end.answers) std::ranges::fill(row, 0);
+      std::ranges::fill(end.by_draw, 0.0);
+      if (auto answered = answer(targets, k == 0 ? range->worst : range->best, end); !answered)
+        return tl::unexpected(answered.error());
+      ends[k] = end.proportion();
+    }
+    point.spread = std::pair(ends[0], ends[1]);
+    return point;
+  }
+
+ private:
+  /// Answers of an observer that differs from that of the task in its own noise only.
+  Result<void> answer(const SeenTargets& targets, const TemplateObserverSpec& observer, IdentificationPoint& point) {
+    const std::size_t draws = point.by_draw.size();
     double shown = 0;
     for (const auto& target : targets) shown += static_cast<double>(target.size());
+    std::vector<float> own(observer.eye ? bank_->scores() : 0);
     for (std::size_t t = 0; t < targets.size(); ++t) {
       for (std::size_t a = 0; a < targets[t].size(); ++a) {
         const double contrast_k = targets[t][a].dt_rss_k * range_.transmittance;
         if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+        const float white = own_noise(observer, contrast_k);
+        const auto eye = static_cast<float>(
+            observer.eye ? bank_->eye_noise_k(observer, t, a, contrast_k, targets[t][a].dt_rss_k) : 0);
         std::vector<cv::Mat1f> patches;
         for (std::size_t phase = 0; phase < phases; ++phase) patches.push_back(patch(t, a, phase));
         const auto signals = bank_->project_all(patches);
         for (std::size_t phase = 0; phase < phases; ++phase) {
           const auto& signal = signals[phase];
           for (std::size_t d = first_draw_of(phase, t, a); d < draws; d += phases) {
-            const std::size_t answer = bank_->best(signal, sensor_noise_[d], 1.0F, white_[d], own_noise(contrast_k));
+            std::size_t answer = 0;
+            if (observer.eye) {
+              for (std::size_t i = 0; i < own.size(); ++i) own[i] = white * white_[d][i] + eye * eye_[d][i];
+              answer = bank_->best(signal, sensor_noise_[d], 1.0F, own, 1.0F);
+            } else {
+              answer = bank_->best(signal, sensor_noise_[d], 1.0F, white_[d], white);
+            }
             ++point.answers[t][answer];
             if (answer == t) point.by_draw[d] += 1 / shown;
           }
         }
       }
     }
-    return point;
+    return {};
   }
 
- private:
   RangeTrial(const IdentificationTask& task, IdentificationRange range, const SceneImager& imager)
       : task_(task),
         range_(range),
@@ -191,12 +223,7 @@ class RangeTrial {
         3.0 / n};
   }
 
-  /// Removes the mean.
-  static cv::Mat1f centred(cv::Mat1f window) {
-    window = window.clone();
-    window -= cv::mean(window)[0];
-    return window;
-  }
+  [[nodiscard]] cv::Mat1f centred(const cv::Mat1f& window) const { return without_background(task_.observer, window); }
 
   [[nodiscard]] cv::Mat1f patch(std::size_t target, std::size_t aspect, std::size_t phase) const {
     return centred(window_.picture(alternatives_[target][aspect], bank_->window_samples(), view_offset(phase),
@@ -204,9 +231,9 @@ class RangeTrial {
   }
 
   /// Noise of the observer in kelvin per sample: internal noise, and the enlargement of the sensor's noise.
-  [[nodiscard]] float own_noise(double contrast_k) const {
-    const double enlarged = task_.observer.sensor_noise_factor * task_.observer.sensor_noise_factor - 1;
-    return static_cast<float>(std::sqrt(std::pow(task_.observer.internal_noise * contrast_k, 2) +
+  [[nodiscard]] float own_noise(const TemplateObserverSpec& observer, double contrast_k) const {
+    const double enlarged = observer.sensor_noise_factor * observer.sensor_noise_factor - 1;
+    return static_cast<float>(std::sqrt(std::pow(observer.internal_noise * contrast_k, 2) +
                                         enlarged * white_variance_k2(spec_, task_.plan, 1)));
   }
 
@@ -216,13 +243,19 @@ class RangeTrial {
     constexpr std::size_t at_once = 32;
     for (std::size_t first = 0; first < draws; first += at_once) {
       if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-      std::vector<cv::Mat1f> sensor, white;
+      std::vector<cv::Mat1f> sensor, white, eye;
       for (std::size_t d = first; d < std::min(draws, first + at_once); ++d) {
         sensor.push_back(centred(noise.sensor_k(d)));
-        white.push_back(centred(noise.white(d)));
+        white.push_back(task_.observer.eye ? noise.white(d) : centred(noise.white(d)));
+        if (const int points = bank_->eye_points(); points > 0) {
+          eye.emplace_back(points, points);
+          RandomStream(task_.seed, "identify.eye").sub(d).fill_normal({eye.back().ptr<float>(), eye.back().total()});
+        }
       }
       for (auto& projected : bank_->project_all(sensor)) sensor_noise_.push_back(std::move(projected));
       for (auto& projected : bank_->project_all(white)) white_.push_back(std::move(projected));
+      if (eye.empty()) continue;
+      for (auto& projected : bank_->project_eye(eye)) eye_.push_back(std::move(projected));
     }
     return {};
   }
@@ -235,6 +268,7 @@ class RangeTrial {
   std::optional<IdentificationBank> bank_;
   std::vector<AlternativeAspects> alternatives_;
   std::vector<std::vector<float>> sensor_noise_, white_;  ///< by draw
+  std::vector<std::vector<float>> eye_;                   ///< by draw; only with an eye
 };
 
 }  // namespace
@@ -274,7 +308,8 @@ Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
     // Rank of the templates of one view at all places: 30 for a point, about half of the places for a large target.
     const double rank = std::min({30 + 8 * reach * n, places / 2 + 1, samples});
     out.largest_bytes = std::max(out.largest_bytes, samples * rank * views * sizeof(float));
-    const double band = task.knowledge == TemplateKnowledge::ideal ? 1.2 / task.observer.blur_sigma_samples : 3.0 / n;
+    double band = task.knowledge == TemplateKnowledge::ideal ? 1.2 / task.observer.blur_sigma_samples : 3.0 / n;
+    if (task.observer.eye) band = std::min(viewing_filter(task.observer).band_per_sample, 3.0 / n);
     const double frequencies = 2 * std::pow(band * (0.5 * side + reach * n + 6), 2);
     // Measured rates per second.
     out.processor_s += edges * frequencies / spectrum_rate + views * rank * places * samples / product_rate +

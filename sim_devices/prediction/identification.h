@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "acquisition/base/accuracy.h"
@@ -64,6 +66,8 @@ struct IdentificationPoint {
   std::vector<std::vector<int>> answers;  ///< [shown][answered]
   /// Share of correct answers for each draw of noise. Draws are independent; targets and aspects share them.
   std::vector<double> by_draw;
+  /// Proportion correct of an observer with an eye at the worst and the best end of the range of its open parameters.
+  std::optional<std::pair<double, double>> spread{};
   [[nodiscard]] double proportion() const;
   [[nodiscard]] double standard_error() const;
 };
@@ -79,10 +83,11 @@ struct IdentificationEffort {
 
 /// One point per range, in the same order. Every target in every aspect meets each draw of sensor and internal noise,
 /// in one of 16 sampling phases that the draws take in turn. Internal noise and the enlargement of the sensor's noise
-/// are those of the template observer; the contrast is dT_RSS behind the air. Ranges run in parallel on all processors,
-/// and the result does not depend on their number. Dead detectors are left out. Counts are rounded with the noise, not
-/// with the signal. Errors: `invalid_input` (fewer than two targets, targets that look alike from every side, a target
-/// without contrast, counts too coarse for the noise, targets too large for the observer), `interrupted`.
+/// are those of the template observer; the contrast is dT_RSS behind the air, and an observer with an eye sees it at
+/// the luminance contrast of its display. Ranges run in parallel on all processors, and the result does not depend on
+/// their number. Dead detectors are left out. Counts are rounded with the noise, not with the signal. Errors:
+/// `invalid_input` (fewer than two targets, targets that look alike from every side, a target without contrast, counts
+/// too coarse for the noise, targets too large for the observer), `interrupted`.
 [[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
 
 /// Pictures of identify() for another observer. Immutable, thread-safe.

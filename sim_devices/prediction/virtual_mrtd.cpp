@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "hvs/observer/identification_bank.h"
+#include "hvs/observer/open_parameters.h"
 #include "sim_devices/prediction/bar_pattern.h"
 #include "sim_devices/prediction/bar_profile.h"
 #include "sim_devices/prediction/seen_window.h"
@@ -92,10 +93,29 @@ class BarTrial {
   }
 
   Result<void> measure(VirtualMrtdPoint& point) {
-    if (!(noise_k_ > 0)) {
+    if (!(noise_k_ > 0) && !(task_.observer.eye && task_.observer.display->span_k > 0)) {
       return fail(ErrorCode::invalid_input,
                   "a camera without noise has no MRTD, because the noise of the observer grows with the contrast");
     }
+    find_thresholds(point);
+    if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    const auto range = open_parameter_range(task_.observer);
+    if (!range || !point.threshold_k) return {};
+    std::array<std::optional<double>, 2> ends;
+    for (std::size_t k = 0; k < 2; ++k) {
+      seeing_ = k == 0 ? range->best : range->worst;
+      VirtualMrtdPoint end = point;
+      find_thresholds(end);
+      ends[k] = end.threshold_k;
+    }
+    if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    if (ends[0] && ends[1]) point.spread_k = std::minmax(*ends[0], *ends[1]);
+    return {};
+  }
+
+ private:
+  /// Raises the contrast until every phase is above the criterion.
+  void find_thresholds(VirtualMrtdPoint& point) {
     std::vector<double> contrasts_k;
     std::vector<Share> all;
     std::array<std::vector<Share>, phases_across> by_phase;
@@ -103,7 +123,7 @@ class BarTrial {
       return !shares.empty() && shares.back().mean >= threshold_share;
     };
     for (int step = -2; step <= most_steps; ++step) {
-      if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+      if (task_.stop.stop_requested()) return;
       contrasts_k.push_back(point.ideal_k * std::pow(contrast_step, step));
       answer(contrasts_k.back(), all, by_phase);
       if (passed(all) && std::all_of(by_phase.begin(), by_phase.end(), passed)) break;
@@ -122,17 +142,15 @@ class BarTrial {
       point.worst_phase_k = std::max(point.worst_phase_k.value_or(*own), *own);
     }
     if (!every_phase) point.worst_phase_k.reset();
-    return {};
   }
 
- private:
   /// A picture in every form that the criteria use.
   struct Seen {
     std::vector<float> scores, profile;
   };
 
   BarTrial(const VirtualMrtdTask& task, const SensorSpec& spec, double frequency_per_pitch)
-      : task_(task), spec_(spec), frequency_per_pitch_(frequency_per_pitch) {}
+      : task_(task), seeing_(task.observer), spec_(spec), frequency_per_pitch_(frequency_per_pitch) {}
 
   [[nodiscard]] std::vector<StepEdge> edges(BarPattern pattern) const {
     return bar_edges_in_samples(spec_, pattern, frequency_per_pitch_, task_.axis);
@@ -145,9 +163,7 @@ class BarTrial {
       out.profile = bar_profile(window, frequency_per_sample(), task_.axis);
       return out;
     }
-    window = window.clone();
-    window -= cv::mean(window)[0];
-    out.scores = bank_->project(window);
+    out.scores = bank_->project(without_background(task_.observer, window));
     return out;
   }
 
@@ -165,7 +181,17 @@ class BarTrial {
       const cv::Mat1f sensor = noise.sensor_k(static_cast<std::uint64_t>(d));
       squares += cv::norm(sensor, cv::NORM_L2SQR) / static_cast<double>(sensor.total());
       sensor_.push_back(of(sensor));
-      white_.push_back(of(noise.white(static_cast<std::uint64_t>(d))));
+      const cv::Mat1f white = noise.white(static_cast<std::uint64_t>(d));
+      if (!task_.observer.eye) {
+        white_.push_back(of(white));
+        continue;
+      }
+      white_.push_back({.scores = bank_->project(white), .profile = {}});
+      cv::Mat1f eye(bank_->eye_points(), bank_->eye_points());
+      RandomStream(task_.seed, "mrtd.eye")
+          .sub(static_cast<std::uint64_t>(d))
+          .fill_normal({eye.ptr<float>(), eye.total()});
+      eye_.push_back(std::move(bank_->project_eye({&eye, 1}).front()));
     }
     noise_k_ = std::sqrt(squares / task_.draws);
     return {};
@@ -173,16 +199,16 @@ class BarTrial {
 
   /// Noise of the observer per sample, relative to the contrast.
   [[nodiscard]] float own_noise(double contrast_k) const {
-    const double enlarged = task_.observer.sensor_noise_factor * task_.observer.sensor_noise_factor - 1;
-    return static_cast<float>(std::hypot(task_.observer.internal_noise,
-                                         std::sqrt(enlarged * white_variance_k2(spec_, task_.plan, 1)) / contrast_k));
+    const double enlarged = seeing_.sensor_noise_factor * seeing_.sensor_noise_factor - 1;
+    return static_cast<float>(
+        std::hypot(seeing_.internal_noise, std::sqrt(enlarged * white_variance_k2(spec_, task_.plan, 1)) / contrast_k));
   }
 
   /// Score of the criterion for a pattern (null: no pattern) with one draw.
   [[nodiscard]] float response(const Seen* pattern, std::size_t phase, std::size_t draw, float noise_scale,
                                float own) const {
     const Seen& sensor = sensor_[draw];
-    const Seen& white = white_[draw];
+    const Seen& white = own_.empty() ? white_[draw] : own_[draw];
     if (task_.criterion == BarCriterion::bars_resolved) {
       std::vector<double> profile(sensor.profile.size());
       for (std::size_t i = 0; i < profile.size(); ++i) {
@@ -197,9 +223,24 @@ class BarTrial {
     return task_.criterion == BarCriterion::detection ? largest[0] : largest[0] - largest[1];
   }
 
+  /// Both noises of an observer with an eye, relative to the contrast. The intervals of a pair have the noise of the
+  /// four bars, whose energy differs from that of five by a few percent.
+  void mix_own_noise(double contrast_k, float white) {
+    const auto eye = static_cast<float>(bank_->eye_noise_k(seeing_, 0, 0, contrast_k, 1) / contrast_k);
+    own_ = white_;
+    for (std::size_t d = 0; d < own_.size(); ++d) {
+      for (std::size_t i = 0; i < own_[d].scores.size(); ++i)
+        own_[d].scores[i] = white * white_[d].scores[i] + eye * eye_[d][i];
+    }
+  }
+
   void answer(double contrast_k, std::vector<Share>& all, std::array<std::vector<Share>, phases_across>& by_phase) {
     const auto scale = static_cast<float>(1 / contrast_k);
-    const float own = own_noise(contrast_k);
+    float own = own_noise(contrast_k);
+    if (task_.observer.eye) {
+      mix_own_noise(contrast_k, own);
+      own = 1;
+    }
     if (nothing_.empty()) nothing_.assign(bank_->scores(), 0.0F);
     const auto draws = static_cast<std::size_t>(task_.draws);
     Responses pattern(bar_phases, std::vector<float>(draws)), other = pattern;
@@ -222,17 +263,25 @@ class BarTrial {
   }
 
   const VirtualMrtdTask& task_;
+  TemplateObserverSpec seeing_;  ///< the observer of the task, or one that differs in its own noise only
   SensorSpec spec_;
   double frequency_per_pitch_;
   std::optional<IdentificationBank> bank_;
-  std::vector<Seen> four_, other_;    ///< by phase
-  std::vector<Seen> sensor_, white_;  ///< by draw
+  std::vector<Seen> four_, other_;       ///< by phase
+  std::vector<Seen> sensor_, white_;     ///< by draw
+  std::vector<std::vector<float>> eye_;  ///< by draw; only with an eye
+  std::vector<Seen> own_;                ///< by draw, at the present contrast; only with an eye
   std::vector<float> nothing_;
   double noise_k_ = 0;
 };
 
 Result<void> check_bars(const VirtualMrtdTask& task, const SensorSpec& spec) {
   if (task.frequencies_per_mrad.empty()) return fail(ErrorCode::invalid_input, "at least one frequency is needed");
+  if (task.observer.eye && task.criterion == BarCriterion::bars_resolved) {
+    return fail(ErrorCode::invalid_input,
+                "the criterion bars-resolved reads the gaps of the picture and does not model the eye of observer " +
+                    task.observer.name + "; use four-or-five or detection");
+  }
   if (task.draws < 64) return fail(ErrorCode::invalid_input, "at least 64 draws are needed");
   for (const double f : task.frequencies_per_mrad) {
     const double side = 3.5 / (f * spec.ifov_mrad()) * spec.samples_per_pitch();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stop_token>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "acquisition/base/accuracy.h"
@@ -44,6 +45,8 @@ struct VirtualMrtdPoint {
   double frequency_over_nyquist = 0;
   /// Contrast in kelvin for 75 % over all phases; empty if there is none up to highest_k.
   std::optional<double> threshold_k;
+  /// threshold_k of an observer with an eye at both ends of the range of its open parameters; empty if one has none.
+  std::optional<std::pair<double, double>> spread_k{};
   double relative_error = 0;  ///< standard error of threshold_k over threshold_k, from the draws
   /// The same for the best and the worst of eight phases across the bars.
   std::optional<double> best_phase_k, worst_phase_k;
@@ -58,7 +61,7 @@ struct VirtualMrtdPoint {
 /// One point per frequency. Noise of camera and observer as in identify(). Both intervals have independent noise and
 /// fixed pattern. Patterns are in one of 8 x 2 phases (eight across the bars). The proportion is over all pairs of
 /// draws. Errors: `invalid_input` (no frequency above 0, a pattern with fewer than 4 or more than 400 samples on a
-/// side, no noise, counts coarser than the noise), `interrupted`.
+/// side, no noise, counts coarser than the noise, resolved bars with an eye), `interrupted`.
 [[nodiscard]] Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task);
 
 /// Pictures of virtual_mrtd() for another observer. Immutable, thread-safe.

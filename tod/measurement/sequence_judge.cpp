@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hvs/observer/eye_noise.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
 namespace {
+
+/// Substream of a trial for the noise of the eye.
+constexpr std::uint64_t eye_sub_stream = 2;
 
 cv::Mat1d seen_in(const cv::Mat1f& frame, const PatchWindow& window) {
   cv::Mat1d kelvin;
@@ -79,8 +83,7 @@ int SequenceJudge::tracked(const PreparedSize& size, const SeenSequence& seen, c
   without_noise.internal_noise = 0;
   without_noise.sensor_noise_factor = 1;
   const double weight = 1.0 / static_cast<double>(seen.frames.size());
-  const auto add = [&](cv::Point2d phase, double share) {
-    bank.project(patch_values, scores);
+  const auto add_scores = [&](cv::Point2d phase, double share) {
     const int right = static_cast<int>(std::lround(phase.x * steps_)) + wide_reach_ - reach_;
     const int down = static_cast<int>(std::lround(phase.y * steps_)) + wide_reach_ - reach_;
     const int wide = 2 * wide_reach_ + 1;
@@ -91,6 +94,10 @@ int SequenceJudge::tracked(const PreparedSize& size, const SeenSequence& seen, c
             share * static_cast<double>(scores[static_cast<std::size_t>(o * bank.places() + y * wide + x)]);
       }
     }
+  };
+  const auto add = [&](cv::Point2d phase, double share) {
+    bank.project(patch_values, scores);
+    add_scores(phase, share);
   };
   for (std::size_t k = 0; k < seen.frames.size(); ++k) {
     const PatchWindow window = patch_window(seen.places[k], bank.window_samples());
@@ -103,6 +110,13 @@ int SequenceJudge::tracked(const PreparedSize& size, const SeenSequence& seen, c
                       .noise_k = seen.noise_k * std::sqrt(weight)};
   seen_patch(spec_, nothing, seen.contrast_k, noise, patch_values, room);
   add({0, 0}, 1);
+  if (const EyeNoise* eye = bank.eye(); eye != nullptr) {
+    std::vector<float> numbers(eye->rank());
+    noise.sub(eye_sub_stream).fill_normal(numbers);
+    std::fill(scores.begin(), scores.end(), 0.0F);
+    eye->add(numbers, static_cast<float>(eye->sd(seen.contrast_k)), scores);
+    add_scores({0, 0}, 1);
+  }
   Choice choice;
   choice.alternatives = bank.alternatives();
   for (int o = 0; o < choice.alternatives; ++o) {

@@ -4,12 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "acquisition/base/rng.h"
+#include "hvs/observer/eye_noise.h"
 #include "hvs/observer/identification_bank.h"
+#include "hvs/observer/template_bank.h"
 #include "hvs/shape/step_image.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tests/sim_devices/reference.h"
@@ -59,6 +63,71 @@ TEST(IdentificationBank, ScoresTrianglesAsTheTemplateObserverDoes) {
 
   ASSERT_EQ(found.size(), static_cast<std::size_t>(known->templates()));
   for (std::size_t t = 0; t < found.size(); ++t) ASSERT_NEAR(found[t], expected[t], 1e-4) << t;
+}
+
+/// hvs-2 at 3 arcmin a displayed sample, with a background of `luminance`.
+TemplateObserverSpec identifying_eye(double luminance_cd_m2 = 50) {
+  return {.name = "hvs-2",
+          .internal_noise = 0,
+          .sensor_noise_factor = 1.75,
+          .eye = EyeParameters{},
+          .window_margin_arcmin = 6,
+          .display = ViewedDisplay{.pixel_pitch_mm = 1000 * 2 * std::tan(3 / 120.0 * std::numbers::pi / 180),
+                                   .viewing_distance_m = 1,
+                                   .luminance_white_cd_m2 = 2 * luminance_cd_m2}};
+}
+
+// The bank of arbitrary shapes against that of triangles: signal, and covariance of the noise of the eye as the product
+// of the responses to single points of its lattice.
+TEST(IdentificationBank, SeesTrianglesWithTheEyeOfTheTemplateObserver) {
+  const TemplateObserverSpec observer = identifying_eye();
+  const double size = 1.6, contrast_k = 0.3;
+  std::vector<AlternativeAspects> alternatives;
+  for (const Apex apex : all_apexes) alternatives.push_back({edges_of(triangle(size, apex))});
+  const auto bank = IdentificationBank::build(observer, alternatives, 1);
+  const auto known = TemplateBank::build(observer, triangle_alternatives(), size, 1);
+  ASSERT_TRUE(bank && known);
+  const int side = bank->window_samples();
+  ASSERT_EQ(side, known->window_samples());
+  const SensorSpec spec = test::sc2000();
+  cv::Mat1f patch;
+  ImageChain(spec, full_plan(spec, {}, {}), Accuracy::draft())
+      .image(triangle(size, Apex::right, {0.21, -0.37}))
+      .sample({0.5 - side / 2.0, 0.5 - side / 2.0}, 1, {side, side})
+      .convertTo(patch, CV_32F);
+  const EyeNoise& eye = *known->eye();
+
+  const auto found = bank->project(patch);
+  std::vector<float> expected(known->padded_templates());
+  known->project(std::span(patch.ptr<float>(), patch.total()), expected);
+
+  // One scale for all templates; it follows from the noise, because both have the same d'.
+  const double scale = eye.sd(contrast_k) / (bank->eye_noise_k(observer, 0, 0, contrast_k, 1) / contrast_k);
+  const double largest = *std::max_element(expected.begin(), expected.end());
+  for (std::size_t t = 0; t < found.size(); ++t)
+    ASSERT_NEAR(scale * static_cast<double>(found[t]), static_cast<double>(expected[t]), 0.004 * largest) << t;
+  // The window of the noise leaves out 0.2 % of the energy, the lattice 0.01 %.
+  EXPECT_NEAR(bank->eye_energy(0, 0, 1) / eye.energy(), 1, 0.005);
+  const int points = bank->eye_points();
+  std::array<std::size_t, 5> chosen{144, 0, 288, 289 + 144, 3 * 289 + 100};
+  std::array<std::array<double, 5>, 5> covariance{};
+  for (int row = 0; row < points; ++row) {
+    std::vector<cv::Mat1f> pictures;
+    for (int column = 0; column < points; ++column) {
+      pictures.push_back(cv::Mat1f::zeros(points, points));
+      pictures.back()(row, column) = 1;
+    }
+    for (const auto& scores : bank->project_eye(pictures)) {
+      for (std::size_t i = 0; i < chosen.size(); ++i) {
+        for (std::size_t j = 0; j < chosen.size(); ++j)
+          covariance[i][j] += static_cast<double>(scores[chosen[i]]) * static_cast<double>(scores[chosen[j]]);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    for (std::size_t j = 0; j < chosen.size(); ++j)
+      EXPECT_NEAR(covariance[i][j], eye.covariance(chosen[i], chosen[j]) / eye.energy(), 0.006) << i << ' ' << j;
+  }
 }
 
 FieldScene triangle_scene(Apex apex, double size_m, double temperature_k = 300.3) {

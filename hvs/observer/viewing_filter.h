@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Filter of an observer's templates: display and blur, or display and eye.
+#pragma once
+
+#include "hvs/observer/template_observer.h"
+#include "hvs/shape/polygon_image.h"
+
+namespace todbench {
+
+/// Filter of an observer's templates, in cycles per displayed sample, and how far it reaches.
+struct ViewingFilter {
+  TransferFunction transfer;
+  double band_per_sample = 0;  ///< above it the filter passes nothing that counts
+  double reach_samples = 0;    ///< beyond it its response is nearly 0
+};
+
+/// Without an eye: sample and hold times the Gaussian blur. With an eye: the square of display and H, because the
+/// display draws a sample of the patch, and the template is the shape behind display and eye. Precondition: an eye has
+/// a display.
+[[nodiscard]] ViewingFilter viewing_filter(const TemplateObserverSpec& spec);
+
+}  // namespace todbench

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Zoom and viewing distance at which display and eye hardly cost acuity.
+#pragma once
+
+#include <stop_token>
+#include <string>
+
+#include "hvs/observer/template_observer.h"
+#include "sim_devices/sensor/sensor_plan.h"
+#include "sim_devices/sensor/sensor_spec.h"
+
+namespace todbench {
+
+/// Most acuity that the size of the picture at the eye may cost, in percent.
+inline constexpr double viewing_cost_percent = 1;
+
+struct ViewingProposal {
+  double stated_arcmin = 0;        ///< per displayed sample, of the stated display
+  double stated_cost_percent = 0;  ///< S75 of the stated display over that of a large picture
+  double least_arcmin = 0;         ///< from this angle on the cost is below viewing_cost_percent
+  double zoom = 1;                 ///< smallest whole zoom at the stated distance
+  double viewing_distance_m = 0;   ///< largest at the stated zoom
+};
+
+/// Compares S75 at the largest contrast, by direct estimates at angles of 1 to 8 arcmin per displayed sample, with that
+/// of a large picture: the mean at 6 and 8 arcmin. Between angles ln S75 is linear in the logarithm of the angle. The
+/// angle is changed by the distance, at constant luminance. A small eye movement, accommodation and the field of view
+/// are not modelled. Precondition: an eye with a display. Errors: those of direct_estimate().
+[[nodiscard]] Result<ViewingProposal> propose_viewing(const SensorSpec& sensor, const SensorPlan& effects,
+                                                      const TemplateObserverSpec& observer, double delta_t_k,
+                                                      std::stop_token stop);
+
+/// "from 4.1 arcmin per displayed sample on, display and eye cost ...: zoom 5 at 0.6 m, or at most 0.3 m at zoom 2".
+[[nodiscard]] std::string in_words(const ViewingProposal& proposal, const ViewedDisplay& stated);
+
+}  // namespace todbench
