@@ -70,7 +70,14 @@ Result<const SizeTrial*> CuedEstimate::trial(double size_pitch) {
                              largest_index));
 }
 
+double CuedEstimate::proportion(const SizeTrial& trial, double q) const {
+  const double eye_sd = contrast_k_ != 0 ? eye_scale_ * trial.eye_sd(contrast_k_) : 0;
+  return trial.known_position_proportion(q, quadrature_nodes, eye_sd);
+}
+
 bool CuedEstimate::hopeless(double q, int index) {
+  // The noise of an eye falls with the size, so that the power below is no bound.
+  if (observer_.spec().eye) return false;
   // The response to the differences of the shapes, and with it the tolerable noise, grows with a power of the size. The
   // power is high as long as blur and footprint remove most of the differences, and falls to 1. The power between two
   // sizes is therefore a bound for larger sizes; a tenth is added because there are few phases.
@@ -89,7 +96,7 @@ Result<double> CuedEstimate::s75_pitch(double q) {
     if (const auto found = known.find(index); found != known.end()) return found->second;
     const auto t = trial_at(index);
     if (!t) error = t.error();
-    return known[index] = t ? logit((*t)->known_position_proportion(q, quadrature_nodes)) : 0;
+    return known[index] = t ? logit(proportion(**t, q)) : 0;
   };
   const double target = std::numbers::ln2;  // logit(0.75)
   int above = first_index;
@@ -113,9 +120,12 @@ Result<double> CuedEstimate::s75_pitch(double q) {
 
 Result<double> CuedEstimate::sensitivity(double q) {
   // A fifth to each side: several sizes of the ladder, so that its interpolation has no effect.
+  eye_scale_ = 1.2;
   const auto more = s75_pitch(q * 1.2);
+  eye_scale_ = 1 / 1.2;
+  const auto less = more ? s75_pitch(q / 1.2) : more;
+  eye_scale_ = 1;
   if (!more) return more;
-  const auto less = s75_pitch(q / 1.2);
   if (!less) return less;
   return std::log(*more / *less) / (2 * std::log(1.2));
 }
@@ -129,7 +139,7 @@ Result<double> CuedEstimate::weibull_slope(double q) {
   for (int i = 0; i < 2; ++i) {
     const auto trial = trial_at(i == 0 ? below : above);
     if (!trial) return tl::unexpected(trial.error());
-    logits[i] = logit((*trial)->known_position_proportion(q, quadrature_nodes));
+    logits[i] = logit(proportion(**trial, q));
   }
   // dlogit/dP at 3/4 is 1/(1/2) + 1/(1/4) = 6.
   const double rise = (logits[1] - logits[0]) / ((above - below) * std::log(size_step)) / 6;

@@ -23,10 +23,13 @@ class CuedEstimate {
   /// `observer` must outlive it.
   CuedEstimate(const SensorSpec& sensor, const SensorPlan& plan, TemplateObserver& observer, SceneMotion motion = {});
 
+  /// Sets the contrast at which an observer with an eye sees the target: its noise, which depends on the size, is added
+  /// to that of `q` in all results from then on. Without effect for others.
+  void show(double contrast_k) { contrast_k_ = contrast_k; }
   /// 75 % size in pitches. `q` is the noise per sample over the contrast, internal noise included. `invalid_input` if
   /// no size from 0.2 to 40 pitches is judged 75 % correct, or if even the smallest is judged better.
   [[nodiscard]] Result<double> s75_pitch(double q);
-  /// d ln S75 / d ln q at q.
+  /// d ln S75 / d ln q at q; with an eye by all noise together.
   [[nodiscard]] Result<double> sensitivity(double q);
   /// Slope b of the Weibull function that rises like the proportion correct at its 75 % size: dP/dlnS = (b/4) ln 3.
   [[nodiscard]] Result<double> weibull_slope(double q);
@@ -35,12 +38,14 @@ class CuedEstimate {
 
  private:
   [[nodiscard]] Result<const SizeTrial*> trial_at(int index);
+  [[nodiscard]] double proportion(const SizeTrial& trial, double q) const;
   /// True if no size of the ladder can reach 75 % correct at `q`, judged by the sizes at `index` and four below.
   [[nodiscard]] bool hopeless(double q, int index);
 
   TemplateObserver& observer_;
   ImageChain chain_;
   TrialConditions conditions_;
+  double contrast_k_ = 0, eye_scale_ = 1;
   std::map<int, std::unique_ptr<SizeTrial>> trials_;
 };
 

@@ -65,46 +65,31 @@ void add_coloured(NoiseBudget& noise, const SensorSpec& sensor, const SizeTrial&
   }
 }
 
-/// Threshold of an observer with an eye, whose noise depends on the size of the target: by iteration, because the
-/// noise of the eye falls with the size that it determines.
-Result<double> eye_size(CuedEstimate& cued, NoiseBudget& noise, double& own_variance, double delta_t_k) {
-  constexpr int rounds = 6;
-  const double white = noise.white;
-  Result<double> size = cued.s75_pitch(std::sqrt(white));
-  if (!size && white == 0) size = 1.0;
-  for (int i = 0; i < rounds && size; ++i) {
-    const auto trial = cued.trial(*size);
-    if (!trial) return tl::unexpected(trial.error());
-    own_variance = (*trial)->eye_variance(delta_t_k);
-    const Result<double> next = cued.s75_pitch(std::sqrt(white + own_variance));
-    if (!next) return next;
-    size = i + 1 < rounds ? std::sqrt(*size * *next) : *next;
-  }
-  noise.white += own_variance;
-  noise.total += own_variance;
-  return size;
-}
-
 Result<Contrast> contrast_of(CuedEstimate& cued, const SensorSpec& sensor, const SensorPlan& everything,
                              const TemplateObserverSpec& observer, double delta_t_k) {
   Contrast out;
   out.outlook.delta_t_k = delta_t_k;
   out.noise = white_noise(sensor, observer, delta_t_k);
   out.outlook.observer_variance = observer.internal_noise * observer.internal_noise;
-  auto size = observer.eye ? eye_size(cued, out.noise, out.outlook.observer_variance, delta_t_k)
-                           : cued.s75_pitch(std::sqrt(out.noise.white));
-  out.outlook.q_eff = std::sqrt(out.noise.white);
+  cued.show(delta_t_k);
+  auto size = cued.s75_pitch(std::sqrt(out.noise.white));
   if (!size) return tl::unexpected(size.error());
   const auto trial = cued.trial(*size);
   if (!trial) return tl::unexpected(trial.error());
+  // Of the eye, as white noise: the estimate above knows its covariance, the budget of the effects a variance.
+  const double eye = (*trial)->eye_variance(delta_t_k);
+  out.outlook.observer_variance += eye;
+  out.noise.white += eye;
+  out.noise.total += eye;
+  out.outlook.q_eff = std::sqrt(out.noise.white);
   add_coloured(out.noise, sensor, **trial, delta_t_k);
   if (out.noise.total > out.noise.white) {
-    size = cued.s75_pitch(std::sqrt(out.noise.total));
+    size = cued.s75_pitch(std::sqrt(out.noise.total - eye));
     if (!size) return tl::unexpected(size.error());
   }
-  const auto exponent = cued.sensitivity(std::sqrt(out.noise.total));
+  const auto exponent = cued.sensitivity(std::sqrt(out.noise.total - eye));
   if (!exponent) return tl::unexpected(exponent.error());
-  const auto slope = cued.weibull_slope(std::sqrt(out.noise.total));
+  const auto slope = cued.weibull_slope(std::sqrt(out.noise.total - eye));
   if (!slope) return tl::unexpected(slope.error());
   out.outlook.weibull_slope = *slope;
   out.outlook.s75_pitch = *size;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -238,7 +239,7 @@ std::vector<float> SizeTrial::projected(const cv::Mat1f& samples) const {
   return scores;
 }
 
-double SizeTrial::known_position_proportion(double noise, int nodes) const {
+double SizeTrial::known_position_proportion(double noise, int nodes, double eye_sd) const {
   CV_Assert(bank_->alternatives() == 4);
   const std::vector<QuadratureNode> rule = gauss_legendre(nodes);
   std::map<int, std::array<std::array<double, 4>, 4>> grams;  // by place
@@ -251,10 +252,11 @@ double SizeTrial::known_position_proportion(double noise, int nodes) const {
       for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t j = 0; j < 4; ++j) slot->second[i][j] = images[i].dot(images[j]);
       }
+      if (eye_sd > 0) add_eye_gram(noise, eye_sd, slot->second);
     }
     // The task expects the true alternative first.
     KnownPositionTask task;
-    task.noise = noise;
+    task.noise = eye_sd > 0 ? 1 : noise;
     std::array<std::size_t, 4> order{0, 1, 2, 3};
     std::swap(order[0], order[static_cast<std::size_t>(response.truth)]);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -291,17 +293,38 @@ double SizeTrial::variance_ratio(SharedBy shared_by) const {
   return largest;
 }
 
+void SizeTrial::add_eye_gram(double noise, double eye_sd, std::array<std::array<double, 4>, 4>& gram) const {
+  const EyeNoise& eye = *bank_->eye();
+  const auto places = static_cast<std::size_t>(bank_->places()), middle = places / 2;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      // Depends on the displacement only, so it is the same at every place.
+      const double covariance = eye.covariance(i * places + middle, j * places + middle) / eye.energy();
+      gram[i][j] = noise * noise * gram[i][j] + eye_sd * eye_sd * covariance;
+    }
+  }
+}
+
+double SizeTrial::eye_sd(double contrast_k) const {
+  const EyeNoise* eye = bank_->eye();
+  return eye != nullptr ? eye->sd(contrast_k) : 0;
+}
+
 double SizeTrial::eye_variance(double contrast_k) const {
   const EyeNoise* eye = bank_->eye();
   if (eye == nullptr) return 0;
-  double least = 0;  // the difference that white noise moves least
+  const auto places = static_cast<std::size_t>(bank_->places()), middle = places / 2;
+  double least = std::numeric_limits<double>::infinity();
   for (int first = 0; first < bank_->alternatives(); ++first) {
     for (int other = first + 1; other < bank_->alternatives(); ++other) {
       const cv::Mat1f d = bank_->image(first, bank_->central_place()) - bank_->image(other, bank_->central_place());
-      least = least > 0 ? std::min(least, d.dot(d)) : d.dot(d);
+      const std::size_t a = static_cast<std::size_t>(first) * places + middle;
+      const std::size_t b = static_cast<std::size_t>(other) * places + middle;
+      const double moved = eye->covariance(a, a) + eye->covariance(b, b) - 2 * eye->covariance(a, b);
+      least = std::min(least, moved / eye->energy() / d.dot(d));
     }
   }
-  return std::pow(eye->sd(contrast_k), 2) * eye->largest_difference() / least;
+  return std::pow(eye->sd(contrast_k), 2) * least;
 }
 
 std::vector<float> SizeTrial::eye_scores(std::uint64_t index, double sd) const {

@@ -71,17 +71,22 @@ class SizeTrial {
   [[nodiscard]] Proportion pixel_proportion(const PixelContrast& contrast, int draws);
 
   /// Proportion correct of an observer that knows the position (to half a search step) in white noise of sd `noise`
-  /// relative to the contrast. Exact, without draws (known_position.h).
-  [[nodiscard]] double known_position_proportion(double noise, int nodes) const;
+  /// relative to the contrast, and noise of the eye of sd `eye_sd` in a score. Exact, without draws (known_position.h).
+  [[nodiscard]] double known_position_proportion(double noise, int nodes, double eye_sd = 0) const;
 
   /// Variance of the score difference between the true template and another, for numbers of sd 1 that samples share as
   /// stated, over that for white noise of sd 1. The largest over the alternatives, at the middle of the search.
   [[nodiscard]] double variance_ratio(SharedBy shared) const;
-  /// Variance per sample of the white noise that moves this difference as much as the noise of the observer's eye, in
-  /// units of the contrast squared. 0 without an eye.
+  /// Standard deviation of the noise of the eye in a score, in units of the contrast. 0 without an eye.
+  [[nodiscard]] double eye_sd(double contrast_k) const;
+  /// Variance per sample of the white noise that moves a score difference as much as the noise of the observer's eye,
+  /// in units of the contrast squared; the smallest over the pairs of alternatives, at the middle of the search. 0
+  /// without an eye.
   [[nodiscard]] double eye_variance(double contrast_k) const;
 
  private:
+  /// Turns the products of four templates into the covariance of their scores in white noise and noise of the eye.
+  void add_eye_gram(double noise, double eye_sd, std::array<std::array<double, 4>, 4>& gram) const;
   struct Response {
     int truth = 0;              ///< the alternative that is shown
     int place = 0;              ///< search place next to the true position
