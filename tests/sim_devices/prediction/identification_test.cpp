@@ -299,6 +299,38 @@ TEST(Identification, FallsWithRangeToChance) {
   EXPECT_NEAR((*found)[3].proportion(), 0.5, 0.12);
 }
 
+// A perfect eye leaves the noise of the sensor, and its gain then has no effect; light helps; the open parameters
+// enclose their middle.
+TEST(Identification, DISABLED_WithAnEyeFollowsItsNoiseItsLightAndItsOpenParameters) {
+  IdentificationTask task = two_mirror_images();
+  task.decisions = 640;
+  task.ranges = {{500, 1}};
+  const auto proportion = [&](const TemplateObserverSpec& observer) {
+    task.observer = observer;
+    auto found = identify(task);
+    EXPECT_TRUE(found) << found.error().message;
+    return found ? found->front() : IdentificationPoint{.answers = {}, .by_draw = {0}};
+  };
+  TemplateObserverSpec perfect = identifying_eye();
+  perfect.eye->sensitivity *= 1e4;
+  perfect.eye->contrast_noise = 0;
+  perfect.sensor_noise_factor = 1;
+  TemplateObserverSpec more = perfect;
+  more.eye->sensitivity *= 10;
+
+  const auto seen = proportion(identifying_eye()), dim = proportion(identifying_eye(0.5));
+  const auto best = proportion(perfect), same = proportion(more);
+
+  EXPECT_EQ(best.answers, same.answers);
+  EXPECT_GT(best.proportion(), seen.proportion());
+  EXPECT_GT(seen.proportion(), dim.proportion());
+  EXPECT_GT(dim.proportion(), 0.5);
+  ASSERT_TRUE(seen.spread);
+  EXPECT_LT(seen.spread->first, seen.proportion());
+  EXPECT_GT(seen.spread->second, seen.proportion());
+  EXPECT_LE(seen.spread->second, best.proportion());
+}
+
 FieldScene rectangle_scene(cv::Size2d size_m) {
   FieldScene scene;
   scene.background_k = 300;

@@ -157,6 +157,44 @@ TEST(VirtualMrtd, IsBoundedByTheIdealObserverAndSpreadsWithThePhase) {
   EXPECT_GT((*found)[1].worst_phase_k.value_or(1e9) / *(*found)[1].best_phase_k, 1.5);
 }
 
+// With a perfect eye the noise of the sensor is left: the ideal observer is a bound, and the gain has no effect. The
+// operator sets the gain, so that the noise of the eye is in proportion to the contrast.
+TEST(VirtualMrtd, DISABLED_OfAnEyeIsBoundedByTheIdealObserverAndFollowsItsLight) {
+  VirtualMrtdTask task = sc2000_bars({0.3});
+  task.draws = 400;
+  const auto seen_by = [&](double luminance_cd_m2, double gain, double factor) {
+    task.observer = {.name = "hvs-2",
+                     .internal_noise = 0,
+                     .sensor_noise_factor = factor,
+                     .eye = EyeParameters{},
+                     .window_margin_arcmin = 6,
+                     .display = ViewedDisplay{.pixel_pitch_mm = 1000 * 2 * std::tan(3 / 120.0 * std::numbers::pi / 180),
+                                              .viewing_distance_m = 1,
+                                              .luminance_white_cd_m2 = 2 * luminance_cd_m2}};
+    task.observer.eye->sensitivity *= gain;
+    if (gain > 1) task.observer.eye->contrast_noise = 0;
+    const auto found = virtual_mrtd(task);
+    EXPECT_TRUE(found) << found.error().message;
+    return found ? found->front() : VirtualMrtdPoint{};
+  };
+
+  const auto perfect = seen_by(50, 1e4, 1), same = seen_by(50, 1e5, 1);
+  const auto seen = seen_by(50, 1, 1.75), dim = seen_by(0.5, 1, 1.75);
+
+  ASSERT_TRUE(perfect.threshold_k && same.threshold_k && seen.threshold_k);
+  EXPECT_NEAR(*perfect.threshold_k / *same.threshold_k, 1, 1e-3);
+  EXPECT_GT(*perfect.threshold_k, perfect.ideal_k * (1 - 4 * perfect.relative_error));
+  EXPECT_LT(*perfect.threshold_k, 3 * perfect.ideal_k);
+  // 1.75 times the noise of the sensor, and the noise of the eye.
+  EXPECT_GT(*seen.threshold_k, 1.6 * *perfect.threshold_k);
+  EXPECT_GT(dim.threshold_k.value_or(1e9), *seen.threshold_k);
+  ASSERT_TRUE(seen.spread_k);
+  EXPECT_LT(seen.spread_k->first, *seen.threshold_k);
+  EXPECT_GT(seen.spread_k->second, *seen.threshold_k);
+  task.criterion = BarCriterion::bars_resolved;
+  EXPECT_FALSE(virtual_mrtd(task));
+}
+
 TEST(VirtualMrtd, NeedsMoreContrastToResolveThanToTellApart) {
   VirtualMrtdTask task = sc2000_bars({0.4, 1.4});
   const auto told = virtual_mrtd(task);
