@@ -73,7 +73,7 @@ struct FewTemplates {
 };
 
 /// Gram-Schmidt process with pivoting: each step takes the row with the largest residual, until every residual is
-/// shorter than the tolerance. Equivalent to the pivoted Cholesky decomposition of the inner products, whose errors of
+/// shorter than the tolerance, relative to the longest row. Equivalent to the pivoted Cholesky decomposition of the inner products, whose errors of
 /// 1e-15 are small against the square of the tolerance. Divides the rows by their norms, or all by one. Empty if a row
 /// is 0.
 std::optional<FewTemplates> few_templates(cv::Mat1d& rows, double tolerance, std::optional<double> one_norm) {
@@ -93,8 +93,10 @@ std::optional<FewTemplates> few_templates(cv::Mat1d& rows, double tolerance, std
   // Squared residuals.
   Eigen::VectorXd left = Eigen::VectorXd::Ones(templates.cols());
   if (one_norm) left = whole.diagonal();
+  // Rounding is relative to the longest row: a sensitive eye makes rows of any length.
+  const double least = tolerance * tolerance * (one_norm ? left.maxCoeff() : 1);
   Eigen::Index found = 0, at = 0;
-  for (; found < most && left.maxCoeff(&at) >= tolerance * tolerance; ++found) {
+  for (; found < most && left.maxCoeff(&at) >= least; ++found) {
     const double length = std::sqrt(left(at));
     coefficients.col(found) =
         (whole.col(at) - coefficients.leftCols(found) * coefficients.row(at).head(found).transpose()) / length;

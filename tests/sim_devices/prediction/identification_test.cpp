@@ -301,7 +301,7 @@ TEST(Identification, FallsWithRangeToChance) {
 
 // A perfect eye leaves the noise of the sensor, and its gain then has no effect; light helps; the open parameters
 // enclose their middle.
-TEST(Identification, DISABLED_WithAnEyeFollowsItsNoiseItsLightAndItsOpenParameters) {
+TEST(Identification, WithAnEyeFollowsItsNoiseItsLightAndItsOpenParameters) {
   IdentificationTask task = two_mirror_images();
   task.decisions = 640;
   task.ranges = {{500, 1}};

@@ -159,7 +159,7 @@ TEST(VirtualMrtd, IsBoundedByTheIdealObserverAndSpreadsWithThePhase) {
 
 // With a perfect eye the noise of the sensor is left: the ideal observer is a bound, and the gain has no effect. The
 // operator sets the gain, so that the noise of the eye is in proportion to the contrast.
-TEST(VirtualMrtd, DISABLED_OfAnEyeIsBoundedByTheIdealObserverAndFollowsItsLight) {
+TEST(VirtualMrtd, OfAnEyeIsBoundedByTheIdealObserverAndFollowsItsLight) {
   VirtualMrtdTask task = sc2000_bars({0.3});
   task.draws = 400;
   const auto seen_by = [&](double luminance_cd_m2, double gain, double factor) {
