@@ -152,10 +152,11 @@ Result<LoadedPlan> live_plan(const EnhanceArguments& a, const std::vector<Enhanc
 /// Measures with the camera of the plan; returns the folder of the session.
 /// `scan`: places of a pixel along each axis that the stage visits in turn.
 Result<std::filesystem::path> measured_session(Console& console, const LoadedPlan& loaded,
-                                               const std::filesystem::path& folder, int scan,
+                                               const std::filesystem::path& folder, ExistingFolder existing, int scan,
                                                const std::stop_token& stop) {
   RunDisplay shown(console, loaded.plan());
-  const ExperimentOptions options{.folder = folder / "session"};
+  ExperimentOptions options{.folder = folder / "session"};
+  options.existing = existing;
   const auto outcome = scan > 1 ? measure_scanned(loaded, scan, options, shown.listener(), stop)
                                 : measure_plan(loaded, options, shown.listener(), stop);
   console.end_progress();
@@ -203,7 +204,8 @@ int run_enhance(Console& console, const EnhanceArguments& a, const Program& prog
   const auto stop = program.stop->token();
   std::filesystem::path session = a.plan;
   if (a.live) {
-    const auto measured = measured_session(console, *loaded, folder, a.dither, stop);
+    const auto measured = measured_session(
+        console, *loaded, folder, a.overwrite ? ExistingFolder::overwrite : ExistingFolder::refuse, a.dither, stop);
     if (!measured) return report_error(console, measured.error());
     session = *measured;
     loaded = recorded_plan(session, a.opening);

@@ -266,10 +266,8 @@ int run_range(Console& console, const RangeArguments& arguments) {
     tod.prediction.r75_ci95_m = joined_with_m75(selection.thresholds, task, *tod.prediction.r75_m,
                                                 tod.prediction.r75_ci95_m, question.m75_u_percent);
   }
-  if (const auto sentence = observers_differ(question); !sentence.empty()) {
-    tod.prediction.notes.push_back(sentence);
-    console.note(sentence);
-  }
+  const std::string observers = options.asks(RangeModel::tod) ? observers_differ(question) : "";
+  if (!observers.empty()) console.note(observers);
   if (*session && (*session)->uncertainty) {
     const CurveUncertainty& budget = *(*session)->uncertainty;
     question.scale_u_percent = 100 * std::hypot(budget.u_scale, budget.u_camera_scale);
@@ -290,6 +288,8 @@ int run_range(Console& console, const RangeArguments& arguments) {
   const auto grid = options.grid_json(*sources, question, *sensor);
   if (!grid) return report_error(console, grid.error());
   auto said = sentences_of(tod.prediction, turbulent ? &turbulent->decision : nullptr, options);
+  // The page has it among the notes of the model.
+  if (!observers.empty()) tod.prediction.notes.push_back(observers);
   const std::string accepted = *session ? accepted_sentence(arguments.tod, **session) : "";
   if (!accepted.empty()) said.push_back(accepted);
   if (auto written = options.write(*models, question, said, *grid); !written)

@@ -106,6 +106,7 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   }
   EXPECT_THAT(content(folder.path() / "p.html"), HasSubstr("ACQUIRE"));
   EXPECT_THAT(content(folder.path() / "p.html"), HasSubstr("M75: people, small craft"));
+  EXPECT_EQ(occurrences(content(folder.path() / "p.html"), "judged by hvs-1"), 1);
   EXPECT_EQ(beyond.code, 3);
   EXPECT_TRUE(one_object(beyond)["r75_m"].is_null());
   EXPECT_EQ(one_object(beyond)["r75_ci95_m"][0], 50.0);
