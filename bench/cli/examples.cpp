@@ -27,6 +27,8 @@ constexpr std::array example_rows{
     ExampleRow{"replay", "todbench replay unit-1 --out unit-1-again", "needs a session with recorded frames"},
     ExampleRow{"judge", "todbench judge unit-1 --observer hvs-2 --display my-display.toml --out unit-1-hvs-2",
                "judges recorded frames by an observer with an eye"},
+    ExampleRow{"blind", "todbench blind unit-1 --packages sharp.toml --simulated --simulated-person --out unit-1-blind",
+               "judges camera, twin and enhanced frames in one mixed order"},
     ExampleRow{"serve", "todbench serve --address 127.0.0.1:8800 --sessions runs",
                "starts and shows runs in a browser"},
     ExampleRow{"watch", "todbench watch sim:sc2000 --minutes 30 --json", "follows the warm-up of a camera"},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/cli/command_blind.h"
 #include "bench/cli/command_certificate.h"
 #include "bench/cli/command_compare_models.h"
 #include "bench/cli/command_dynamic.h"
@@ -38,7 +39,7 @@ void add_group(CLI::App& app, Program& program, const std::string& heading,
 void add_commands(CLI::App& app, Program& program) {
   add_group(app, program, "Measure",
             {add_demo_command, add_devices_command, add_doctor_command, add_emulate_command, add_measure_command,
-             add_record_command, add_replay_command, add_judge_command, add_serve_command});
+             add_record_command, add_replay_command, add_judge_command, add_blind_command, add_serve_command});
   add_group(app, program, "Simulate and plan",
             {add_simulate_command, add_plan_command, add_cost_command, add_render_command, add_mtf_command,
              add_plate_command});

@@ -17,8 +17,10 @@
 #include <QMessageBox>
 #include <QMimeData>
 #include <QPlainTextEdit>
+#include <QScrollArea>
 #include <QSettings>
 #include <QShortcut>
+#include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QStyleFactory>
@@ -179,7 +181,27 @@ void MainWindow::make_views() {
 
   auto* right = new QVBoxLayout;
   right->addWidget(message_);
-  right->addWidget(views_, 1);
+  // A screen narrower than a page scrolls it. Only the shown page counts: the others may be wider.
+  auto* room = new QScrollArea;
+  room->setObjectName("pageRoom");
+  room->setFrameShape(QFrame::NoFrame);
+  room->setFocusPolicy(Qt::NoFocus);
+  room->setWidgetResizable(true);
+  // A scroll area gives a page with wrapped texts its preferred height for the width. A splitter asks for the least
+  // one.
+  auto* least = new QSplitter;
+  least->setChildrenCollapsible(false);
+  least->addWidget(views_);
+  room->setWidget(least);
+  const auto fit_shown = [this](int shown) {
+    for (int page = 0; page < views_->count(); ++page) {
+      const auto policy = page == shown ? QSizePolicy::Preferred : QSizePolicy::Ignored;
+      views_->widget(page)->setSizePolicy(policy, policy);
+    }
+  };
+  connect(views_, &QStackedWidget::currentChanged, this, fit_shown);
+  fit_shown(views_->currentIndex());
+  right->addWidget(room, 1);
   layout->addWidget(navigation_);
   layout->addLayout(right, 1);
   setCentralWidget(central);
