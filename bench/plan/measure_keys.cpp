@@ -110,6 +110,13 @@ PlanSection measures_section() {
            .sentence = "Time in which the target completes 99.9 % of a step. Required unless the target is simulated",
            .place = of(&MeasuresPlan::response_settling_ms),
            .form = {"Settling time of the target", "planResponseSettling"}},
+          {.name = "gain_control",
+           .type = FlagKey{},
+           .sentence = "Describe the automatic gain of the camera: levels and gain at the contrasts of "
+                       "transfer_steps_k, and their settling after response_steps steps of response_delta_t_k. "
+                       "response_frames must cover the settling. The only measure that is possible in grey levels",
+           .place = of(&MeasuresPlan::gain_control),
+           .form = {"Describe the automatic gain", "planGainControl"}},
           {.name = "geometry",
            .type = FlagKey{},
            .sentence = "Measure IFOV and distortion, from the places of the triangles of the first plate",

@@ -309,6 +309,7 @@ struct MeasuresPlan {
   int response_steps = ResponseOptions{}.steps;             ///< up and down in turn
   int response_frames = ResponseOptions{}.frames;           ///< recorded after each step
   std::optional<double> response_settling_ms{};             ///< of the target, to 0.1 %; empty only if it is simulated
+  bool gain_control = false;       ///< automatic gain: levels, and settling after the same steps as response
   bool geometry = false;           ///< IFOV and distortion, from the positions of the triangles
   bool triangles = false;          ///< mean pictures of the smallest triangles at every contrast
   bool mtf = false;                ///< along both axes, from the edges of mtf_plate
@@ -362,6 +363,7 @@ inline constexpr std::array measure_keys{MeasureKey{"noise", &MeasuresPlan::nois
                                          MeasureKey{"transfer", &MeasuresPlan::transfer},
                                          MeasureKey{"drift", &MeasuresPlan::drift},
                                          MeasureKey{"response", &MeasuresPlan::response},
+                                         MeasureKey{"gain_control", &MeasuresPlan::gain_control},
                                          MeasureKey{"geometry", &MeasuresPlan::geometry},
                                          MeasureKey{"triangles", &MeasuresPlan::triangles},
                                          MeasureKey{"mtf", &MeasuresPlan::mtf},

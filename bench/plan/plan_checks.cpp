@@ -89,7 +89,9 @@ ValueMistakes check_display_luminance(const Plan& plan, std::size_t /*row*/) {
 ValueMistakes check_contrast_unit(const Plan& plan, std::size_t /*row*/) {
   if (plan.camera.contrast == ContrastUnit::kelvin) return {};
   ValueMistakes mistakes;
-  if (plan.measures.any())
+  MeasuresPlan in_kelvin = plan.measures;
+  in_kelvin.gain_control = false;
+  if (in_kelvin.any())
     mistakes.push_back(
         {std::nullopt, "physical measures need kelvin: remove them from [measures], or use contrast = \"kelvin\""});
   if (!plan.modules.empty())
@@ -381,11 +383,15 @@ ValueMistakes check_mrtd_contrasts(const Plan& plan, std::size_t /*row*/) {
 }
 
 ValueMistakes check_response(const Plan& plan, std::size_t /*row*/) {
-  if (!plan.measures.response) return {};
+  const bool settling = plan.measures.gain_control;
+  if (!plan.measures.response && !settling) return {};
   ValueMistakes mistakes;
   if (plan.measures.response_delta_t_k == 0)
     mistakes.push_back({std::nullopt, "the response time needs a contrast other than 0"});
-  if (plan.target.kind != TargetKind::scene && !plan.measures.response_settling_ms)
+  if (settling && plan.target.kind != TargetKind::scene && !plan.measures.response_settling_ms)
+    mistakes.push_back(
+        {std::nullopt, "the settling of the gain needs response_settling_ms: a slow step of the target hides it"});
+  if (plan.measures.response && plan.target.kind != TargetKind::scene && !plan.measures.response_settling_ms)
     mistakes.push_back(
         {std::nullopt,
          "the response time needs response_settling_ms: a slow step of the target hides the response of the camera"});

@@ -19,7 +19,7 @@ using ValueMistakes = std::vector<ValueMistake>;
 /// SCHEME:NAME, or empty.
 [[nodiscard]] ValueMistakes check_camera_id(const Plan& plan, std::size_t row);
 [[nodiscard]] ValueMistakes check_frame_size(const Plan& plan, std::size_t row);
-/// Grey levels exclude physical measures (they are in kelvin) and modules behind the camera.
+/// Grey levels exclude physical measures in kelvin (all but the gain control) and modules behind the camera.
 [[nodiscard]] ValueMistakes check_contrast_unit(const Plan& plan, std::size_t row);
 /// Address of an instrument; required for kind scpi.
 [[nodiscard]] ValueMistakes check_black_body(const Plan& plan, std::size_t row);

@@ -25,6 +25,15 @@ namespace todbench {
 [[nodiscard]] std::optional<FigurePairs> ctf_figures(const SessionMeasures& measures, bool camera);
 /// Loss of apertures and gain of opaque spots against their size, with the fitted curve.
 [[nodiscard]] std::optional<FigurePairs> source_size_figures(const SessionMeasures& measures, bool camera);
+/// Error against temperature, of the camera alone.
+[[nodiscard]] std::optional<FigurePairs> absolute_figures(const SessionMeasures& measures, bool camera);
+/// Histogram over the frames of all runs, of the camera alone.
+[[nodiscard]] std::optional<FigurePairs> latency_figures(const SessionMeasures& measures, bool camera);
+/// Levels against contrast, and the settling after steps, of the camera alone.
+[[nodiscard]] std::optional<FigurePairs> gain_control_figures(const SessionMeasures& measures, bool camera);
+/// Remaining part of steps over time with the fitted first-order response; empty if it cannot be drawn.
+[[nodiscard]] std::optional<Figure> settling_figure(const StepResponse& response, const std::string& id,
+                                                    const std::string& who);
 /// One figure for each axis: MRTD, best phase; and one of the spots.
 [[nodiscard]] std::optional<FigurePairs> mrtd_figures(const SessionMeasures& measures, bool camera);
 /// Table of bars and spots as an acceptance document lists them: frequency, contrast of each polarity, offset, half

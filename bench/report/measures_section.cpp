@@ -122,8 +122,9 @@ std::optional<Section> measures_section(const ReportData& data) {
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   if (!conditions.empty()) section.blocks.emplace_back(list_of(conditions));
   const bool camera = data.camera.has_value();
-  for (const auto& figures_of : {transfer_figures, mtf_figures, drift_figures, response_figures, geometry_figures,
-                                 ctf_figures, source_size_figures, mrtd_figures}) {
+  for (const auto& figures_of :
+       {transfer_figures, mtf_figures, drift_figures, response_figures, geometry_figures, ctf_figures,
+        source_size_figures, absolute_figures, latency_figures, gain_control_figures, mrtd_figures}) {
     if (auto figures = figures_of(*data.measures, camera)) section.blocks.emplace_back(*std::move(figures));
   }
   for (const auto& [side, who] :

@@ -48,13 +48,19 @@ Figure figure_of(const StepResponse& curve, const std::string& id, const std::st
   return {drawn(plot), plot.description};
 }
 
-bool drawable(const std::optional<MeasureLines>& side) {
-  if (!side || !side->response) return false;
-  const StepResponse& response = side->response->response;
+bool drawable(const StepResponse& response) {
   return response.both.value_s > 0 && response.both.value_s < longest_s && !response.points.empty();
 }
 
+bool drawable(const std::optional<MeasureLines>& side) {
+  return side && side->response && drawable(side->response->response);
+}
+
 }  // namespace
+
+std::optional<Figure> settling_figure(const StepResponse& response, const std::string& id, const std::string& who) {
+  return drawable(response) ? std::optional(figure_of(response, id, who)) : std::nullopt;
+}
 
 std::optional<FigurePairs> response_figures(const SessionMeasures& measures, bool camera) {
   FigurePairs figures;

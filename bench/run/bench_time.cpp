@@ -108,6 +108,13 @@ class Walk {
       for (int i = 0; i < measures.response_steps; ++i)
         change(target.contrast_change_s, before_step + measures.response_frames);
     }
+    if (measures.gain_control) {
+      constexpr int before_step = 8;
+      for (std::size_t i = 0; i < measures.transfer_steps_k.size() + 2; ++i)
+        change(target.contrast_change_s, measures.response_frames + plan_.measurement.contrast_frames);
+      for (int i = 0; i < measures.response_steps; ++i)
+        change(target.contrast_change_s, before_step + measures.response_frames);
+    }
     if (measures.triangles) {
       for (std::size_t i = 0; i < target.delta_t_k.size(); ++i)
         change(target.contrast_change_s, plan_.measurement.contrast_frames);

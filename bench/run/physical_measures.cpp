@@ -101,7 +101,7 @@ std::optional<PixelOptions> pixel_options(const Plan& plan) {
 
 std::optional<ResponseOptions> response_options(const Plan& plan) {
   const MeasuresPlan& measures = plan.measures;
-  if (!measures.response) return std::nullopt;
+  if (!measures.response && !measures.gain_control) return std::nullopt;
   ResponseOptions options;
   options.delta_t_k = measures.response_delta_t_k;
   options.steps = measures.response_steps, options.frames = measures.response_frames;
@@ -197,7 +197,7 @@ MaybeMeasures measures_of_bench(const Plan& plan, const MeasurementOptions& opti
                                   .noise_frames = plan.measures.noise_frames,
                                   .pixels = pixel_options(plan),
                                   .drift_s = plan.measures.drift ? std::optional(plan.measures.drift_s) : std::nullopt,
-                                  .response = response_options(plan),
+                                  .response = plan.measures.response ? response_options(plan) : std::nullopt,
                                   .geometry = plan.measures.geometry,
                                   .transfer = plan.measures.transfer,
                                   .transfer_steps_k = plan.measures.transfer_steps_k,
@@ -218,6 +218,7 @@ MaybeMeasures measures_of_bench(const Plan& plan, const MeasurementOptions& opti
                                   .timing_frames = plan.measures.timing ? plan.measures.timing_frames : 0,
                                   .latency = latency_options(plan, inputs),
                                   .mrtd = mrtd_options(plan, inputs),
+                                  .gain_control = plan.measures.gain_control ? response_options(plan) : std::nullopt,
                                   .measurement = options},
                                  *bench.host, std::move(stop));
   if (!measures) return tl::unexpected(measures.error());
@@ -279,6 +280,7 @@ void compare_with(CameraMeasures& measures, const SensorModel& model, const Expe
 }  // namespace
 
 void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const ExperimentInputs& inputs) {
+  if (loaded.plan().camera.contrast == ContrastUnit::grey_levels) return;  // the sensor model is in kelvin
   compare_with(measures, *whole_sensor(loaded, inputs), inputs);
 }
 
@@ -287,8 +289,9 @@ namespace {
 /// simulated_measures() without messages. Precondition: the plan requests some.
 MaybeMeasures measures_of_sensor(const LoadedPlan& loaded, const ExperimentInputs& inputs, std::stop_token stop) {
   Plan plan = loaded.plan();
-  // A scene has no absolute set-point and no clock: these measures are those of a real camera.
-  plan.measures.absolute = plan.measures.timing = plan.measures.latency = false;
+  // A scene has no absolute set-point and no clock, and the sensor no automatic gain: these measures are those of a
+  // real camera.
+  plan.measures.absolute = plan.measures.timing = plan.measures.latency = plan.measures.gain_control = false;
   const auto model = whole_sensor(loaded, inputs);
   // The sensor does not drift, so the default time is enough; a program in its place gets the shortest.
   plan.measures.drift_s =

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "acquisition/base/distributions.h"
-#include "acquisition/base/normal.h"
 #include "bench/session/measure_row.h"
 
 namespace todbench {
@@ -22,14 +21,22 @@ Interval repeatability_interval(const AbsoluteMeasure& measure) {
   return {.low = end(0.975), .high = end(0.025)};
 }
 
-/// By the error of white noise from successive differences of frames: 1.5 times the variance of independent frames.
-Interval dynamic_range_interval(double value_db, int frames, double pixels) {
-  const double half = 20 * std::log10(1 + normal_z95 * std::sqrt(0.75 / (pixels * std::max(1, frames - 1))));
-  return {.low = value_db - half, .high = value_db + half};
+/// Mean over the temperatures, with the lowest and the highest in the conditions.
+void add_camera_temperature(MeasureLines& out, const AbsoluteMeasure& measure, const std::string& range) {
+  double sum = 0, low = 0, high = 0;
+  int count = 0;
+  for (const AbsoluteLevel& level : measure.levels) {
+    if (!level.camera_c) continue;
+    low = count == 0 ? *level.camera_c : std::min(low, *level.camera_c);
+    high = count == 0 ? *level.camera_c : std::max(high, *level.camera_c);
+    sum += *level.camera_c, ++count;
+  }
+  if (count > 0)
+    out.lines.push_back(measure_line("camera_temperature", sum / count, {},
+                                     fmt::format("its own sensor, {:.2f} to {:.2f} C during {}", low, high, range)));
 }
 
-/// `pixels`: of the picture.
-void add_lines(MeasureLines& out, const AbsoluteMeasure& measure, double pixels) {
+void add_lines(MeasureLines& out, const AbsoluteMeasure& measure) {
   const auto add = [&](const char* name, const Estimate& found, const std::string& conditions) {
     out.lines.push_back(measure_line(name, found.value, found.interval(), conditions));
   };
@@ -51,6 +58,7 @@ void add_lines(MeasureLines& out, const AbsoluteMeasure& measure, double pixels)
     add("camera_pattern", *measure.camera_pattern_k, apart);
     add("source_pattern", *measure.source_pattern_k, apart);
   }
+  add_camera_temperature(out, measure, range);
   const auto exact = [](double value) { return Interval{.low = value, .high = value}; };
   if (measure.lowest_k)
     out.lines.push_back(measure_line("range_low", measure.lowest_k, exact(*measure.lowest_k), "lowest count"));
@@ -58,8 +66,10 @@ void add_lines(MeasureLines& out, const AbsoluteMeasure& measure, double pixels)
     out.lines.push_back(measure_line("range_high", measure.highest_k, exact(*measure.highest_k), "highest count"));
   if (measure.dynamic_range_db)
     out.lines.push_back(measure_line("dynamic_range", measure.dynamic_range_db,
-                                     dynamic_range_interval(*measure.dynamic_range_db, measure.frames, pixels),
+                                     {.low = *measure.dynamic_range_db - measure.dynamic_range_half_db,
+                                      .high = *measure.dynamic_range_db + measure.dynamic_range_half_db},
                                      "from the lowest to the highest count, over the temporal noise of a pixel"));
+  out.absolute = measure;
 }
 
 Json absolute_json(const AbsoluteMeasure& measure) {
@@ -70,6 +80,7 @@ Json absolute_json(const AbsoluteMeasure& measure) {
                       {"expected_k", json_number(level.expected_k)},
                       {"seen_k", json_number(level.seen_k)},
                       {"difference_k", json_number(level.difference_k)},
+                      {"camera_c", json_number(level.camera_c)},
                       {"pattern_k", level.saturated ? Json() : estimate_json(level.pattern_k)},
                       {"saturated", level.saturated}});
   }
@@ -84,19 +95,36 @@ Json absolute_json(const AbsoluteMeasure& measure) {
           {"undetermined_slope_k", json_number(measure.undetermined_slope_k)}};
 }
 
+AbsoluteMeasure absolute_from(const JsonReader& part) {
+  AbsoluteMeasure out;
+  out.plate = part.at("plate").text();
+  out.u_k = part.at("u_k").number();
+  out.degrees_of_freedom = static_cast<int>(part.at("degrees_of_freedom").whole());
+  out.source_u_k = part.at("source_u_k").number();
+  for (const JsonReader& level : part.at("levels").elements()) {
+    out.levels.push_back({.set_k = level.at("set_k").number(),
+                          .said_k = level.at("said_k").number(),
+                          .expected_k = level.at("expected_k").number(),
+                          .seen_k = level.at("seen_k").number(),
+                          .saturated = level.at("saturated").flag()});
+  }
+  return out;
+}
+
 }  // namespace
 
 MeasureRow absolute_row() {
-  return {.key = "absolute",
-          .add =
-              [](MeasureLines& out, const CameraMeasures& measures) {
-                const double pixels = measures.view ? std::max(1, measures.view->picture.area()) : 1;
-                if (measures.absolute) add_lines(out, *measures.absolute, pixels);
-              },
-          .to_json =
-              [](const CameraMeasures& measures) {
-                return measures.absolute ? absolute_json(*measures.absolute) : Json();
-              }};
+  return {
+      .key = "absolute",
+      .add =
+          [](MeasureLines& out, const CameraMeasures& measures) {
+            if (measures.absolute) add_lines(out, *measures.absolute);
+          },
+      .to_json =
+          [](const CameraMeasures& measures) { return measures.absolute ? absolute_json(*measures.absolute) : Json(); },
+      .read = [](MeasureLines& out, const JsonReader& part) { out.absolute = absolute_from(part); },
+      .valid = [](const MeasureLines& lines) { return !lines.absolute || lines.absolute->degrees_of_freedom > 0; },
+      .mistake = "'absolute.degrees_of_freedom': expected a number above 0"};
 }
 
 }  // namespace todbench

@@ -40,12 +40,13 @@ struct MeasureRow {
 [[nodiscard]] MeasureRow timing_row();
 [[nodiscard]] MeasureRow latency_row();
 [[nodiscard]] MeasureRow mrtd_row();
+[[nodiscard]] MeasureRow gain_control_row();
 
 /// Returns all rows in the order of their quantities.
 [[nodiscard]] inline const auto& measure_table() {
   static const std::array rows{transfer_row(), geometry_row(), noise_row(), drift_row(),       response_row(),
                                pixels_row(),   mtf_row(),      ctf_row(),   source_size_row(), absolute_row(),
-                               timing_row(),   latency_row(),  mrtd_row()};
+                               timing_row(),   latency_row(),  mrtd_row(),  gain_control_row()};
   return rows;
 }
 

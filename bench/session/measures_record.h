@@ -48,6 +48,9 @@ struct MeasureLines {
   std::optional<CtfMeasure> ctf{};
   std::optional<SourceSizeMeasure> source{};
   std::optional<MrtdMeasure> mrtd{};
+  std::optional<AbsoluteMeasure> absolute{};
+  std::optional<LatencyMeasure> latency{};
+  std::optional<GainControlMeasure> gain_control{};
   std::optional<TransferMeasure> transfer{};
   std::optional<GeometryMeasure> geometry{};
   std::optional<DriftMeasure> drift{};
@@ -68,9 +71,9 @@ struct SessionMeasures {
 };
 
 /// Returns {"main": {"quantities": [...], "noise": {...}, "transfer": {...}, "geometry": {...}, "drift": {...},
-/// "response": {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "source_size": {...}, "mrtd": {...}, "maps": [...],
-/// "picture":
-/// {...}, "reasons": [...]}, "twin": the same or null}.
+/// "response": {...}, "pixels": {...}, "mtf": {...}, "ctf": {...}, "source_size": {...}, "absolute": {...}, "timing":
+/// {...}, "latency": {...}, "mrtd": {...}, "gain_control": {...}, "maps": [...], "picture": {...}, "reasons": [...]},
+/// "twin": the same or null}.
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
 /// Returns the same with numbers, maps and reasons only.
 [[nodiscard]] Json measures_json(const MeasureLines& main);

@@ -32,9 +32,20 @@ Json timing_json(const TimingMeasure& timing) {
 }
 
 Json latency_json(const LatencyMeasure& latency) {
-  Json runs = Json::array();
-  for (const double run : latency.runs_ms) runs.push_back(json_number(run));
-  return {{"speed_mm_s", json_number(latency.speed_mm_s)}, {"runs_ms", runs}};
+  return {{"speed_mm_s", json_number(latency.speed_mm_s)},
+          {"runs_ms", json_numbers(latency.runs_ms)},
+          {"frames_ms", json_numbers(latency.frames_ms)},
+          {"latency_ms", estimate_json(latency.latency_ms)}};
+}
+
+/// Records of earlier versions have no frames.
+LatencyMeasure latency_from(const JsonReader& part) {
+  LatencyMeasure out;
+  const JsonReader frames = part.at_if_there("frames_ms");
+  if (frames.is_null()) return out;
+  for (const JsonReader& frame : frames.elements()) out.frames_ms.push_back(frame.number());
+  out.latency_ms = estimate_from(part.at("latency_ms"));
+  return out;
 }
 
 }  // namespace
@@ -60,9 +71,11 @@ MeasureRow latency_row() {
                                              fmt::format("{} runs of the stage at {:.4g} mm/s, with the time "
                                                          "constant and half of the exposure of the detector",
                                                          latency.runs_ms.size(), latency.speed_mm_s)));
+            out.latency = latency;
           },
       .to_json =
-          [](const CameraMeasures& measures) { return measures.latency ? latency_json(*measures.latency) : Json(); }};
+          [](const CameraMeasures& measures) { return measures.latency ? latency_json(*measures.latency) : Json(); },
+      .read = [](MeasureLines& out, const JsonReader& part) { out.latency = latency_from(part); }};
 }
 
 }  // namespace todbench

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Physical measures of whole sessions: `todbench measure` in an emulated laboratory of known truth.
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <numbers>
 
 #include "bench/run/emulation.h"
+#include "sim_devices/lab/genicam/picture_encoder.h"
 #include "tests/support/source_file.h"
 #include "tests/system/system_test_support.h"
 
@@ -181,6 +186,78 @@ TEST_F(MeasuredLaboratories, RefuseACameraThatNeverWarmsUp) {
 
   EXPECT_EQ(ended.code, 6) << ended.err;
   EXPECT_THAT(lines_of(ended.err).back(), HasSubstr("the warm-up did not end within 3 s: it drifts by "));
+}
+
+/// Counts as a gain control sends them: its map from counts to levels approaches that of the present picture with a
+/// time constant, as a filter of the map does. The range of the picture becomes 26 to 230, at most four levels a count.
+class FilteredGain {
+ public:
+  explicit FilteredGain(double part_of_a_frame) : part_(part_of_a_frame) {}
+  cv::Mat1w operator()(const cv::Mat1w& counts, double delta_t_k) {
+    const CountRange range = range_of_means(counts);
+    const double gain = std::min(4.0, 204 / (range.high - range.low));
+    const double offset = 128 - 0.5 * gain * (range.low + range.high);
+    const double part = started_ ? part_ : 1;
+    gain_ += part * (gain - gain_), offset_ += part * (offset - offset_), started_ = true;
+    const std::scoped_lock lock(mutex_);
+    settled_[std::round(delta_t_k)] = gain;
+    cv::Mat1w levels(counts.size());
+    std::transform(counts.begin(), counts.end(), levels.begin(), [&](std::uint16_t count) {
+      return static_cast<std::uint16_t>(std::clamp(std::nearbyint(gain_ * count + offset_), 0.0, 255.0));
+    });
+    return levels;
+  }
+  /// Levels a count of the last picture at this contrast, in whole kelvin.
+  [[nodiscard]] double settled_at(double delta_t_k) const {
+    const std::scoped_lock lock(mutex_);
+    const auto found = settled_.find(delta_t_k);
+    return found == settled_.end() ? std::nan("") : found->second;
+  }
+
+ private:
+  double part_, gain_ = 0, offset_ = 0;
+  bool started_ = false;
+  mutable std::mutex mutex_;
+  std::map<double, double> settled_;
+};
+
+TEST_F(MeasuredLaboratories, StateHowTheGainOfTheCameraFollowsTheContrast) {
+  constexpr double frame_ms = 20, time_constant_ms = 60;
+  const auto gain = std::make_shared<FilteredGain>(1 - std::exp(-frame_ms / time_constant_ms));
+  const auto controlled = [&](LaboratoryOptions& options) {
+    options.sent_counts = [gain](const cv::Mat1w& counts, const PlateScene& scene) {
+      return (*gain)(counts, scene.delta_t_k);
+    };
+  };
+
+  const Ended ended = measure(with_plates({"tcat-a"}), controlled,
+                              "gain_control = true\nresponse_settling_ms = 30\nresponse_steps = 6\n"
+                              "transfer_steps_k = [-1, 2, 4]\n",
+                              "contrast = \"grey-levels\"\n", "frames_after_change = 20\n");
+
+  ASSERT_TRUE(completed(ended));
+  const Json side = record()["main"];
+  EXPECT_TRUE(side["reasons"].empty()) << side["reasons"];
+  EXPECT_TRUE(holds(side, "gain_settling_time", time_constant_ms)) << side["gain_control"]["settling"];
+  // The picture of a contrast has 8 frames of noise; the range that the gain follows has that of each frame, 3 %.
+  const double ratio = gain->settled_at(4) / gain->settled_at(-1);
+  EXPECT_LT(ratio, 0.4);
+  EXPECT_NEAR(quantity(side, "gain_ratio")["value"].get<double>(), ratio, 0.06 * ratio);
+  EXPECT_EQ(side["gain_control"]["unit"], "count");
+  EXPECT_EQ(side["gain_control"]["levels"].size(), 3u);
+  EXPECT_THAT(content_of(folder().path() / "m" / "report.html"), HasSubstr("Levels of the automatic gain"));
+}
+
+TEST_F(MeasuredLaboratories, SayThatACameraWithTemperaturesDoesNotControlItsGain) {
+  const Ended ended = measure(with_plates({"tcat-a"}), {},
+                              "gain_control = true\nresponse_settling_ms = 30\nresponse_steps = 4\n"
+                              "response_frames = 8\ntransfer_steps_k = [-2, 2, 4]\n");
+
+  ASSERT_TRUE(completed(ended));
+  const Json side = record()["main"];
+  EXPECT_TRUE(quantity(side, "gain_settling_time").is_null());
+  EXPECT_THAT(side["reasons"].dump(), HasSubstr("the camera does not control its gain"));
+  EXPECT_TRUE(holds(side, "gain_ratio", 1));
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ cv::Mat1d without_shading(const cv::Mat1d& picture) {
 /// One temperature of one pass.
 struct Seen {
   double said_k = 0, expected_k = 0, mean_k = 0, noise_k = 0;
+  std::optional<double> camera_c{};
   cv::Mat1d picture;
   bool saturated = false;
 };
@@ -37,6 +38,10 @@ struct CountEnds {
   int bits = 16;
   [[nodiscard]] double top() const { return std::exp2(bits) - 1; }
 };
+
+std::optional<double> mean_reading(const std::optional<double>& a, const std::optional<double>& b) {
+  return a && b ? std::optional(0.5 * (*a + *b)) : std::nullopt;
+}
 
 class AbsoluteRun {
  public:
@@ -61,7 +66,8 @@ class AbsoluteRun {
     add_repeatability(seen.size());
     if (auto line = add_line(); !line) return tl::unexpected(line.error());
     add_prnu(seen);
-    add_range(seen[seen.size() / 2][0].noise_k);
+    const Seen& middle = seen[seen.size() / 2][0];
+    add_range(middle.noise_k, static_cast<double>(middle.picture.total()));
     if (options_.shift_px > 0) {
       if (auto apart = tell_apart(); !apart) {
         if (apart.error().code != ErrorCode::invalid_input) return tl::unexpected(apart.error());
@@ -84,6 +90,7 @@ class AbsoluteRun {
                 .expected_k = options_.expected_k ? options_.expected_k(said_k) : said_k,
                 .mean_k = cv::mean(picture.kelvin)[0],
                 .noise_k = picture.temporal_noise_k,
+                .camera_c = options_.camera_temperature_c ? options_.camera_temperature_c() : std::nullopt,
                 .picture = picture.kelvin.clone(),
                 .saturated = at_ends > saturated_share * static_cast<double>(picture.kelvin.total())};
   }
@@ -95,7 +102,8 @@ class AbsoluteRun {
                         .expected_k = 0.5 * (up.expected_k + down.expected_k),
                         .seen_k = 0.5 * (up.mean_k + down.mean_k),
                         .difference_k = (down.mean_k - down.expected_k) - (up.mean_k - up.expected_k),
-                        .saturated = up.saturated || down.saturated};
+                        .saturated = up.saturated || down.saturated,
+                        .camera_c = mean_reading(up.camera_c, down.camera_c)};
     if (!level.saturated) level.pattern_k = pattern_sd({without_shading(up.picture), without_shading(down.picture)});
     out_.levels.push_back(level);
   }
@@ -147,12 +155,15 @@ class AbsoluteRun {
     out_.prnu_percent = pattern_sd(pair);
   }
 
-  void add_range(double noise_k) {
+  void add_range(double noise_k, double pixels) {
     if (!ends_.scale) return;
     out_.lowest_k = ends_.scale->kelvin(0);
     out_.highest_k = ends_.scale->kelvin(ends_.top());
-    if (out_.lowest_k && out_.highest_k && noise_k > 0)
-      out_.dynamic_range_db = 20 * std::log10((*out_.highest_k - *out_.lowest_k) / noise_k);
+    if (!out_.lowest_k || !out_.highest_k || !(noise_k > 0)) return;
+    out_.dynamic_range_db = 20 * std::log10((*out_.highest_k - *out_.lowest_k) / noise_k);
+    // Variance from successive differences: that of independent frames times 1.5.
+    const double relative = normal_z95 * std::sqrt(0.75 / (pixels * std::max(1, options_.frames - 1)));
+    out_.dynamic_range_half_db = 20 * std::log10(1 + relative);
   }
 
   /// Places of the source whose differences have no common divisor.

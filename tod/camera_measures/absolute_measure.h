@@ -24,6 +24,8 @@ struct AbsoluteOptions {
   int shift_px = 8;       ///< of the source on the stage, to tell camera and source apart; 0: not told apart
   double pixel_mm = 0;    ///< pixel pitch on the plate
   double source_u_k = 0;  ///< standard uncertainty of the expected temperature
+  /// Temperature that the camera's own sensor reports, in degrees Celsius; may be empty, or return nothing.
+  std::function<std::optional<double>()> camera_temperature_c{};
   /// Temperature that a correct camera shows for one of the black body, through a collimator; empty: the same.
   std::function<double(double black_body_k)> expected_k{};
 };
@@ -37,6 +39,8 @@ struct AbsoluteLevel {
   double difference_k = 0;  ///< seen in the second pass minus first pass, corrected by the readings
   Estimate pattern_k{};     ///< standard deviation of the fixed pattern without shading
   bool saturated = false;   ///< the camera saturated: the other numbers are not stated
+  /// Temperature of the camera by its own sensor; empty: not reported.
+  std::optional<double> camera_c{};
 };
 
 struct AbsoluteMeasure {
@@ -58,6 +62,7 @@ struct AbsoluteMeasure {
   /// Temperatures of the lowest and the highest count, if the scale states them.
   std::optional<double> lowest_k{}, highest_k{};
   std::optional<double> dynamic_range_db{};  ///< 20 log10 of their difference over the temporal noise of a pixel
+  double dynamic_range_half_db = 0;          ///< half-width of its 95 % interval, by the error of the noise
   std::vector<std::string> reasons{};        ///< for absent values
 
   /// Level with the largest deviation of either sign. Precondition: a level that is not saturated.

@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <span>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/median.h"
 #include "acquisition/base/try.h"
+#include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
 #include "tod/measures/pixel_noise.h"
 #include "tod/measures/shading.h"
@@ -90,7 +93,7 @@ class Run {
         options_(options),
         host_(host),
         stop_(std::move(stop)),
-        taker_(source, taker_options(options.measurement, source.info())) {}
+        taker_(source, taker_options(options.measurement, source.info(), {})) {}
 
   Result<CameraMeasures> operator()() {
     CameraMeasures measures;
@@ -120,6 +123,7 @@ class Run {
         Step{"noise", [](const Options& o) { return o.noise; }, &Run::measure_noise},
         Step{"drift", [](const Options& o) { return o.drift_s.has_value(); }, &Run::follow_drift},
         Step{"response time", [](const Options& o) { return o.response.has_value(); }, &Run::time_response},
+        Step{"gain control", [](const Options& o) { return o.gain_control.has_value(); }, &Run::describe_gain},
         Step{"smallest triangles", [](const Options& o) { return !o.triangles_k.empty(); }, &Run::show_triangles},
         Step{"MTF", [](const Options& o) { return o.mtf_plate.has_value(); }, &Run::measure_mtf},
         Step{"CTF", [](const Options& o) { return o.ctf_plate.has_value(); }, &Run::measure_ctf},
@@ -138,17 +142,6 @@ class Run {
     if (taken.error().code == ErrorCode::interrupted) return tl::unexpected(taken.error());
     measures.reasons.push_back(std::string(name) + ": " + taken.error().message);
     return {};
-  }
-
-  static FrameTakerOptions taker_options(const MeasurementOptions& options, const SourceInfo& info) {
-    FrameTakerOptions out{.integrity = options.integrity,
-                          .frames_after_change = options.frames_after_change,
-                          .nuc_wait_s = options.nuc_wait_s,
-                          .max_rejected_share = options.max_rejected_share,
-                          .frame_timeout = options.frame_timeout};
-    out.integrity.width = info.width;
-    out.integrity.height = info.height;
-    return out;
   }
 
   [[nodiscard]] const TargetPlate& plate() const { return options_.measurement.plates.front(); }
@@ -395,7 +388,7 @@ class Run {
     if (absolute == nullptr)
       return fail(ErrorCode::invalid_input, "the target has no black body with an absolute set-point");
     TargetAtTemperature at(target_, *absolute);
-    FrameTakerOptions taking = taker_options(options_.measurement, source_.info());
+    FrameTakerOptions taking = taker_options(options_.measurement, source_.info(), {});
     taking.integrity.max_saturated_share = 1;  // saturation is a result
     taking.integrity.reject_frozen = false;    // a saturated picture does not change
     FrameTaker taker(source_, taking);
@@ -403,9 +396,66 @@ class Run {
       at.set(temperature_k);
       return present(at, taker, {options_.absolute->plate, Mounting::identity, 0, shift_mm});
     };
-    TODBENCH_TRY(measures.absolute, measure_absolute(taker, show_at, *options_.absolute, stop_));
+    AbsoluteOptions options = *options_.absolute;
+    options.camera_temperature_c = [this] { return camera_temperature_c(); };
+    TODBENCH_TRY(measures.absolute, measure_absolute(taker, show_at, options, stop_));
     measures.reasons.insert(measures.reasons.end(), measures.absolute->reasons.begin(),
                             measures.absolute->reasons.end());
+    return {};
+  }
+
+  /// By the camera's own sensor; empty: it has none.
+  [[nodiscard]] std::optional<double> camera_temperature_c() {
+    const auto text = source_.get("DeviceTemperature");  // SFNC
+    if (!text) return std::nullopt;
+    double value = 0;
+    const auto read = std::from_chars(text->data(), text->data() + text->size(), value);
+    return read.ec == std::errc() && std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
+
+  Result<GainLevel> gain_level(double set_k) {
+    TODBENCH_TRY(const PresentedTarget shown, show(set_k));
+    if (auto settled = taken_to_settle(); !settled) return tl::unexpected(settled.error());
+    TODBENCH_TRY(const AveragedPicture picture, taker_.average(options_.measurement.contrast_frames, stop_));
+    TODBENCH_TRY(const cv::Rect where, field());
+    TODBENCH_TRY(const EffectiveContrast seen,
+                 effective_contrast(picture.kelvin, plate(), where_, options_.measurement.min_reference_px));
+    const cv::Mat1d part = picture.kelvin(where).clone();
+    GainLevel level{.set_delta_t_k = set_k,
+                    .said_delta_t_k = shown.state.delta_t_k,
+                    .surround = median(std::vector<double>(part.begin(), part.end())),
+                    .contrast = seen.value,
+                    .contrast_u = seen.standard_error};
+    cv::minMaxLoc(part, &level.lowest, &level.highest);
+    return level;
+  }
+
+  /// Takes as many frames as are recorded after a step, so that the gain settles.
+  Result<void> taken_to_settle() {
+    for (int k = 0; k < options_.gain_control->frames; ++k) {
+      if (auto frame = taker_.next_of_moving_scene(stop_); !frame) return tl::unexpected(frame.error());
+    }
+    return {};
+  }
+
+  Result<void> describe_gain(CameraMeasures& measures) {
+    GainControlMeasure gain{.unit = options_.measurement.contrast_unit == ContrastUnit::grey_levels ? "count" : "K",
+                            .frames = options_.measurement.contrast_frames};
+    for (const double set_k : options_.transfer_steps_k) {
+      TODBENCH_TRY(const GainLevel level, gain_level(set_k));
+      gain.levels.push_back(level);
+    }
+    TODBENCH_TRY(const cv::Rect where, field());
+    ResponseOptions steps = *options_.gain_control;
+    steps.plate = plate().name;
+    steps.contrast_frames = options_.measurement.contrast_frames;
+    steps.signal = StepSignal::surround;
+    auto settling = measure_response(taker_, target_, host_, where, steps, source_.info().frame_rate_hz, stop_);
+    if (settling)
+      gain.settling = *std::move(settling);
+    else if (auto kept = keep(measures, "settling of the gain", tl::unexpected(settling.error())); !kept)
+      return kept;
+    measures.gain_control = std::move(gain);
     return {};
   }
 

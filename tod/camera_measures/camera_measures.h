@@ -13,6 +13,7 @@
 #include "tod/camera_measures/bars_measure.h"
 #include "tod/camera_measures/drift_measure.h"
 #include "tod/camera_measures/edge_measure.h"
+#include "tod/camera_measures/gain_control.h"
 #include "tod/camera_measures/mrtd_measure.h"
 #include "tod/camera_measures/pixel_measure.h"
 #include "tod/camera_measures/plate_geometry.h"
@@ -52,6 +53,8 @@ struct CameraMeasuresOptions {
   int timing_frames = 0;                      ///< frames whose times are examined; 0: not measured
   std::optional<LatencyOptions> latency{};    ///< runs of the stage; empty: not measured
   std::optional<MrtdOptions> mrtd{};          ///< response, IFOV and frames to locate are filled in; empty: no MRTD
+  /// Automatic gain, from contrast steps of the first plate; empty: not described.
+  std::optional<ResponseOptions> gain_control{};
   /// Plates, frames to average, corrections, timeouts and integrity as in the TOD measurement. The first plate is shown
   /// in identity mounting.
   MeasurementOptions measurement;
@@ -173,6 +176,7 @@ struct CameraMeasures {
   std::optional<GeometryMeasure> geometry{};
   std::optional<DriftMeasure> drift{};
   std::optional<ResponseMeasure> response{};
+  std::optional<GainControlMeasure> gain_control{};
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
   std::optional<SourceSizeMeasure> source{};

@@ -17,6 +17,7 @@ namespace {
 constexpr int frames_before = 8;
 constexpr double changed_part = 0.7, still_part = 0.1;  // of the largest change
 constexpr int least_pixels = 12;
+constexpr double least_surround = 0.1;  // of the change of the target: a plate warms up by some percent
 /// A reported correction arrives with the delays of the frames: a smaller difference is not a new correction.
 constexpr double told_delay_s = 0.5;
 
@@ -26,11 +27,29 @@ double camera_s(const Frame& frame, double frame_rate_hz) {
                                                          : static_cast<double>(frame.sequence) / frame_rate_hz;
 }
 
-/// Weights whose sum over the field is the mean of the changing pixels minus the mean of the constant ones.
+/// Weights whose sum over the field is the mean of the changing pixels minus the mean of the constant ones, or the mean
+/// of the surround.
 struct SignalWeights {
   cv::Mat1d weight;
   int bright = 0;
 };
+
+/// The surround is most of the picture, so its change is the median. The target changes most against it.
+Result<SignalWeights> surround_weights(const cv::Mat1d& change) {
+  const double surround = median(std::vector<double>(change.begin(), change.end()));
+  double low = 0, high = 0;
+  cv::minMaxLoc(change, &low, &high);
+  const double target = std::max(high - surround, surround - low);
+  if (!(std::abs(surround) > least_surround * target))
+    return fail(ErrorCode::calibration,
+                "the level round the target does not follow its contrast: the camera does not control its gain");
+  SignalWeights out{cv::Mat1d::zeros(change.size()), 0};
+  const auto is_surround = [&](double one) { return std::abs(one - surround) < least_surround * target; };
+  out.bright = static_cast<int>(std::count_if(change.begin(), change.end(), is_surround));
+  std::transform(change.begin(), change.end(), out.weight.begin(),
+                 [&](double one) { return is_surround(one) ? 1.0 / out.bright : 0.0; });
+  return out;
+}
 
 Result<SignalWeights> signal_weights(const cv::Mat1d& change) {
   double low = 0, high = 0;
@@ -104,6 +123,10 @@ class ResponseRun {
     const auto there_ns = host_.now_ns(Moment::scene_changed);
     if (!there_ns) return tl::unexpected(there_ns.error());
     taker_.scene_changed(*there_ns);
+    // A gain that is controlled settles as long as it is followed after a step.
+    for (int k = 0; options_.signal == StepSignal::surround && k < options_.frames; ++k) {
+      if (auto frame = taker_.next_of_moving_scene(stop_); !frame) return tl::unexpected(frame.error());
+    }
     auto picture = taker_.average(options_.contrast_frames, stop_);
     if (!picture) return tl::unexpected(picture.error());
     return picture->kelvin(field_).clone();
@@ -115,11 +138,12 @@ class ResponseRun {
     const auto dark = mean_at(0);
     if (!dark) return tl::unexpected(dark.error());
     const cv::Mat1d change = *bright - *dark;
-    auto weights = signal_weights(change);
+    auto weights = options_.signal == StepSignal::surround ? surround_weights(change) : signal_weights(change);
     if (!weights) return tl::unexpected(weights.error());
     // With a negative polarity, a step up of the contrast is a step down in the picture.
     weights_ = weights->weight * (change.dot(weights->weight) < 0 ? -1.0 : 1.0);
     measure.bright_pixels = weights->bright;
+    measure.change = change.dot(weights->weight);
     return {};
   }
 

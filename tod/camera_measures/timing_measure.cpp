@@ -101,24 +101,22 @@ Result<std::vector<Frame>> frames_of(FrameTaker& taker, const PlateRun& run, con
   return frames;
 }
 
-/// Mean time by which the frames of a run are behind the plate.
-Result<double> lag_of(const std::vector<Frame>& frames, const PlateRun& run, const PlaceInFrame& place) {
+/// Times in ms by which the frames of a run are behind the plate.
+Result<std::vector<double>> lags_of(const std::vector<Frame>& frames, const PlateRun& run, const PlaceInFrame& place) {
   constexpr std::size_t least = 4, lead = 4;  // the first frames show the start of the motion
-  double sum_s = 0;
-  int count = 0;
+  std::vector<double> lags_ms;
   for (std::size_t i = lead; i < frames.size(); ++i) {
     const double gone_s = 1e-9 * static_cast<double>(frames[i].device_time_ns) - *run.start_s;
     const double expected_mm = run.from_mm + run.direction() * run.speed_mm_s * gone_s;
     const auto seen_mm = place(frames[i], expected_mm);
     if (!seen_mm) continue;
-    sum_s += run.direction() * (expected_mm - *seen_mm) / run.speed_mm_s;
-    ++count;
+    lags_ms.push_back(1e3 * run.direction() * (expected_mm - *seen_mm) / run.speed_mm_s);
   }
-  if (count < static_cast<int>(least))
+  if (lags_ms.size() < least)
     return fail(ErrorCode::invalid_input,
                 fmt::format("a run of the stage gave {} usable frames, at least {} are needed: choose a lower speed",
-                            count, least));
-  return sum_s / count;
+                            lags_ms.size(), least));
+  return lags_ms;
 }
 
 }  // namespace
@@ -135,8 +133,9 @@ Result<LatencyMeasure> measure_latency(FrameTaker& taker, MovingTarget* stage, c
     if (!run.start_s)
       return fail(ErrorCode::invalid_input, "the stage does not state the start of a run in the clock of the camera");
     TODBENCH_TRY(const std::vector<Frame> frames, frames_of(taker, run, stop));
-    TODBENCH_TRY(const double lag_s, lag_of(frames, run, place));
-    out.runs_ms.push_back(1e3 * lag_s);
+    TODBENCH_TRY(const std::vector<double> lags_ms, lags_of(frames, run, place));
+    out.runs_ms.push_back(std::accumulate(lags_ms.begin(), lags_ms.end(), 0.0) / static_cast<double>(lags_ms.size()));
+    out.frames_ms.insert(out.frames_ms.end(), lags_ms.begin(), lags_ms.end());
   }
   const auto n = static_cast<double>(out.runs_ms.size());
   const double mean = std::accumulate(out.runs_ms.begin(), out.runs_ms.end(), 0.0) / n;

@@ -50,7 +50,8 @@ struct LatencyOptions {
 
 struct LatencyMeasure {
   double speed_mm_s = 0;
-  std::vector<double> runs_ms{};  ///< of each run
+  std::vector<double> runs_ms{};    ///< of each run
+  std::vector<double> frames_ms{};  ///< of each frame of the runs
   /// Time from a place of the target to the time stamp of the frame that shows it, with the time constant of the
   /// detector and half of its exposure. Positive: the frame is late.
   Estimate latency_ms{};

@@ -323,6 +323,8 @@ TEST(DemandKinds, EveryKindHasOneRowWithANameAndAUnit) {
                                                "absolute_offset",
                                                "camera_pattern",
                                                "dynamic_range",
+                                               "gain_ratio",
+                                               "gain_settling_time",
                                                "range_high",
                                                "range_low",
                                                "source_pattern",

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Automatic gain of a camera: levels and gain against the contrast of the scene, and how fast they follow it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/base/interval.h"
+#include "tod/camera_measures/response_measure.h"
+
+namespace todbench {
+
+/// Picture of the first plate at one contrast, once the gain has settled, in counts or in kelvin of the camera's scale.
+struct GainLevel {
+  double set_delta_t_k = 0, said_delta_t_k = 0;  ///< set-point, and value that the target reports
+  double surround = 0;                           ///< median of the plate
+  double lowest = 0, highest = 0;                ///< of the mean picture of the plate
+  double contrast = 0, contrast_u = 0;           ///< of the large triangles; u from the scatter over triangles
+
+  /// Contrast of the picture over that of the target, with the 95 % interval of the triangles.
+  [[nodiscard]] Estimate gain() const;
+};
+
+struct GainControlMeasure {
+  std::string unit;  ///< "count" or "K"
+  int frames = 0;    ///< averaged at each contrast
+  std::vector<GainLevel> levels{};
+  std::optional<ResponseMeasure> settling{};  ///< of the level of the surround; empty: the reason is stated
+
+  /// Levels of the contrasts with the smallest and the largest magnitude. Precondition: there are levels.
+  [[nodiscard]] const GainLevel& smallest() const;
+  [[nodiscard]] const GainLevel& largest() const;
+};
+
+}  // namespace todbench
