@@ -4,8 +4,8 @@
 
 #include "acquisition/core/camera_id.h"
 #include "bench/cli/commands.h"
-#include "bench/run/devices.h"
-#include "bench/run/emulation.h"
+#include "bench/devices/devices.h"
+#include "bench/devices/emulation.h"
 
 namespace todbench {
 namespace {

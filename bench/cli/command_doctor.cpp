@@ -10,9 +10,9 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/plan_decisions.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/devices/devices.h"
 #include "bench/doctor/doctor.h"
-#include "bench/run/acuity_limits.h"
-#include "bench/run/devices.h"
+#include "bench/twin/acuity_limits.h"
 
 namespace todbench {
 namespace {

@@ -8,8 +8,8 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/exit_codes.h"
 #include "bench/cli/run_display.h"
+#include "bench/devices/stage_check.h"
 #include "bench/plan/instrument_description.h"
-#include "bench/run/stage_check.h"
 #include "bench/session/json_output.h"
 #include "tod/instruments/instrument_check.h"
 

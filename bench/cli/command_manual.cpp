@@ -6,7 +6,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
-#include "bench/run/devices.h"
+#include "bench/devices/devices.h"
 #include "bench/session/build_info.h"
 #include "bench/text/files.h"
 

@@ -7,13 +7,13 @@
 #include "bench/cli/findings.h"
 #include "bench/cli/plan_decisions.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/forecast/bill_forecast.h"
+#include "bench/forecast/comparison_forecast.h"
+#include "bench/forecast/limit_forecast.h"
+#include "bench/forecast/prediction.h"
 #include "bench/judgement/verdict.h"
-#include "bench/run/acuity_limits.h"
-#include "bench/run/bill_forecast.h"
-#include "bench/run/comparison_forecast.h"
-#include "bench/run/limit_forecast.h"
-#include "bench/run/prediction.h"
 #include "bench/text/files.h"
+#include "bench/twin/acuity_limits.h"
 
 namespace todbench {
 namespace {

@@ -13,9 +13,9 @@
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/tiff_writer.h"
 #include "bench/cli/commands.h"
+#include "bench/devices/camera_settings.h"
+#include "bench/devices/devices.h"
 #include "bench/judgement/verdict.h"
-#include "bench/run/camera_settings.h"
-#include "bench/run/devices.h"
 #include "bench/session/provenance.h"
 
 namespace todbench {

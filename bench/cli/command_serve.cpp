@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
-#include "bench/run/devices.h"
+#include "bench/devices/devices.h"
 #include "bench/run_control/control_server.h"
 
 namespace todbench {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <mutex>
 
+#include "bench/devices/devices.h"
 #include "bench/judgement/verdict.h"
-#include "bench/run/devices.h"
 #include "bench/text/text.h"
 #include "tod/camera_measures/warm_up_measure.h"
 

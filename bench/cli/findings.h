@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/cli/console.h"
-#include "bench/run/precision_frontier.h"
+#include "bench/forecast/precision_frontier.h"
 #include "tod/comparison/comparison.h"
 
 namespace todbench {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "bench/cli/console.h"
-#include "bench/run/decision_forecast.h"
-#include "bench/run/design_search.h"
-#include "bench/run/experiment_inputs.h"
+#include "bench/forecast/decision_forecast.h"
+#include "bench/forecast/design_search.h"
 #include "bench/text/json.h"
+#include "bench/twin/experiment_inputs.h"
 #include "sim_devices/prediction/viewing_proposal.h"
 
 namespace todbench {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "bench/run/default_design.h"
+#include "bench/forecast/default_design.h"
 
 namespace todbench {
 namespace {

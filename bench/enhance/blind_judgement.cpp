@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "acquisition/base/try.h"
+#include "bench/devices/processed_source.h"
 #include "bench/enhance/judge_again.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/processed_source.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/json_fields.h"

@@ -11,8 +11,8 @@
 
 #include "bench/enhance/package_file.h"
 #include "bench/plan/loaded_plan.h"
-#include "bench/run/experiment_inputs.h"
 #include "bench/session/open_session.h"
+#include "bench/twin/experiment_inputs.h"
 #include "tod/measurement/judged_contrast.h"
 #include "tod/psychometric/tod_curve.h"
 

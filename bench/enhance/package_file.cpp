@@ -9,9 +9,9 @@
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/strict_toml.h"
-#include "bench/run/module_chain.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "bench/twin/module_chain.h"
 
 namespace todbench {
 namespace {

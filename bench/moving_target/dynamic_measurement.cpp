@@ -11,8 +11,8 @@
 #include "bench/judgement/run_findings.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/module_chain.h"
-#include "bench/run/simulated_responses.h"
+#include "bench/twin/module_chain.h"
+#include "bench/twin/simulated_responses.h"
 #include "sim_devices/scene/scene_motion.h"
 #include "tod/plate/test_pattern.h"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/devices/devices.h"
 #include "bench/moving_target/dynamic_acuity.h"
-#include "bench/run/devices.h"
 #include "tod/measurement/moving_measurement.h"
 
 namespace todbench {

@@ -11,12 +11,12 @@
 #include "bench/judgement/run_findings.h"
 #include "bench/moving_target/dynamic_json.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/module_chain.h"
 #include "bench/run/session_end.h"
 #include "bench/session/csv_fields.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "bench/twin/module_chain.h"
 #include "tod/adequacy/adequacy.h"
 #include "tod/psychometric/acuity.h"
 

@@ -166,7 +166,7 @@ struct SchedulePlan {
   std::optional<double> ramp_k_per_s{}, from_delta_t_k{}, to_delta_t_k{};
   AnswersChoice answers = AnswersChoice::automatic;
   /// Successive valid frames that a graded answer averages: one number for all contrasts, or one for each of delta_t_k
-  /// in its order; 0: chosen by with_frames() (bench/run/prediction.h).
+  /// in its order; 0: chosen by with_frames() (bench/forecast/prediction.h).
   std::vector<int> frames_per_presentation{0};
   bool operator==(const SchedulePlan&) const = default;
 };

@@ -3,9 +3,9 @@
 #include <chrono>
 
 #include "acquisition/core/camera_registry.h"
+#include "bench/devices/devices.h"
 #include "bench/python/bindings.h"
 #include "bench/python/laboratory.h"
-#include "bench/run/devices.h"
 #include "sim_devices/sensor/simulated_camera.h"
 
 namespace todbench {

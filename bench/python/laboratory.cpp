@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/python/laboratory.h"
 
+#include "bench/devices/emulation.h"
 #include "bench/python/bindings.h"
-#include "bench/run/emulation.h"
 
 namespace todbench {
 

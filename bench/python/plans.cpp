@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <charconv>
 
+#include "bench/devices/emulation.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_keys.h"
 #include "bench/plan/resources.h"
 #include "bench/python/bindings.h"
-#include "bench/run/emulation.h"
 #include "bench/text/files.h"
 
 namespace todbench {

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "acquisition/base/host_clock.h"
+#include "bench/devices/devices.h"
+#include "bench/devices/observed_source.h"
 #include "bench/plan/plan_options.h"
 #include "bench/report/number_format.h"
-#include "bench/run/devices.h"
-#include "bench/run/experiment_inputs.h"
-#include "bench/run/observed_source.h"
+#include "bench/twin/experiment_inputs.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/set_up_step.h"

@@ -6,23 +6,24 @@
 #include <utility>
 
 #include "acquisition/base/host_clock.h"
+#include "acquisition/base/try.h"
 #include "acquisition/recording/frame_stream.h"
-#include "bench/run/acuity_limits.h"
-#include "bench/run/background_twin_functions.h"
-#include "bench/run/bill_forecast.h"
-#include "bench/run/camera_surrogate.h"
-#include "bench/run/comparison_forecast.h"
-#include "bench/run/experiment_inputs.h"
+#include "bench/devices/observed_source.h"
+#include "bench/forecast/bill_forecast.h"
+#include "bench/forecast/comparison_forecast.h"
 #include "bench/run/fitted_curve.h"
 #include "bench/run/grey_results.h"
 #include "bench/run/measured_run.h"
-#include "bench/run/module_chain.h"
-#include "bench/run/observed_source.h"
 #include "bench/run/physical_measures.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/session_end.h"
 #include "bench/run/simulated_run.h"
 #include "bench/run/twin_results.h"
+#include "bench/twin/acuity_limits.h"
+#include "bench/twin/background_twin_functions.h"
+#include "bench/twin/camera_surrogate.h"
+#include "bench/twin/experiment_inputs.h"
+#include "bench/twin/module_chain.h"
 
 namespace todbench {
 namespace {

@@ -12,16 +12,16 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/devices/devices.h"
+#include "bench/devices/experiment_host.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/devices.h"
-#include "bench/run/experiment_host.h"
-#include "bench/run/experiment_inputs.h"
 #include "bench/session/display_record.h"
 #include "bench/session/json_output.h"
 #include "bench/session/provenance.h"
 #include "bench/session/session_folder.h"
+#include "bench/twin/experiment_inputs.h"
 #include "tod/camera_measures/camera_measures.h"
 
 namespace todbench {

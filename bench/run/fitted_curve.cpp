@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "bench/judgement/run_findings.h"
-#include "bench/run/own_contrasts.h"
+#include "bench/twin/own_contrasts.h"
 #include "tod/adequacy/adequacy.h"
 
 namespace todbench {

@@ -9,13 +9,13 @@
 #include <stop_token>
 #include <vector>
 
-#include "bench/run/background_task.h"
-#include "bench/run/background_twin_functions.h"
-#include "bench/run/camera_surrogate.h"
-#include "bench/run/experiment_inputs.h"
 #include "bench/run/measured_run.h"
 #include "bench/run/session_end.h"
-#include "bench/run/twin_shapes.h"
+#include "bench/twin/background_task.h"
+#include "bench/twin/background_twin_functions.h"
+#include "bench/twin/camera_surrogate.h"
+#include "bench/twin/experiment_inputs.h"
+#include "bench/twin/twin_shapes.h"
 #include "tod/measurement/measurement.h"
 #include "tod/psychometric/contrast_surface.h"
 #include "tod/psychometric/tod_curve.h"

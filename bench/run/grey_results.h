@@ -7,8 +7,8 @@
 
 #include "acquisition/core/frame_source.h"
 #include "bench/plan/plan.h"
-#include "bench/run/experiment_inputs.h"
 #include "bench/run/session_end.h"
+#include "bench/twin/experiment_inputs.h"
 #include "tod/measurement/measurement.h"
 #include "tod/psychometric/tod_curve.h"
 

@@ -4,13 +4,13 @@
 #include <chrono>
 #include <utility>
 
+#include "bench/devices/warm_up_gate.h"
 #include "bench/run/grey_results.h"
-#include "bench/run/module_chain.h"
 #include "bench/run/physical_measures.h"
-#include "bench/run/simulated_responses.h"
 #include "bench/run/trial_recorder.h"
-#include "bench/run/twin_shapes.h"
-#include "bench/run/warm_up_gate.h"
+#include "bench/twin/module_chain.h"
+#include "bench/twin/simulated_responses.h"
+#include "bench/twin/twin_shapes.h"
 #include "tod/measurement/contrast_error.h"
 
 namespace todbench {

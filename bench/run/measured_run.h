@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "acquisition/recording/frame_stream.h"
-#include "bench/run/camera_settings.h"
-#include "bench/run/camera_surrogate.h"
-#include "bench/run/devices.h"
-#include "bench/run/experiment_host.h"
-#include "bench/run/experiment_inputs.h"
+#include "bench/devices/camera_settings.h"
+#include "bench/devices/devices.h"
+#include "bench/devices/experiment_host.h"
 #include "bench/run/session_end.h"
+#include "bench/twin/camera_surrogate.h"
+#include "bench/twin/experiment_inputs.h"
 #include "tod/camera_measures/camera_measures.h"
 #include "tod/measurement/measurement.h"
 #include "tod/psychometric/tod_curve.h"

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <utility>
 
+#include "bench/devices/camera_settings.h"
+#include "bench/devices/plate_picture.h"
 #include "bench/plan/collimator.h"
-#include "bench/run/camera_settings.h"
-#include "bench/run/module_chain.h"
-#include "bench/run/plate_picture.h"
-#include "bench/run/simulated_responses.h"
+#include "bench/twin/module_chain.h"
+#include "bench/twin/simulated_responses.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/module_sensor.h"

@@ -5,10 +5,10 @@
 #include <optional>
 #include <stop_token>
 
-#include "bench/run/background_task.h"
-#include "bench/run/devices.h"
-#include "bench/run/experiment_inputs.h"
+#include "bench/devices/devices.h"
 #include "bench/run/session_end.h"
+#include "bench/twin/background_task.h"
+#include "bench/twin/experiment_inputs.h"
 #include "tod/camera_measures/camera_measures.h"
 
 namespace todbench {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "bench/run/devices.h"
+#include "bench/devices/devices.h"
 #include "bench/run/recorded_answers.h"
 
 namespace todbench {

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "bench/run/module_chain.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "bench/twin/module_chain.h"
 
 namespace todbench {
 namespace {

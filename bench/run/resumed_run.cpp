@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "acquisition/base/try.h"
-#include "bench/run/module_chain.h"
-#include "bench/run/reconnecting_source.h"
+#include "bench/devices/reconnecting_source.h"
+#include "bench/twin/module_chain.h"
 
 namespace todbench {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bench/plan/plan_options.h"
-#include "bench/run/twin_shapes.h"
+#include "bench/twin/twin_shapes.h"
 
 namespace todbench {
 namespace {

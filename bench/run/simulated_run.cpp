@@ -4,13 +4,13 @@
 #include <chrono>
 #include <utility>
 
-#include "bench/run/bench_host.h"
-#include "bench/run/direct_results.h"
+#include "bench/devices/bench_host.h"
 #include "bench/run/fitted_curve.h"
-#include "bench/run/module_chain.h"
-#include "bench/run/simulated_set_up.h"
 #include "bench/run/trial_recorder.h"
-#include "bench/run/twin_shapes.h"
+#include "bench/twin/direct_results.h"
+#include "bench/twin/module_chain.h"
+#include "bench/twin/simulated_set_up.h"
+#include "bench/twin/twin_shapes.h"
 #include "tod/measurement/contrast_error.h"
 
 namespace todbench {

@@ -6,9 +6,9 @@
 #include <stop_token>
 #include <string>
 
-#include "bench/run/experiment_host.h"
-#include "bench/run/experiment_inputs.h"
+#include "bench/devices/experiment_host.h"
 #include "bench/run/session_end.h"
+#include "bench/twin/experiment_inputs.h"
 #include "tod/measurement/measurement.h"
 #include "tod/psychometric/tod_curve.h"
 

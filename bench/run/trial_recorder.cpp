@@ -8,7 +8,8 @@
 #include <iterator>
 #include <memory>
 
-#include "bench/run/processed_source.h"
+#include "acquisition/base/try.h"
+#include "bench/devices/processed_source.h"
 #include "bench/text/text.h"
 
 namespace todbench {

@@ -5,10 +5,10 @@
 #include <stop_token>
 #include <vector>
 
-#include "bench/run/devices.h"
-#include "bench/run/experiment_host.h"
-#include "bench/run/module_chain.h"
+#include "bench/devices/devices.h"
+#include "bench/devices/experiment_host.h"
 #include "bench/run/session_end.h"
+#include "bench/twin/module_chain.h"
 #include "tod/measurement/measurement.h"
 
 namespace todbench {

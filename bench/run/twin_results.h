@@ -4,11 +4,11 @@
 
 #include <stop_token>
 
-#include "bench/run/background_task.h"
 #include "bench/run/experiment.h"
-#include "bench/run/paired_comparison.h"
 #include "bench/run/physical_measures.h"
 #include "bench/run/simulated_run.h"
+#include "bench/twin/background_task.h"
+#include "bench/twin/paired_comparison.h"
 
 namespace todbench {
 

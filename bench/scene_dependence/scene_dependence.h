@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "acquisition/core/frame_source.h"
+#include "bench/devices/experiment_host.h"
 #include "bench/enhance/package_file.h"
 #include "bench/plan/loaded_plan.h"
-#include "bench/run/experiment_host.h"
 #include "tod/measurement/measurement.h"
 
 namespace todbench {

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <utility>
 
-#include "bench/run/module_chain.h"
 #include "bench/run/session_end.h"
 #include "bench/session/ending_reserve.h"
 #include "bench/session/json_output.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
+#include "bench/twin/module_chain.h"
 
 namespace todbench {
 namespace {

@@ -51,7 +51,7 @@ struct RunRecord {
 [[nodiscard]] RunRecord run_record(const MeasurementResult& result, double wall_s);
 [[nodiscard]] RunFigures figures_of(const RunRecord& run);
 
-/// Optics and noise of the camera as estimated from its own frames (bench/run/camera_surrogate.h).
+/// Optics and noise of the camera as estimated from its own frames (bench/twin/camera_surrogate.h).
 struct CameraOpticsRecord {
   double aberration_sigma_pitch = 0, aberration_se_pitch = 0;
   double f_number_ratio = 1, f_number_ratio_se = 0;  ///< relative to the sensor file

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/devices/devices.h"
+#include "bench/forecast/prediction.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/devices.h"
-#include "bench/run/experiment_inputs.h"
-#include "bench/run/prediction.h"
-#include "bench/run/simulated_set_up.h"
-#include "bench/run/twin_shapes.h"
 #include "bench/text/text.h"
+#include "bench/twin/experiment_inputs.h"
+#include "bench/twin/simulated_set_up.h"
+#include "bench/twin/twin_shapes.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/tod_curve.h"
 

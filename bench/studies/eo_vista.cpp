@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "bench/plan/descriptions.h"
-#include "bench/run/twin_shapes.h"
 #include "bench/session/json_output.h"
 #include "bench/studies/eo_vista_figures.h"
 #include "bench/text/text.h"
+#include "bench/twin/twin_shapes.h"
 #include "sim_devices/prediction/camera_trials.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"

@@ -73,9 +73,9 @@ struct FewTemplates {
 };
 
 /// Gram-Schmidt process with pivoting: each step takes the row with the largest residual, until every residual is
-/// shorter than the tolerance, relative to the longest row. Equivalent to the pivoted Cholesky decomposition of the inner products, whose errors of
-/// 1e-15 are small against the square of the tolerance. Divides the rows by their norms, or all by one. Empty if a row
-/// is 0.
+/// shorter than the tolerance, relative to the longest row. Equivalent to the pivoted Cholesky decomposition of the
+/// inner products, whose errors of 1e-15 are small against the square of the tolerance. Divides the rows by their
+/// norms, or all by one. Empty if a row is 0.
 std::optional<FewTemplates> few_templates(cv::Mat1d& rows, double tolerance, std::optional<double> one_norm) {
   // The columns of `templates` are the rows.
   Eigen::Map<Eigen::MatrixXd> templates(rows.ptr<double>(), rows.cols, rows.rows);

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/forecast/prediction.h"
 #include "bench/run/experiment.h"
-#include "bench/run/prediction.h"
 
 namespace todbench {
 namespace {

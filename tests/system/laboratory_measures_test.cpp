@@ -7,7 +7,7 @@
 #include <mutex>
 #include <numbers>
 
-#include "bench/run/emulation.h"
+#include "bench/devices/emulation.h"
 #include "sim_devices/lab/genicam/picture_encoder.h"
 #include "tests/support/source_file.h"
 #include "tests/system/system_test_support.h"

@@ -4,8 +4,8 @@
 #include <deque>
 
 #include "acquisition/base/rng.h"
+#include "bench/devices/emulation.h"
 #include "bench/plan/descriptions.h"
-#include "bench/run/emulation.h"
 #include "sim_devices/lab/gvsp_laboratory.h"
 #include "tests/system/system_test_support.h"
 

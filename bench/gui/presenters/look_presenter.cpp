@@ -8,9 +8,9 @@
 
 #include "acquisition/core/camera_id.h"
 #include "acquisition/recording/tiff_writer.h"
+#include "bench/devices/devices.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/devices.h"
 #include "bench/session/provenance.h"
 #include "tod/presentation/target_failure.h"
 #include "tod/schedule/schedule.h"

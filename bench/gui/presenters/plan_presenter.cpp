@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "bench/run/experiment_inputs.h"
 #include "bench/text/files.h"
+#include "bench/twin/experiment_inputs.h"
 
 namespace todbench {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/forecast/bench_time.h"
+#include "bench/forecast/graded_precision.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/bench_time.h"
-#include "bench/run/graded_precision.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "bench/forecast/prediction.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/report/plot.h"
-#include "bench/run/prediction.h"
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
@@ -54,7 +54,7 @@ struct PlannedContrast {
 
 struct PlanPreview {
   std::uint64_t presentations = 0, trials = 0;  ///< of the camera; expected numbers for an adaptive schedule
-  double bench_s = 0;                           ///< as bench_time() (bench/run/bench_time.h)
+  double bench_s = 0;                           ///< as bench_time() (bench/forecast/bench_time.h)
   std::optional<double> twin_s;
   std::vector<PlannedContrast> contrasts;
   std::vector<std::pair<double, double>> by_frames;  ///< bench time and uncertainty of PlanForecast::by_frames

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "acquisition/core/camera_id.h"
+#include "bench/devices/devices.h"
 #include "bench/gui/presenters/device_plan.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/resources.h"
-#include "bench/run/devices.h"
 #include "tod/presentation/target_failure.h"
 
 namespace todbench {

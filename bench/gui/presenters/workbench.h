@@ -10,10 +10,10 @@
 #include <optional>
 #include <vector>
 
+#include "bench/devices/emulation.h"
 #include "bench/gui/presenters/job_runner.h"
 #include "bench/gui/presenters/live_feed.h"
 #include "bench/plan/plan.h"
-#include "bench/run/emulation.h"
 
 namespace todbench {
 

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "bench/run/pause.h"
+#include "bench/devices/pause.h"
 #include "bench/session/trials_csv.h"
 #include "tests/bench/gui/gui_test_support.h"
 

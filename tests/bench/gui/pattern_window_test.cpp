@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/devices/display_target.h"
 #include "bench/gui/presenters/chain_presenter.h"
 #include "bench/gui/views/page_check.h"
 #include "bench/gui/views/pattern_window.h"
 #include "bench/report/pattern_truth.h"
-#include "bench/run/display_target.h"
 #include "hvs/shape/polygon_coverage.h"
 #include "tests/bench/gui/gui_test_support.h"
 #include "tod/pattern/test_picture.h"

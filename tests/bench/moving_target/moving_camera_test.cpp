@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "bench/devices/emulation.h"
 #include "bench/moving_target/dynamic_measurement.h"
-#include "bench/run/emulation.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 

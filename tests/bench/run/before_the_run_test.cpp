@@ -3,7 +3,7 @@
 // scale.
 #include <gmock/gmock.h>
 
-#include "bench/run/experiment_inputs.h"
+#include "bench/twin/experiment_inputs.h"
 #include "tests/bench/run/measured_session.h"
 
 namespace todbench {

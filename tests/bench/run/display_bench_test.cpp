@@ -9,9 +9,9 @@
 #include <memory>
 #include <string>
 
+#include "bench/devices/display_target.h"
+#include "bench/devices/emulation.h"
 #include "bench/plan/descriptions.h"
-#include "bench/run/display_target.h"
-#include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "sim_devices/lab/gvsp_laboratory.h"
 #include "sim_devices/lab/monitor_view.h"

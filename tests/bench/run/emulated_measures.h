@@ -2,9 +2,9 @@
 // Measures of an emulated laboratory, without trials.
 #pragma once
 
+#include "bench/devices/devices.h"
+#include "bench/devices/emulation.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/devices.h"
-#include "bench/run/emulation.h"
 #include "tod/camera_measures/camera_measures.h"
 
 namespace todbench::testing {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "bench/devices/emulation.h"
 #include "bench/plan/descriptions.h"
-#include "bench/run/emulation.h"
 #include "sim_devices/prediction/virtual_mrtd.h"
 #include "tests/bench/run/emulated_measures.h"
 #include "tests/support/source_file.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "bench/devices/emulation.h"
 #include "bench/plan/descriptions.h"
-#include "bench/run/emulation.h"
 #include "bench/run/experiment.h"
 #include "bench/scene_dependence/scene_dependence.h"
 #include "bench/session/open_session.h"

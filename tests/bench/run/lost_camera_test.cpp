@@ -7,8 +7,8 @@
 #include <mutex>
 #include <thread>
 
+#include "bench/devices/emulation.h"
 #include "bench/judgement/verdict.h"
-#include "bench/run/emulation.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/run/replay.h"
 #include "tests/support/patience.h"

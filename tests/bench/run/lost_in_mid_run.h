@@ -7,7 +7,7 @@
 #include <chrono>
 
 #include "acquisition/aravis/aravis_backend.h"
-#include "bench/run/reconnecting_source.h"
+#include "bench/devices/reconnecting_source.h"
 #include "tests/sim_devices/lab/gige/gvsp_measurement.h"
 
 namespace todbench::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The picture of the plate beside that of its model, and pictures in the record of a session.
-#include "bench/run/plate_picture.h"
+#include "bench/devices/plate_picture.h"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 // power-up, with the same serial number.
 #include <gmock/gmock.h>
 
-#include "bench/run/reconnecting_source.h"
+#include "bench/devices/reconnecting_source.h"
 #include "tests/sim_devices/lab/driver_fault_cameras.h"
 
 namespace todbench {

@@ -7,8 +7,8 @@
 
 #include "bench/plan/loaded_plan.h"
 #include "bench/report/html.h"
-#include "bench/run/acuity_limits.h"
 #include "bench/session/provenance.h"
+#include "bench/twin/acuity_limits.h"
 #include "tests/bench/report/report_sample.h"
 
 namespace todbench {

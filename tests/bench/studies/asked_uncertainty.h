@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/forecast/prediction.h"
 #include "bench/run/experiment.h"
-#include "bench/run/prediction.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tests/support/temporary_folder.h"
 #include "tod/plate/test_pattern.h"

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/forecast/decision_forecast.h"
+#include "bench/forecast/design_search.h"
 #include "bench/judgement/limit_decision.h"
-#include "bench/run/decision_forecast.h"
-#include "bench/run/design_search.h"
 #include "tests/bench/studies/graded_runs.h"
 
 namespace todbench::testing {

@@ -17,12 +17,12 @@
 #include <utility>
 #include <vector>
 
+#include "bench/forecast/prediction.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/background_twin_functions.h"
-#include "bench/run/paired_comparison.h"
-#include "bench/run/prediction.h"
-#include "bench/run/simulated_set_up.h"
-#include "bench/run/twin_shapes.h"
+#include "bench/twin/background_twin_functions.h"
+#include "bench/twin/paired_comparison.h"
+#include "bench/twin/simulated_set_up.h"
+#include "bench/twin/twin_shapes.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench::testing {

@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "bench/devices/devices.h"
 #include "bench/plan/plan_options.h"
-#include "bench/run/camera_surrogate.h"
-#include "bench/run/devices.h"
-#include "bench/run/experiment_inputs.h"
-#include "bench/run/own_contrasts.h"
-#include "bench/run/simulated_responses.h"
-#include "bench/run/twin_shapes.h"
+#include "bench/twin/camera_surrogate.h"
+#include "bench/twin/experiment_inputs.h"
+#include "bench/twin/own_contrasts.h"
+#include "bench/twin/simulated_responses.h"
+#include "bench/twin/twin_shapes.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/sensor_model.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/forecast/prediction.h"
 #include "bench/run/experiment.h"
-#include "bench/run/prediction.h"
 #include "tests/bench/studies/graded_runs.h"
 #include "tests/support/temporary_folder.h"
 

@@ -8,8 +8,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "bench/run/devices.h"
-#include "bench/run/experiment_inputs.h"
+#include "bench/devices/devices.h"
+#include "bench/twin/experiment_inputs.h"
 
 namespace todbench {
 

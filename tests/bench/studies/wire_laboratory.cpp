@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "bench/run/emulation.h"
+#include "bench/devices/emulation.h"
 
 namespace todbench {
 namespace {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The host that controls an experiment.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "bench/devices/pause.h"
+#include "bench/session/session_clock.h"
+#include "sim_devices/module/picture_stage.h"
+#include "tod/measurement/measurement.h"
+#include "tod/presentation/operator_request.h"
+
+namespace todbench {
+
+/// Stages of an enhancement package, behind the modules of the plan. They process the frames of the camera and of its
+/// twin.
+struct AddedStages {
+  /// Creates the stages. Lines of their standard error are passed on. Empty: there are none.
+  std::function<std::vector<std::unique_ptr<ChainStage>>(const std::function<void(std::string_view line)>&)> make{};
+  int memory_frames = 0;  ///< exposures of the twin that are discarded after a change of the target
+  /// Answers of the recorded run: a recording gives its frames only to the questions of that run. The answers are then
+  /// reduced to right and wrong ones.
+  std::function<void(MeasurementOptions& camera)> as_recorded{};
+};
+
+/// Controls of a run beyond its plan. An ExperimentListener only receives progress.
+struct ExperimentHost {
+  /// Lets a run pause between two presentations; null: it never pauses. Outlives the run.
+  const Pause* pause = nullptr;
+  /// Answers the requests of a target of kind prompt; empty: asks at the terminal.
+  AskOperator ask_operator{};
+  HostClocks clocks = host_clocks();
+  AddedStages added{};
+};
+
+}  // namespace todbench

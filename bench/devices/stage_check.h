@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks the movements of a stage (signs, axes, scale) by the pictures of the camera.
+#pragma once
+
+#include <stop_token>
+#include <string>
+
+#include "bench/devices/devices.h"
+#include "bench/plan/loaded_plan.h"
+#include "tod/measurement/stage_fit.h"
+
+namespace todbench {
+
+struct StageMovement {
+  double driven_px = 0;  ///< to either side of the centre, along each axis
+  StageFit fit;          ///< observed positions fitted to requested ones
+  std::string cause{};   ///< reason of a deviation, as a clause; empty: the stage moves correctly
+};
+
+/// Largest deviation of StageFit::seen_per_asked from the unit matrix, per element, plus four standard errors. Shifts
+/// of a run reach 0.7 px: a tenth of that costs less than 0.2 % of acuity.
+inline constexpr double most_stage_deviation = 0.1;
+
+/// Opens camera and target of the plan, presents its first plate at its highest contrast in the centre, and moves the
+/// stage by one pixel to either side along x, then along y. Errors: `invalid_input` (no stage that sets positions),
+/// `calibration` (the pictures do not show the plate), those of open_bench() and measure().
+[[nodiscard]] Result<StageMovement> check_stage_movement(const LoadedPlan& loaded, const SayProgress& on_progress,
+                                                         std::stop_token stop);
+
+}  // namespace todbench

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/forecast/bench_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bench/plan/plan_options.h"
+
+namespace todbench {
+namespace {
+
+constexpr double settled_k = 0.002;  ///< tolerance of the shipped tables of black bodies
+
+/// Time constant of a black body of first order that settles in the stated time from the strongest contrast.
+double time_constant_s(const Plan& plan) {
+  double strongest = std::abs(plan.schedule.from_delta_t_k.value_or(0));
+  for (const double delta_t_k : plan.target.delta_t_k) strongest = std::max(strongest, std::abs(delta_t_k));
+  return strongest > settled_k * std::numbers::e ? plan.target.contrast_change_s / std::log(strongest / settled_k) : 0;
+}
+
+/// Wait for a contrast. Within a band it ends when a first-order approach is near and slow enough; a lag of 0.1 s is
+/// assumed if the plan states none.
+double contrast_wait_s(const Plan& plan, const TargetState* before, const TargetState& state) {
+  if (state.wait == ContrastWait::settled) return plan.target.contrast_change_s;
+  if (state.wait == ContrastWait::none || before == nullptr) return 0;
+  constexpr double default_band_percent = 10, default_rate_per_s = 0.06;
+  const double tau_s = time_constant_s(plan);
+  const double percent = plan.target.contrast_settling_band_percent;
+  const double band = std::min((percent > 0 ? percent : default_band_percent) / 100, default_rate_per_s * tau_s);
+  const double step = std::abs(state.delta_t_k - before->delta_t_k), near = band * std::abs(state.delta_t_k);
+  return near > 0 && step > near ? std::min(plan.target.contrast_change_s, tau_s * std::log(step / near)) : 0;
+}
+
+/// Adds the presentations that a slow black body needs at the end of each ramp down.
+std::vector<TargetState> with_ramp_ends(const Plan& plan, const RampOptions& ramp, std::vector<TargetState> states) {
+  const double tau_s = time_constant_s(plan);
+  const std::size_t steps = ramp_steps(ramp);
+  if (!(tau_s > 0) || plan.target.kind == TargetKind::scene) return states;
+  double contrast = ramp.from_k;
+  for (std::size_t k = 1; k < steps; ++k)
+    contrast = states[k].delta_t_k + (contrast - states[k].delta_t_k) * std::exp(-ramp_step_s / tau_s);
+  std::size_t more = 0;
+  constexpr double arrived = 1.1;
+  for (; more < 3 * steps && contrast / ramp.to_k > arrived; ++more)
+    contrast = ramp.to_k + (contrast - ramp.to_k) * std::exp(-ramp_step_s / tau_s);
+  std::vector<TargetState> out;
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    out.push_back(states[k]);
+    if (k % (2 * steps) != steps - 1) continue;
+    for (std::size_t i = 0; i < more; ++i) {
+      TargetState again = states[k];
+      again.shift_mm.x += static_cast<double>(i % 2 + 1);  // another shift
+      out.push_back(again);
+    }
+  }
+  return out;
+}
+
+/// Counts changes and frames of one presentation after another, in the order of measure().
+class Walk {
+ public:
+  explicit Walk(const Plan& plan) : plan_(plan) {}
+
+  void present(const TargetState* before, const TargetState& state) {
+    const bool plate = before == nullptr || before->plate != state.plate;
+    const bool mounting = before == nullptr || before->mounting != state.mounting;
+    const bool contrast = before == nullptr || before->delta_t_k != state.delta_t_k;
+    const bool shift = before == nullptr || before->shift_mm != state.shift_mm;
+    ++time_.presentations;
+    time_.plate_changes += plate ? 1 : 0;
+    time_.mounting_changes += mounting ? 1 : 0;
+    time_.contrast_changes += contrast ? 1 : 0;
+    time_.shift_changes += shift ? 1 : 0;
+    const TargetPlan& target = plan_.target;
+    const double contrast_s = contrast ? contrast_wait_s(plan_, before, state) : 0;
+    time_.changes_s += std::max({plate ? target.plate_change_s : 0, mounting ? target.mounting_change_s : 0, contrast_s,
+                                 shift ? target.shift_change_s : 0});
+    take_frames(plate || mounting, contrast && state.wait != ContrastWait::none,
+                state.point_delta_t_k.value_or(state.delta_t_k));
+  }
+
+  /// Counts the requests of [measures] after the trials, in the order of measure_camera().
+  void measure(const TargetState& last, const std::string& first_plate, double plate_width_mm) {
+    const MeasuresPlan& measures = plan_.measures;
+    if (!measures.any()) return;
+    const TargetPlan& target = plan_.target;
+    const auto change = [&](double seconds, int frames) {
+      time_.changes_s += seconds;
+      time_.frames += static_cast<std::uint64_t>(plan_.measurement.frames_after_change + frames);
+    };
+    change(std::max({last.plate != first_plate ? target.plate_change_s : 0,
+                     last.mounting != Mounting::identity ? target.mounting_change_s : 0, target.contrast_change_s,
+                     last.shift_mm != cv::Point2d(0, 0) ? target.shift_change_s : 0}),
+           plan_.measurement.registration_frames);
+    if (measures.transfer) {
+      for (std::size_t i = 0; i < measures.transfer_steps_k.size(); ++i)
+        change(target.contrast_change_s, plan_.measurement.contrast_frames);
+    }
+    if (measures.noise) change(target.contrast_change_s, measures.noise_frames);
+    if (measures.drift) {
+      change(target.contrast_change_s, 0);
+      time_.changes_s += plan_.camera.nuc_wait_s + measures.drift_s;
+    }
+    if (measures.response) {
+      constexpr int before_step = 8;
+      for (int i = 0; i < 2; ++i) change(target.contrast_change_s, plan_.measurement.contrast_frames);
+      for (int i = 0; i < measures.response_steps; ++i)
+        change(target.contrast_change_s, before_step + measures.response_frames);
+    }
+    if (measures.gain_control) {
+      constexpr int before_step = 8;
+      for (std::size_t i = 0; i < measures.transfer_steps_k.size() + 2; ++i)
+        change(target.contrast_change_s, measures.response_frames + plan_.measurement.contrast_frames);
+      for (int i = 0; i < measures.response_steps; ++i)
+        change(target.contrast_change_s, before_step + measures.response_frames);
+    }
+    if (measures.triangles) {
+      for (std::size_t i = 0; i < target.delta_t_k.size(); ++i)
+        change(target.contrast_change_s, plan_.measurement.contrast_frames);
+    }
+    const double new_plate_s = std::max(target.plate_change_s, target.contrast_change_s);
+    if (measures.mtf) change(new_plate_s, measures.mtf_frames);
+    if (measures.ctf) change(new_plate_s, measures.ctf_frames);
+    if (measures.source_size) {
+      change(new_plate_s, measures.source_size_frames);
+      for (int i = 0; i < 2; ++i) change(target.contrast_change_s, measures.source_size_frames);
+    }
+    if (measures.timing) change(target.contrast_change_s, measures.timing_frames);
+    if (measures.latency) {
+      for (int i = 0; i < measures.latency_runs; ++i) {
+        change(target.shift_change_s, 0);
+        time_.changes_s += 0.1 * plate_width_mm / (measures.latency_mrad_s * target.distance_m);
+      }
+    }
+    if (measures.absolute) add_absolute(new_plate_s);
+    if (measures.mrtd) count_mrtd(measures, target);
+  }
+
+  /// Both passes over the temperatures, then both halves of the shifted pictures, in the order of measure_absolute().
+  void add_absolute(double new_plate_s) {
+    const MeasuresPlan& measures = plan_.measures;
+    constexpr int passes = 2, places = 5;
+    const auto change = [&](double seconds) {
+      time_.changes_s += seconds;
+      time_.frames += static_cast<std::uint64_t>(plan_.measurement.frames_after_change + measures.absolute_frames);
+    };
+    for (std::size_t i = 0; i < passes * measures.absolute_temperatures_k.size(); ++i)
+      change(i == 0 ? new_plate_s : plan_.target.contrast_change_s);
+    if (measures.absolute_shift_px == 0) return;
+    for (int i = 0; i < passes * places; ++i)
+      change(i == 0 ? plan_.target.contrast_change_s : plan_.target.shift_change_s);
+  }
+
+  [[nodiscard]] BenchTime finished(double frame_rate_hz) {
+    // A simulated camera and its scene are as fast as the processor.
+    if (plan_.target.kind == TargetKind::scene) {
+      time_.changes_s = 0;
+      return time_;
+    }
+    // The warm-up of the camera precedes the run; a drift adds at least its window.
+    const WarmUpPlan& warm_up = plan_.camera.warm_up;
+    time_.changes_s += std::max(warm_up.time_s, warm_up.drift_k_per_min > 0 ? warm_up.window_s : 0);
+    time_.frames_s = frame_rate_hz > 0 ? static_cast<double>(time_.frames) / frame_rate_hz : 0;
+    const double running = time_.changes_s + time_.frames_s;
+    if (plan_.camera.nuc_interval_s > 0)
+      time_.corrections_s = (running / plan_.camera.nuc_interval_s + 1) * plan_.camera.nuc_wait_s;
+    return time_;
+  }
+
+ private:
+  void count_mrtd(const MeasuresPlan& measures, const TargetPlan& target) {
+    MrtdOptions options{.contrasts_k = measures.mrtd_delta_t_k,
+                        .frames = measures.mrtd_frames,
+                        .set_ups = measures.mrtd_set_ups,
+                        .mountings = target.mountings};
+    const TargetState* before = nullptr;
+    const std::vector<MrtdPresentation> presentations = mrtd_presentations(options, 1);
+    for (const MrtdPresentation& one : presentations) {
+      const TargetState& state = one.state;
+      const bool contrast = before == nullptr || before->delta_t_k != state.delta_t_k;
+      const bool mounting = before != nullptr && before->mounting != state.mounting;
+      time_.changes_s +=
+          std::max({before == nullptr ? target.plate_change_s : 0, mounting ? target.mounting_change_s : 0,
+                    contrast ? target.contrast_change_s : 0, target.shift_change_s});
+      time_.frames +=
+          static_cast<std::uint64_t>(plan_.measurement.frames_after_change +
+                                     (one.set_up < 0 ? plan_.measurement.registration_frames : measures.mrtd_frames));
+      before = &state;
+    }
+  }
+
+  void take_frames(bool new_set_up, bool new_contrast, double delta_t_k) {
+    const MeasurementPlan& measurement = plan_.measurement;
+    // The camera is predicted without the modules of the sensor.
+    const int frames = measurement.frames_after_change + chosen_answers(plan_, {}, delta_t_k).frames;
+    int looking = new_set_up ? measurement.registration_frames : 0;
+    if (new_set_up || new_contrast) looking += measurement.contrast_frames;
+    // After the operator has moved the plate, it is located again.
+    if (!new_set_up && plan_.target.kind == TargetKind::prompt) looking += measurement.contrast_frames;
+    time_.looking_frames += static_cast<std::uint64_t>(looking);
+    time_.presentation_frames[delta_t_k] += static_cast<std::uint64_t>(frames);
+    time_.frames += static_cast<std::uint64_t>(frames + looking);
+  }
+
+  const Plan& plan_;
+  BenchTime time_;
+};
+
+}  // namespace
+
+std::vector<TargetState> listed_presentations(const Plan& plan, const std::vector<TargetPlate>& plates) {
+  ConstantStimuliOptions stimuli = stimuli_options(plan, plates, plan.camera.ifov_mrad, Side::measured);
+  // Shifts are only counted: a plan without a camera has them too.
+  stimuli.pixel_mm = 1;
+  stimuli.drawings.clear();
+  if (plan.schedule.kind == ScheduleKind::ramp) {
+    RampOptions ramp = ramp_options(plan, plates, 1);
+    ramp.stimuli = stimuli;
+    return with_ramp_ends(plan, ramp, ramp_presentations(ramp, RandomStream(plan.seed, "schedule")));
+  }
+  if (plan.schedule.kind == ScheduleKind::adaptive) {
+    const double visit_order[] = {3, 2, 1, 0};
+    std::copy(std::begin(visit_order), std::end(visit_order), std::begin(stimuli.change_cost_s));
+  }
+  std::vector<TargetState> states = constant_stimuli(stimuli, RandomStream(plan.seed, "schedule"));
+  if (has_own_contrasts(plan) && plan.schedule.kind == ScheduleKind::constant)
+    for (TargetState& state : states) state.wait = ContrastWait::within_band;
+  return states;
+}
+
+BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
+                     std::optional<double> presentations) {
+  return bench_time(plan, plates, listed_presentations(plan, plates), frame_rate_hz, presentations);
+}
+
+BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, const std::vector<TargetState>& states,
+                     double frame_rate_hz, std::optional<double> presentations) {
+  Walk walk(plan);
+  if (states.empty()) return walk.finished(frame_rate_hz);
+  std::uint64_t count = states.size();
+  if (plan.schedule.kind == ScheduleKind::adaptive) {
+    const auto cap = static_cast<double>(plan.schedule.max_presentations);
+    count = static_cast<std::uint64_t>(std::llround(std::min(presentations.value_or(cap), cap)));
+  }
+  const TargetState* before = nullptr;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const TargetState& state = states[i % states.size()];
+    walk.present(before, state);
+    before = &state;
+  }
+  if (before != nullptr && !plates.empty()) walk.measure(*before, plates.front().name, plates.front().width_mm);
+  return walk.finished(frame_rate_hz);
+}
+
+}  // namespace todbench

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/forecast/bill_forecast.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "acquisition/base/try.h"
+#include "bench/forecast/bench_time.h"
+#include "bench/forecast/decision_forecast.h"
+#include "bench/forecast/precision_frontier.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+void add_rows(AccuracyBill& bill, const Plan& plan, const BenchTime& time, double frame_rate_hz,
+              const std::vector<ContrastPrediction>& contrasts) {
+  const auto seconds = [&](std::uint64_t frames) { return static_cast<double>(frames) / frame_rate_hz; };
+  bill.rows.push_back({std::string(changes_part), time.changes_s,
+                       fmt::format("{} set-ups, {} contrasts, {} places of the plate in the picture",
+                                   set_ups_of(plan.target), contrasts.size(), time.presentations)});
+  bill.rows.push_back(
+      {std::string(location_part), seconds(time.looking_frames), "place of the plate and effective contrasts"});
+  std::uint64_t counted = time.looking_frames;
+  for (const ContrastPrediction& contrast : contrasts) {
+    const auto found = time.presentation_frames.find(contrast.delta_t_k);
+    const std::uint64_t frames = found != time.presentation_frames.end() ? found->second : 0;
+    counted += frames;
+    bill.rows.push_back({presentations_part(contrast.delta_t_k), seconds(frames),
+                         contrast.uncertainty_percent
+                             ? fmt::format("S75 to ± {:.2g} % (95 %) or better", *contrast.uncertainty_percent)
+                             : "no interval of S75"});
+  }
+  bill.rows.push_back({"Rest of the run", seconds(time.frames - counted) + time.corrections_s,
+                       "physical measures, corrections of the camera; without computing"});
+}
+
+}  // namespace
+
+Result<AccuracyBill> bill_forecast(const Plan& asked, const ExperimentInputs& inputs) {
+  AccuracyBill bill;
+  if (asked.target.kind == TargetKind::scene) return bill;
+  const Plan plan = as_measured(with_frames(asked, inputs));
+  TODBENCH_TRY(const auto prediction, predict_plan(plan, inputs));
+  const double frame_rate_hz = inputs.sensor.frame_rate_hz;
+  const auto presentations = expected_presentations(plan, inputs.plates, prediction.contrasts);
+  const BenchTime time = bench_time(plan, inputs.plates, frame_rate_hz, presentations);
+  bill.total_s = time.total_s();
+  if (frame_rate_hz > 0) add_rows(bill, plan, time, frame_rate_hz, prediction.contrasts);
+  TODBENCH_TRY(const auto floors, floors_ln(plan, prediction));
+  for (std::size_t i = 0; i < floors.size(); ++i) {
+    if (!(floors[i] > 0)) continue;
+    bill.sentences.push_back(
+        fmt::format("At {} K the stated rows of the budget make ± {:.2g} %, which no presentation reduces.",
+                    number_text(prediction.contrasts[i].delta_t_k), 100 * std::expm1(floors[i])));
+  }
+  return bill;
+}
+
+Result<AccuracyBill> bill_forecast(const LoadedPlan& loaded) {
+  EffectPlanner planner;
+  TODBENCH_TRY(const auto inputs, experiment_inputs(loaded, planner));
+  return bill_forecast(loaded.plan(), inputs);
+}
+
+}  // namespace todbench

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Power of a comparison: of a plan before it is measured, and of two measured curves.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "bench/forecast/prediction.h"
+#include "bench/plan/plan.h"
+#include "tod/comparison/comparison.h"
+#include "tod/comparison/planning.h"
+
+namespace todbench {
+
+struct ComparisonForecast {
+  std::optional<ComparisonOutlook> outlook;  ///< empty if a contrast identifies no threshold
+  std::string sentence;                      ///< begins with "warning" if the power is below 80 %
+};
+
+/// Forecasts the comparison of camera and twin. Standard errors: those of the ratio by common phases if the plan makes
+/// pairs, because it decides then; otherwise the predicted uncertainty of the simulated design. Both are scaled to the
+/// camera's own number of phases.
+[[nodiscard]] ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction);
+
+/// Forecasts the comparison of two curves at its contrasts. Standard errors: from their intervals, clusters included.
+[[nodiscard]] ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b,
+                                                     const Comparison& comparison);
+
+}  // namespace todbench

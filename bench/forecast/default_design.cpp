@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/forecast/default_design.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim_devices/prediction/direct_estimate.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+
+Plan plan_of_nobody(Plan plan) {
+  plan.name = "simulate";
+  plan.description = plan.operator_name = plan.place = plan.unit = "";
+  plan.limits = {};
+  plan.camera = {};
+  plan.target.kind = TargetKind::scene;
+  plan.target.black_body = plan.target.stage = "";
+  return plan;
+}
+
+Result<LoadedPlan> with_suitable_distance(const LoadedPlan& loaded, std::stop_token stop) {
+  Plan plan = loaded.plan();
+  const SensorSpec& sensor = loaded.sensor();
+  TemplateObserver observer(loaded.observer(), triangle_alternatives());
+  const SensorPlan effects = full_plan(sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion);
+  double log_sum = 0;
+  int found = 0;
+  for (const double contrast : plan.target.delta_t_k) {
+    const auto point = direct_estimate(sensor, effects, observer, {contrast},
+                                       {.motion = plan.simulation.motion, .accuracy = Accuracy::draft(), .stop = stop});
+    if (!point && point.error().code == ErrorCode::interrupted) return tl::unexpected(point.error());
+    if (!point) continue;
+    log_sum += std::log(point->front().s75_pitch * sensor.ifov_mrad());
+    ++found;
+  }
+  if (found == 0) return loaded;
+  const double middle_mrad = std::exp(log_sum / found);
+  double smallest = 1e300, largest = 0, extent_mm = 0;
+  for (const auto& plate : loaded.plates()) {
+    for (const auto& t : plate.triangles) {
+      smallest = std::min(smallest, t.size_mm);
+      largest = std::max(largest, t.size_mm);
+    }
+    extent_mm = std::max({extent_mm, plate.width_mm * sensor.height / sensor.width, plate.height_mm});
+  }
+  const double middle_mm = std::sqrt(smallest * largest);
+  // The plate may fill 90 % of the picture.
+  const double nearest_m = extent_mm / (0.9 * sensor.height * sensor.ifov_mrad());
+  // Registration and contrast need triangles of at least five displayed samples.
+  const double farthest_m = largest * sensor.samples_per_pitch() / (5.0 * sensor.ifov_mrad());
+  plan.target.distance_m = std::max(nearest_m, std::min(middle_mm / middle_mrad, farthest_m));
+  return loaded.with(std::move(plan));
+}
+
+}  // namespace todbench

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/forecast/design_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "acquisition/base/try.h"
+#include "bench/forecast/bench_time.h"
+#include "bench/forecast/decision_forecast.h"
+#include "bench/forecast/limit_forecast.h"
+#include "bench/forecast/precision_frontier.h"
+#include "bench/plan/plan_options.h"
+#include "bench/text/text.h"
+
+namespace todbench {
+namespace {
+
+constexpr std::size_t least_set_ups = 5;  // clustered_variance.h
+constexpr std::array phase_choices{3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 20, 24, 32, 48, 64, 96, 128};
+constexpr int most_frames = 256;
+constexpr double decided = 0.95, coarsest_percent = 10;
+
+/// The mounting that is rotated by 180 degrees.
+Mounting counterpart(Mounting mounting) {
+  switch (mounting) {
+    case Mounting::identity:
+      return Mounting::rotated_180;
+    case Mounting::rotated_180:
+      return Mounting::identity;
+    case Mounting::mirrored_horizontally:
+      return Mounting::mirrored_vertically;
+    case Mounting::mirrored_vertically:
+      return Mounting::mirrored_horizontally;
+  }
+  return mounting;
+}
+
+/// The mountings in their order, each followed by its counterpart.
+std::vector<Mounting> in_pairs(const std::vector<Mounting>& mountings) {
+  std::vector<Mounting> out;
+  const auto add = [&](Mounting mounting) {
+    if (std::ranges::find(mountings, mounting) != mountings.end() && std::ranges::find(out, mounting) == out.end())
+      out.push_back(mounting);
+  };
+  for (const Mounting mounting : mountings) {
+    add(mounting);
+    add(counterpart(mounting));
+  }
+  return out;
+}
+
+double unpaired_share(const TargetPlan& target) {
+  int unpaired = 0;
+  for (std::size_t p = 0; p < target.plates.size(); ++p) {
+    const auto end = target.mountings.begin() + static_cast<std::ptrdiff_t>(mountings_of(target, p));
+    for (auto mounting = target.mountings.begin(); mounting != end; ++mounting)
+      unpaired += std::find(target.mountings.begin(), end, counterpart(*mounting)) == end ? 1 : 0;
+  }
+  return unpaired / static_cast<double>(set_ups_of(target));
+}
+
+/// Numbers of mountings of every plate, with at least `set_ups` in all.
+std::vector<std::vector<int>> mounting_choices(std::size_t plates, int mountings, std::size_t set_ups) {
+  constexpr std::size_t most_plates = 3;
+  std::vector<std::vector<int>> choices;
+  std::vector<int> counts(plates, 1);
+  const auto add = [&] {
+    std::size_t sum = 0;
+    for (const int count : counts) sum += static_cast<std::size_t>(count);
+    if (sum >= set_ups) choices.push_back(counts);
+  };
+  if (plates > most_plates) {  // the same number for all
+    for (int count = 1; count <= mountings; ++count) {
+      counts.assign(plates, count);
+      add();
+    }
+    return choices;
+  }
+  for (std::size_t digit = 0; digit < plates;) {
+    add();
+    for (digit = 0; digit < plates && ++counts[digit] > mountings; ++digit) counts[digit] = 1;
+  }
+  return choices;
+}
+
+/// Requirement at each contrast.
+class Criterion {
+ public:
+  Criterion(const Plan& plan, const DesignRequest& request, double half_width_percent, const CurveUncertainty* budget)
+      : plan_(plan), decide_(request.decide), half_width_percent_(half_width_percent), budget_(budget) {}
+
+  [[nodiscard]] bool met(const ContrastPrediction& contrast) const {
+    if (!contrast.uncertainty_percent || !contrast.s75_mrad) return false;
+    if (!decide_) return *contrast.uncertainty_percent <= half_width_percent_;
+    const auto limit = std::ranges::find_if(
+        plan_.limits.acuity, [&](const AcuityLimit& row) { return same_contrast(row.delta_t_k, contrast.delta_t_k); });
+    if (limit == plan_.limits.acuity.end()) {
+      const auto& margin = plan_.limits.equivalence_margin_percent;
+      return *contrast.uncertainty_percent <= (margin ? *margin / 3 : coarsest_percent);
+    }
+    if (*contrast.uncertainty_percent > coarsest_percent) return false;
+    const auto expected = expected_uncertainty(contrast, budget_);
+    if (!expected) return false;
+    const double over = -std::log(*contrast.s75_mrad * limit->least_acuity_per_mrad);
+    return 1 - decision_chances(over, *expected, plan_.limits).inconclusive >= decided;
+  }
+
+ private:
+  const Plan& plan_;
+  bool decide_;
+  double half_width_percent_;
+  const CurveUncertainty* budget_;
+};
+
+/// Fewest frames of each contrast that meet the criterion; empty: not with most_frames.
+Result<std::optional<std::vector<int>>> fewest_frames(Plan plan, const ExperimentInputs& inputs,
+                                                      const Criterion& criterion) {
+  const std::size_t contrasts = plan.target.delta_t_k.size();
+  const bool graded = chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded;
+  std::vector<int> low(contrasts, 0), high(contrasts, graded ? most_frames : 1);
+  const auto met = [&](const std::vector<int>& frames) -> Result<std::vector<bool>> {
+    plan.schedule.frames_per_presentation = frames;
+    TODBENCH_TRY(const auto prediction, predict_plan(plan, inputs));
+    std::vector<bool> out;
+    for (const ContrastPrediction& contrast : prediction.contrasts) out.push_back(criterion.met(contrast));
+    return out;
+  };
+  TODBENCH_TRY(const auto reachable, met(high));
+  if (std::ranges::find(reachable, false) != reachable.end()) return std::nullopt;
+  const auto open = [&] {
+    for (std::size_t i = 0; i < contrasts; ++i) {
+      if (high[i] - low[i] > 1) return true;
+    }
+    return false;
+  };
+  while (open()) {
+    std::vector<int> middle;
+    for (std::size_t i = 0; i < contrasts; ++i) middle.push_back((low[i] + high[i] + 1) / 2);
+    TODBENCH_TRY(const auto enough, met(middle));
+    for (std::size_t i = 0; i < contrasts; ++i) (enough[i] ? high : low)[i] = middle[i];
+  }
+  return high;
+}
+
+Result<PricedDesign> priced(Plan plan, const ExperimentInputs& inputs) {
+  TODBENCH_TRY(auto prediction, predict_plan(plan, inputs));
+  PricedDesign design{.plan = std::move(plan)};
+  Plan laboratory = design.plan;
+  if (laboratory.target.kind == TargetKind::scene) laboratory.target.kind = TargetKind::scpi;
+  const auto presentations = expected_presentations(laboratory, inputs.plates, prediction.contrasts);
+  const BenchTime time = bench_time(laboratory, inputs.plates, inputs.sensor.frame_rate_hz, presentations);
+  design.bench_s = time.total_s();
+  design.changes_s = time.changes_s;
+  design.half_width_percent = prediction.figures.predicted_uncertainty_percent;
+  design.contrasts = std::move(prediction.contrasts);
+  return design;
+}
+
+/// Fewest frames that locate the plate as well as 8 frames of the demonstration do, which is studied: noise of their
+/// mean of 0.15 % of the contrast. At most those of the plan. If contrasts change most slowly, set-ups are located at
+/// every contrast, otherwise at the highest.
+int registration_frames(const Plan& plan, const SensorSpec& sensor) {
+  constexpr double noise_share = 0.0015;
+  constexpr int fewest = 8;
+  const TargetPlan& target = plan.target;
+  const bool at_every = target.contrast_change_s > std::min(target.plate_change_s, target.mounting_change_s);
+  const auto [lowest, highest] =
+      std::ranges::minmax_element(target.delta_t_k, {}, [](double delta_t_k) { return std::abs(delta_t_k); });
+  const double needed = std::ceil(std::pow(sensor.netd_k / (noise_share * std::abs(at_every ? *lowest : *highest)), 2));
+  const int planned = plan.measurement.registration_frames;
+  return needed >= planned ? planned : std::min(planned, std::max(fewest, static_cast<int>(needed)));
+}
+
+/// The plan of a candidate, with one frame.
+Plan candidate(Plan plan, const std::vector<int>& mountings, int phases) {
+  const bool all = std::ranges::all_of(
+      mountings, [&](int count) { return count == static_cast<int>(plan.target.mountings.size()); });
+  plan.target.mountings_per_plate = all ? std::vector<int>{0} : mountings;
+  plan.target.phases = plan.simulation.phases = phases;
+  plan.schedule.frames_per_presentation = {1};
+  return plan;
+}
+
+/// Contrasts that no limit names, except the highest; none if camera and twin are compared.
+std::vector<double> not_needed(const Plan& plan) {
+  std::vector<double> out;
+  if (plan.limits.equivalence_margin_percent || plan.limits.acuity.empty()) return out;
+  const auto highest =
+      std::ranges::max(plan.target.delta_t_k, {}, [](double delta_t_k) { return std::abs(delta_t_k); });
+  for (const double delta_t_k : plan.target.delta_t_k) {
+    const bool limited = std::ranges::any_of(
+        plan.limits.acuity, [&](const AcuityLimit& limit) { return same_contrast(limit.delta_t_k, delta_t_k); });
+    if (!limited && delta_t_k != highest) out.push_back(delta_t_k);
+  }
+  return out;
+}
+
+/// The cheapest candidates, one after another.
+class Search {
+ public:
+  Search(const Plan& plan, const ExperimentInputs& inputs, const Criterion& criterion)
+      : plan_(plan), inputs_(inputs), criterion_(criterion) {}
+
+  /// Keeps the candidate if it is faster than the best one with the same mountings, and faster by half a percent than
+  /// those before: a smaller gain is not worth a less even share of the plates.
+  Result<void> examine(const std::vector<int>& mountings, int phases) {
+    const Plan single = candidate(plan_, mountings, phases);
+    const std::size_t presentations = set_ups_of(single.target) * static_cast<std::size_t>(phases);
+    if (presentations < least_graded_presentations) return {};
+    const double single_s = laboratory_time(single, inputs_, std::nullopt);
+    least_s = std::min(least_s, single_s);
+    if (best && single_s >= best->bench_s) return {};
+    const bool same_set_ups = best && best->plan.target.mountings_per_plate == single.target.mountings_per_plate;
+    TODBENCH_TRY(const auto frames, fewest_frames(single, inputs_, criterion_));
+    if (!frames) return note_precision(single);
+    Plan found = single;
+    const bool alike = std::ranges::all_of(*frames, [&](int count) { return count == frames->front(); });
+    found.schedule.frames_per_presentation = alike ? std::vector<int>{frames->front()} : *frames;
+    TODBENCH_TRY(auto design, priced(std::move(found), inputs_));
+    if (!best || design.bench_s < (same_set_ups ? 1 : 0.995) * best->bench_s) best = std::move(design);
+    return {};
+  }
+
+  std::optional<PricedDesign> best{};
+  double least_s = std::numeric_limits<double>::infinity();
+  std::optional<double> least_percent{};  ///< least half-width of the designs that do not meet the request
+
+ private:
+  Result<void> note_precision(Plan plan) {
+    if (chosen_answers(plan, inputs_.sensor).kind == AnswerKind::graded)
+      plan.schedule.frames_per_presentation = {most_frames};
+    TODBENCH_TRY(const auto prediction, predict_plan(plan, inputs_));
+    const auto& reached = prediction.figures.predicted_uncertainty_percent;
+    if (reached) least_percent = std::min(least_percent.value_or(*reached), *reached);
+    return {};
+  }
+
+  const Plan& plan_;
+  const ExperimentInputs& inputs_;
+  const Criterion& criterion_;
+};
+
+Error not_found(const DesignRequest& request, double half_width_percent, const Search& search,
+                const CurveUncertainty* budget) {
+  std::string text = request.decide ? fmt::format(
+                                          "no design decides every limit for a camera like the simulated one with a "
+                                          "probability of {:.0f} %",
+                                          100 * decided)
+                                    : fmt::format("no design has a half-width of {:.3g} %", half_width_percent);
+  if (search.least_percent) text += fmt::format(": the trials reach {:.2g} % at best", *search.least_percent);
+  if (request.decide && budget != nullptr) text += ", and no presentation reduces the stated rows of the budget";
+  return Error{ErrorCode::invalid_input, text + ". `todbench plan --decide` shows each limit"};
+}
+
+}  // namespace
+
+Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs, const DesignRequest& request,
+                               std::stop_token stop) {
+  Plan plan = as_measured(with_frames(asked, inputs));
+  if (plan.camera.id.empty()) plan.target.phases = plan.simulation.phases;
+  BestDesign found;
+  TODBENCH_TRY(found.as_planned, priced(plan, inputs));
+  const double half_width_percent =
+      request.half_width_percent.value_or(found.as_planned.half_width_percent.value_or(coarsest_percent));
+  PlanPrediction expected{.figures = {}, .contrasts = found.as_planned.contrasts, .warnings = {}};
+  TODBENCH_TRY(const auto budget, curve_uncertainty(plan, expected_curve(expected), {}, std::nullopt));
+  const CurveUncertainty* rows = budget ? &*budget : nullptr;
+
+  plan.schedule.kind = ScheduleKind::constant;
+  plan.target.mountings = in_pairs(plan.target.mountings);
+  if (request.decide) found.dropped_contrasts_k = not_needed(plan);
+  std::erase_if(plan.target.delta_t_k, [&](double delta_t_k) {
+    return std::ranges::find(found.dropped_contrasts_k, delta_t_k) != found.dropped_contrasts_k.end();
+  });
+  plan.measurement.registration_frames = registration_frames(plan, inputs.sensor);
+  const Criterion criterion(plan, request, half_width_percent, rows);
+  Search search(plan, inputs, criterion);
+  const std::size_t set_ups = std::min(least_set_ups, set_ups_of(plan.target));
+  auto choices = mounting_choices(plan.target.plates.size(), static_cast<int>(plan.target.mountings.size()), set_ups);
+  // Few set-ups first: their designs exclude most of the others by their time. Of as many set-ups the even ones first.
+  std::ranges::stable_sort(choices, {}, [&](const std::vector<int>& counts) {
+    return std::pair(set_ups_of(candidate(plan, counts, 1).target),
+                     std::ranges::max(counts) - std::ranges::min(counts));
+  });
+  for (const std::vector<int>& mountings : choices) {
+    for (const int phases : phase_choices) {
+      if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+      if (auto done = search.examine(mountings, phases); !done) return tl::unexpected(done.error());
+    }
+  }
+  if (!search.best) return tl::unexpected(not_found(request, half_width_percent, search, rows));
+  found.best = *std::move(search.best);
+  found.least_s = search.least_s;
+  found.set_ups = static_cast<int>(set_ups_of(found.best.plan.target));
+  found.unpaired_share = unpaired_share(found.best.plan.target);
+  return found;
+}
+
+std::vector<std::string> in_words(const BestDesign& found) {
+  const PricedDesign& best = found.best;
+  std::vector<std::string> out;
+  out.push_back(
+      fmt::format("the design takes {:.0f} s of bench time, the plan as it was {:.0f} s. {:.0f} s of it are "
+                  "changes of the target; no design of this bench with {} set-ups or more is faster than "
+                  "{:.0f} s, whatever its half-width",
+                  best.bench_s, found.as_planned.bench_s, best.changes_s, std::min<int>(found.set_ups, least_set_ups),
+                  found.least_s));
+  out.push_back(found.unpaired_share > 0
+                    ? fmt::format("{} set-ups. {:.0f} % of them have no counterpart rotated by 180 degrees: an error "
+                                  "that changes its sign with this rotation enters S75 with {:.0f} % of its size, and "
+                                  "its scatter is in the interval",
+                                  found.set_ups, 100 * found.unpaired_share, 100 * found.unpaired_share)
+                    : fmt::format("{} set-ups, each with its counterpart rotated by 180 degrees: an error that changes "
+                                  "its sign with this rotation cancels",
+                                  found.set_ups));
+  const bool by_presentations = std::ranges::any_of(best.contrasts, [&](const ContrastPrediction& contrast) {
+    return contrast.degrees_of_freedom && *contrast.degrees_of_freedom != found.set_ups - 1;
+  });
+  if (by_presentations)
+    out.emplace_back(
+        "the set-ups have unequal shares of the information and count as fewer than five: the intervals come from "
+        "presentations and places. They are safe, and longer than those of set-ups");
+  for (const double delta_t_k : found.dropped_contrasts_k)
+    out.push_back("the contrast of " + number_text(delta_t_k) + " K is left out, because no limit names it");
+  return out;
+}
+
+}  // namespace todbench

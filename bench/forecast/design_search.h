@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Design of least bench time for a half-width or for the decisions of a plan.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "bench/forecast/prediction.h"
+#include "bench/plan/plan.h"
+#include "bench/twin/experiment_inputs.h"
+
+namespace todbench {
+
+/// Requirement on a design.
+struct DesignRequest {
+  /// Half-width of the 95 % interval of S75 from the trials at every contrast, which 19 of 20 runs do not exceed;
+  /// empty: that of the plan as it is.
+  std::optional<double> half_width_percent{};
+  /// Decides every limit on an acuity for a camera like the simulated one with a probability of 95 %, in place of a
+  /// half-width. Contrasts without a limit have at most a third of the equivalence margin, or 10 %.
+  bool decide = false;
+};
+
+/// Design with its prediction.
+struct PricedDesign {
+  Plan plan;
+  double bench_s = 0;                          ///< laboratory_time(): changes, frames, corrections; without computing
+  double changes_s = 0;                        ///< of it, changes of the target
+  std::optional<double> half_width_percent{};  ///< the largest of the contrasts
+  std::vector<ContrastPrediction> contrasts{};
+};
+
+struct BestDesign {
+  PricedDesign as_planned, best;
+  double least_s = 0;  ///< bench time of the fastest design examined, whatever its half-width
+  int set_ups = 0;
+  /// Share of the set-ups without their counterpart, the mounting of the same plate that is rotated by 180 degrees. An
+  /// error that reverses its sign with this rotation enters S75 with this share; its scatter is in the interval.
+  double unpaired_share = 0;
+  std::vector<double> dropped_contrasts_k{};
+};
+
+/// Searches mountings of each plate, phases, and frames of each contrast. The presentations are in the order of
+/// constant_stimuli(): its fast changes run during the slow ones, so that no other nesting takes less time. A design
+/// has at least five set-ups, which the intervals of graded answers need (or those of the plan, if it has fewer), three
+/// phases and eight presentations of a contrast. Mountings are taken in pairs of counterparts. The plate is located in
+/// fewer frames than planned if their noise is at most 0.15 % of the highest contrast. With `decide` and
+/// without an equivalence margin, contrasts without a limit are left out, except the highest one, which locates the
+/// plate. Errors: `invalid_input` (no design examined meets the request; the message states the least half-width, or
+/// the rows of the budget that prevent the decision), predict_plan(), `interrupted`.
+[[nodiscard]] Result<BestDesign> best_design(const Plan& plan, const ExperimentInputs& inputs,
+                                             const DesignRequest& request, std::stop_token stop);
+
+/// Sentences about a design: time, what takes it, what the set-ups guarantee.
+[[nodiscard]] std::vector<std::string> in_words(const BestDesign& found);
+
+}  // namespace todbench

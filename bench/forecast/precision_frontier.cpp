@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/forecast/precision_frontier.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "bench/forecast/bench_time.h"
+#include "bench/forecast/decision_forecast.h"
+#include "bench/forecast/graded_precision.h"
+#include "bench/forecast/time_prediction.h"
+#include "bench/plan/plan_options.h"
+
+namespace todbench {
+namespace {
+
+Plan with_answers(Plan plan, AnswerKind answers, const std::vector<int>& frames) {
+  plan.schedule.answers = answers == AnswerKind::graded ? AnswersChoice::graded : AnswersChoice::binary;
+  plan.schedule.frames_per_presentation = frames;
+  if (answers == AnswerKind::graded) {
+    plan.fit.estimator = EstimatorChoice::twin_shape;
+    plan.fit.lapse = 0.0;
+  }
+  return plan;
+}
+
+/// Computing time of a choice, for the camera if there is one.
+Result<double> computing_s(const Plan& plan, const ExperimentInputs& inputs, std::stop_token stop) {
+  const auto time = predict_time(plan, inputs, std::move(stop));
+  if (!time) return tl::unexpected(time.error());
+  return plan.camera.id.empty() ? time->simulation_s : time->measuring_s;
+}
+
+double bench_s(const Plan& plan, const ExperimentInputs& inputs, const std::vector<ContrastPrediction>& contrasts) {
+  if (plan.camera.id.empty()) return 0;
+  const auto presentations = expected_presentations(plan, inputs.plates, contrasts);
+  return bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations).total_s();
+}
+
+/// Largest half-width over the contrasts with the rows of the budget (`floors`, in ln acuity), which frames do not
+/// reduce.
+double deciding_ln(const PrecisionChoice& choice, const std::vector<double>& floors) {
+  double largest = 0;
+  for (std::size_t i = 0; i < choice.contrasts.size(); ++i)
+    largest = std::max(largest, std::hypot(std::log1p(*choice.contrasts[i].uncertainty_percent / 100), floors[i]));
+  return largest;
+}
+
+void recommend(std::vector<PrecisionChoice>& choices, const std::vector<double>& floors) {
+  const auto price = [&](const PrecisionChoice& choice) {
+    return std::pow(deciding_ln(choice, floors), 2) * std::max(choice.seconds, 1e-3);
+  };
+  const auto comparable = [](const PrecisionChoice& choice) {
+    return choice.answers == AnswerKind::graded && choice.half_width_percent;
+  };
+  PrecisionChoice* best = nullptr;
+  for (PrecisionChoice& choice : choices) {
+    if (comparable(choice) && (best == nullptr || price(choice) < price(*best))) best = &choice;
+  }
+  if (best == nullptr) return;
+  // With a budget the price is flat, and the faster of nearly equal choices gives away nothing.
+  constexpr double nearly = 1.05;
+  const double most = price(*best) * (std::ranges::any_of(floors, [](double floor) { return floor > 0; }) ? nearly : 1);
+  for (PrecisionChoice& choice : choices) {
+    if (comparable(choice) && price(choice) <= most && choice.seconds < best->seconds) best = &choice;
+  }
+  best->recommended = true;
+}
+
+}  // namespace
+
+Plan as_measured(Plan plan) {
+  if (!plan.camera.id.empty()) plan.simulation.phases = plan.target.phases;
+  return plan;
+}
+
+Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
+                                                        std::stop_token stop) {
+  std::vector<std::vector<int>> frames;
+  for (const int count : frame_choices) frames.push_back({count});
+  const AnswersTaken planned = chosen_answers(plan, inputs.sensor);
+  const std::vector<int> own = with_frames(plan, inputs).schedule.frames_per_presentation;
+  if (planned.kind == AnswerKind::graded && std::ranges::find(frames, own) == frames.end()) {
+    frames.push_back(own);
+    std::ranges::sort(frames);
+  }
+  const auto binary_s = computing_s(with_answers(plan, AnswerKind::binary, {1}), inputs, stop);
+  if (!binary_s) return tl::unexpected(binary_s.error());
+  const auto one_s = computing_s(with_answers(plan, AnswerKind::graded, {1}), inputs, stop);
+  if (!one_s) return tl::unexpected(one_s.error());
+  const auto two_s = computing_s(with_answers(plan, AnswerKind::graded, {2}), inputs, stop);
+  if (!two_s) return tl::unexpected(two_s.error());
+  const double frame_s = std::max(0.0, *two_s - *one_s);
+
+  std::vector<PrecisionChoice> choices;
+  const auto add = [&](AnswerKind answers, const std::vector<int>& count, double computing) -> Result<void> {
+    const Plan other = with_answers(plan, answers, count);
+    auto prediction = predict_plan(as_measured(other), inputs);
+    if (!prediction) return tl::unexpected(prediction.error());
+    PrecisionChoice choice{.answers = answers, .frames = count};
+    choice.seconds = computing + bench_s(other, inputs, prediction->contrasts);
+    choice.half_width_percent = prediction->figures.predicted_uncertainty_percent;
+    choice.contrasts = std::move(prediction->contrasts);
+    choice.planned = planned.kind == answers && (answers == AnswerKind::binary || own == count);
+    choices.push_back(std::move(choice));
+    return {};
+  };
+  if (auto added = add(AnswerKind::binary, {1}, *binary_s); !added) return tl::unexpected(added.error());
+  for (const std::vector<int>& count : frames) {
+    const double mean = std::accumulate(count.begin(), count.end(), 0.0) / static_cast<double>(count.size());
+    if (auto added = add(AnswerKind::graded, count, *one_s + (mean - 1) * frame_s); !added)
+      return tl::unexpected(added.error());
+  }
+  const auto floors = floors_ln(plan, {.figures = {}, .contrasts = choices.front().contrasts, .warnings = {}});
+  if (!floors) return tl::unexpected(floors.error());
+  recommend(choices, *floors);
+  return choices;
+}
+
+Json frontier_json(const std::vector<PrecisionChoice>& choices) {
+  Json rows = Json::array();
+  for (const PrecisionChoice& choice : choices) {
+    Json row;
+    row["answers"] = to_string(choice.answers);
+    row["frames_per_presentation"] = choice.frames.size() == 1 ? Json(choice.frames[0]) : Json(choice.frames);
+    row["half_width_percent"] = json_number(choice.half_width_percent);
+    row["predicted_s"] = json_number(choice.seconds);
+    row["planned"] = choice.planned;
+    row["recommended"] = choice.recommended;
+    row["contrasts"] = Json::array();
+    for (const ContrastPrediction& contrast : choice.contrasts) {
+      row["contrasts"].push_back({{"delta_t_k", json_number(contrast.delta_t_k)},
+                                  {"half_width_percent", json_number(contrast.uncertainty_percent)}});
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace todbench

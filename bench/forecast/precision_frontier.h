@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bench time against the interval of S75, for numbers of frames and kinds of answers.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "bench/forecast/prediction.h"
+
+namespace todbench {
+
+/// The plan with other answers, otherwise unchanged.
+struct PrecisionChoice {
+  AnswerKind answers = AnswerKind::binary;
+  std::vector<int> frames{1};  ///< per presentation: of every contrast, or one number for each
+  std::vector<ContrastPrediction> contrasts{};
+  std::optional<double> half_width_percent{};  ///< half the 95 % interval of S75, the largest over the contrasts
+  double seconds = 0;    ///< of the measurement with the camera, or of the simulation if the plan has no camera
+  bool planned = false;  ///< the choice of the plan
+  /// The graded choice with the smallest squared half-width times seconds. The half-width contains the rows of the
+  /// budget, which frames do not reduce; with such rows, the fastest choice within 5 % of the smallest product.
+  bool recommended = false;
+};
+
+/// Returns the plan with the camera's number of phases for the simulation, if there is a camera: predict_plan() then
+/// predicts the camera's curve.
+[[nodiscard]] Plan as_measured(Plan plan);
+
+/// Returns the choices for the camera's curve, if there is one: binary answers, and graded ones with 1, 2, 4 and 8
+/// frames, and the plan's own numbers (with_frames()) if they differ. Half-widths come from predict_plan(), times from
+/// predict_times() (1 and 2 frames are timed, the others follow). Errors: as there.
+[[nodiscard]] Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
+                                                                      std::stop_token stop);
+
+/// Key "frontier" of `plan --json` and `cost --json`.
+[[nodiscard]] Json frontier_json(const std::vector<PrecisionChoice>& choices);
+
+}  // namespace todbench

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/forecast/prediction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "acquisition/base/normal.h"
+#include "bench/forecast/bench_time.h"
+#include "bench/forecast/graded_precision.h"
+#include "bench/forecast/time_prediction.h"
+#include "bench/plan/plan_options.h"
+#include "bench/text/text.h"
+#include "bench/twin/module_chain.h"
+#include "bench/twin/paired_comparison.h"
+#include "bench/twin/twin_shapes.h"
+#include "sim_devices/prediction/direct_timing.h"
+#include "tod/comparison/planning.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+// Weibull slopes of the searching observer: 2.8 (noise dominates) to 6.5 (microscan, no noise). The first tier finds
+// them within a quarter, except without noise, where its function has steps.
+constexpr double flattest = 2.5, steepest = 6;
+
+// Intervals of runs over that of the expected counts: 1.03 +- 0.07, because answers scatter and trials of one
+// presentation or place are slightly dependent. 95 % of runs stay below 1.2 (asked_uncertainty_study).
+constexpr double likely_excess = 1.2, mean_excess = 1.03;
+
+/// Trials per size at one contrast.
+std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& plates) {
+  std::map<double, double> totals;
+  for (std::size_t i = 0; i < plates.size(); ++i) {
+    for (const auto& t : plates[i].triangles)
+      totals[t.size_mm / plan.target.distance_m] +=
+          static_cast<double>(mountings_of(plan.target, i)) * plan.simulation.phases;
+  }
+  std::vector<Level> levels;
+  for (const auto& [size, total] : totals)
+    levels.push_back({.size = size, .correct = 0, .total = total, .cluster = -1});
+  return levels;
+}
+
+/// Shares in the variance of the noise that decides an answer at a contrast.
+struct NoiseShares {
+  double sensor = 0;   ///< noise of the sensor, not of the observer
+  double pattern = 0;  ///< its fixed pattern, which q_eff does not include
+};
+
+NoiseShares noise_shares(const ExperimentInputs& inputs, const ContrastOutlook& outlook) {
+  const TemplateObserverSpec& observer = inputs.observer;
+  const double white = outlook.q_eff * outlook.q_eff, own = outlook.observer_variance;
+  const double factor = observer.sensor_noise_factor * observer.sensor_noise_factor;
+  const double pattern =
+      std::pow(inputs.sensor.samples_per_pitch() * inputs.sensor.fixed_pattern_k / outlook.delta_t_k, 2);
+  const double all = white + pattern;
+  return {(std::max(0.0, white - own) / factor + pattern) / all, pattern / all};
+}
+
+/// Relative standard error of the threshold of a table of proportions (needed_draws(), twin_shapes.h), for answers with
+/// this standard error.
+double se_of_shape(const Accuracy& accuracy, double q_eff, std::optional<double> se_ln_threshold) {
+  return (0.046 + 0.285 * q_eff) / std::sqrt(draws_of_twin_shape(se_ln_threshold, accuracy));
+}
+
+/// Information about the threshold of a trial of this size, in any unit.
+double information(double size, double threshold, double slope, double lapse, PsychometricForm form) {
+  const Level level{.size = size, .correct = 0, .total = 1, .cluster = -1};
+  const auto at = [&](double stretched) {
+    return design_at({&level, 1}, form, stretched, slope, lapse).front().proportion_correct;
+  };
+  constexpr double step = 1e-3;
+  const double p = at(threshold), change = at(threshold * (1 + step)) - p;
+  return p > 0 && p < 1 ? change * change / (p * (1 - p)) : 0;
+}
+
+/// Number of set-ups by their shares of the information at this contrast.
+double informative_set_ups(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook) {
+  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+  const double slope = std::clamp(outlook.weibull_slope, flattest, steepest);
+  double sum = 0, squares = 0;
+  for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
+    double of_plate = 0;
+    for (const auto& t : inputs.plates[i].triangles)
+      of_plate += information(t.size_mm / plan.target.distance_m, s75_mrad, slope, plan.fit.lapse.value_or(0.01),
+                              plan.fit.form);
+    const auto mountings = static_cast<double>(mountings_of(plan.target, i));
+    sum += mountings * of_plate;
+    squares += mountings * of_plate * of_plate;
+  }
+  return squares > 0 ? sum * sum / squares : 0;
+}
+
+GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
+                                  int frames) {
+  const NoiseShares shares = noise_shares(inputs, outlook);
+  const auto set_ups = static_cast<int>(set_ups_of(plan.target));
+  // A simulated scene changes between two frames.
+  const double change_s = plan.target.kind == TargetKind::scene ? 0 : plan.target.shift_change_s;
+  return {.sensor_share = shares.sensor,
+          .pattern_share = shares.pattern,
+          .size_pitch = outlook.s75_pitch,
+          .frames = frames,
+          .draws = MeasurementOptions::graded_draws,
+          .set_ups = set_ups,
+          .informative_set_ups = informative_set_ups(plan, inputs, outlook),
+          .presentations = set_ups * plan.simulation.phases,
+          .noise_correlation = inputs.sensor.noise_correlation,
+          .frames_between = change_s * inputs.sensor.frame_rate_hz};
+}
+
+/// Sets the interval of ln S75 of graded answers, from the standard error of as many binary ones.
+void predict_graded(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
+                    const ContrastOutlook& outlook, double binary_se) {
+  const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
+  const double q_eff = outlook.q_eff;
+  const GradedDesignFigures design = graded_design(plan, inputs, outlook, frames);
+  const double se = std::hypot(binary_se * std::sqrt(graded_variance_ratio(design)),
+                               se_of_shape(inputs.accuracy, q_eff, std::nullopt));
+  const double factor = graded_interval_factor(design);
+  point.uncertainty_percent = 100 * std::expm1(factor * se);
+  point.se_ln_s75 = se;
+  point.degrees_of_freedom = graded_freedom(design);
+  point.interval_factor = factor / graded_likely_excess(design);
+  if (!pairs_asked(plan, inputs.sensor)) return;
+  point.paired_se_ln_ratio =
+      factor / normal_z95 * binary_se * std::sqrt(paired_variance_ratio(design, PairedTwinOptions::default_draws));
+}
+
+/// The same for binary answers.
+void predict_binary(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
+                    const ContrastOutlook& outlook, double binary_se) {
+  const bool by_twin = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
+  const double of_shape = by_twin ? se_of_shape(inputs.accuracy, outlook.q_eff, binary_se) : 0;
+  const double inflation = pattern_inflation(graded_design(plan, inputs, outlook, 1));
+  const double se = std::hypot(binary_se * std::sqrt(inflation), of_shape);
+  point.uncertainty_percent = 100 * std::expm1(likely_excess * 1.96 * se);
+  point.se_ln_s75 = se;
+  point.interval_factor = mean_excess * 1.96;
+}
+
+void predict_interval(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
+                      const std::vector<Level>& levels, const ContrastOutlook& outlook) {
+  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+  const auto design = design_at(levels, plan.fit.form, s75_mrad, std::clamp(outlook.weibull_slope, flattest, steepest),
+                                plan.fit.lapse.value_or(0.01));
+  const auto fit = expected_fit(design, fit_options(plan));
+  if (!fit) return;
+  const bool graded = chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded;
+  (graded ? predict_graded : predict_binary)(point, plan, inputs, outlook, fit->se_ln_threshold);
+}
+
+/// Adapts the prediction of constant stimuli to an adaptive schedule: as many trials as the requested interval needs,
+/// or as the cap allows, and at least eight presentations per contrast.
+void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates) {
+  if (plan.schedule.kind != ScheduleKind::adaptive || !point.uncertainty_percent || !(point.trials > 0)) return;
+  double triangles = 0;
+  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
+  const double per_presentation = triangles / static_cast<double>(plates.size());
+  const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
+  const double needed = std::max(point.trials * std::pow(constant / asked, 2), 8 * per_presentation);
+  const double share = plan.schedule.max_presentations / static_cast<double>(plan.target.delta_t_k.size());
+  const double cap = std::max(std::floor(share), 1.0) * per_presentation;
+  // Below the cap the schedule continues until the interval itself is narrow enough.
+  const double reached = needed <= cap ? asked : constant * std::sqrt(point.trials / cap);
+  point.uncertainty_percent = 100 * std::expm1(reached);
+  point.se_ln_s75 *= reached / constant;
+  if (point.paired_se_ln_ratio) *point.paired_se_ln_ratio *= reached / constant;
+  point.trials = std::round(std::min(needed, cap));
+}
+
+/// Rejects a tolerance beyond the caps; the message states the best possible tolerance over all contrasts, and its time
+/// on this machine.
+Result<void> reachable(const Plan& plan, const ExperimentInputs& inputs) {
+  const Accuracy& accuracy = inputs.accuracy;
+  const auto draws_at = [&](const ContrastOutlook& outlook) { return needed_draws(accuracy, outlook.q_eff); };
+  const auto worst = std::ranges::max_element(inputs.outlooks, {}, draws_at);
+  if (worst == inputs.outlooks.end() || draws_at(*worst) <= Accuracy::max_noise_draws) return {};
+  // The requested standard error is half the tolerance and falls with the root of the draws.
+  const double best = plan.simulation.tolerance_percent * std::sqrt(draws_at(*worst) / Accuracy::max_noise_draws);
+  double price_s = 0;
+  for (const auto& outlook : inputs.outlooks) {
+    const double draws = std::min<double>(draws_at(outlook), Accuracy::max_noise_draws);
+    const auto price = measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
+                                               outlook.s75_pitch, draws, accuracy, inputs.motion);
+    if (!price) return tl::unexpected(price.error());
+    price_s += *price;
+  }
+  return fail(ErrorCode::invalid_input,
+              "a tolerance of " + number_text(plan.simulation.tolerance_percent) + " % cannot be met at " +
+                  number_text(worst->delta_t_k) + " K: the maximum of " + std::to_string(Accuracy::max_noise_draws) +
+                  " noise draws per size can reach about " + number_text(std::ceil(best * 100) / 100) +
+                  " %, in about " + number_text(std::ceil(price_s * 10) / 10) + " s over all contrasts");
+}
+
+/// Presentations of a ramp by point, for the formulas of constant stimuli.
+Plan with_phases_of_ramp(Plan plan) {
+  if (plan.schedule.kind != ScheduleKind::ramp || plan.target.delta_t_k.empty()) return plan;
+  const double presentations = 2.0 * static_cast<double>(ramp_steps(ramp_options(plan, {}, 1)));
+  plan.target.phases = std::max(1, static_cast<int>(presentations / static_cast<double>(plan.target.delta_t_k.size())));
+  return plan;
+}
+
+/// Says if the stated lag makes a ramp no faster than settled contrasts, or the rate too high for the lag. A lag of
+/// small behind large triangles of 0.6 % of the contrast moves S75 by 0.3 % (a ramp at 0.23 K).
+std::string ramp_advice(const Plan& plan, const ExperimentInputs& inputs) {
+  constexpr double allowed = 0.006;
+  const double lag_s = plan.target.max_contrast_lag_s.value_or(0);
+  if (plan.schedule.kind != ScheduleKind::ramp || !(lag_s > 0)) return "";
+  Plan slow = plan;
+  const double from = std::abs(*plan.schedule.from_delta_t_k), rate = *plan.schedule.ramp_k_per_s;
+  slow.schedule.ramp_k_per_s = std::min(rate, allowed / lag_s * from);
+  const double hz = inputs.sensor.frame_rate_hz;
+  const double ramp_s = bench_time(slow, inputs.plates, hz, std::nullopt).total_s();
+  const double settled_s = bench_time(with_settled_contrasts(plan), inputs.plates, hz, std::nullopt).total_s();
+  if (settled_s > 0 && ramp_s >= settled_s)
+    return fmt::format(
+        "a contrast lag of {:g} s allows a ramp of {:.3g} K/s at most, which takes {:.0f} s on the bench; settled "
+        "contrasts (schedule kind \"constant\") take {:.0f} s: take these",
+        lag_s, allowed / lag_s * from, ramp_s, settled_s);
+  if (rate * lag_s <= allowed * from) return "";
+  return fmt::format(
+      "a contrast lag of {:g} s at {:g} K/s changes the contrast between large and small triangles by {:.2g} %; up to "
+      "{:.3g} K/s it stays below {:.1f} %",
+      lag_s, rate, 100 * rate / from * lag_s, allowed / lag_s * from, 100 * allowed);
+}
+
+}  // namespace
+
+Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
+  std::vector<int>& frames = plan.schedule.frames_per_presentation;
+  if (!frames.empty() && std::ranges::find(frames, 0) == frames.end()) return plan;
+  if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::binary) {
+    frames = {1};
+    return plan;
+  }
+  const double rate_hz = inputs.sensor.frame_rate_hz;
+  if (plan.schedule.kind == ScheduleKind::ramp) {
+    const int of_step = static_cast<int>(std::floor((ramp_step_s - plan.target.shift_change_s) * rate_hz + 1e-9));
+    frames = {std::max(1, of_step - plan.measurement.frames_after_change)};
+    return plan;
+  }
+  Plan single = plan;
+  single.schedule.frames_per_presentation = {1};
+  const BenchTime time = bench_time(single, inputs.plates, rate_hz, std::nullopt);
+  const double single_s = time.total_s() / std::max(1.0, static_cast<double>(time.presentations));
+  std::vector<int> chosen;
+  for (const double delta_t_k : plan.target.delta_t_k) {
+    chosen.push_back(chosen_answers(plan, inputs.sensor, delta_t_k).frames);
+    const auto outlook = std::ranges::find(inputs.outlooks, delta_t_k, &ContrastOutlook::delta_t_k);
+    if (frames_at(plan, delta_t_k) == 0 && single_s > 0 && rate_hz > 0 && outlook != inputs.outlooks.end())
+      chosen.back() = cheapest_frames(graded_design(plan, inputs, *outlook, 1), single_s, 1 / rate_hz);
+  }
+  const bool same = std::ranges::all_of(chosen, [&](int n) { return n == chosen[0]; });
+  frames = same && !chosen.empty() ? std::vector<int>{chosen[0]} : chosen;
+  return plan;
+}
+
+std::optional<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                             const std::vector<ContrastPrediction>& contrasts) {
+  if (plan.schedule.kind != ScheduleKind::adaptive || contrasts.empty() || plates.empty()) return std::nullopt;
+  double triangles = 0, trials = 0;
+  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
+  for (const auto& contrast : contrasts) trials += contrast.trials;
+  return triangles > 0 ? std::optional(trials * static_cast<double>(plates.size()) / triangles) : std::nullopt;
+}
+
+Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& inputs) {
+  const Plan plan = with_phases_of_ramp(with_frames(asked, inputs));
+  if (auto none = refuse_modules(plan, inputs.sensor); !none) return tl::unexpected(none.error());
+  if (auto met = reachable(plan, inputs); !met) return tl::unexpected(met.error());
+
+  PlanPrediction out{.figures = {}, .contrasts = {}, .warnings = inputs.warnings};
+  const auto levels = levels_of(plan, inputs.plates);
+  double constant_trials = 0, trials = 0;  // of all trials per contrast
+  for (const auto& level : levels) constant_trials += level.total;
+  bool all_identified = true;
+  for (const double delta_t_k : plan.target.delta_t_k) {
+    ContrastPrediction point{.delta_t_k = delta_t_k,
+                             .s75_mrad = std::nullopt,
+                             .uncertainty_percent = std::nullopt,
+                             .trials = constant_trials};
+    for (const auto& outlook : inputs.outlooks) {
+      if (outlook.delta_t_k != delta_t_k) continue;
+      point.s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+      predict_interval(point, plan, inputs, levels, outlook);
+    }
+    adapt(point, plan, inputs.plates);
+    trials += point.trials;
+    if (point.uncertainty_percent) {
+      out.figures.predicted_uncertainty_percent =
+          std::max(out.figures.predicted_uncertainty_percent.value_or(0), *point.uncertainty_percent);
+    } else {
+      all_identified = false;
+      out.warnings.push_back("at " + number_text(delta_t_k) + " K the sizes of the plates do not identify a threshold");
+    }
+    out.contrasts.push_back(point);
+  }
+  if (auto advice = ramp_advice(plan, inputs); !advice.empty()) out.warnings.push_back(std::move(advice));
+  if (!all_identified) out.figures.predicted_uncertainty_percent.reset();
+  out.figures.trials = static_cast<std::uint64_t>(std::llround(trials));
+  return out;
+}
+
+Result<void> predict_times(const Plan& asked, const ExperimentInputs& inputs, PlanPrediction& prediction,
+                           std::stop_token stop) {
+  const Plan plan = with_frames(asked, inputs);
+  const auto time = predict_time(plan, inputs, std::move(stop));
+  if (!time) return tl::unexpected(time.error());
+  prediction.figures.predicted_s = time->simulation_s;
+  if (plan.camera.id.empty()) return {};
+  const auto presentations = expected_presentations(plan, inputs.plates, prediction.contrasts);
+  const BenchTime bench = bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations);
+  prediction.figures.predicted_measurement_s = time->measuring_s + bench.total_s();
+  return {};
+}
+
+}  // namespace todbench

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Prediction of a plan: effects, trials, uncertainty, time.
+#pragma once
+
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "bench/plan/plan.h"
+#include "bench/session/json_output.h"
+#include "bench/twin/experiment_inputs.h"
+
+namespace todbench {
+
+/// Prediction of one contrast.
+struct ContrastPrediction {
+  double delta_t_k = 0;
+  std::optional<double> s75_mrad;  ///< of the first tier; empty: no threshold is expected
+  /// Half-width of the 95 % interval of S75 from the trials, binary or graded as planned (graded_precision.h), which
+  /// 95 % of runs do not exceed. Adaptive schedule: the requested one, or the one its cap allows. Empty: not
+  /// identified.
+  std::optional<double> uncertainty_percent;
+  double trials = 0;  ///< of the simulation
+  /// Expected standard error of ln S75, without the margin for unlucky runs of `uncertainty_percent`; 0: not
+  /// identified.
+  double se_ln_s75 = 0;
+  /// Half-width of the 95 % interval of ln S75 over its own standard error.
+  double interval_factor = 0;
+  std::optional<double> degrees_of_freedom{};  ///< of that standard error; empty: infinite
+  /// Standard error of ln of the ratio of camera and twin by common phases, with the same margin as
+  /// `uncertainty_percent`; empty: the plan makes no pairs.
+  std::optional<double> paired_se_ln_ratio{};
+};
+
+struct PlanPrediction {
+  PlanFigures figures;  ///< uncertainty: the largest over the contrasts; without times
+  std::vector<ContrastPrediction> contrasts;
+  std::vector<std::string> warnings;  ///< one sentence each
+};
+
+/// Returns the plan with all numbers of frames per presentation. If the plan leaves one open and takes graded answers,
+/// it becomes the smallest of 1, 2, 4 and 8 whose variance (graded_precision.h) times the time of a presentation
+/// (bench_time()) is within 10 % of the minimum, or four if no time or no threshold is predicted. Binary answers get
+/// one frame.
+[[nodiscard]] Plan with_frames(Plan plan, const ExperimentInputs& inputs);
+
+/// Predicts a plan in two milliseconds, without simulation or reading of files. `inputs`: those of the plan
+/// (experiment_inputs()). Errors: `invalid_input` (the tolerance cannot be met within the hard caps; the message states
+/// the possible tolerance and its time). A contrast without a threshold has no uncertainty, and then the plan has none;
+/// a warning names it.
+[[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& inputs);
+
+/// Adds the times to a prediction of the same plan: predict_time() (bench/forecast/time_prediction.h) and bench_time()
+/// (bench/forecast/bench_time.h). If the times cannot be predicted, they stay empty.
+[[nodiscard]] Result<void> predict_times(const Plan& plan, const ExperimentInputs& inputs, PlanPrediction& prediction,
+                                         std::stop_token stop);
+
+/// Returns the expected presentations of an adaptive schedule; empty for a constant one, which shows its list.
+[[nodiscard]] std::optional<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                                           const std::vector<ContrastPrediction>& contrasts);
+
+}  // namespace todbench

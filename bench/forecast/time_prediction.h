@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Predicts the computing time of a plan from the present speed of this machine.
+#pragma once
+
+#include <stop_token>
+
+#include "bench/twin/experiment_inputs.h"
+#include "sim_devices/prediction/effect_planner.h"
+
+namespace todbench {
+
+struct TimePrediction {
+  double simulation_s = 0;  ///< of the simulated sensor with its direct estimate, on one core
+  double measuring_s = 0;   ///< computing time for a camera; add that of its bench (bench/forecast/bench_time.h)
+};
+
+/// Times each kind of work once with the plan's sensor, plates and observer (a picture, a frame, a registration, a
+/// contrast, the decisions of each plate, a size of the direct estimate of each contrast) and multiplies by its number
+/// in the plan. Takes some tenths of a second. Errors: the plate is not found in its own simulated picture, an observer
+/// that cannot be prepared; `interrupted`.
+[[nodiscard]] Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& inputs,
+                                                  std::stop_token stop = {});
+
+/// Predicts the computing time of the direct estimate alone, in s. Errors: an observer that cannot be prepared;
+/// `interrupted`.
+[[nodiscard]] Result<double> predict_estimate_s(const ExperimentInputs& inputs, std::stop_token stop);
+
+/// Returns the draws per size for which the direct estimate meets the requested standard error, which is about (0.046 +
+/// 0.285 q) / sqrt(draws) of S75. Not capped.
+[[nodiscard]] double needed_draws(const Accuracy& accuracy, double q_eff);
+
+}  // namespace todbench

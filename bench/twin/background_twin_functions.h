@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Computes the functions of the twin while the camera measures.
+#pragma once
+
+#include <map>
+#include <stop_token>
+
+#include "bench/twin/background_task.h"
+#include "bench/twin/experiment_inputs.h"
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+
+/// Returns precomputed functions as the argument `known` of fit_twin_shapes(): those of the contrasts of `curve` whose
+/// effective contrast is within 2 % of the set one.
+[[nodiscard]] TodCurve known_functions(const std::map<double, ProportionTable>& tables, const TodCurve& curve);
+
+/// Computes 4000 draws per size and contrast: the camera waits for its target and frames and leaves the processor idle.
+/// The fit only stretches the function, so that the function at the set contrast serves for the slightly different
+/// effective contrast.
+class BackgroundTwinFunctions {
+ public:
+  /// Starts on its own thread; `plan` and `inputs` outlive it.
+  BackgroundTwinFunctions(const Plan& plan, const ExperimentInputs& inputs);
+
+  /// Waits for the functions or a stop. Returns known_functions() of them.
+  [[nodiscard]] TodCurve known_for(const TodCurve& curve, std::stop_token stop);
+
+ private:
+  BackgroundTask<Result<std::map<double, ProportionTable>>> made_;
+};
+
+}  // namespace todbench

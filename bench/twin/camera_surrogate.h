@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A simulated sensor that replaces the twin if the camera's frames differ from it: provides the psychometric function
+// for the camera's fit and the response for its contrast. The twin stays as stated.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "bench/plan/loaded_plan.h"
+#include "bench/session/provenance.h"
+#include "bench/twin/experiment_inputs.h"
+#include "sim_devices/prediction/camera_halo.h"
+#include "sim_devices/prediction/camera_optics.h"
+#include "tod/measurement/measurement.h"
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+
+/// Learns from the set-ups of the highest contrast. One thread at a time; the inputs it lends outlive it.
+class CameraSurrogate {
+ public:
+  /// `responses`: those of simulated_responses() for the twin.
+  CameraSurrogate(const LoadedPlan& loaded, const ExperimentInputs& inputs, std::map<std::string, double> responses);
+
+  /// Returns the response of the plate through the camera's own optics, if they differ from those of the twin; for
+  /// MeasurementOptions::learn_response. The test is chi-square with two degrees of freedom. Over all set-ups of the
+  /// plan, a camera identical to its twin fails it with a probability of 1 %.
+  [[nodiscard]] std::map<std::string, double> learn(const SetUpPicture& found);
+
+  /// The responses by which contrasts are divided.
+  [[nodiscard]] const std::map<std::string, double>& responses() const { return responses_; }
+  /// The inputs with the surrogate in place of the twin; empty if the camera's frames agree with the twin, whose
+  /// function then stays. Noise differs if a t test at 1 % says so and it would move a threshold by more than 0.05 %:
+  /// NETD by 5 %, rows, columns and fixed pattern by 3 % of the variance of a pixel.
+  [[nodiscard]] std::optional<ExperimentInputs> lent() const;
+  /// Whether the camera's pictures contradict all optics of the twin's kind, or no valid sensor has what they show.
+  [[nodiscard]] bool refused() const;
+  /// Whether the frames could not be compared with the twin's optics: contrasts in grey levels, a program in the twin,
+  /// or no triangle large enough.
+  [[nodiscard]] bool unseen() const { return !possible_ || !fit_.result(); }
+  /// Light that the camera spreads round the triangles and its twin does not; empty if the frames show none.
+  [[nodiscard]] std::optional<CameraHalo> halo() const;
+  /// Whether the frames do not confirm the function and the response: refused(), unseen() or a halo().
+  [[nodiscard]] bool unconfirmed() const { return refused() || unseen() || halo(); }
+  /// ln of the learnt response over that of the twin, the largest by magnitude; at least the share of halo().
+  [[nodiscard]] double response_shift() const;
+  /// Empty if no set-up could be evaluated.
+  [[nodiscard]] std::optional<CameraOpticsRecord> record() const;
+  /// For report and log.
+  [[nodiscard]] std::optional<std::string> sentence() const;
+  /// The finding of a surrogate that is unconfirmed().
+  [[nodiscard]] AdequacyFinding finding() const;
+
+ private:
+  struct Noise {
+    double pixel = 0, row = 0, column = 0;           ///< variances of a frame, K^2
+    double pixel_se = 0, row_se = 0, column_se = 0;  ///< standard errors of the variances
+    double correlation = 0;
+  };
+  struct Learnt {
+    double sigma = 0, ratio = 1;
+  };
+  [[nodiscard]] std::optional<Noise> noise() const;
+  [[nodiscard]] bool noise_differs() const;
+  /// Whether a surrogate is needed.
+  [[nodiscard]] bool differs() const;
+  [[nodiscard]] SensorSpec sensor(bool with_noise) const;
+  void add_noise(const SetUpPicture& found);
+  void add_to_fit(const SetUpPicture& found);
+  [[nodiscard]] std::map<std::string, double> learnt_response(const SetUpPicture& found);
+
+  const LoadedPlan& loaded_;
+  const ExperimentInputs& inputs_;
+  std::map<std::string, double> twin_responses_, responses_;
+  std::map<std::string, Learnt> learnt_;
+  CameraOpticsFit fit_;
+  CameraHaloFit halo_fit_;
+  int samples_per_pitch_ = 1;
+  bool possible_ = false, optics_differ_ = false;
+  double largest_k_ = 0;
+  int pictures_ = 0;
+  double total_ = 0, rows_ = 0, columns_ = 0, correlation_ = 0, pairs_ = 0;
+  cv::Size size_;
+};
+
+/// Adds a standard uncertainty `u` of ln threshold, which the answers do not show, to the intervals of a fit, using
+/// Student's t with these degrees of freedom.
+void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom);
+
+/// Adds the scatter of the effective contrast as an uncertainty of S75. The answers were scored by the effective
+/// contrast, and the size is stated at it. With w the share of the observer's own noise and d ln S75 / d ln SNR = -k:
+/// the score moves ln S75 by k w, the stated contrast by k (1 - w), together by k for every w. k is 1.14 by
+/// measurement, or the slope of the curve if that is larger.
+void join_contrast_errors(TodCurve& curve);
+
+}  // namespace todbench

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/twin/direct_results.h"
+
+#include <utility>
+
+#include "bench/twin/twin_shapes.h"
+#include "hvs/observer/open_parameters.h"
+#include "hvs/observer/template_observer.h"
+
+namespace todbench {
+namespace {
+
+/// Adds the spread over the open parameters. A contrast without a threshold at an end has no spread and a note.
+void add_spread(const ExperimentInputs& inputs, DirectEstimateOptions options, DirectResults& results) {
+  const auto range = open_parameter_range(inputs.observer);
+  if (!range) return;
+  options.accuracy.standard_error_percent = 0;  // the spread is ten times wider than the error of the usual draws
+  TemplateObserver best(range->best, triangle_alternatives()), worst(range->worst, triangle_alternatives());
+  for (const auto& [contrast, point] : results.points) {
+    const auto low = direct_estimate(inputs.sensor, inputs.effects, best, {contrast}, options);
+    const auto high = direct_estimate(inputs.sensor, inputs.effects, worst, {contrast}, options);
+    if (low && high) {
+      results.spread_pitch[contrast] = {low->front().s75_pitch, high->front().s75_pitch};
+      continue;
+    }
+    const Error& error = low ? high.error() : low.error();
+    if (error.code == ErrorCode::interrupted) {
+      results.ended_by = error;
+      return;
+    }
+    results.notes.push_back("no spread over the observer's open parameters: " + error.message);
+  }
+}
+
+}  // namespace
+
+DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inputs,
+                             const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
+                             std::stop_token stop) {
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  const DirectEstimateOptions options = direct_options(curve, inputs, shown_delta_t_k, seed, std::move(stop));
+  std::vector<double> contrasts;
+  for (const auto& point : curve.points) contrasts.push_back(point.delta_t_k);
+  DirectResults results;
+  // Contrasts estimated together share their images. If one has no threshold, the others are estimated alone.
+  std::vector<std::vector<double>> attempts{contrasts};
+  for (std::size_t i = 0; i < attempts.size() && !results.ended_by; ++i) {
+    auto found = direct_estimate(inputs.sensor, inputs.effects, observer, attempts[i], options);
+    if (found) {
+      for (std::size_t k = 0; k < found->size(); ++k) results.points[attempts[i][k]] = (*found)[k];
+    } else if (found.error().code == ErrorCode::interrupted) {
+      results.ended_by = found.error();
+    } else if (attempts[i].size() > 1) {
+      for (const double contrast : contrasts) attempts.push_back({contrast});
+    } else {
+      results.notes.push_back("no direct estimate: " + found.error().message);
+    }
+  }
+  if (!results.ended_by) add_spread(inputs, options, results);
+  return results;
+}
+
+}  // namespace todbench

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Curves from presentations that have the contrast of their own frames: within a settling band, or in a ramp.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "bench/twin/experiment_inputs.h"
+#include "tod/measurement/measurement.h"
+#include "tod/psychometric/contrast_surface.h"
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+
+/// Returns the function of the simulated sensor over size and contrast, for the contrasts of the plan and a quarter
+/// beyond. One table takes about a second. Errors: those of proportion_curves().
+[[nodiscard]] Result<ContrastSurface> contrast_surface(const Plan& plan, const ExperimentInputs& inputs,
+                                                       std::stop_token stop);
+
+/// Returns the same answers at their set contrasts: contrast c in place of c', size S exp(g(c) - g(c')), g the ln S75
+/// of the surface. A set contrast counts as the camera observes it, behind the stated air.
+[[nodiscard]] std::vector<Trial> at_set_contrasts(std::span<const Trial> trials, const ContrastSurface& surface,
+                                                  double air_transmittance);
+
+/// What a ramp says beside its curve.
+struct RampOutcome {
+  std::vector<std::string> notes{};
+  std::optional<AdequacyFinding> finding{};  ///< S75 of ramps up and down differs
+};
+
+/// Gives the points of a curve threshold and interval of the fit over all contrasts of a ramp, and adds the continuous
+/// curve. `run`: with the observed contrasts. `curve`: of at_set_contrasts(). Errors: those of RampFit::of().
+[[nodiscard]] Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run,
+                                            const ContrastSurface& surface, const Plan& plan);
+
+/// Returns ln S75 per unit of ln contrast for an error that small and large triangles do not share, which also changes
+/// the internal noise that the observer draws: the slope of the curve, at least 0.2.
+[[nodiscard]] double sensitivity_to_lag(const ContrastSurface& surface, double delta_t_k);
+
+/// Contrasts of a ramp that no presentation showed, because a correction or another wait took its time.
+struct LostContrasts {
+  int shown = 0, lost = 0;
+};
+/// Counts gaps between successive presentations of a set-up that are wider than two and a half steps of the ramp.
+[[nodiscard]] LostContrasts lost_contrasts(std::span<const Presentation> presentations, double ln_step);
+
+}  // namespace todbench

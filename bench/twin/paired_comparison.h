@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Comparison of a camera with its twin by the phases that both observed.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "bench/twin/background_task.h"
+#include "bench/twin/experiment_inputs.h"
+#include "sim_devices/prediction/paired_twin.h"
+#include "tod/comparison/comparison.h"
+#include "tod/measurement/measurement.h"
+#include "tod/psychometric/tod_curve.h"
+
+namespace todbench {
+
+/// Whether a plan requests paired comparison and its answers allow it.
+[[nodiscard]] bool pairs_asked(const Plan& plan, const SensorSpec& sensor);
+
+/// Answers of a camera.
+struct PairedCamera {
+  const TodCurve& curve;  ///< fitted with the functions of the twin
+  std::span<const Trial> trials;
+  std::span<const SetUpRecord> set_ups;  ///< positions of its plates
+  /// Fit with the functions of the twin, if `curve` has those of the camera's surrogate; null: `curve` is that fit.
+  const TodCurve* by_twin = nullptr;
+  /// By set contrast: standard uncertainty of ln S75 of a camera whose pictures contradict its model; null: none.
+  const std::map<double, double>* model_u = nullptr;
+  /// The same trials as they were fitted, if not as they were shown: at the set contrasts. Empty: as shown.
+  std::span<const Trial> fitted{};
+};
+
+struct PairedOutcome {
+  std::vector<std::string> notes;  ///< one sentence for each contrast without a paired ratio
+  std::optional<Error> ended_by;   ///< `interrupted`
+};
+
+/// Options that show the twin the presentations of a camera.
+[[nodiscard]] PairedTwinOptions paired_options(const ExperimentInputs& inputs, std::span<const SetUpRecord> set_ups,
+                                               std::uint64_t seed, std::stop_token stop);
+
+/// Shows the twin every presentation of the camera (twin_answers()) and adds the paired ratios (paired_ratio()) to the
+/// points of a comparison whose A is the camera's curve. A point keeps the unpaired ratio if it has no function of the
+/// twin, no graded answers, or is not in the comparison. If a threshold is not fit for a decision, the paired verdict
+/// is inconclusive too.
+[[nodiscard]] PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& camera,
+                                              const ExperimentInputs& inputs, const PairedTwinOptions& options);
+
+/// Paired ratios of all contrasts of a curve.
+struct Pairs {
+  Comparison ratios;  ///< only contrast, margin and paired ratios of its points are set
+  PairedOutcome said;
+};
+/// Computes the pairs on its own thread while the camera's physical measures are taken and the twin makes its own
+/// trials; null if the plan requests none. `camera_of` is called there and may wait for its curve; the objects it
+/// refers to, plan and inputs outlive it.
+[[nodiscard]] std::unique_ptr<BackgroundTask<Pairs>> pairs_in_background(
+    std::function<PairedCamera(std::stop_token)> camera_of, const Plan& plan, const ExperimentInputs& inputs);
+
+}  // namespace todbench

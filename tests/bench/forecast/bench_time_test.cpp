@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/forecast/bench_time.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "bench/plan/descriptions.h"
+#include "bench/twin/simulated_set_up.h"
+#include "tod/plate/test_pattern.h"
+
+namespace todbench {
+namespace {
+
+/// Shows what another shows and keeps the order.
+class RecordingTarget final : public Target {
+ public:
+  explicit RecordingTarget(Target& shown) : shown_(shown) {}
+  [[nodiscard]] const TargetCapabilities& capabilities() const override { return shown_.capabilities(); }
+  [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
+    states.push_back(state);
+    return shown_.present(state, std::move(stop));
+  }
+  std::vector<TargetState> states;
+
+ private:
+  Target& shown_;
+};
+
+Plan small_plan() {
+  Plan plan;
+  plan.target.mountings = {Mounting::identity, Mounting::rotated_180};
+  plan.target.delta_t_k = {16.9, 8};
+  plan.target.phases = plan.simulation.phases = 2;
+  plan.simulation.accuracy = "draft";
+  plan.measurement.registration_frames = 3;
+  plan.measurement.contrast_frames = 2;
+  plan.measurement.frames_after_change = 0;  // as for the simulated camera, which has none in flight
+  return plan;
+}
+
+struct Counted {
+  std::uint64_t plate = 0, mounting = 0, contrast = 0, shift = 0;
+  double seconds = 0;
+};
+
+/// What a target was asked for, one presentation after another.
+Counted count(const std::vector<TargetState>& states, const TargetPlan& plan) {
+  Counted counted;
+  TargetState before{.plate = "", .mounting = Mounting::identity, .delta_t_k = 0, .shift_mm = {-1, -1}};
+  for (const TargetState& state : states) {
+    const bool first = &state == &states.front();
+    double slowest = 0;
+    const auto changes = [&](bool changed, double cost, std::uint64_t& times) {
+      if (!first && !changed) return;
+      ++times;
+      slowest = std::max(slowest, cost);
+    };
+    changes(state.plate != before.plate, plan.plate_change_s, counted.plate);
+    changes(state.mounting != before.mounting, plan.mounting_change_s, counted.mounting);
+    changes(state.delta_t_k != before.delta_t_k, plan.contrast_change_s, counted.contrast);
+    changes(state.shift_mm != before.shift_mm, plan.shift_change_s, counted.shift);
+    counted.seconds += slowest;
+    before = state;
+  }
+  return counted;
+}
+
+class BenchTimeOfAMeasurement : public ::testing::TestWithParam<double> {};
+
+TEST_P(BenchTimeOfAMeasurement, CountsTheChangesAndFramesThatMeasureAsksFor) {
+  Plan plan = small_plan();
+  plan.target.contrast_change_s = GetParam();
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+  EffectPlanner planner;
+  const ExperimentInputs inputs = experiment_inputs(loaded, planner).value();
+  SimulatedSetUp set_up = simulated_set_up(plan, inputs, {}, {}).value();
+  RecordingTarget target(*set_up.bench.target);
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  UnattendedHost host;
+  const auto measured = measure(*set_up.bench.camera, target, observer, *set_up.schedule, set_up.options, host, {}, {});
+  ASSERT_TRUE(measured) << measured.error().message;
+  ASSERT_FALSE(measured->ended_by);
+
+  plan.target.kind = TargetKind::scpi;
+  const BenchTime time = bench_time(plan, loaded.plates(), 50, std::nullopt);
+
+  const Counted counted = count(target.states, plan.target);
+  EXPECT_EQ(time.presentations, target.states.size());
+  EXPECT_EQ(time.plate_changes, counted.plate);
+  EXPECT_EQ(time.mounting_changes, counted.mounting);
+  EXPECT_EQ(time.contrast_changes, counted.contrast);
+  EXPECT_EQ(time.shift_changes, counted.shift);
+  EXPECT_DOUBLE_EQ(time.changes_s, counted.seconds);
+  EXPECT_EQ(time.frames, measured->frames_used);
+}
+
+// 20 s: plate, mounting, contrast, shift from the outside in. 100 s: the contrast is the outermost.
+INSTANTIATE_TEST_SUITE_P(ByContrastChange, BenchTimeOfAMeasurement, ::testing::Values(20.0, 100.0));
+
+TEST(BenchTime, OfTheDefaultPlanIsThatOfTheSlowestChangeOfEachPresentation) {
+  Plan plan;
+  plan.target.kind = TargetKind::scpi;
+  plan.target.black_body = plan.target.stage = "127.0.0.1:1";
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+
+  const BenchTime time = bench_time(plan, loaded.plates(), 50, std::nullopt);
+
+  // 2 plates; 4 mountings each, the first with its plate; 3 contrasts each, the first with its set-up; 16 shifts each.
+  EXPECT_EQ(time.plate_changes, 2u);
+  EXPECT_EQ(time.mounting_changes, 8u);
+  EXPECT_EQ(time.contrast_changes, 24u);
+  EXPECT_EQ(time.shift_changes, 384u);
+  EXPECT_NEAR(time.changes_s, 2 * 60 + 6 * 30 + 16 * 20 + 360 * 0.1, 1e-9);
+  // 6 exposures a presentation, 2 of them discarded, 32 to register each of 8 set-ups, 16 for each of their 24
+  // contrasts.
+  EXPECT_EQ(time.frames, 384u * (2 + 4) + 8 * 32 + 24 * 16);
+  EXPECT_DOUBLE_EQ(time.frames_s, time.frames / 50.0);
+}
+
+TEST(BenchTime, HasTheFramesOfEachContrast) {
+  Plan plan = small_plan();
+  plan.target.delta_t_k = {16.9, 0.23};
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+  plan.target.kind = TargetKind::scpi;
+  plan.schedule.frames_per_presentation = {1};
+  const BenchTime ones = bench_time(plan, loaded.plates(), 50, std::nullopt);
+  plan.schedule.frames_per_presentation = {3, 7};
+  const BenchTime each = bench_time(plan, loaded.plates(), 50, std::nullopt);
+
+  EXPECT_EQ(each.frames, ones.frames + ones.presentations / 2 * (2 + 6));
+}
+
+TEST(BenchTime, ASimulatedSceneTakesNone) {
+  const LoadedPlan loaded = LoadedPlan::load(Plan{}).value();
+
+  EXPECT_EQ(bench_time(loaded.plan(), loaded.plates(), 50, std::nullopt).total_s(), 0);
+}
+
+TEST(BenchTime, OfAnAdaptivePlanGrowsWithWhatIsExpectedUpToItsCap) {
+  Plan plan;
+  plan.target.kind = TargetKind::prompt;
+  plan.schedule.kind = ScheduleKind::adaptive;
+  plan.schedule.max_presentations = 500;
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+  const auto expecting = [&](double presentations) { return bench_time(plan, loaded.plates(), 50, presentations); };
+
+  EXPECT_EQ(expecting(48).presentations, 48u);
+  EXPECT_EQ(expecting(48).mounting_changes, 1u);
+  EXPECT_LT(expecting(48).total_s(), expecting(96).total_s());
+  EXPECT_EQ(expecting(5000).presentations, 500u);
+}
+
+TEST(BenchTimeOfMeasures, AddsTheirStepsAndFrames) {
+  Plan plan = small_plan();
+  plan.target.kind = TargetKind::scpi;
+  plan.camera.ifov_mrad = 1.3;
+  plan.measurement.frames_after_change = 1;
+  const std::vector<TargetPlate> plates{load_plate("tcat-a").value()};
+  const BenchTime trials = bench_time(plan, plates, 50, std::nullopt);
+
+  plan.measures.noise = true;
+  const BenchTime noise = bench_time(plan, plates, 50, std::nullopt);
+  plan.measures.transfer = true;
+  const BenchTime both = bench_time(plan, plates, 50, std::nullopt);
+
+  // To find the plate 3 frames, the cube 64, each of the 6 steps 2; and one that is discarded after each change.
+  EXPECT_EQ(noise.frames - trials.frames, 3 + 64 + 2u);
+  EXPECT_EQ(both.frames - noise.frames, 6 * (2 + 1u));
+  EXPECT_NEAR(both.changes_s - noise.changes_s, 6 * plan.target.contrast_change_s, 1e-9);
+  EXPECT_GE(noise.changes_s - trials.changes_s, 2 * plan.target.contrast_change_s);
+  EXPECT_EQ(both.presentations, trials.presentations);
+  plan.measures.triangles = true;
+  const BenchTime triangles = bench_time(plan, plates, 50, std::nullopt);
+  EXPECT_EQ(triangles.frames - both.frames, plan.target.delta_t_k.size() * (2 + 1u));
+  plan.measures.triangles = false;
+  plan.measures.mtf = true;
+  const BenchTime mtf = bench_time(plan, plates, 50, std::nullopt);
+  EXPECT_EQ(mtf.frames - both.frames, 64 + 1u);
+  EXPECT_NEAR(mtf.changes_s - both.changes_s, std::max(plan.target.plate_change_s, plan.target.contrast_change_s),
+              1e-9);
+}
+
+}  // namespace
+}  // namespace todbench

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The design of least bench time.
+#include "bench/forecast/design_search.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "bench/forecast/decision_forecast.h"
+#include "tod/schedule/schedule.h"
+
+namespace todbench {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+struct SearchedBench {
+  LoadedPlan loaded;
+  ExperimentInputs inputs;
+};
+
+/// The plan of defaults with a camera: 60 s for a plate, 30 s for a mounting, 20 s for a contrast.
+Plan plan_of_defaults() {
+  Plan plan = *load_plan("demo");
+  plan.target.phases = plan.simulation.phases = TargetPlan{}.phases;
+  plan.target.plate_change_s = 60;
+  plan.target.mounting_change_s = 30;
+  plan.target.contrast_change_s = 20;
+  plan.target.shift_change_s = 0.1;
+  plan.schedule.frames_per_presentation = {0};
+  plan.measurement = {};
+  return plan;
+}
+
+SearchedBench bench_of(const Plan& plan) {
+  LoadedPlan loaded = LoadedPlan::load(plan).value();
+  EffectPlanner planner;
+  ExperimentInputs inputs = experiment_inputs(loaded, planner).value();
+  return {std::move(loaded), std::move(inputs)};
+}
+
+TEST(DesignSearch, FindsLessTimeForAnAskedHalfWidthAndKeepsFiveSetUps) {
+  const SearchedBench bench = bench_of(plan_of_defaults());
+
+  const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = 2.5}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_GE(found->set_ups, 5);
+  EXPECT_LE(*found->best.half_width_percent, 2.5);
+  EXPECT_LT(found->best.bench_s, 0.65 * found->as_planned.bench_s);
+  // 2 plates, further mountings, 2 contrast changes in each set-up; the first contrast settles during the others.
+  const int n = found->set_ups;
+  EXPECT_NEAR(found->best.changes_s - 0.1 * 3 * n * (found->best.plan.target.phases - 1), 120 + 30 * (n - 2) + 40 * n,
+              1e-6);
+  EXPECT_LT(found->unpaired_share, 0.5);
+  EXPECT_GE(found->best.bench_s, found->least_s);
+  // The prices of plan and search are one.
+  EXPECT_NEAR(laboratory_time(found->best.plan, bench.inputs, std::nullopt), found->best.bench_s, 1e-9);
+}
+
+TEST(DesignSearch, WritesAPlanThatReadsBackAndShowsTheSetUps) {
+  const SearchedBench bench = bench_of(plan_of_defaults());
+  const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = 2.5}, {});
+  ASSERT_TRUE(found) << found.error().message;
+
+  const auto read = parse_plan({.origin = "design.toml", .text = to_toml(found->best.plan)}, ".");
+
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, found->best.plan);
+  EXPECT_EQ(set_ups_of(read->target), static_cast<std::size_t>(found->set_ups));
+}
+
+TEST(DesignSearch, TakesNoMoreTimeForALargerHalfWidth) {
+  const SearchedBench bench = bench_of(plan_of_defaults());
+  double before_s = 1e9;
+  for (const double percent : {1.0, 4.0}) {
+    const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = percent}, {});
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_LE(*found->best.half_width_percent, percent);
+    EXPECT_LE(found->best.bench_s, before_s);
+    before_s = found->best.bench_s;
+  }
+}
+
+TEST(DesignSearch, RejectsAHalfWidthThatCannotBeHad) {
+  const SearchedBench bench = bench_of(plan_of_defaults());
+
+  const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = 0.05}, {});
+
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().message, HasSubstr("% at best"));
+}
+
+TEST(DesignSearch, DecidesFromTheLimitsAndLeavesOutContrastsThatNoLimitNames) {
+  Plan plan = plan_of_defaults();
+  plan.limits = {};
+  plan.limits.acuity = {{0.23, 0.28}};
+  const SearchedBench bench = bench_of(plan);
+
+  const auto found = best_design(bench.loaded.plan(), bench.inputs, {.decide = true}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_THAT(found->dropped_contrasts_k, ElementsAre(1.93));
+  EXPECT_THAT(found->best.plan.target.delta_t_k, ElementsAre(16.9, 0.23));
+  const auto forecasts = decision_forecasts(found->best.plan, bench.inputs).value();
+  ASSERT_EQ(forecasts.size(), 1u);
+  const auto planned = std::ranges::find_if(forecasts[0].designs, &DecisionDesign::planned);
+  // The camera is 9.7 % above the limit; the curve has steps of 1 %.
+  EXPECT_NEAR(forecasts[0].expected_over_limit_percent, 9.7, 0.3);
+  EXPECT_GE(1 - planned->cameras.back().chances.inconclusive, 0.95);
+}
+
+TEST(ConstantStimuli, ShowEachPlateInItsNumberOfMountings) {
+  ConstantStimuliOptions options{.plates = {"a", "b"},
+                                 .mountings = {all_mountings.begin(), all_mountings.end()},
+                                 .mountings_per_plate = {3, 2},
+                                 .delta_t_k = {2, 1},
+                                 .phases = 2};
+  for (const bool mounting_is_slow : {true, false}) {
+    options.change_cost_s[1] = mounting_is_slow ? 100 : 0.01;
+    int of_a = 0, of_b = 0;
+    for (const TargetState& state : constant_stimuli(options, RandomStream(1, "test"))) {
+      (state.plate == "a" ? of_a : of_b) += 1;
+      if (state.plate != "b") continue;
+      EXPECT_TRUE(state.mounting == Mounting::identity || state.mounting == Mounting::rotated_180);
+    }
+    EXPECT_EQ(of_a, 3 * 2 * 2);
+    EXPECT_EQ(of_b, 2 * 2 * 2);
+  }
+}
+
+}  // namespace
+}  // namespace todbench
