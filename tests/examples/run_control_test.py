@@ -144,16 +144,16 @@ class Certificate(unittest.TestCase):
 
     def test_it_contains_the_physical_measures_with_their_intervals(self):
         lines = json.loads((self.session / "measures.json").read_text())["main"]["quantities"]
-        netd = next(line for line in lines if line["measure"] == "netd")
+        noise = next(line for line in lines if line["measure"] == "temporal_noise")
         root = ElementTree.parse(self.xml).getroot()
         found = [q.find("si:real", NAMES) for q in root.findall(".//dcc:result//dcc:quantity", NAMES)
-                 if q.find("dcc:name/dcc:content", NAMES).text == "netd"]
+                 if q.find("dcc:name/dcc:content", NAMES).text == "temporal_noise"]
         self.assertEqual(len(found), 1)
         value, unit = (found[0].find(f"si:{key}", NAMES).text for key in ("value", "unit"))
-        self.assertEqual((float(value), unit), (netd["value"], "\\kelvin"))
-        low, high = netd.get("expanded_ci95") or netd["ci95"]
+        self.assertEqual((float(value), unit), (noise["value"], "\\kelvin"))
+        low, high = noise.get("expanded_ci95") or noise["ci95"]
         uncertainty = float(found[0].find("si:expandedUnc/si:uncertainty", NAMES).text)
-        self.assertAlmostEqual(uncertainty, max(netd["value"] - low, high - netd["value"]), 12)
+        self.assertAlmostEqual(uncertainty, max(noise["value"] - low, high - noise["value"]), 12)
 
     def test_a_hostile_certificate_of_an_instrument_is_a_sentence(self):
         hostile = {

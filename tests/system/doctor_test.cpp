@@ -61,12 +61,17 @@ TEST(DoctorCommand, WarnsWhereTheDisplayOfAPlanLimitsTheAcuity) {
         todbench({"doctor", "--root", folder.path().string(), "--plan", plan, "--json"}, {.folder = folder.path()}));
   };
 
+  const auto finding = [](const Json& said) {
+    for (const Json& check : said["checks"])
+      if (check["name"] == "acuity") return check["finding"].get<std::string>();
+    return std::string();
+  };
+
   const Json far = limits("far.toml"), near = limits("near.toml");
 
-  EXPECT_EQ(far["checks"].back()["name"], "acuity");
-  EXPECT_EQ(far["checks"].back()["finding"], "warning");
+  EXPECT_EQ(finding(far), "warning");
   EXPECT_THAT(far["acuity_limits"][0]["limited_by"].get<std::string>(), AnyOf("eye", "light", "display"));
-  EXPECT_EQ(near["checks"].back()["finding"], "ok");
+  EXPECT_EQ(finding(near), "ok");
   EXPECT_EQ(near["acuity_limits"][0]["limited_by"], "sampling");
 }
 

@@ -78,6 +78,7 @@ TEST(ExtremeValues, OfOptionsAreRefused) {
       {{"dynamic"}, {"--speeds-mrad-s", "20"}},
       {{"history", "show"}, {"x"}},
       {{"history", "check"}, {}},
+      {{"blind"}, {"m", "--simulated-person", "--out", "b"}},
       {{"observer", "fit"}, {"a", "--from", "hvs-1", "--free", "internal_noise", "--out", "o.toml"}},
       {{"observer", "naked-eye"}, {"demo", "--out", "naked"}},
       {{"sweep", "run"}, {"no.toml"}},

@@ -85,7 +85,7 @@ int HumanPresenter::background_level() const {
 }
 
 HumanPresenter::HumanPresenter(QObject* parent) : QObject(parent) {
-  connect(&screen_, &TimedPicture::updated, this, &HumanPresenter::updated);
+  connect(&screen_, &PictureTimer::updated, this, &HumanPresenter::updated);
 }
 
 void HumanPresenter::start(const Plan& plan, const std::filesystem::path& folder, const HumanOptions& options) {

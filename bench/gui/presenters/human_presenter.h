@@ -13,7 +13,7 @@
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/gui/presenters/job_runner.h"
 #include "bench/gui/presenters/measure_presenter.h"
-#include "bench/gui/presenters/timed_picture.h"
+#include "bench/gui/presenters/picture_timer.h"
 #include "bench/session/human_record.h"
 
 namespace todbench {
@@ -116,7 +116,7 @@ class HumanPresenter final : public QObject {
   std::vector<PeopleMean> means_;
   std::vector<Trial> answers_;
   std::vector<ShownPatch> shown_;
-  TimedPicture screen_;
+  PictureTimer screen_;
   std::optional<HumanRecord> record_;
   QString problem_;
   JobRunner jobs_;

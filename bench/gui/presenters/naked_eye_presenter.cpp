@@ -30,7 +30,7 @@ int NakedEyePresenter::background_level() const {
 }
 
 NakedEyePresenter::NakedEyePresenter(QObject* parent) : QObject(parent) {
-  connect(&screen_, &TimedPicture::updated, this, &NakedEyePresenter::updated);
+  connect(&screen_, &PictureTimer::updated, this, &NakedEyePresenter::updated);
 }
 
 QString NakedEyePresenter::begin(const Plan& plan, const NakedEyeQuestion& question,

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/gui/presenters/job_runner.h"
-#include "bench/gui/presenters/timed_picture.h"
+#include "bench/gui/presenters/picture_timer.h"
 #include "bench/naked_eye/naked_eye_session.h"
 #include "bench/plan/plan.h"
 
@@ -63,7 +63,7 @@ class NakedEyePresenter final : public QObject {
   std::filesystem::path folder_;
   std::optional<int> shown_ms_;
   std::optional<NakedEyeSession> session_;
-  TimedPicture screen_;
+  PictureTimer screen_;
   bool predicting_ = false;
   QString problem_;
   JobRunner jobs_;

@@ -72,7 +72,7 @@ Result<PersonExperiment> person_experiment(const PersonQuestion& question) {
 }
 
 PersonPresenter::PersonPresenter(QObject* parent) : QObject(parent) {
-  connect(&screen_, &TimedPicture::updated, this, &PersonPresenter::updated);
+  connect(&screen_, &PictureTimer::updated, this, &PersonPresenter::updated);
 }
 
 void PersonPresenter::begin(PersonExperiment experiment, const std::filesystem::path& sessions,

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/gui/presenters/timed_picture.h"
+#include "bench/gui/presenters/picture_timer.h"
 #include "bench/studies/person_experiment.h"
 
 namespace todbench {
@@ -73,7 +73,7 @@ class PersonPresenter final : public QObject {
   std::optional<int> shown_ms_;
   int magnification_ = 24;
   std::vector<ExperimentAnswer> answers_;
-  TimedPicture screen_;
+  PictureTimer screen_;
   QString problem_;
 };
 

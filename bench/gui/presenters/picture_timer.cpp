@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/gui/presenters/timed_picture.h"
+#include "bench/gui/presenters/picture_timer.h"
 
 namespace todbench {
 
-TimedPicture::TimedPicture(QObject* parent) : QObject(parent) {
+PictureTimer::PictureTimer(QObject* parent) : QObject(parent) {
   hide_.setSingleShot(true);
   connect(&hide_, &QTimer::timeout, this, [this] {
     if (state_ != HumanState::showing) return;
@@ -12,7 +12,7 @@ TimedPicture::TimedPicture(QObject* parent) : QObject(parent) {
   });
 }
 
-void TimedPicture::show(const QImage& picture, std::optional<int> shown_ms) {
+void PictureTimer::show(const QImage& picture, std::optional<int> shown_ms) {
   picture_ = picture;
   state_ = HumanState::showing;
   since_shown_.start();
@@ -21,13 +21,13 @@ void TimedPicture::show(const QImage& picture, std::optional<int> shown_ms) {
   emit updated();
 }
 
-std::optional<double> TimedPicture::take_answer() {
+std::optional<double> PictureTimer::take_answer() {
   if (!awaits_answer()) return std::nullopt;
   hide_.stop();
   return static_cast<double>(since_shown_.nsecsElapsed()) * 1e-9;
 }
 
-void TimedPicture::end(HumanState state) {
+void PictureTimer::end(HumanState state) {
   hide_.stop();
   picture_ = {};
   state_ = state;

@@ -13,11 +13,11 @@ namespace todbench {
 enum class HumanState { idle, showing, hidden, finished };
 
 /// Used in the window's thread.
-class TimedPicture final : public QObject {
+class PictureTimer final : public QObject {
   Q_OBJECT
 
  public:
-  explicit TimedPicture(QObject* parent = nullptr);
+  explicit PictureTimer(QObject* parent = nullptr);
 
   /// Shows a picture and starts its time. `shown_ms` empty: until it is answered.
   void show(const QImage& picture, std::optional<int> shown_ms);
