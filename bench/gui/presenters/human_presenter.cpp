@@ -237,10 +237,10 @@ void HumanPresenter::finish() {
     std::vector<BlindAnswer> answers;
     for (std::size_t i = 0; i < answers_.size(); ++i) answers.push_back({patches_[i].source, answers_[i], shown_[i]});
     auto result = todbench::blind_result(blind_->names, answers, plan_);
-    if (result) blind_result_ = *std::move(result);
-    const Result<void> written = blind_result_ ? write_blind(session_, *blind_result_, answers, person, options_.seed)
-                                               : tl::unexpected(result.error());
+    auto written = result ? write_blind(session_, *result, answers, person, options_.seed)
+                          : Result<void>(tl::unexpected(result.error()));
     if (!written) problem_ = QString::fromStdString(written.error().message);
+    if (result) blind_result_ = *std::move(result);
     emit updated();
     return;
   }
