@@ -13,6 +13,7 @@
 #include "bench/naked_eye/naked_eye_session.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/resources.h"
+#include "bench/text/json_fields.h"
 
 namespace todbench {
 namespace {
