@@ -17,6 +17,7 @@
 #include "bench/session/answered_instruments.h"
 #include "tod/instruments/prompt_target.h"
 #include "tod/instruments/scpi_target.h"
+#include "tod/presentation/target_failure.h"
 #ifdef TODBENCH_WITH_ARAVIS
 #include "acquisition/aravis/aravis_backend.h"
 #include "acquisition/aravis/aravis_version.h"
@@ -26,7 +27,6 @@
 #endif
 #ifdef TODBENCH_WITH_V4L2
 #include "acquisition/v4l2/v4l2_backend.h"
-#include "tod/presentation/target_failure.h"
 #endif
 
 namespace todbench {
