@@ -92,9 +92,10 @@ std::vector<AdequacyFinding> findings_of(const std::vector<ChangedSetting>& chan
 /// effect of another slope.
 void widen_where_not_verified(FittedCurve& fitted, const CameraSurrogate& surrogate) {
   if (!surrogate.unconfirmed()) return;
+  const double response_shift = surrogate.response_shift();
   for (TodPoint& point : fitted.curve.points) {
     if (surrogate.unseen() && !point.fit.twin_shape) continue;
-    double shift = surrogate.response_shift();
+    double shift = response_shift;
     if (point.fit.twin_shape) shift = std::max(shift, std::abs(point.fit.twin_shape->departure_shift));
     const TodPoint* twin = fitted.by_twin ? point_at(*fitted.by_twin, point.set_delta_t_k) : nullptr;
     if (twin != nullptr && twin->fit.threshold && point.fit.threshold)
@@ -131,9 +132,11 @@ std::unique_ptr<BackgroundTask<FittedCurve>> fit_in_background(TodCurve curve, c
     join_contrast_errors(fitted.curve);
     widen_where_not_verified(fitted, surrogate);
     examine_all(fitted.curve, plan, of_ramp);
-    for (TodPoint& point : fitted.curve.points)
-      if (point.adequacy && fitted.model_u.contains(point.set_delta_t_k))
-        point.adequacy->findings.push_back(surrogate.finding());
+    if (!fitted.model_u.empty()) {
+      const AdequacyFinding finding = surrogate.finding();
+      for (TodPoint& point : fitted.curve.points)
+        if (point.adequacy && fitted.model_u.contains(point.set_delta_t_k)) point.adequacy->findings.push_back(finding);
+    }
     const MeasurementResult& run = measured.result;
     const auto settings = findings_of(measured.changed);
     for (auto& sentence :
