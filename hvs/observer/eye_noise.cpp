@@ -163,17 +163,4 @@ void EyeNoise::add(std::span<const float> numbers, float sd, std::span<float> sc
   }
 }
 
-double EyeNoise::largest_difference() const {
-  const auto count = static_cast<std::size_t>(places());
-  double largest = 0;
-  for (std::size_t a = 0; a < alternatives(); ++a) {
-    for (std::size_t b = a + 1; b < alternatives(); ++b) {
-      const std::size_t first = a * count + count / 2, second = b * count + count / 2;
-      largest =
-          std::max(largest, covariance(first, first) + covariance(second, second) - 2 * covariance(first, second));
-    }
-  }
-  return largest / energy_;
-}
-
 }  // namespace todbench

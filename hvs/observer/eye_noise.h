@@ -50,9 +50,6 @@ class EyeNoise {
   [[nodiscard]] const std::vector<std::vector<double>>& columns() const { return columns_; }
   /// Adds `sd` times the scores of the normal numbers: rank() numbers, the bank's padded_templates() scores.
   void add(std::span<const float> numbers, float sd, std::span<float> scores) const;
-  /// Variance of the score difference of the alternatives at the middle of the search, the largest, relative to
-  /// energy().
-  [[nodiscard]] double largest_difference() const;
 
  private:
   void tabulate(const FilterTable& power);
