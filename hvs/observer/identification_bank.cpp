@@ -292,7 +292,7 @@ Result<IdentificationBank> IdentificationBank::build(const TemplateObserverSpec&
   const ViewingFilter viewing = viewing_filter(spec);
   double band = camera ? camera->band_per_sample : viewing.band_per_sample;
   if (spec.eye) band = std::min(band, viewing.band_per_sample);
-  const double way = side / 2 + spec.search_range_samples;
+  const double way = 0.5 * side + spec.search_range_samples;
   const int period = cv::getOptimalDFTSize(
       static_cast<int>(std::ceil((spec.eye ? 2 : 1) * way + reach_of(alternatives) + viewing.reach_samples + 1)));
   const FrequencyLattice lattice{.period = period, .band = static_cast<int>(std::ceil(band * period))};
