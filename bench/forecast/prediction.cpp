@@ -113,12 +113,9 @@ GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inpu
           .frames_between = change_s * inputs.sensor.frame_rate_hz};
 }
 
-/// Sets the interval of ln S75 of graded answers, from the standard error of as many binary ones.
+/// Sets the interval of ln S75 of graded answers of a design, from the standard error of as many binary ones.
 void predict_graded(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
-                    const ContrastOutlook& outlook, double binary_se) {
-  const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
-  const double q_eff = outlook.q_eff;
-  const GradedDesignFigures design = graded_design(plan, inputs, outlook, frames);
+                    const GradedDesignFigures& design, double q_eff, double binary_se) {
   const double se = std::hypot(binary_se * std::sqrt(graded_variance_ratio(design)),
                                se_of_shape(inputs.accuracy, q_eff, std::nullopt));
   const double factor = graded_interval_factor(design);
@@ -143,6 +140,61 @@ void predict_binary(ContrastPrediction& point, const Plan& plan, const Experimen
   point.interval_factor = mean_excess * 1.96;
 }
 
+/// Presentations per contrast: the least before an adaptive schedule ends (adaptive_schedule.cpp), and its cap.
+constexpr int least_presentations = 8;
+
+int most_presentations(const Plan& plan) {
+  return std::max(plan.schedule.max_presentations / static_cast<int>(plan.target.delta_t_k.size()), 1);
+}
+
+/// Design of the first presentations at a contrast of an adaptive schedule, which visits one set-up after the other.
+GradedDesignFigures after_presentations(GradedDesignFigures design, int presentations, int phases_of_visit) {
+  const int visited = std::clamp((presentations + phases_of_visit - 1) / phases_of_visit, 1, design.set_ups);
+  design.informative_set_ups *= static_cast<double>(visited) / design.set_ups;
+  design.set_ups = visited;
+  design.presentations = presentations;
+  return design;
+}
+
+/// Adapts the prediction of binary answers to constant stimuli to an adaptive schedule: as many trials as the requested
+/// interval needs, or as the cap allows, and at least eight presentations per contrast.
+void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates) {
+  if (plan.schedule.kind != ScheduleKind::adaptive || !point.uncertainty_percent || !(point.trials > 0)) return;
+  double triangles = 0;
+  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
+  const double per_presentation = triangles / static_cast<double>(plates.size());
+  const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
+  const double needed = std::max(point.trials * std::pow(constant / asked, 2), least_presentations * per_presentation);
+  const double cap = most_presentations(plan) * per_presentation;
+  // Below the cap the schedule continues until the interval itself is narrow enough.
+  const double reached = needed <= cap ? asked : constant * std::sqrt(point.trials / cap);
+  point.uncertainty_percent = 100 * std::expm1(reached);
+  point.se_ln_s75 *= reached / constant;
+  point.trials = std::round(std::min(needed, cap));
+}
+
+/// The prediction of graded answers. An adaptive schedule goes on until the interval is narrow enough: after few
+/// set-ups the factor of the interval is larger, and the phases do not cancel yet.
+void predict_graded_schedule(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
+                             const ContrastOutlook& outlook, double binary_se) {
+  const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
+  const GradedDesignFigures all = graded_design(plan, inputs, outlook, frames);
+  predict_graded(point, plan, inputs, all, outlook.q_eff, binary_se);
+  if (plan.schedule.kind != ScheduleKind::adaptive) return;
+  const double trials = point.trials, asked = plan.schedule.half_width_percent / 100;
+  const int phases = plan.camera.id.empty() ? plan.simulation.phases : plan.target.phases;
+  const int cap = most_presentations(plan);
+  for (int n = std::min(least_presentations, cap); n <= cap; ++n) {
+    const double share = static_cast<double>(n) / all.presentations;
+    predict_graded(point, plan, inputs, after_presentations(all, n, phases), outlook.q_eff,
+                   binary_se / std::sqrt(share));
+    point.trials = std::round(trials * share);
+    if (point.interval_factor * point.se_ln_s75 > asked) continue;
+    point.uncertainty_percent = 100 * std::expm1(asked);
+    return;
+  }
+}
+
 void predict_interval(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
                       const std::vector<Level>& levels, const ContrastOutlook& outlook) {
   const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
@@ -150,27 +202,12 @@ void predict_interval(ContrastPrediction& point, const Plan& plan, const Experim
                                 plan.fit.lapse.value_or(0.01));
   const auto fit = expected_fit(design, fit_options(plan));
   if (!fit) return;
-  const bool graded = chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded;
-  (graded ? predict_graded : predict_binary)(point, plan, inputs, outlook, fit->se_ln_threshold);
-}
-
-/// Adapts the prediction of constant stimuli to an adaptive schedule: as many trials as the requested interval needs,
-/// or as the cap allows, and at least eight presentations per contrast.
-void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates) {
-  if (plan.schedule.kind != ScheduleKind::adaptive || !point.uncertainty_percent || !(point.trials > 0)) return;
-  double triangles = 0;
-  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
-  const double per_presentation = triangles / static_cast<double>(plates.size());
-  const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
-  const double needed = std::max(point.trials * std::pow(constant / asked, 2), 8 * per_presentation);
-  const double share = plan.schedule.max_presentations / static_cast<double>(plan.target.delta_t_k.size());
-  const double cap = std::max(std::floor(share), 1.0) * per_presentation;
-  // Below the cap the schedule continues until the interval itself is narrow enough.
-  const double reached = needed <= cap ? asked : constant * std::sqrt(point.trials / cap);
-  point.uncertainty_percent = 100 * std::expm1(reached);
-  point.se_ln_s75 *= reached / constant;
-  if (point.paired_se_ln_ratio) *point.paired_se_ln_ratio *= reached / constant;
-  point.trials = std::round(std::min(needed, cap));
+  if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded) {
+    predict_graded_schedule(point, plan, inputs, outlook, fit->se_ln_threshold);
+    return;
+  }
+  predict_binary(point, plan, inputs, outlook, fit->se_ln_threshold);
+  adapt(point, plan, inputs.plates);
 }
 
 /// Rejects a tolerance beyond the caps; the message states the best possible tolerance over all contrasts, and its time
@@ -289,7 +326,6 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
       point.s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
       predict_interval(point, plan, inputs, levels, outlook);
     }
-    adapt(point, plan, inputs.plates);
     trials += point.trials;
     if (point.uncertainty_percent) {
       out.figures.predicted_uncertainty_percent =
