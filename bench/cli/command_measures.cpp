@@ -81,6 +81,7 @@ Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
           {"mtf_ci95", intervals},
           {"widest_halo_pitch", json_number(edge.widest_halo_pitch)},
           {"halo_allowance", json_number(edge.halo_allowance)},
+          {"wide_halo_ci95", {json_number(edge.wide_halo_least), json_number(edge.wide_halo_most)}},
           {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
           {"mtf50_per_mrad", per_mrad(edge.mtf50_per_pitch)},
           {"notes", edge.notes}};
@@ -102,6 +103,9 @@ void print_sfr(Console& console, const SlantedEdge& edge, const SfrArguments& ar
   console.table(header, rows);
   console.text("");
   console.text("MTF 0.5 at " + fixed(edge.mtf50_per_pitch, 4) + " cycles per pitch");
+  console.text("relative to a source of the size of the picture: without halos wider than " +
+               fixed(edge.widest_halo_pitch, 1) + " pitches, which are at most " + fixed(100 * edge.wide_halo_most, 1) +
+               " % of the step");
 }
 
 /// Whether values reach the end of the range of the file's type, so that they may be clipped.

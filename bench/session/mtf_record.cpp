@@ -64,6 +64,7 @@ Json mtf_json(const MtfMeasure& mtf) {
                      {"mtf_ci95", intervals},
                      {"widest_halo_pitch", json_number(edge.widest_halo_pitch)},
                      {"halo_allowance", json_number(edge.halo_allowance)},
+                     {"wide_halo_ci95", {json_number(edge.wide_halo_least), json_number(edge.wide_halo_most)}},
                      {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
                      {"model", edge.model.empty() ? Json() : json_numbers(edge.model)}});
   }

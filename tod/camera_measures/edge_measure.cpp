@@ -76,6 +76,8 @@ EdgeMtf mean_of(const std::vector<SlantedEdge>& sides) {
     mean.angle_deg += side.angle_deg / count;
     mean.noise_over_step = std::max(mean.noise_over_step, side.noise_over_step);
     mean.halo_allowance = std::max(mean.halo_allowance, side.halo_allowance);
+    mean.wide_halo_least = std::max(mean.wide_halo_least, side.wide_halo_least);
+    mean.wide_halo_most = std::max(mean.wide_halo_most, side.wide_halo_most);
   }
   for (std::size_t k = 0; k < mean.frequency_per_pitch.size(); ++k) {
     double sum = 0, below = 0, above = 0, least = sides.front().mtf[k], most = least;

@@ -18,15 +18,16 @@ namespace todbench {
 struct EdgeMtf {
   std::string place;  ///< name of the rectangle
   EdgeAxis axis = EdgeAxis::x;
-  int sides = 0;                            ///< number of measured sides
-  cv::Point2d middle_px{0, 0};              ///< centre of the rectangle
-  double angle_deg = 0;                     ///< from the axis to the edge's normal, mean of the sides
-  double noise_over_step = 0;               ///< largest of the sides
-  std::vector<double> frequency_per_pitch;  ///< 0 ... 1, along the normal
-  std::vector<double> mtf, low, high;       ///< mean of the sides; 95 %, not symmetric; low 0: not known
-  double widest_halo_pitch = 0;             ///< largest sigma of a halo that belongs to the MTF
-  double halo_allowance = 0;                ///< largest share of the step in halos that the interval allows for
-  std::optional<double> mtf50_per_pitch{};  ///< lowest frequency at which the MTF is 0.5
+  int sides = 0;                                   ///< number of measured sides
+  cv::Point2d middle_px{0, 0};                     ///< centre of the rectangle
+  double angle_deg = 0;                            ///< from the axis to the edge's normal, mean of the sides
+  double noise_over_step = 0;                      ///< largest of the sides
+  std::vector<double> frequency_per_pitch;         ///< 0 ... 1, along the normal
+  std::vector<double> mtf, low, high;              ///< mean of the sides; 95 %, not symmetric; low 0: not known
+  double widest_halo_pitch = 0;                    ///< largest sigma of a halo that belongs to the MTF
+  double halo_allowance = 0;                       ///< largest share of the step in halos that the interval allows for
+  double wide_halo_least = 0, wide_halo_most = 0;  ///< 95 % of the share in wider halos (SlantedEdge)
+  std::optional<double> mtf50_per_pitch{};         ///< lowest frequency at which the MTF is 0.5
   /// Closed form of a simulated sensor at the same frequencies and angle; empty for a real camera.
   std::vector<double> model{};
 

@@ -135,6 +135,15 @@ double TailFit::halo_allowance() const {
   return sum.halos / sum.contrast;
 }
 
+double TailFit::wide_share(bool most) const {
+  std::vector<double> direction(unknowns_, 0.0);
+  for (std::size_t i = 0; i < halos; ++i) direction[first_halo + i] = wide(i, bounds_) ? (most ? 1 : -1) : 0;
+  const std::vector<double> x = farthest(direction);
+  double sum = 0;
+  for (std::size_t i = 0; i < halos; ++i) sum += wide(i, bounds_) ? x[first_halo + i] : 0;
+  return sum / x[step];
+}
+
 TailSamples::TailSamples(std::size_t shading_columns)
     : unknowns_(first_shading + shading_columns), gram_(unknowns_ * unknowns_), right_(unknowns_) {}
 

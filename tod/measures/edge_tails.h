@@ -78,6 +78,8 @@ class TailFit {
   [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
   /// Largest share of the halos that belong to the MTF within 95 %.
   [[nodiscard]] double halo_allowance() const;
+  /// Share of the step in halos too wide for the MTF: the largest or the least within 95 %.
+  [[nodiscard]] double wide_share(bool most) const;
   [[nodiscard]] double noise() const { return noise_; }  ///< of a pixel, in the unit of the samples
   [[nodiscard]] std::size_t unknowns() const { return unknowns_; }
 

@@ -431,6 +431,9 @@ std::optional<double> mtf50_of(const SlantedEdge& edge) {
   return std::nullopt;
 }
 
+/// Share of the step in wide halos that counts as found: four times the error of the method.
+constexpr double least_wide_halo = 0.002;
+
 void add_notes(SlantedEdge& edge, const Found& found) {
   if (std::abs(found.trend.sag) > noted_bend_pitch && std::abs(found.trend.sag) > sure * found.trend.sag_u)
     edge.notes.push_back(fmt::format("the edge is bent by {:.2f} pixels", std::abs(found.trend.sag)));
@@ -441,7 +444,15 @@ void add_notes(SlantedEdge& edge, const Found& found) {
                     edge.displacement_pitch));
   }
   if (found.shading > 0.01)
-    edge.notes.push_back(fmt::format("shading of {:.1f} % of the step was removed", 100 * found.shading));
+    edge.notes.push_back(
+        fmt::format("the fields beside the edge are uneven by {:.1f} % of the step; the fit of the tails tells shading "
+                    "from halos",
+                    100 * found.shading));
+  if (edge.wide_halo_least > least_wide_halo)
+    edge.notes.push_back(
+        fmt::format("{:.1f} to {:.1f} % of the step are in halos wider than {:.1f} pitches, which this "
+                    "picture shows in part only: the lower ends of the intervals allow for them",
+                    100 * edge.wide_halo_least, 100 * edge.wide_halo_most, edge.widest_halo_pitch));
   if (std::any_of(edge.mtf.begin() + 1, edge.mtf.end(), [](double value) { return value > 1.02; }))
     edge.notes.emplace_back("the MTF exceeds 1: the camera sharpens its picture");
 }
@@ -497,7 +508,10 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   edge.low_known = std::move(transfer.low_known);
   edge.widest_halo_pitch = tails->fit.bounds().widest_pitch;
   edge.halo_allowance = tails->fit.halo_allowance();
+  edge.wide_halo_least = tails->fit.wide_share(false), edge.wide_halo_most = tails->fit.wide_share(true);
   edge.mtf = std::move(transfer.mtf), edge.mtf_low = std::move(transfer.low), edge.mtf_high = std::move(transfer.high);
+  if (edge.wide_halo_least > least_wide_halo)
+    std::for_each(edge.mtf_low.begin() + 1, edge.mtf_low.end(), [&](double& low) { low *= 1 - edge.wide_halo_most; });
   edge.mtf50_per_pitch = mtf50_of(edge);
   add_notes(edge, *found);
   return edge;

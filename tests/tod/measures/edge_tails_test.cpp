@@ -67,6 +67,44 @@ TEST(SlantedEdge, HoldsTheTruthOfLensesWithTailsAndHalos) {
   EXPECT_LE(found.open[1], 6);
 }
 
+TEST(SlantedEdge, ALowEndAllowsForHalosThatThePictureShowsInPart) {
+  int found = 0;
+  for (const double share : {0.05, 0.1}) {
+    for (const double sigma : {31.0, 45.0, 60.0}) {
+      const TailedLens lens{.halos = {{share, sigma}}};
+      const TailedProfile profile(lens, 5);
+      for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        const TailedEdge made{.rows = 120, .columns = 120, .noise = 0.002};
+        const SlantedEdge edge = slanted_edge(made.picture(profile, seed), {}).value();
+        found += edge.wide_halo_least > 0.002 ? 1 : 0;
+        EXPECT_GE(edge.wide_halo_most, 0.5 * share) << share << " " << sigma;
+        for (const std::size_t i : {std::size_t{5}, std::size_t{20}}) {
+          if (edge.wide_halo_least <= 0.002) continue;
+          const double truth = lens.mtf(edge.frequency_per_pitch[i], made.angle_deg);
+          EXPECT_LE(edge.mtf_low[i], truth) << share << " " << sigma;
+          EXPECT_GE(edge.mtf_high[i], truth) << share << " " << sigma;
+        }
+      }
+    }
+  }
+  // Shading could be the cause of the others; `wide_halo_most` says how many halos are possible.
+  EXPECT_GE(found, 4);
+}
+
+TEST(SlantedEdge, FindsNoWideHalosInPicturesWithout) {
+  const TailedProfile plain(TailedLens{}, 5), narrow(TailedLens{.halos = {{0.05, 8}}}, 5);
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const TailedProfile* profile : {&plain, &narrow}) {
+      const TailedEdge made{
+          .rows = 120, .columns = 120, .noise = 0.002, .shading_dark = 0.003, .shading_bright = -0.005};
+      found += slanted_edge(made.picture(*profile, seed), {}).value().wide_halo_least > 0.002 ? 1 : 0;
+    }
+  }
+  // 2.5 % of 40: more than 5 would happen once in 1000 times.
+  EXPECT_LE(found, 5);
+}
+
 TEST(SlantedEdge, IsRelativeToASourceOfTheSizeOfThePicture) {
   const TailedLens lens{.halos = {{0.1, 50}}};
   const TailedProfile profile(lens, 5);
