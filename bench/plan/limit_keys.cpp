@@ -105,7 +105,7 @@ PlanSection measure_limits_section() {
                     .check = check_limited_measure},
                    {.name = "at_least",
                     .type = OptionalNumberKey{positive},
-                    .sentence = "Lower limit. Only transfer_slope, MTF, CTF and IFOV have one",
+                    .sentence = "Lower limit. Quantities that are better when smaller, such as noise, have none",
                     .place = in_row(rows, &MeasureLimit::at_least)},
                    {.name = "at_most",
                     .type = OptionalNumberKey{positive},
