@@ -18,7 +18,8 @@
 namespace todbench {
 namespace {
 
-void print_plan(const Console& console, const ExperimentInputs& inputs, const PlanPrediction& prediction, bool why) {
+void print_plan(const Console& console, const Plan& plan, const ExperimentInputs& inputs,
+                const PlanPrediction& prediction, bool why) {
   print_effect_table(console, inputs.effects, why);
   console.text("");
   std::vector<TableRow> contrasts;
@@ -30,7 +31,10 @@ void print_plan(const Console& console, const ExperimentInputs& inputs, const Pl
   console.text((measured_s ? "trials of the simulation: " : "trials: ") + std::to_string(prediction.figures.trials) +
                "; uncertainty of S75 (95 %): " + fixed(prediction.figures.predicted_uncertainty_percent, 1) +
                " %; time to simulate on one core of this machine: " + fixed(prediction.figures.predicted_s, 1) + " s" +
-               (measured_s ? "; time to measure with the camera: " + fixed(measured_s, 0) + " s" : ""));
+               (measured_s ? "; time to measure with the camera: " + fixed(measured_s, 0) + " s" : "") +
+               (measured_s && plan.target.kind == TargetKind::scene && plan.measures.any()
+                    ? ", without the physical measures, which take as long as this machine needs for their pictures"
+                    : ""));
 }
 
 void print_bill_forecast(const Console& console, const AccuracyBill& bill) {
@@ -171,7 +175,7 @@ int run_plan(Console& console, const PlanArguments& asked, const Program& progra
     if (asked.decide) json["decide"] = decisions_json(decisions);
     console.object(json);
   } else {
-    print_plan(console, *inputs, *prediction, asked.why);
+    print_plan(console, plan, *inputs, *prediction, asked.why);
     if (frontier) print_frontier(console, *frontier);
     if (bill) print_bill_forecast(console, *bill);
     for (const AcuityLimits& at : acuity) console.text(in_words(at));

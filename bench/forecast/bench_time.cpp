@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "bench/plan/plan_options.h"
 
@@ -93,48 +94,49 @@ class Walk {
                      last.mounting != Mounting::identity ? target.mounting_change_s : 0, target.contrast_change_s,
                      last.shift_mm != cv::Point2d(0, 0) ? target.shift_change_s : 0}),
            plan_.measurement.registration_frames);
-    if (measures.transfer) {
-      for (std::size_t i = 0; i < measures.transfer_steps_k.size(); ++i)
-        change(target.contrast_change_s, plan_.measurement.contrast_frames);
-    }
-    if (measures.noise) change(target.contrast_change_s, measures.noise_frames);
-    if (measures.drift) {
-      change(target.contrast_change_s, 0);
+    const auto add = [&](std::string_view measure, bool wanted, auto&& count) {
+      if (!wanted) return;
+      const MeasureTime before{measure, time_.changes_s, time_.frames};
+      count();
+      time_.measures.push_back({measure, time_.changes_s - before.changes_s, time_.frames - before.frames});
+    };
+    const auto steps = [&](std::size_t count, int frames) {
+      for (std::size_t i = 0; i < count; ++i) change(target.contrast_change_s, frames);
+    };
+    constexpr int before_step = 8;
+    const int contrast_frames = plan_.measurement.contrast_frames;
+    const auto response_steps = static_cast<std::size_t>(std::max(0, measures.response_steps));
+    add("transfer", measures.transfer, [&] { steps(measures.transfer_steps_k.size(), contrast_frames); });
+    add("noise", measures.noise, [&] { steps(1, measures.noise_frames); });
+    add("drift", measures.drift, [&] {
+      steps(1, 0);
       time_.changes_s += plan_.camera.nuc_wait_s + measures.drift_s;
-    }
-    if (measures.response) {
-      constexpr int before_step = 8;
-      for (int i = 0; i < 2; ++i) change(target.contrast_change_s, plan_.measurement.contrast_frames);
-      for (int i = 0; i < measures.response_steps; ++i)
-        change(target.contrast_change_s, before_step + measures.response_frames);
-    }
-    if (measures.gain_control) {
-      constexpr int before_step = 8;
-      for (std::size_t i = 0; i < measures.transfer_steps_k.size() + 2; ++i)
-        change(target.contrast_change_s, measures.response_frames + plan_.measurement.contrast_frames);
-      for (int i = 0; i < measures.response_steps; ++i)
-        change(target.contrast_change_s, before_step + measures.response_frames);
-    }
-    if (measures.triangles) {
-      for (std::size_t i = 0; i < target.delta_t_k.size(); ++i)
-        change(target.contrast_change_s, plan_.measurement.contrast_frames);
-    }
+    });
+    add("response", measures.response, [&] {
+      steps(2, contrast_frames);
+      steps(response_steps, before_step + measures.response_frames);
+    });
+    add("gain_control", measures.gain_control, [&] {
+      steps(measures.transfer_steps_k.size() + 2, measures.response_frames + contrast_frames);
+      steps(response_steps, before_step + measures.response_frames);
+    });
+    add("triangles", measures.triangles, [&] { steps(target.delta_t_k.size(), contrast_frames); });
     const double new_plate_s = std::max(target.plate_change_s, target.contrast_change_s);
-    if (measures.mtf) change(new_plate_s, measures.mtf_frames);
-    if (measures.ctf) change(new_plate_s, measures.ctf_frames);
-    if (measures.source_size) {
+    add("mtf", measures.mtf, [&] { change(new_plate_s, measures.mtf_frames); });
+    add("ctf", measures.ctf, [&] { change(new_plate_s, measures.ctf_frames); });
+    add("source_size", measures.source_size, [&] {
       change(new_plate_s, measures.source_size_frames);
-      for (int i = 0; i < 2; ++i) change(target.contrast_change_s, measures.source_size_frames);
-    }
-    if (measures.timing) change(target.contrast_change_s, measures.timing_frames);
-    if (measures.latency) {
+      steps(2, measures.source_size_frames);
+    });
+    add("timing", measures.timing, [&] { steps(1, measures.timing_frames); });
+    add("latency", measures.latency, [&] {
       for (int i = 0; i < measures.latency_runs; ++i) {
         change(target.shift_change_s, 0);
         time_.changes_s += 0.1 * plate_width_mm / (measures.latency_mrad_s * target.distance_m);
       }
-    }
-    if (measures.absolute) add_absolute(new_plate_s);
-    if (measures.mrtd) count_mrtd(measures, target);
+    });
+    add("absolute", measures.absolute, [&] { add_absolute(new_plate_s); });
+    add("mrtd", measures.mrtd, [&] { count_mrtd(measures, target); });
   }
 
   /// Both passes over the temperatures, then both halves of the shifted pictures, in the order of measure_absolute().

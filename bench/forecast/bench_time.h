@@ -5,11 +5,19 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "bench/plan/plan.h"
 
 namespace todbench {
+
+/// Part of a physical measure in the bench time.
+struct MeasureTime {
+  std::string_view measure;  ///< key of [measures]
+  double changes_s = 0;
+  std::uint64_t frames = 0;
+};
 
 /// Changes of the target and frames of the camera, in the order in which measure() and measure_camera() request them.
 struct BenchTime {
@@ -25,7 +33,8 @@ struct BenchTime {
   std::uint64_t looking_frames = 0;
   std::map<double, std::uint64_t> presentation_frames{};
   double frames_s = 0;
-  double corrections_s = 0;  ///< waiting time after commanded corrections of the camera
+  std::vector<MeasureTime> measures{};  ///< parts of changes_s and frames, in the order of the run
+  double corrections_s = 0;             ///< waiting time after commanded corrections of the camera
   [[nodiscard]] double total_s() const { return changes_s + frames_s + corrections_s; }
 };
 

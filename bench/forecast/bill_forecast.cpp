@@ -34,6 +34,12 @@ void add_rows(AccuracyBill& bill, const Plan& plan, const BenchTime& time, doubl
   }
   bill.rows.push_back({"Rest of the run", seconds(time.frames - counted) + time.corrections_s,
                        "physical measures, corrections of the camera; without computing"});
+  if (time.measures.empty()) return;
+  std::vector<std::string> measures;
+  for (const MeasureTime& one : time.measures)
+    measures.push_back(fmt::format("{} {:.1f} s", one.measure, one.changes_s + seconds(one.frames)));
+  bill.sentences.push_back(
+      fmt::format("Physical measures with their changes of the target: {}.", fmt::join(measures, ", ")));
 }
 
 }  // namespace

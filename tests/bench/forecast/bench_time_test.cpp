@@ -170,6 +170,12 @@ TEST(BenchTimeOfMeasures, AddsTheirStepsAndFrames) {
   EXPECT_NEAR(both.changes_s - noise.changes_s, 6 * plan.target.contrast_change_s, 1e-9);
   EXPECT_GE(noise.changes_s - trials.changes_s, 2 * plan.target.contrast_change_s);
   EXPECT_EQ(both.presentations, trials.presentations);
+  ASSERT_EQ(both.measures.size(), 2u);
+  EXPECT_EQ(both.measures[0].measure, "transfer");
+  EXPECT_EQ(both.measures[0].frames, both.frames - noise.frames);
+  EXPECT_NEAR(both.measures[0].changes_s, both.changes_s - noise.changes_s, 1e-9);
+  EXPECT_EQ(both.measures[1].measure, "noise");
+  EXPECT_EQ(both.measures[1].frames, 64 + 1u);
   plan.measures.triangles = true;
   const BenchTime triangles = bench_time(plan, plates, 50, std::nullopt);
   EXPECT_EQ(triangles.frames - both.frames, plan.target.delta_t_k.size() * (2 + 1u));
