@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tests/sim_devices/reference.h"
 #include "tod/plate/test_pattern.h"
