@@ -18,6 +18,7 @@
 #include "bench/gui/presenters/measure_presenter.h"
 #include "bench/gui/presenters/naked_eye_presenter.h"
 #include "bench/gui/presenters/person_presenter.h"
+#include "bench/gui/presenters/viewing_presenter.h"
 #include "bench/gui/views/alternatives_panel.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
@@ -137,7 +138,8 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresente
       presenter_(presenter),
       person_(person),
       measured_(measured),
-      naked_eye_(new NakedEyePresenter(this)) {
+      naked_eye_(new NakedEyePresenter(this)),
+      viewing_(new ViewingPresenter(this)) {
   setFocusPolicy(Qt::StrongFocus);
   auto* layout = new QHBoxLayout(this);
   auto* seen = new QVBoxLayout;
@@ -162,6 +164,8 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresente
   connect(&person_, &PersonPresenter::updated, this, &HumanView::show_state);
   connect(abort_, &QPushButton::clicked, naked_eye_, &NakedEyePresenter::abort);
   connect(naked_eye_, &NakedEyePresenter::updated, this, &HumanView::show_state);
+  connect(propose_, &QPushButton::clicked, viewing_, [this] { viewing_->propose(bench_.plan()); });
+  connect(viewing_, &ViewingPresenter::updated, proposal_, [this] { proposal_->setText(viewing_->words()); });
   connect(&measured_, &MeasurePresenter::state_changed, this, &HumanView::show_state);
   show_question();
 }
@@ -231,6 +235,13 @@ void HumanView::add_person_rows(QFormLayout& form) {
   training_->setRange(0, 200);
   training_->setToolTip("Patches with feedback before the answers count. They are not stored.");
   form.addRow("Training", training_);
+  propose_ = plain_button("Propose zoom and distance", "proposeViewing");
+  propose_->setFocusPolicy(Qt::TabFocus);
+  propose_->setToolTip("At which size of the picture display and eye cost less than 1 % of acuity, by hvs-2");
+  form.addRow(propose_);
+  proposal_ = hint_label();
+  proposal_->setObjectName("viewingProposal");
+  form.addRow(proposal_);
 }
 
 std::optional<PersonFacts> HumanView::person_facts() {
@@ -327,6 +338,8 @@ void HumanView::show_question() {
   for (QWidget* of_person :
        std::initializer_list<QWidget*>{code_, age_, acuity_, distance_, screen_, luminance_, training_})
     form_->setRowVisible(of_person, question == of_triangles || question == of_blind);
+  form_->setRowVisible(propose_, triangles());
+  form_->setRowVisible(proposal_, triangles());
   title_->setText(question == of_set    ? "Which one is it?"
                   : question == of_bars ? question_title(criterion())
                                         : "Which way does it point?");

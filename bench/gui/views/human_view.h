@@ -23,6 +23,7 @@ class MeasurePresenter;
 class NakedEyePresenter;
 class PersonPresenter;
 class PictureView;
+class ViewingPresenter;
 class Workbench;
 enum class BarCriterion;
 
@@ -58,6 +59,7 @@ class HumanView final : public QWidget {
   PersonPresenter& person_;
   MeasurePresenter& measured_;
   NakedEyePresenter* naked_eye_;
+  ViewingPresenter* viewing_;
   QFormLayout* form_ = nullptr;
   PictureView* picture_;
   AlternativesPanel* alternatives_;
@@ -67,8 +69,8 @@ class HumanView final : public QWidget {
   QLabel *title_, *hint_;
   QSpinBox *per_size_, *shown_ms_, *training_;
   QCheckBox *limited_, *twin_;
-  QPushButton *begin_, *abort_;
-  QLabel *progress_, *result_;
+  QPushButton *begin_, *abort_, *propose_;
+  QLabel *progress_, *result_, *proposal_;
 };
 
 }  // namespace todbench

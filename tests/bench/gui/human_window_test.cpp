@@ -441,6 +441,22 @@ TEST(HumanObserver, SaysWhichIntervalHasFourBars) {
   EXPECT_TRUE(std::filesystem::exists(window->person().folder() / "person.json"));
 }
 
+TEST(HumanObserver, PageProposesZoomAndDistance) {
+  ShownWindow window("sim:sc2000", 1);
+  ask(window, 3, "humanContrasts", "0.3");
+  const auto said = [&] { return window.part<QLabel>("viewingProposal").text().toStdString(); };
+
+  window.click("proposeViewing");
+  EXPECT_THAT(said(), ::testing::HasSubstr("no section [display]"));
+  Plan plan = window->bench().plan();
+  plan.display = {.pixel_pitch_mm = 0.27, .viewing_distance_m = 0.6, .luminance_white_cd_m2 = 200, .zoom = 1};
+  window->bench().set_plan(plan);
+  window.click("proposeViewing");
+
+  EXPECT_TRUE(wait_until([&] { return said().starts_with("from "); })) << said();
+  EXPECT_THAT(said(), ::testing::HasSubstr("stated: 1.5 arcmin"));
+}
+
 TEST(HumanObserver, AnswersTrianglesOfTheDisplayWithoutACamera) {
   ShownWindow window("sim:sc2000", 1);
   ask(window, 3, "humanContrasts", "0.3");
