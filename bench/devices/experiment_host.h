@@ -20,6 +20,7 @@ namespace todbench {
 struct AddedStages {
   /// Creates the stages. Lines of their standard error are passed on. Empty: there are none.
   std::function<std::vector<std::unique_ptr<ChainStage>>(const std::function<void(std::string_view line)>&)> make{};
+  int dither = 1;         ///< n: the twin observes n x n places of a pixel in turn, as the recorded stage did
   int memory_frames = 0;  ///< exposures of the twin that are discarded after a change of the target
   /// Answers of the recorded run: a recording gives its frames only to the questions of that run. The answers are then
   /// reduced to right and wrong ones.

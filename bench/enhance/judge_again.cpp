@@ -7,6 +7,7 @@
 
 #include "acquisition/base/try.h"
 #include "bench/enhance/enhancement.h"
+#include "bench/enhance/stage_scan.h"
 #include "bench/session/signature.h"
 #include "bench/text/files.h"
 
@@ -52,6 +53,7 @@ std::vector<std::string> add_package(const EnhancementPackage& package, const Lo
                                      const ExperimentInputs& inputs, ExperimentHost& host) {
   const Plan& plan = recorded.plan();
   host.added.make = [package](const auto& on_error_line) { return made_stages(package, on_error_line); };
+  host.added.dither = scan_factor(package).value_or(1);
   host.added.memory_frames = memory_frames({}, package);
   host.added.as_recorded = [plan, inputs](MeasurementOptions& camera) { take_answers(camera, plan, inputs); };
   std::vector<std::string> notes{"frames pass through package " + package.name +

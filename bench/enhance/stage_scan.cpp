@@ -144,18 +144,22 @@ Result<void> scan_with_stage(OpenedBench& bench, const StageScan& scan) {
   return {};
 }
 
+std::optional<int> scan_factor(const EnhancementPackage& package) {
+  for (const StagePlan& stage : package.stages) {
+    if (stage.kind == StagePlan::Kind::super_resolution && stage.super_resolution.shifts == FrameShifts::scan)
+      return stage.super_resolution.factor;
+  }
+  return std::nullopt;
+}
+
 Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither) {
   for (const EnhancementPackage& package : packages) {
-    for (const StagePlan& stage : package.stages) {
-      const SuperResolutionStageOptions& finer = stage.super_resolution;
-      if (stage.kind != StagePlan::Kind::super_resolution || finer.shifts != FrameShifts::scan ||
-          finer.factor == dither)
-        continue;
-      return fail(
-          ErrorCode::invalid_input,
-          fmt::format("package {0}: its scan needs a sensor or a stage that visits {1} x {1} positions (--dither {1})",
-                      one_line(package.name), finer.factor));
-    }
+    const std::optional<int> factor = scan_factor(package);
+    if (factor.value_or(dither) == dither) continue;
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format("package {0}: its scan needs a sensor or a stage that visits {1} x {1} positions (--dither {1})",
+                    one_line(package.name), *factor));
   }
   return {};
 }

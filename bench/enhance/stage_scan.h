@@ -2,6 +2,10 @@
 // A stage that scans a pixel for super-resolution: it moves the plate between the frames of a camera.
 #pragma once
 
+#include <optional>
+#include <stop_token>
+#include <vector>
+
 #include "acquisition/base/result.h"
 #include "bench/enhance/package_file.h"
 #include "bench/run/experiment.h"
@@ -21,6 +25,9 @@ struct StageScan {
 /// recorded. Errors: `invalid_input` if the target does not set shifts, or the pixel has no size. A move that fails
 /// ends the run with `integrity`, or `interrupted`.
 [[nodiscard]] Result<void> scan_with_stage(OpenedBench& bench, const StageScan& scan);
+
+/// Returns the places of a pixel per axis that super-resolution by a known scan needs; empty: the package has none.
+[[nodiscard]] std::optional<int> scan_factor(const EnhancementPackage& package);
 
 /// `invalid_input` for a package with a scan that differs from the dither of sensor or stage: super-resolution would
 /// combine wrong places.

@@ -82,7 +82,8 @@ Result<SimulatedRun> run_simulated(const Plan& plan, const ExperimentInputs& inp
   const auto begin = Clock::now();
   const std::map<double, double>& shown_delta_t_k = camera.shown_delta_t_k;
   const ModuleLine log_line = module_log(open.folder);
-  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop, {.on_error_line = log_line}, camera.responses);
+  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop,
+                                 {.on_error_line = log_line, .dither = host.added.dither}, camera.responses);
   if (!set_up) return tl::unexpected(set_up.error());
   auto result = simulated_trials(plan, inputs, *set_up, open, which, host, log_line, stop);
   if (!result) return fail("simulating", result.error());

@@ -4,9 +4,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <deque>
 
 #include "acquisition/base/host_clock.h"
+#include "bench/enhance/blind_judgement.h"
 #include "bench/enhance/enhancement.h"
 #include "sim_devices/sensor/super_resolution_stage.h"
 #include "tests/bench/run/measured_session.h"
@@ -58,15 +61,25 @@ class StageScanTest : public MeasuredSession {
   }
   /// Judges the session without a package and by super-resolution of the scan.
   [[nodiscard]] Result<Enhancement> finer(const std::string& name) const {
+    const auto loaded = recorded_plan(at(name), {});
+    if (!loaded) return tl::unexpected(loaded.error());
+    return compare_packages_recorded(at(name), *loaded, {super_resolution()}, {.dither = 2}, {});
+  }
+  [[nodiscard]] static EnhancementPackage super_resolution() {
     EnhancementPackage package;
     package.name = "DSR2";
     package.stages = {{.kind = StagePlan::Kind::super_resolution,
                        .super_resolution = {.frames = 4, .factor = 2, .shifts = FrameShifts::scan}}};
-    const auto loaded = recorded_plan(at(name), {});
-    if (!loaded) return tl::unexpected(loaded.error());
-    return compare_packages_recorded(at(name), *loaded, {package}, {.dither = 2}, {});
+    return package;
   }
 };
+
+/// The answer of a person with this S75: Weibull of slope 3 with a chance of a quarter.
+Apex answer_of_person(const Trial& trial, double s75_mrad, const RandomStream& person, std::uint64_t number) {
+  const double right = 1 - 0.75 * std::exp(-std::log(3.0) * std::pow(trial.size_mrad / s75_mrad, 3));
+  const auto turns = person.uniform(2 * number) < right ? 0 : 1 + person.below(2 * number + 1, 3);
+  return all_apexes[(static_cast<std::size_t>(trial.truth) + turns) % 4];
+}
 
 TEST_F(StageScanTest, OfTheInstrumentsIsProvenByTheFramesAndTheFinerPictureResolvesMore) {
   const auto run = measure_scanned("m", 1);
@@ -89,6 +102,43 @@ TEST_F(StageScanTest, OfTheInstrumentsIsProvenByTheFramesAndTheFinerPictureResol
     return std::ranges::count_if(trials, [](const Trial& trial) { return trial.correct(); });
   };
   EXPECT_GT(right(dsr2.trials), right(still.trials));
+}
+
+TEST_F(StageScanTest, IsJudgedBlindByPeopleBesideTheFramesOfTheCamera) {
+  const auto run = measure_scanned("m", 1);
+  ASSERT_TRUE(run) << run.error().message;
+
+  const auto sources = blind_sources(at("m"), {super_resolution()}, false, at("blind"), {}, {});
+
+  ASSERT_TRUE(sources) << sources.error().message;
+  ASSERT_EQ(sources->size(), 2U);
+  EXPECT_EQ((*sources)[1].samples_per_pixel, 2);
+  const auto right = [](const BlindSource& source) {
+    return std::ranges::count_if(source.trials, [](const JudgedTrial& judged) { return judged.trial.correct(); });
+  };
+  ASSERT_EQ((*sources)[0].trials.size(), (*sources)[1].trials.size());
+  EXPECT_GT(right((*sources)[1]), right((*sources)[0])) << "the model observer sees the finer picture";
+  // Seeds 1 to 40: people who see 1.3 times finer through the package.
+  const double s75_mrad[] = {2.6, 2.0};
+  int hold = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const auto patches = blind_order(*sources, 6, seed);
+    ASSERT_TRUE(patches) << patches.error().message;
+    const RandomStream person(seed, "person");
+    std::vector<BlindAnswer> answers;
+    for (const BlindPatch& patch : *patches) {
+      EXPECT_EQ(patch.judged.patch_k.rows % patch.samples_per_pixel, 0);
+      BlindAnswer answer{.source = patch.source, .trial = patch.judged.trial};
+      answer.trial.answer = answer_of_person(answer.trial, s75_mrad[patch.source], person, answers.size());
+      answers.push_back(std::move(answer));
+    }
+    const auto result = blind_result({"camera", "DSR2"}, answers, plan_);
+    ASSERT_TRUE(result) << result.error().message;
+    const auto& ratio = result->ratios.front().points.front().ratio_ci95;
+    if (ratio.low.value_or(0) <= 1.3 && 1.3 <= ratio.high.value_or(1e9)) ++hold;
+  }
+  // 95 % of 40 with a binomial standard deviation of 1.4; four of them below.
+  EXPECT_GE(hold, 38 - 4 * 1.4);
 }
 
 TEST_F(StageScanTest, OfHalfTheStepIsRefusedByItsFrames) {
