@@ -96,9 +96,10 @@ class Walk {
            plan_.measurement.registration_frames);
     const auto add = [&](std::string_view measure, bool wanted, auto&& count) {
       if (!wanted) return;
-      const MeasureTime before{measure, time_.changes_s, time_.frames};
+      const double changes_s = time_.changes_s;
+      const std::uint64_t frames = time_.frames;
       count();
-      time_.measures.push_back({measure, time_.changes_s - before.changes_s, time_.frames - before.frames});
+      time_.measures.push_back({measure, time_.changes_s - changes_s, time_.frames - frames});
     };
     const auto steps = [&](std::size_t count, int frames) {
       for (std::size_t i = 0; i < count; ++i) change(target.contrast_change_s, frames);

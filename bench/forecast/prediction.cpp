@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 
 #include "acquisition/base/normal.h"
 #include "bench/forecast/bench_time.h"
@@ -19,6 +20,7 @@
 #include "sim_devices/prediction/direct_timing.h"
 #include "tod/comparison/planning.h"
 #include "tod/plate/test_pattern.h"
+#include "tod/schedule/adaptive_schedule.h"
 
 namespace todbench {
 namespace {
@@ -140,9 +142,7 @@ void predict_binary(ContrastPrediction& point, const Plan& plan, const Experimen
   point.interval_factor = mean_excess * 1.96;
 }
 
-/// Presentations per contrast: the least before an adaptive schedule ends (adaptive_schedule.cpp), and its cap.
-constexpr int least_presentations = 8;
-
+/// Largest number of presentations per contrast of an adaptive schedule.
 int most_presentations(const Plan& plan) {
   return std::max(plan.schedule.max_presentations / static_cast<int>(plan.target.delta_t_k.size()), 1);
 }
@@ -164,7 +164,8 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
   for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
   const double per_presentation = triangles / static_cast<double>(plates.size());
   const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
-  const double needed = std::max(point.trials * std::pow(constant / asked, 2), least_presentations * per_presentation);
+  const double needed =
+      std::max(point.trials * std::pow(constant / asked, 2), least_adaptive_presentations * per_presentation);
   const double cap = most_presentations(plan) * per_presentation;
   // Below the cap the schedule continues until the interval itself is narrow enough.
   const double reached = needed <= cap ? asked : constant * std::sqrt(point.trials / cap);
@@ -173,8 +174,9 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
   point.trials = std::round(std::min(needed, cap));
 }
 
-/// The prediction of graded answers. An adaptive schedule goes on until the interval is narrow enough: after few
-/// set-ups the factor of the interval is larger, and the phases do not cancel yet.
+/// The prediction of graded answers. An adaptive schedule goes on until the interval is narrow enough. After few
+/// set-ups the factor of the interval is larger, and the phases do not cancel yet. Once all set-ups are visited, the
+/// interval only becomes narrower.
 void predict_graded_schedule(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
                              const ContrastOutlook& outlook, double binary_se) {
   const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
@@ -183,16 +185,22 @@ void predict_graded_schedule(ContrastPrediction& point, const Plan& plan, const 
   if (plan.schedule.kind != ScheduleKind::adaptive) return;
   const double trials = point.trials, asked = plan.schedule.half_width_percent / 100;
   const int phases = plan.camera.id.empty() ? plan.simulation.phases : plan.target.phases;
-  const int cap = most_presentations(plan);
-  for (int n = std::min(least_presentations, cap); n <= cap; ++n) {
-    const double share = static_cast<double>(n) / all.presentations;
-    predict_graded(point, plan, inputs, after_presentations(all, n, phases), outlook.q_eff,
+  const int cap = most_presentations(plan), all_visited = std::min(cap, all.set_ups * phases);
+  const auto narrow_after = [&](int presentations) {
+    const double share = static_cast<double>(presentations) / all.presentations;
+    predict_graded(point, plan, inputs, after_presentations(all, presentations, phases), outlook.q_eff,
                    binary_se / std::sqrt(share));
     point.trials = std::round(trials * share);
-    if (point.interval_factor * point.se_ln_s75 > asked) continue;
-    point.uncertainty_percent = 100 * std::expm1(asked);
-    return;
+    return point.interval_factor * point.se_ln_s75 <= asked;
+  };
+  int needed = std::min(least_adaptive_presentations, cap);
+  while (needed < all_visited && !narrow_after(needed)) ++needed;
+  if (needed >= all_visited) {
+    const auto more = std::views::iota(needed, cap);
+    const auto first = std::ranges::partition_point(more, [&](int n) { return !narrow_after(n); });
+    needed += static_cast<int>(first - more.begin());
   }
+  if (narrow_after(needed)) point.uncertainty_percent = 100 * std::expm1(asked);
 }
 
 void predict_interval(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double least_trials = 40;
 constexpr std::size_t least_sizes = 3;
-constexpr int least_presentations = 8;
 constexpr double contradiction = 0.001;  // p of the deviance
 constexpr double frame_s = 0.1;          // a presentation without any change: exposures after the change and the frame
 
@@ -196,7 +195,7 @@ void AdaptiveSchedule::judge(Contrast& contrast) const {
   std::ranges::sort(sizes);
   const auto distinct = static_cast<std::size_t>(std::unique(sizes.begin(), sizes.end()) - sizes.begin());
   progress.settled = fit.verdict == FitVerdict::ok && progress.trials >= least_trials && distinct >= least_sizes &&
-                     progress.presentations >= least_presentations &&
+                     progress.presentations >= least_adaptive_presentations &&
                      *progress.half_width_percent < options_.half_width_percent && !contradicted(fit);
 }
 

@@ -14,6 +14,9 @@
 
 namespace todbench {
 
+/// Presentations of a contrast before it can be settled.
+inline constexpr int least_adaptive_presentations = 8;
+
 struct AdaptiveOptions {
   /// Plates, mountings, contrasts, pixel and costs of changes. `phases`: presentations per visit, which is one contrast
   /// in one set-up before something else is changed.
