@@ -53,7 +53,7 @@ std::vector<std::string> add_package(const EnhancementPackage& package, const Lo
                                      const ExperimentInputs& inputs, ExperimentHost& host) {
   const Plan& plan = recorded.plan();
   host.added.make = [package](const auto& on_error_line) { return made_stages(package, on_error_line); };
-  host.added.dither = scan_factor(package).value_or(1);
+  if (const auto factors = scan_factors(package); !factors.empty()) host.added.dither = factors.front();
   host.added.memory_frames = memory_frames({}, package);
   host.added.as_recorded = [plan, inputs](MeasurementOptions& camera) { take_answers(camera, plan, inputs); };
   std::vector<std::string> notes{"frames pass through package " + package.name +

@@ -144,22 +144,24 @@ Result<void> scan_with_stage(OpenedBench& bench, const StageScan& scan) {
   return {};
 }
 
-std::optional<int> scan_factor(const EnhancementPackage& package) {
+std::vector<int> scan_factors(const EnhancementPackage& package) {
+  std::vector<int> factors;
   for (const StagePlan& stage : package.stages) {
     if (stage.kind == StagePlan::Kind::super_resolution && stage.super_resolution.shifts == FrameShifts::scan)
-      return stage.super_resolution.factor;
+      factors.push_back(stage.super_resolution.factor);
   }
-  return std::nullopt;
+  return factors;
 }
 
 Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither) {
   for (const EnhancementPackage& package : packages) {
-    const std::optional<int> factor = scan_factor(package);
-    if (factor.value_or(dither) == dither) continue;
-    return fail(
-        ErrorCode::invalid_input,
-        fmt::format("package {0}: its scan needs a sensor or a stage that visits {1} x {1} positions (--dither {1})",
-                    one_line(package.name), *factor));
+    for (const int factor : scan_factors(package)) {
+      if (factor == dither) continue;
+      return fail(
+          ErrorCode::invalid_input,
+          fmt::format("package {0}: its scan needs a sensor or a stage that visits {1} x {1} positions (--dither {1})",
+                      one_line(package.name), factor));
+    }
   }
   return {};
 }

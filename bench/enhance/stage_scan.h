@@ -2,7 +2,6 @@
 // A stage that scans a pixel for super-resolution: it moves the plate between the frames of a camera.
 #pragma once
 
-#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -26,8 +25,9 @@ struct StageScan {
 /// ends the run with `integrity`, or `interrupted`.
 [[nodiscard]] Result<void> scan_with_stage(OpenedBench& bench, const StageScan& scan);
 
-/// Returns the places of a pixel per axis that super-resolution by a known scan needs; empty: the package has none.
-[[nodiscard]] std::optional<int> scan_factor(const EnhancementPackage& package);
+/// Returns, for each super-resolution of the package by a known scan, how many places along an axis of a pixel it
+/// needs.
+[[nodiscard]] std::vector<int> scan_factors(const EnhancementPackage& package);
 
 /// `invalid_input` for a package with a scan that differs from the dither of sensor or stage: super-resolution would
 /// combine wrong places.

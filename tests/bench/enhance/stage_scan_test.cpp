@@ -141,6 +141,18 @@ TEST_F(StageScanTest, IsJudgedBlindByPeopleBesideTheFramesOfTheCamera) {
   EXPECT_GE(hold, 38 - 4 * 1.4);
 }
 
+TEST_F(StageScanTest, OfASecondStageHasToBeThatOfTheCameraToo) {
+  EnhancementPackage twice = super_resolution();
+  twice.stages.push_back(twice.stages.front());
+  EXPECT_TRUE(check_scans({twice}, 2));
+
+  twice.stages.back().super_resolution.factor = 3;
+
+  const auto checked = check_scans({twice}, 2);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message, HasSubstr("--dither 3"));
+}
+
 TEST_F(StageScanTest, OfHalfTheStepIsRefusedByItsFrames) {
   const auto run = measure_scanned("m", 0.5);
   ASSERT_TRUE(run) << run.error().message;
