@@ -121,7 +121,6 @@ void run_simulated_one(const LoadedPlan& loaded, const ExperimentInputs& inputs,
   set_up->options.answers = AnswerKind::binary;
   set_up->options.frames_per_presentation = 1;
   set_up->options.frames_at_contrast.clear();
-  set_up->options.integrity.reject_frozen = false;
   run_one(*std::move(set_up), loaded.plan(), inputs, inputs.sensor.modules, package, options, result, stop);
 }
 

@@ -25,10 +25,8 @@ Result<MeasurementResult> simulated_trials(const Plan& plan, const ExperimentInp
   set_up.bench.host = bench_host({.pause = host.pause});
   const auto modules = picture_modules(plan, inputs.sensor, Side::simulated);
   put_behind(set_up.bench, modules, host.added, log_line, set_up.options);
-  if (!modules.empty() || host.added.make) {
+  if (!modules.empty() || host.added.make)
     set_up.options.frames_after_change = settle_frames(modules) + host.added.memory_frames;
-    set_up.options.integrity.reject_frozen = false;
-  }
   const auto observer = observer_of(plan, inputs, log_line);
   return record_trials(open, set_up.bench, *observer, *set_up.schedule, set_up.options, which, AnswerKind::graded,
                        std::move(stop));
