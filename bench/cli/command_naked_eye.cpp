@@ -12,7 +12,6 @@
 #include "acquisition/base/try.h"
 #include "bench/naked_eye/naked_eye_session.h"
 #include "bench/plan/descriptions.h"
-#include "bench/plan/resources.h"
 #include "bench/text/json_fields.h"
 
 namespace todbench {
@@ -25,10 +24,8 @@ struct NakedEyeArguments {
 };
 
 Result<TemplateObserverSpec> observer_at(const std::string& name, const ViewedDisplay& display) {
-  TODBENCH_TRY(const auto resource, find_resource(ResourceKind::observer, name));
-  TODBENCH_TRY(auto spec, parse_observer(resource));
+  TODBENCH_TRY(auto spec, load_observer_at(name, display));
   if (!spec.eye) return fail(ErrorCode::invalid_input, name + ": the observer has no eye; choose hvs-2");
-  spec.display = display;
   return spec;
 }
 

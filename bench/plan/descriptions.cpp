@@ -296,6 +296,12 @@ Result<TemplateObserverSpec> load_observer(std::string_view reference) {
   return spec;
 }
 
+Result<TemplateObserverSpec> load_observer_at(std::string_view reference, const ViewedDisplay& display) {
+  auto spec = load(ResourceKind::observer, reference, parse_observer);
+  if (spec) spec->display = display;
+  return spec;
+}
+
 Result<void> refuse_eye(const TemplateObserverSpec& observer, std::string_view work) {
   if (!observer.eye) return {};
   return fail_at(ErrorCode::invalid_input, "observer.name",

@@ -30,6 +30,8 @@ struct DescribedObserver {
 /// Loads an observer. An observer with a module is rejected: plans have their own [[module]]. So is one with an eye:
 /// only a plan has a display.
 [[nodiscard]] Result<TemplateObserverSpec> load_observer(std::string_view reference);
+/// Loads an observer, with or without an eye, and puts it before a display.
+[[nodiscard]] Result<TemplateObserverSpec> load_observer_at(std::string_view reference, const ViewedDisplay& display);
 /// Fails if the observer has an eye, for work that does not model a display: "WORK does not model ...".
 [[nodiscard]] Result<void> refuse_eye(const TemplateObserverSpec& observer, std::string_view work);
 /// Loads a plate. Rows of cut-outs: [[row]] size_mm, y_mm, x_mm = [...], apex = ["up", ...], optionally names = [...];

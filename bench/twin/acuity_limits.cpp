@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "bench/plan/descriptions.h"
-#include "bench/plan/resources.h"
 #include "bench/twin/direct_results.h"
 #include "bench/twin/module_chain.h"
 #include "sim_devices/prediction/direct_estimate.h"
@@ -137,12 +136,9 @@ Result<std::optional<DisplayRecord>> at_display(const TodCurve& curve, const Exp
   ExperimentInputs viewed = inputs;
   DisplayRecord record;
   if (!inputs.observer.eye) {
-    const auto resource = find_resource(ResourceKind::observer, "hvs-2");
-    if (!resource) return tl::unexpected(resource.error());
-    auto person = parse_observer(*resource);
+    auto person = load_observer_at("hvs-2", plan.display);
     if (!person) return tl::unexpected(person.error());
     viewed.observer = *std::move(person);
-    viewed.observer.display = plan.display;
     const DirectResults direct = direct_results(curve, viewed, {}, plan.seed, stop);
     if (direct.ended_by) return tl::unexpected(*direct.ended_by);
     const double ifov_mrad = inputs.sensor.ifov_mrad();

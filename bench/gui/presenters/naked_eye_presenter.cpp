@@ -9,7 +9,6 @@
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/gui/presenters/person_presenter.h"
 #include "bench/plan/descriptions.h"
-#include "bench/plan/resources.h"
 #include "hvs/eye/display_levels.h"
 
 namespace todbench {
@@ -36,11 +35,8 @@ NakedEyePresenter::NakedEyePresenter(QObject* parent) : QObject(parent) {
 QString NakedEyePresenter::begin(const Plan& plan, const NakedEyeQuestion& question,
                                  const std::filesystem::path& sessions, std::optional<int> shown_ms) {
   if (!has_display(plan)) return "The plan has no section [display]: state the pixel pitch, distance and luminances.";
-  const auto resource = find_resource(ResourceKind::observer, "hvs-2");
-  if (!resource) return QString::fromStdString(resource.error().message);
-  auto model = parse_observer(*resource);
+  auto model = load_observer_at("hvs-2", plan.display);
   if (!model) return QString::fromStdString(model.error().message);
-  model->display = plan.display;
   const NakedEyeTask task{.model = *std::move(model),
                           .contrasts = question.contrasts,
                           .noise = question.noise,

@@ -8,7 +8,6 @@
 #include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/loaded_plan.h"
-#include "bench/plan/resources.h"
 #include "sim_devices/prediction/viewing_proposal.h"
 
 namespace todbench {
@@ -16,9 +15,7 @@ namespace {
 
 Result<std::string> proposal_in_words(const Plan& plan, const std::stop_token& stop) {
   TODBENCH_TRY(const LoadedPlan loaded, LoadedPlan::load(plan));
-  TODBENCH_TRY(const auto resource, find_resource(ResourceKind::observer, "hvs-2"));
-  TODBENCH_TRY(auto observer, parse_observer(resource));
-  observer.display = plan.display;
+  TODBENCH_TRY(const auto observer, load_observer_at("hvs-2", plan.display));
   double largest = 0;
   for (const double delta_t_k : plan.target.delta_t_k) largest = std::max(largest, std::abs(delta_t_k));
   TODBENCH_TRY(const ViewingProposal viewing,
