@@ -26,7 +26,7 @@ struct EdgeMtf {
   std::vector<double> mtf, low, high;              ///< mean of the sides; 95 %, not symmetric; low 0: not known
   double widest_halo_pitch = 0;                    ///< largest sigma of a halo that belongs to the MTF
   double halo_allowance = 0;                       ///< largest share of the step in halos that the interval allows for
-  double wide_halo_least = 0, wide_halo_most = 0;  ///< 95 % of the share in wider halos (SlantedEdge)
+  double wide_halo_least = 0, wide_halo_most = 0;  ///< largest of the sides (SlantedEdge)
   std::optional<double> mtf50_per_pitch{};         ///< lowest frequency at which the MTF is 0.5
   /// Closed form of a simulated sensor at the same frequencies and angle; empty for a real camera.
   std::vector<double> model{};

@@ -135,13 +135,11 @@ double TailFit::halo_allowance() const {
   return sum.halos / sum.contrast;
 }
 
-double TailFit::wide_share(bool most) const {
+double TailFit::farthest_wide_share(double sign) const {
   std::vector<double> direction(unknowns_, 0.0);
-  for (std::size_t i = 0; i < halos; ++i) direction[first_halo + i] = wide(i, bounds_) ? (most ? 1 : -1) : 0;
+  for (std::size_t i = 0; i < halos; ++i) direction[first_halo + i] = wide(i, bounds_) ? sign : 0;
   const std::vector<double> x = farthest(direction);
-  double sum = 0;
-  for (std::size_t i = 0; i < halos; ++i) sum += wide(i, bounds_) ? x[first_halo + i] : 0;
-  return sum / x[step];
+  return 1 - halo_sum(x, bounds_).contrast / x[step];
 }
 
 TailSamples::TailSamples(std::size_t shading_columns)

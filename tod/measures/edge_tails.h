@@ -78,13 +78,15 @@ class TailFit {
   [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
   /// Largest share of the halos that belong to the MTF within 95 %.
   [[nodiscard]] double halo_allowance() const;
-  /// Share of the step in halos too wide for the MTF: the largest or the least within 95 %.
-  [[nodiscard]] double wide_share(bool most) const;
+  /// Ends of the 95 % interval of the share of the step in halos that are too wide for the MTF.
+  [[nodiscard]] double least_wide_share() const { return farthest_wide_share(-1); }
+  [[nodiscard]] double most_wide_share() const { return farthest_wide_share(1); }
   [[nodiscard]] double noise() const { return noise_; }  ///< of a pixel, in the unit of the samples
   [[nodiscard]] std::size_t unknowns() const { return unknowns_; }
 
  private:
   friend class TailSamples;
+  [[nodiscard]] double farthest_wide_share(double sign) const;
   std::size_t unknowns_ = 0;
   TailBounds bounds_;
   double noise_ = 0;

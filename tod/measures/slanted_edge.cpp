@@ -431,8 +431,11 @@ std::optional<double> mtf50_of(const SlantedEdge& edge) {
   return std::nullopt;
 }
 
-/// Share of the step in wide halos that counts as found: four times the error of the method.
-constexpr double least_wide_halo = 0.002;
+/// Whether the picture shows that there are halos wider than those of the MTF: more than four times the error of the
+/// method.
+bool shows_wide_halos(const SlantedEdge& edge) {
+  return edge.wide_halo_least > 0.002;
+}
 
 void add_notes(SlantedEdge& edge, const Found& found) {
   if (std::abs(found.trend.sag) > noted_bend_pitch && std::abs(found.trend.sag) > sure * found.trend.sag_u)
@@ -448,7 +451,7 @@ void add_notes(SlantedEdge& edge, const Found& found) {
         fmt::format("the fields beside the edge are uneven by {:.1f} % of the step; the fit of the tails tells shading "
                     "from halos",
                     100 * found.shading));
-  if (edge.wide_halo_least > least_wide_halo)
+  if (shows_wide_halos(edge))
     edge.notes.push_back(
         fmt::format("{:.1f} to {:.1f} % of the step are in halos wider than {:.1f} pitches, which this "
                     "picture shows in part only: the lower ends of the intervals allow for them",
@@ -508,9 +511,9 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   edge.low_known = std::move(transfer.low_known);
   edge.widest_halo_pitch = tails->fit.bounds().widest_pitch;
   edge.halo_allowance = tails->fit.halo_allowance();
-  edge.wide_halo_least = tails->fit.wide_share(false), edge.wide_halo_most = tails->fit.wide_share(true);
+  edge.wide_halo_least = tails->fit.least_wide_share(), edge.wide_halo_most = tails->fit.most_wide_share();
   edge.mtf = std::move(transfer.mtf), edge.mtf_low = std::move(transfer.low), edge.mtf_high = std::move(transfer.high);
-  if (edge.wide_halo_least > least_wide_halo)
+  if (shows_wide_halos(edge))
     std::for_each(edge.mtf_low.begin() + 1, edge.mtf_low.end(), [&](double& low) { low *= 1 - edge.wide_halo_most; });
   edge.mtf50_per_pitch = mtf50_of(edge);
   add_notes(edge, *found);

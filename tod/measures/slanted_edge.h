@@ -52,8 +52,8 @@ struct SlantedEdge {
   std::vector<bool> low_known;              ///< false: only TailBounds::most_halo limits `mtf_low`
   double widest_halo_pitch = 0;             ///< largest sigma of a halo that belongs to the MTF
   double halo_allowance = 0;                ///< largest share of the step in halos that the interval allows for
-  /// 95 % of the share of the step in halos wider than that. Above 0.002 at the least, `mtf_low` is relative to a
-  /// source of any size: it is lower by the largest share.
+  /// 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If its lower end is above 0.002,
+  /// `mtf_low` is lower by the share at its upper end, and thus relative to a source of any size.
   double wide_halo_least = 0, wide_halo_most = 0;
   double displacement_pitch = 0;          ///< standard deviation of the lines about the edge if significant
   std::optional<double> mtf50_per_pitch;  ///< lowest frequency at which the MTF is 0.5

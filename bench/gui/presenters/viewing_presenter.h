@@ -10,15 +10,15 @@
 
 namespace todbench {
 
-/// Used in the window's thread; the estimates run on a thread of its own.
+/// Used in the thread of the window. The estimates run on another thread.
 class ViewingPresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit ViewingPresenter(QObject* parent = nullptr);
 
-  /// Compares viewing distances for hvs-2 at the display of the plan and its largest contrast; a later call replaces an
-  /// earlier one.
+  /// Compares viewing distances for hvs-2 at the display and at the largest contrast of the plan. A later call replaces
+  /// an earlier one.
   void propose(const Plan& plan);
   [[nodiscard]] bool busy() const { return busy_; }
   /// The proposal, or why there is none; empty before the first one.
