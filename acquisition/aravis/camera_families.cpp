@@ -5,14 +5,10 @@
 #include <cctype>
 #include <initializer_list>
 
+#include "acquisition/base/safe_text.h"
+
 namespace todbench {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });
-  return out;
-}
 
 bool contains_any(const std::string& text, std::initializer_list<std::string_view> words) {
   return std::any_of(words.begin(), words.end(), [&](auto word) { return text.find(word) != std::string::npos; });
@@ -96,7 +92,7 @@ bool never_a_correction(const std::string& name) {
 
 /// 0: no correction; otherwise smaller is better.
 int correction_rank(const std::string& command) {
-  const std::string name = lower(command);
+  const std::string name = lower_case(command);
   if (never_a_correction(name)) return 0;
   if (contains_any(name, {"nuc", "ffc"})) return 1;
   const bool shutter = contains_any(name, {"shutter", "flag"});
@@ -110,8 +106,8 @@ int correction_rank(const std::string& command) {
 
 CameraFamily camera_family(std::string_view vendor, std::string_view model,
                            const std::function<bool(const std::string& feature)>& has_feature) {
-  const bool flir = lower(vendor).find("flir") != std::string::npos;
-  std::string name = lower(model);
+  const bool flir = lower_case(vendor).find("flir") != std::string::npos;
+  std::string name = lower_case(model);
   if (const auto prefix = name.find("flir "); prefix == 0) name.erase(0, 5);
   if (flir && is_model(name, {"ax5", "a5", "a15", "a35", "a65"})) return flir_ax5();
   if (flir && (name.starts_with("a305sc") || name.starts_with("a320g"))) {
@@ -142,7 +138,7 @@ std::vector<std::string> correction_commands(const std::vector<std::string>& com
 std::vector<std::string> correction_modes(const std::vector<std::string>& enumerations) {
   std::vector<std::string> found;
   for (const auto& name : enumerations) {
-    const std::string text = lower(name);
+    const std::string text = lower_case(name);
     if (contains_any(text, {"nuc", "ffc", "flag", "shutter"}) && contains_any(text, {"mode", "auto"})) {
       found.push_back(name);
     }
@@ -153,11 +149,11 @@ std::vector<std::string> correction_modes(const std::vector<std::string>& enumer
 std::string commanded_entry(const std::vector<std::string>& entries) {
   for (const char* best : {"manual", "off"}) {
     for (const auto& entry : entries) {
-      if (lower(entry) == best) return entry;
+      if (lower_case(entry) == best) return entry;
     }
   }
   for (const auto& entry : entries) {
-    if (!contains_any(lower(entry), {"auto", "extern", "period", "on", "time", "temp"})) return entry;
+    if (!contains_any(lower_case(entry), {"auto", "extern", "period", "on", "time", "temp"})) return entry;
   }
   return {};
 }

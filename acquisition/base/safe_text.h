@@ -20,5 +20,7 @@ inline constexpr std::size_t longest_shown_line = 4000;
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = longest_shown_line);
 /// Finished JSON with the characters that valid_text() replaces as \u escapes. They occur only inside its strings.
 [[nodiscard]] std::string escaped_json(std::string_view json);
+/// Returns the text with the letters A to Z as a to z, in every locale.
+[[nodiscard]] std::string lower_case(std::string_view text);
 
 }  // namespace todbench

@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 #include "acquisition/base/descriptor.h"
+#include "acquisition/base/safe_text.h"
 
 namespace todbench {
 namespace {
@@ -41,8 +42,7 @@ Result<DescriptionUrl> parse_description_url(std::string_view url) {
   const auto refused = [&](const std::string& why) {
     return fail(ErrorCode::not_found, "the camera states its description as '" + printable(url) + "': " + why);
   };
-  std::string scheme(url.substr(0, url.find(':')));
-  std::transform(scheme.begin(), scheme.end(), scheme.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string scheme = lower_case(url.substr(0, url.find(':')));
   if (scheme.size() >= url.size() || (scheme != "file" && scheme != "local")) {
     return refused("only descriptions stored in the camera or in a file are supported");
   }

@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <optional>
 
+#include "acquisition/base/safe_text.h"
+
 namespace todbench {
 namespace {
 
@@ -213,8 +215,7 @@ IntegerRange Parser::name() {
   }
   const std::string word(text_.substr(at_, end - at_));
   at_ = end;
-  std::string lower = word;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string lower = lower_case(word);
   skip_blanks();
   if (std::find(functions.begin(), functions.end(), lower) != functions.end() && at_ < text_.size() &&
       text_[at_] == '(') {

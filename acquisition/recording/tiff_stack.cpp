@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/base/safe_text.h"
 #include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/recording/tiff_file.h"
@@ -221,8 +222,7 @@ Result<RecordedFrame> read_frame(PageReader& pages, const ValueCounts& conversio
 }  // namespace
 
 bool has_tiff_name(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_case(path.extension().string());
   return extension == ".tif" || extension == ".tiff";
 }
 

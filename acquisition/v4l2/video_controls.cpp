@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cstring>
 
+#include "acquisition/base/safe_text.h"
+
 namespace todbench {
 namespace {
 
@@ -129,8 +131,7 @@ Result<void> set_control(const VideoDevice& device, const VideoControl& control,
 const VideoControl* nonuniformity_button(const std::vector<VideoControl>& controls) {
   for (const auto& control : controls) {
     if (control.type != V4L2_CTRL_TYPE_BUTTON || !control.writable) continue;
-    std::string name = control.name;
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string name = lower_case(control.name);
     for (const char* word : {"nuc", "ffc", "shutter", "flatfield", "nonuniformity", "calibrat"}) {
       if (name.find(word) != std::string::npos) return &control;
     }

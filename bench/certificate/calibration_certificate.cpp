@@ -90,7 +90,7 @@ Result<void> check_session_state(const Session& session) {
   const auto wrong = [](const std::string& why) { return fail(ErrorCode::invalid_input, why); };
   if (session.cut_off || !session.complete())
     return wrong("the run ended early: a certificate needs a complete session");
-  const auto contradictions = contradicted_instruments(session.provenance.instruments, session.provenance.target);
+  const auto contradictions = contradicted_instruments(session.plan.instruments, session.provenance.target);
   if (!contradictions.empty()) return wrong(contradictions.front());
   if (session.provenance.side != Side::measured || !session.provenance.camera)
     return wrong("no camera was measured: a simulation gets no certificate");
@@ -255,11 +255,13 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 9> si_units{
 constexpr double normal_k95 = 1.96;
 
 /// A physical measure: its interval with the budget, else its statistical interval. Empty if it has no two-sided
-/// interval or no D-SI unit.
+/// interval, an interval of no width (values of the plan and of the sensor model, numbers of pixels: no measurement
+/// with an uncertainty) or no D-SI unit.
 Result<Markup> measure_result(const MeasureLine& line) {
   const Interval& interval = line.expanded.value_or(line.ci95);
   const auto unit = std::find_if(si_units.begin(), si_units.end(), [&](const auto& u) { return u.first == line.unit; });
-  if (!line.value || !interval.low || !interval.high || unit == si_units.end()) return Markup{};
+  if (!line.value || !interval.low || !interval.high || *interval.low == *interval.high || unit == si_units.end())
+    return Markup{};
   const Quantity* known = find_quantity(line.measure);
   TODBENCH_TRY(const Markup value, quantity(line.measure, unit->second, *line.value,
                                             CertifiedUncertainty{half_width(*line.value, interval), normal_k95}));

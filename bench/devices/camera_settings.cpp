@@ -7,16 +7,11 @@
 #include <cmath>
 #include <optional>
 
+#include "acquisition/base/safe_text.h"
 #include "acquisition/core/control_text.h"
 
 namespace todbench {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::ranges::transform(out, out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
 
 std::optional<bool> switch_of(const std::string& text) {
   if (text == "1" || text == "true" || text == "on") return true;
@@ -28,7 +23,7 @@ std::optional<bool> switch_of(const std::string& text) {
 bool may_change(std::string_view feature) {
   constexpr std::array names{"DeviceTemperature", "SensorTemperature", "HousingTemperature", "SocketBufferBytes",
                              "DeadPixels"};
-  return std::ranges::find(names, feature) != names.end() || lower(feature).find("nuc") != std::string::npos;
+  return std::ranges::find(names, feature) != names.end() || lower_case(feature).find("nuc") != std::string::npos;
 }
 
 }  // namespace
@@ -41,12 +36,12 @@ bool scales_counts(std::string_view feature) {
                              "irformat",  "tlinear",      "exposure",    "integration", "emissivity",
                              "reflected", "transmission", "atmos",       "humidity",    "objectdist",
                              "extoptics", "windowtemp",   "radiometr",   "offset_k",    "kelvin"};
-  const std::string name = lower(feature);
+  const std::string name = lower_case(feature);
   return std::ranges::any_of(words, [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
 bool same_setting(std::string_view written, std::string_view read) {
-  const std::string a = lower(written), b = lower(read);
+  const std::string a = lower_case(written), b = lower_case(read);
   if (a == b) return true;
   if (const auto one = switch_of(a), other = switch_of(b); one && other) return *one == *other;
   const auto one = control_number(a), other = control_number(b);

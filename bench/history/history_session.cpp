@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "acquisition/base/normal.h"
+#include "acquisition/base/safe_text.h"
 #include "acquisition/base/try.h"
 #include "acquisition/core/serial_number.h"
 #include "bench/plan/strict_toml.h"
@@ -53,9 +54,7 @@ std::optional<double> number_at(const Json& json, const char* key) {
 std::string lens_of(const Json& camera) {
   if (!camera.contains("settings") || !camera["settings"].is_object()) return "";
   for (const auto& [name, value] : camera["settings"].items()) {
-    std::string lower;
-    for (const char c : name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (lower.starts_with("lens") && value.is_string()) return value.get<std::string>();
+    if (lower_case(name).starts_with("lens") && value.is_string()) return value.get<std::string>();
   }
   return "";
 }

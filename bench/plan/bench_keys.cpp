@@ -386,11 +386,24 @@ PlanSection instrument_section() {
                 "Last day on which the calibration is valid, YYYY-MM-DD. If it has passed, the measurement is rejected",
             .place = in_row(rows, &InstrumentPlan::calibration_due),
             .check = check_due_date},
+           {.name = "role",
+            .type = ChoiceKey{names_of(all_instrument_roles)},
+            .sentence = "Part of the instrument on the bench. The serial number is compared with that of the "
+                        "instrument that answers. by name: the name contains black body or plate stage",
+            .place = in_row(rows, &InstrumentPlan::role),
+            .written_at_default = false},
            {.name = "dcc",
             .type = TextKey{},
-            .sentence = "Digital calibration certificate of a black body (XML). The file gives the serial number, the "
-                        "number of the certificate and the row of the uncertainty budget, which the session keeps",
+            .sentence = "Digital calibration certificate of the instrument (XML). The file gives the serial number "
+                        "and the number of the certificate, and for a black body the row of the uncertainty budget. "
+                        "The session keeps these numbers",
             .place = in_row(rows, &InstrumentPlan::dcc),
+            .written_at_default = false},
+           {.name = "dcc_quantity",
+            .type = TextKey{},
+            .sentence = "Name of the quantity of that certificate whose largest uncertainty is the calibration of the "
+                        "black body. Empty: the largest of all its temperatures",
+            .place = in_row(rows, &InstrumentPlan::dcc_quantity),
             .written_at_default = false}},
       .rows = rows_of(rows),
       .form = {"Instruments", "planInstruments"}};

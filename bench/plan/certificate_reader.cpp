@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "acquisition/base/safe_text.h"
 #include "acquisition/base/try.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
@@ -94,9 +95,11 @@ Result<void> add_list(const std::string& name, const XmlElement& list, Instrumen
   return {};
 }
 
-/// Collects the quantities with an expanded uncertainty below an element. parse_xml() limits the depth.
+/// Collects the quantities with an expanded uncertainty below an element, without conditions of the measurement.
+/// parse_xml() limits the depth.
 Result<void> collect(const XmlElement& element, InstrumentCertificate& out) {
   for (const XmlElement& child : element.children) {
+    if (child.name == "influenceConditions") continue;
     if (child.name != "quantity") {
       if (auto found = collect(child, out); !found) return found;
       continue;
@@ -117,14 +120,11 @@ Result<void> collect(const XmlElement& element, InstrumentCertificate& out) {
   return {};
 }
 
-std::string serial_of(const XmlElement& administration) {
-  const XmlElement* items = administration.child("items");
-  const XmlElement* item = items == nullptr ? nullptr : items->child("item");
-  const XmlElement* identifications = item == nullptr ? nullptr : item->child("identifications");
+std::string serial_of(const XmlElement& item) {
+  const XmlElement* identifications = item.child("identifications");
   if (identifications == nullptr) return {};
   for (const XmlElement& one : identifications->children) {
-    std::string name = name_of(one);
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string name = lower_case(name_of(one));
     if (name.find("serial") != std::string::npos || name.find("serien") != std::string::npos)
       return one.text_of("value");
   }
@@ -163,27 +163,44 @@ Result<InstrumentCertificate> parse_certificate(std::string_view xml) {
   InstrumentCertificate out;
   if (const XmlElement* core = administration->child("coreData")) out.number = core->text_of("uniqueIdentifier");
   if (out.number.empty()) return fail(ErrorCode::invalid_input, "the certificate has no unique identifier");
-  out.serial = serial_of(*administration);
+  const XmlElement* items = administration->child("items");
+  if (const XmlElement* item = items == nullptr ? nullptr : items->child("item")) {
+    out.item = name_of(*item);
+    out.serial = serial_of(*item);
+  }
   if (auto collected = collect(*results, out); !collected) return tl::unexpected(collected.error());
   return out;
 }
 
-Result<BudgetRow> black_body_row(const InstrumentCertificate& certificate, const std::string& file) {
+Result<BudgetRow> black_body_row(const InstrumentCertificate& certificate, const std::string& quantity,
+                                 const std::string& file) {
   const CertifiedValue* widest = nullptr;
   double widest_k = -1;
+  std::string names;
   for (const CertifiedValue& one : certificate.values) {
+    if (one.unit.find("\\radian") != std::string::npos)
+      return fail(ErrorCode::invalid_input, "the certificate of " + one_line(certificate.item) + " states angles (" +
+                                                one_line(one.name) + "): it is not that of a black body");
     const auto kelvin = kelvin_in(one.unit);
-    if (!kelvin || one.uncertainty * *kelvin / one.coverage_factor <= widest_k) continue;
+    if (!kelvin) continue;
+    names += (names.empty() ? "" : "; ") + one_line(one.name);
+    if (!quantity.empty() && one.name != quantity) continue;
+    const double standard_k = one.uncertainty * *kelvin / one.coverage_factor;
+    if (standard_k <= widest_k) continue;
     widest = &one;
-    widest_k = one.uncertainty * *kelvin / one.coverage_factor;
+    widest_k = standard_k;
   }
   if (widest == nullptr)
-    return fail(ErrorCode::invalid_input, "no temperature of the certificate has an expanded uncertainty");
+    return fail(ErrorCode::invalid_input,
+                names.empty() ? "no temperature of the certificate has an expanded uncertainty"
+                              : "the certificate has no temperature named '" + quantity + "', but: " + names);
   return BudgetRow{.name = "black body calibration",
                    .value = widest->uncertainty * *kelvin_in(widest->unit),
                    .coverage_factor = widest->coverage_factor,
                    .unit = "K",
-                   .source = "DCC " + one_line(file) + ", " + one_line(widest->name),
+                   .source = "DCC " + one_line(file) + ", " +
+                             (certificate.item.empty() ? "" : one_line(certificate.item) + ", ") +
+                             one_line(widest->name),
                    .certificate = one_line(certificate.number),
                    .enters = BudgetInput::black_body_calibration};
 }
@@ -200,16 +217,28 @@ Result<void> apply_certificate(Plan& plan, std::size_t row, const std::filesyste
   if (!read) return fail(file.string(), read.error());
   if (auto joined = join(instrument.serial, read->serial, "serial number"); !joined) return joined;
   if (auto joined = join(instrument.certificate, read->number, "number"); !joined) return joined;
-  const auto& rows = plan.uncertainty.rows;
-  const bool stated = std::any_of(rows.begin(), rows.end(), [](const BudgetRow& one) {
-    return input_of(one) == BudgetInput::black_body_calibration;
-  });
-  if (stated)
-    return fail(ErrorCode::invalid_input,
-                "the budget has a row for the calibration of the black body already: leave out that row, or the file");
-  TODBENCH_TRY(BudgetRow added, black_body_row(*read, file.filename().string() + ", SHA-256 " + sha256_of(text)));
-  plan.uncertainty.rows.push_back(std::move(added));
+  if (role_of(instrument) == InstrumentRole::black_body) {
+    const auto& rows = plan.uncertainty.rows;
+    const bool stated = std::any_of(rows.begin(), rows.end(), [](const BudgetRow& one) {
+      return input_of(one) == BudgetInput::black_body_calibration;
+    });
+    if (stated)
+      return fail(
+          ErrorCode::invalid_input,
+          "the budget has a row for the calibration of the black body already: leave out that row, or the file");
+    TODBENCH_TRY(BudgetRow added, black_body_row(*read, instrument.dcc_quantity,
+                                                 file.filename().string() + ", SHA-256 " + sha256_of(text)));
+    plan.uncertainty.rows.push_back(std::move(added));
+  } else if (instrument.role == InstrumentRole::by_name) {
+    return fail(ErrorCode::invalid_input, "'" + one_line(instrument.name) +
+                                              "' has no role: state role = \"black body\", whose uncertainty enters "
+                                              "the budget, \"plate stage\" or \"other\"");
+  } else if (!instrument.dcc_quantity.empty()) {
+    return fail(ErrorCode::invalid_input, "dcc_quantity is for the role \"black body\" only: the uncertainty of no "
+                                          "other instrument is taken from its certificate");
+  }
   instrument.dcc.clear();
+  instrument.dcc_quantity.clear();
   return {};
 }
 

@@ -57,6 +57,9 @@ constexpr const auto& values_of(const ModulePlace&) {
 constexpr const auto& values_of(const PlaceSource&) {
   return all_place_sources;
 }
+constexpr const auto& values_of(const InstrumentRole&) {
+  return all_instrument_roles;
+}
 constexpr const auto& values_of(const ContrastUnit&) {
   return all_contrast_units;
 }

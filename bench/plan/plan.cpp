@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "acquisition/base/normal.h"
+#include "acquisition/base/safe_text.h"
 #include "bench/plan/joined_uncertainty.h"
 
 namespace todbench {
@@ -16,6 +17,14 @@ double widened(const JoinedUncertainty& joined) {
 }
 
 }  // namespace
+
+InstrumentRole role_of(const InstrumentPlan& instrument) {
+  if (instrument.role != InstrumentRole::by_name) return instrument.role;
+  const std::string name = lower_case(instrument.name);
+  for (const InstrumentRole role : {InstrumentRole::black_body, InstrumentRole::plate_stage})
+    if (name.find(to_string(role)) != std::string::npos) return role;
+  return InstrumentRole::other;
+}
 
 std::string_view to_string(ScheduleKind kind) {
   switch (kind) {

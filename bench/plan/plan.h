@@ -390,6 +390,25 @@ struct ReportPlan {
   bool operator==(const ReportPlan&) const = default;
 };
 
+/// Part of an instrument on the bench.
+enum class InstrumentRole {
+  by_name,     ///< not stated: the name of the row contains "black body" or "plate stage", or it is another instrument
+  black_body,  ///< its calibration enters the uncertainty budget
+  plate_stage,
+  other,  ///< the report lists it
+};
+inline constexpr std::array all_instrument_roles{InstrumentRole::by_name, InstrumentRole::black_body,
+                                                 InstrumentRole::plate_stage, InstrumentRole::other};
+[[nodiscard]] constexpr std::string_view to_string(InstrumentRole role) {
+  switch (role) {
+    case InstrumentRole::by_name: return "by name";
+    case InstrumentRole::black_body: return "black body";
+    case InstrumentRole::plate_stage: return "plate stage";
+    case InstrumentRole::other: break;
+  }
+  return "other";
+}
+
 /// Row of [[instrument]]: instrument on whose calibration the result depends. Printed in the report; an expired due
 /// date prevents the measurement.
 struct InstrumentPlan {
@@ -397,8 +416,13 @@ struct InstrumentPlan {
   std::string calibration_due;  ///< "YYYY-MM-DD", the last valid day; empty: no due date
   /// Digital calibration certificate. Empty in a plan that was read: the numbers of the file are then in the plan.
   std::string dcc{};
+  std::string dcc_quantity{};  ///< quantity of that certificate that is the calibration; empty: all temperatures
+  InstrumentRole role = InstrumentRole::by_name;
   bool operator==(const InstrumentPlan&) const = default;
 };
+
+/// Returns the role of an instrument: the stated one, or that of its name; never `by_name`.
+[[nodiscard]] InstrumentRole role_of(const InstrumentPlan& instrument);
 
 /// Complete plan with all defaults filled in.
 struct Plan {

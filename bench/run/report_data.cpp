@@ -63,9 +63,13 @@ void add_provenance(ReportData& data, const Provenance& provenance) {
     data.provenance.emplace_back("Module (" + module.place + ")", std::move(text));
   }
   for (const auto& instrument : provenance.instruments) {
-    data.conditions.emplace_back(instrument.name,
-                                 "serial " + instrument.serial + ", certificate " + instrument.certificate +
-                                     (instrument.calibration_due.empty() ? "" : ", due " + instrument.calibration_due));
+    std::string stated;
+    for (const auto& [words, value] : {std::pair{"serial ", &instrument.serial},
+                                       {"certificate ", &instrument.certificate},
+                                       {"due ", &instrument.calibration_due}}) {
+      if (!value->empty()) stated += (stated.empty() ? "" : ", ") + std::string(words) + *value;
+    }
+    data.conditions.emplace_back(instrument.name, stated.empty() ? "no serial number or certificate stated" : stated);
   }
 }
 

@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <cctype>
 
+#include "acquisition/base/safe_text.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 namespace {
 
 constexpr std::string_view serial_mark = ", serial ";
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });
-  return out;
-}
 
 }  // namespace
 
@@ -44,7 +39,7 @@ std::vector<std::string> contradicted_instruments(std::span<const InstrumentPlan
     const auto same = [&](const InstrumentPlan& row) { return row.serial == answered.serial; };
     if (std::any_of(rows.begin(), rows.end(), same)) continue;
     for (const InstrumentPlan& row : rows) {
-      if (row.serial.empty() || lower(row.name).find(lower(answered.role)) == std::string::npos) continue;
+      if (row.serial.empty() || lower_case(answered.role) != to_string(role_of(row))) continue;
       sentences.push_back("the " + answered.role + " that answered has the serial number " + one_line(answered.serial) +
                           ", but [[instrument]] '" + one_line(row.name) + "' states " + one_line(row.serial) +
                           (row.certificate.empty() ? "" : ", certificate " + one_line(row.certificate)) +

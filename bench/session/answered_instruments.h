@@ -22,7 +22,7 @@ struct AnsweredInstrument {
 [[nodiscard]] std::vector<AnsweredInstrument> answered_instruments(std::string_view target);
 
 /// Returns a sentence for each instrument that answered with a serial number that no row states, if a row with a
-/// serial number has its role in its name: that row states the calibration of another instrument.
+/// serial number has its role: that row states the calibration of another instrument.
 [[nodiscard]] std::vector<std::string> contradicted_instruments(std::span<const InstrumentPlan> rows,
                                                                 std::string_view target);
 

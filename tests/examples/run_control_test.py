@@ -142,6 +142,13 @@ class Certificate(unittest.TestCase):
         self.assertEqual(made.returncode, 0, made.stderr)
         self.assertEqual(other.read_bytes(), self.xml.read_bytes())
 
+    def test_every_result_with_an_uncertainty_was_measured(self):
+        root = ElementTree.parse(self.xml).getroot()
+        found = root.findall(".//dcc:result//si:expandedUnc/si:uncertainty", NAMES)
+        self.assertGreater(len(found), 3)
+        for uncertainty in found:
+            self.assertGreater(float(uncertainty.text), 0, "a value of the plan or of the sensor model")
+
     def test_it_contains_the_physical_measures_with_their_intervals(self):
         lines = json.loads((self.session / "measures.json").read_text())["main"]["quantities"]
         noise = next(line for line in lines if line["measure"] == "temporal_noise")

@@ -7,9 +7,12 @@
 namespace todbench {
 namespace {
 
-/// The demonstration, or an empty plan if it cannot be read.
+/// A shipped plan of the emulated laboratory, or an empty plan if it cannot be read.
+Plan example(const char* name) {
+  return load_plan(name).value_or(Plan{});
+}
 Plan demonstration() {
-  return load_plan("demo").value_or(Plan{});
+  return example("demo");
 }
 
 /// A plan without statements about a laboratory.
@@ -41,6 +44,9 @@ void replace_laboratory(Plan& plan, const Plan& from, const Plan& to) {
   replace(plan.target.contrast_change_s, from.target.contrast_change_s, to.target.contrast_change_s);
   replace(plan.target.shift_change_s, from.target.shift_change_s, to.target.shift_change_s);
   replace(plan.limits.acuity, from.limits.acuity, to.limits.acuity);
+  replace(plan.limits.measures, from.limits.measures, to.limits.measures);
+  replace(plan.limits.zones, from.limits.zones, to.limits.zones);
+  replace(plan.uncertainty.rows, from.uncertainty.rows, to.uncertainty.rows);
 }
 
 Result<double> sensor_ifov_mrad(const std::string& name) {
@@ -53,7 +59,7 @@ Result<double> sensor_ifov_mrad(const std::string& name) {
 
 Plan plan_for_camera(Plan plan, const std::string& id) {
   const Plan demo = demonstration();
-  replace_laboratory(plan, demo, unstated());
+  for (const Plan& from : {demo, example("acceptance")}) replace_laboratory(plan, from, unstated());
   if (plan.camera.id != id) {
     const CameraPlan before = plan.camera;
     plan.camera = {};
@@ -87,7 +93,7 @@ Plan plan_for_laboratory(Plan plan) {
 Result<Plan> plan_for_sensor(Plan plan, const std::string& name) {
   auto ifov_mrad = sensor_ifov_mrad(name);
   if (!ifov_mrad) return tl::unexpected(ifov_mrad.error());
-  replace_words(plan, demonstration(), Plan{});
+  for (const Plan& from : {demonstration(), example("acceptance")}) replace_words(plan, from, Plan{});
   plan.camera.id = camera_id(camera_scheme::sim, name);
   plan.camera.ifov_mrad = *ifov_mrad;
   plan.target.kind = TargetKind::scene;

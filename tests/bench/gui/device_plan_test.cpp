@@ -44,6 +44,28 @@ TEST(PlanForCamera, KeepsNothingOfTheDemonstration) {
   EXPECT_TRUE(back == demo) << "the way back";
 }
 
+TEST(PlanForCamera, KeepsNoLimitAndNoBudgetOfTheAcceptancePlan) {
+  const auto acceptance = load_plan("acceptance");
+  ASSERT_TRUE(acceptance);
+  ASSERT_FALSE(acceptance->limits.measures.empty());
+  ASSERT_FALSE(acceptance->limits.zones.empty());
+
+  const Plan plan = plan_for_camera(*acceptance, "gige:Maker-0815");
+
+  EXPECT_EQ(plan.description, "");
+  EXPECT_EQ(plan.unit, "");
+  EXPECT_TRUE(plan.limits.acuity.empty());
+  EXPECT_TRUE(plan.limits.measures.empty()) << "IFOV and NETD of another camera";
+  EXPECT_TRUE(plan.limits.zones.empty());
+  EXPECT_TRUE(plan.uncertainty.rows.empty()) << "certificates of a laboratory that does not exist";
+  EXPECT_TRUE(plan.uncertainty.require) << "the budget that the plan demands has to be stated";
+  EXPECT_TRUE(plan.measures.mtf) << "the test itself stays";
+
+  Plan mine = *acceptance;
+  mine.uncertainty.rows.front().value += 1;
+  EXPECT_EQ(plan_for_camera(mine, "gige:Maker-0815").uncertainty, mine.uncertainty);
+}
+
 TEST(PlanForCamera, KeepsTheStatementsOfTheUser) {
   Plan mine = demo_plan();
   mine.operator_name = "A. Example";

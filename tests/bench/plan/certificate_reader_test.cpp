@@ -74,6 +74,47 @@ TEST(CertificateReader, PutsTheLargestUncertaintyOfATemperatureIntoTheBudget) {
   EXPECT_EQ(*again, plan);
 }
 
+TEST(CertificateReader, TakesTheQuantityThatThePlanNames) {
+  const TemporaryFolder folder;
+
+  const auto loaded = plan_with(folder,
+                                "[[instrument]]\nname = \"Schwarzer Strahler\"\nrole = \"black body\"\n"
+                                "dcc = \"bb.xml\"\ndcc_quantity = \"temperature difference\"\n",
+                                black_body_dcc());
+
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  ASSERT_EQ(loaded->plan().uncertainty.rows.size(), 1u);
+  EXPECT_DOUBLE_EQ(loaded->plan().uncertainty.rows[0].value, 0.012);
+  EXPECT_THAT(loaded->plan().uncertainty.rows[0].source,
+              ::testing::EndsWith("Differential black body, temperature difference"));
+}
+
+TEST(CertificateReader, OfAnotherInstrumentGivesItsIdentityOnly) {
+  const TemporaryFolder folder;
+
+  const auto loaded = plan_with(folder, "[[instrument]]\nname = \"thermometer\"\nrole = \"other\"\ndcc = \"bb.xml\"\n",
+                                black_body_dcc());
+
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_TRUE(loaded->plan().uncertainty.rows.empty());
+  EXPECT_EQ(loaded->plan().instruments[0].serial, "BB-17");
+}
+
+TEST(CertificateReader, IgnoresTheConditionsOfTheMeasurement) {
+  std::string text = black_body_dcc();
+  const std::string room = "<si:value>23.1</si:value><si:unit>\\degreecelsius</si:unit>";
+  const auto at = text.find(room);
+  ASSERT_NE(at, std::string::npos);
+  text.insert(at + room.size(),
+              "<si:expandedUnc><si:uncertainty>0.5</si:uncertainty><si:coverageFactor>2"
+              "</si:coverageFactor></si:expandedUnc>");
+
+  const auto read = parse_certificate(text);
+
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->values.size(), 4u);
+}
+
 TEST(CertificateReader, RejectsAFileThatContradictsThePlan) {
   const TemporaryFolder folder;
   const std::string instrument = "[[instrument]]\nname = \"black body\"\ndcc = \"bb.xml\"\n";
@@ -94,6 +135,20 @@ TEST(CertificateReader, RejectsAFileThatContradictsThePlan) {
   EXPECT_THAT(mistake(instrument, "<!DOCTYPE a [<!ENTITY b \"b\">]><a>&b;</a>"),
               HasSubstr("document type declaration"));
   EXPECT_THAT(mistake("[[instrument]]\nname = \"b\"\ndcc = \"none.xml\"\n", ""), HasSubstr("none.xml"));
+  EXPECT_THAT(mistake("[[instrument]]\nname = \"thermometer\"\ndcc = \"bb.xml\"\n", black_body_dcc()),
+              HasSubstr("'thermometer' has no role"));
+  EXPECT_THAT(mistake("[[instrument]]\nname = \"thermometer\"\nrole = \"other\"\ndcc = \"bb.xml\"\n"
+                      "dcc_quantity = \"temperature difference\"\n",
+                      black_body_dcc()),
+              HasSubstr("dcc_quantity is for the role \"black body\" only"));
+  EXPECT_THAT(mistake(instrument + "dcc_quantity = \"radiance\"\n", black_body_dcc()),
+              HasSubstr("no temperature named 'radiance', but: temperature difference; temperature difference, list"));
+  std::string camera = black_body_dcc();
+  for (std::size_t at = camera.find("ohm"); at != std::string::npos; at = camera.find("ohm"))
+    camera.replace(at, 3, "milli\\radian");
+  EXPECT_THAT(mistake(instrument, camera),
+              HasSubstr("states angles (sensor resistance): it is not that of a black body"))
+      << "the certificate of a camera has temperatures, too: NETD, shading";
   std::string other = black_body_dcc();
   for (std::size_t at = other.find("kelvin"); at != std::string::npos; at = other.find("kelvin"))
     other.replace(at, 6, "metre");

@@ -34,6 +34,13 @@ TEST(AnsweredInstruments, ACertificateOfAnotherInstrumentIsNamed) {
               IsEmpty());
   EXPECT_THAT(contradicted_instruments(std::vector<InstrumentPlan>{{"black body", "", "C-2", ""}}, lab), IsEmpty())
       << "no serial number is stated";
+  InstrumentPlan named{"Schwarzer Strahler", "BB-17", "C-2", ""};
+  EXPECT_THAT(contradicted_instruments(std::vector{named}, lab), IsEmpty()) << "the name has no role";
+  named.role = InstrumentRole::black_body;
+  EXPECT_EQ(contradicted_instruments(std::vector{named}, lab).size(), 1u);
+  named.name = "thermometer of the black body";
+  named.role = InstrumentRole::other;
+  EXPECT_THAT(contradicted_instruments(std::vector{named}, lab), IsEmpty());
   EXPECT_THAT(contradicted_instruments(other, "black body (CI Systems SR-800)"), IsEmpty())
       << "an instrument without a serial number";
 }
