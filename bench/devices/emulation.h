@@ -27,7 +27,7 @@ struct EmulationArguments {
   std::string sensor = "sc2000";  ///< name or file
   std::string interface_address = "127.0.0.1";
   std::string serial = "TB0001";
-  std::vector<std::string> plates{"tcat-a", "tcat-b"};
+  std::vector<std::string> plates{"tcat-a", "tcat-b", "edge", "bars", "apertures", "mrtd", "open"};  ///< all shipped
   double distance_m = 2;
   std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses
   /// Standard deviation of the stage position while the stage moves.

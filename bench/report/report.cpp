@@ -88,6 +88,7 @@ Document report_document(const ReportData& data) {
   add(order_section(data));
   add(identification_section(data));
   add(limits_section(data));
+  add(signature_section(data));
   const bool curve = data.measured || data.simulated || !data.measures;
   if (curve) add(curve_section(data));
   add(uncertainty_section(data));
@@ -112,7 +113,6 @@ Document report_document(const ReportData& data) {
   add(notes_section(data));
   add(statements_section(data));
   add(closing_section(data));
-  add(signature_section(data));
   add(answers_section(data));
   if (data.letterhead) add_letterhead(*data.letterhead, document);
   return document;

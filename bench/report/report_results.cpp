@@ -185,7 +185,9 @@ const TodPoint* point_of(const std::optional<TodCurve>& curve, double contrast) 
 RichText limit_cell(const Demand& demand) {
   const LimitSide side = row_of(demand.kind).side;
   if (side == LimitSide::none || !demand.limit || !std::isfinite(*demand.limit)) return missing("no limit value");
-  return unbroken((side == LimitSide::at_least ? "≥ " : "≤ ") + stated(*demand.limit));
+  const std::string_view unit = row_of(demand.kind).unit;
+  return unbroken((side == LimitSide::at_least ? "≥ " : "≤ ") + stated(*demand.limit) +
+                  (unit.empty() || unit == "1" ? "" : " " + std::string(unit)));
 }
 
 /// The column header states 95 %; another confidence is stated with the number.
@@ -198,21 +200,32 @@ RichText result_cell(const Demand& demand) {
 
 /// Names conditional decisions, and states the risks of the decision.
 RichText conformity_words(const Demand& demand) {
-  std::string text;
+  std::vector<std::string> parts;
   if (demand.conformity == ConformityDecision::conditional_pass ||
       demand.conformity == ConformityDecision::conditional_fail)
-    text += "; " + std::string(to_string(*demand.conformity));
-  if (demand.p_conformity) text += "; probability of conformity " + probability(*demand.p_conformity);
-  if (const auto risk = demand.consumer_risk()) text += ", consumer's risk " + probability(*risk);
-  if (const auto risk = demand.producer_risk()) text += ", producer's risk " + probability(*risk);
+    parts.emplace_back(to_string(*demand.conformity));
+  std::string risks;
+  if (demand.p_conformity) risks = "probability of conformity " + probability(*demand.p_conformity);
+  if (const auto risk = demand.consumer_risk()) risks += ", consumer's risk " + probability(*risk);
+  if (const auto risk = demand.producer_risk()) risks += ", producer's risk " + probability(*risk);
+  if (!risks.empty()) parts.push_back(std::move(risks));
   if (const auto& fleet = demand.fleet) {
-    text += "; with the fleet of " + std::to_string(fleet->units) + " earlier units: probability of conformity " +
-            probability(fleet->p_conformity) + "; over the fleet, probability of a wrong acceptance " +
-            probability(fleet->consumer_risk) + " (at most " + probability(fleet->consumer_risk_most) +
-            "), of a wrong rejection " + probability(fleet->producer_risk) + " (at most " +
-            probability(fleet->producer_risk_most) + ")";
+    parts.push_back("with the fleet of " + std::to_string(fleet->units) + " earlier units: probability of conformity " +
+                    probability(fleet->p_conformity) + "; over the fleet, probability of a wrong acceptance " +
+                    probability(fleet->consumer_risk) + " (at most " + probability(fleet->consumer_risk_most) +
+                    "), of a wrong rejection " + probability(fleet->producer_risk) + " (at most " +
+                    probability(fleet->producer_risk_most) + ")");
   }
-  return plain(text);
+  return parts.empty() ? RichText{} : plain(fmt::format("{}", fmt::join(parts, "; ")));
+}
+
+/// The reason of a decision and its risks. The reason of a pass is in the columns beside it: interval and limit.
+RichText reason_cell(const Demand& demand) {
+  const RichText risks = demand.conformity ? conformity_words(demand) : RichText{};
+  if (demand.decision == VerdictKind::pass && demand.p_conformity && demand.kind != DemandKind::equivalence)
+    return risks;
+  RichText reason = text_or_missing(demand.reason, "none given");
+  return risks.phrases.empty() ? reason : reason + plain("; ") + risks;
 }
 
 /// Returns the result with the interval of the finite number of trials.
@@ -301,6 +314,24 @@ Headline headline(ReportVerdict verdict) {
   return {"NO VERDICT", "The plan has no limits. This report states results only.", Mood::open};
 }
 
+/// Returns the demand on which the decision rests: of those with this decision, the one with the smallest probability
+/// of conformity; the first if none has one. Null: no demand decides.
+const Demand* deciding_demand(const Verdict& verdict) {
+  const Demand* least = nullptr;
+  for (const Demand& demand : verdict.demands) {
+    if (demand.decision != verdict.decision || demand.kind == DemandKind::identified) continue;
+    if (least == nullptr || demand.p_conformity.value_or(1) < least->p_conformity.value_or(1)) least = &demand;
+  }
+  return least;
+}
+
+/// "75 % acuity at 0.23 K: 0.29 [0.28, 0.30] 1/mrad, limit ≥ 0.2"
+RichText deciding_words(const Demand& demand) {
+  RichText text = plain(title(demand) + ": ") + result_cell(demand);
+  if (row_of(demand.kind).side != LimitSide::none && demand.limit) text += plain(", limit ") + limit_cell(demand);
+  return text;
+}
+
 /// Returns the remark about one interruption of a run, shown with the verdict.
 RichText resumption(const Interruption& loss, std::size_t segment) {
   return strong("Interrupted and resumed:") +
@@ -322,6 +353,11 @@ VerdictBox verdict_box(const ReportData& data) {
   const ReportVerdict verdict = report_verdict(data);
   const Headline found = headline(verdict);
   VerdictBox box{found.word, found.mood, {plain(found.sentence)}};
+  const bool decided =
+      verdict == ReportVerdict::pass || verdict == ReportVerdict::fail || verdict == ReportVerdict::inconclusive;
+  if (const Demand* demand = decided && data.verdict ? deciding_demand(*data.verdict) : nullptr)
+    box.paragraphs.push_back(strong(verdict == ReportVerdict::pass ? "Closest to its limit:" : "Decided by:") +
+                             plain(" ") + deciding_words(*demand));
   if (data.revision)
     box.paragraphs.push_back(
         strong("Revision " + std::to_string(data.revision->number) + " of " + data.revision->utc + ":") +
@@ -360,20 +396,14 @@ Section limits_section(const ReportData& data) {
   Table rows;
   // Decisions in changed files are not verdicts.
   const bool believed = report_verdict(data) != ReportVerdict::changed;
-  rows.header = {"Quantity",
-                 "Unit",
-                 "Limit",
-                 expanded ? "Result [expanded 95 %]" : "Result [95 %]",
-                 believed ? "Verdict" : "Decision in the files",
-                 "Reason"};
-  if (expanded) rows.header.insert(rows.header.begin() + 4, "Statistical [95 %]");
+  rows.header = {"Quantity", "Limit", expanded ? "Result [expanded 95 %]" : "Result [95 %]",
+                 believed ? "Verdict" : "Decision in the files", "Reason"};
+  if (expanded) rows.header.insert(rows.header.begin() + 3, "Statistical [95 %]");
   for (const Demand& demand : demands) {
     const std::string decision(to_string(demand.decision));
-    rows.rows.push_back({plain(title(demand)), plain(row_of(demand.kind).unit), limit_cell(demand), result_cell(demand),
-                         believed ? badge(decision, mood_of(demand.decision)) : plain(decision),
-                         text_or_missing(demand.reason, "none given")});
-    if (demand.conformity) rows.rows.back().back() += conformity_words(demand);
-    if (expanded) rows.rows.back().insert(rows.rows.back().begin() + 4, statistical_cell(demand));
+    rows.rows.push_back({plain(title(demand)), limit_cell(demand), result_cell(demand),
+                         believed ? badge(decision, mood_of(demand.decision)) : plain(decision), reason_cell(demand)});
+    if (expanded) rows.rows.back().insert(rows.rows.back().begin() + 3, statistical_cell(demand));
   }
   section.blocks.emplace_back(std::move(rows));
   if (data.verdict->not_stated && !data.verdict->not_stated->empty()) {

@@ -2,25 +2,25 @@
 #include "bench/gui/presenters/document_text.h"
 
 #include <QByteArray>
-#include <QFontMetricsF>
 #include <QImage>
-#include <QRegularExpression>
 #include <QTextCursor>
 #include <QTextTable>
 #include <QUrl>
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "acquisition/base/safe_text.h"
+#include "bench/gui/presenters/column_widths.h"
 
 namespace todbench {
 namespace {
 
 // Sizes in CSS pixels.
-constexpr int text_px = 10, subtitle_px = 10, heading_px = 19, section_px = 14, word_px = 18;
-constexpr double after_paragraph = 6, before_section = 14, cell_padding = 3, between_tables_px = 4;
+constexpr int text_px = table_text_px, note_px = 9, subtitle_px = 10, heading_px = 19, section_px = 14, word_px = 18;
+constexpr double after_paragraph = 6, before_section = 11, between_tables_px = 4;
+/// Most height of pictures that stand beside others, and of other figures.
+constexpr double picture_height_px = 150, figure_height_px = 270;
 constexpr double room_to_sign_px = 40;
 const QColor ink(32, 32, 32), soft(80, 80, 80), rule(208, 208, 208), header_ground(240, 240, 240);
 
@@ -79,6 +79,14 @@ QTextBlockFormat spaced(double above, double below) {
   return format;
 }
 
+/// Caption under one of several figures.
+QTextBlockFormat beside_others() {
+  constexpr double gap_px = 8;
+  QTextBlockFormat format = spaced(3, after_paragraph);
+  format.setRightMargin(gap_px);
+  return format;
+}
+
 enum class CellKind { header, value };
 
 QTextTableCellFormat cell_format(const QTextCharFormat& base, CellKind kind) {
@@ -86,73 +94,13 @@ QTextTableCellFormat cell_format(const QTextCharFormat& base, CellKind kind) {
   QTextTableCellFormat format;
   format.merge(header ? bold(base) : base);
   format.setPadding(cell_padding);
+  format.setTopPadding(1);
+  format.setBottomPadding(1);
   format.setBorder(1);
   format.setBorderStyle(QTextFrameFormat::BorderStyle_Solid);
   format.setBorderBrush(rule);
   if (header) format.setBackground(header_ground);
   return format;
-}
-
-/// Widths of a column: all of its texts on one line, and its longest word.
-struct Need {
-  double line_px = 0, word_px = 0;
-};
-
-Need need_of(const Table& table, std::size_t column, const QFontMetricsF& metrics) {
-  static const QRegularExpression blanks("[ \\n\\t]+");
-  constexpr double longest_px = 400, slack_px = 2, padding_px = 2 * (cell_padding + 1) + slack_px;
-  Need need;
-  const auto count = [&](const QString& text) {
-    need.line_px = std::max(need.line_px, metrics.horizontalAdvance(text));
-    for (const QString& word : text.split(blanks))
-      need.word_px = std::max(need.word_px, metrics.horizontalAdvance(word));
-  };
-  count(qt(table.header[column]));
-  for (const auto& row : table.rows) {
-    QString text;
-    if (column < row.size())
-      for (const Phrase& phrase : row[column].phrases) text += qt(phrase.text);
-    count(text);
-  }
-  return {std::min(std::ceil(need.line_px) + padding_px, longest_px),
-          std::min(std::ceil(need.word_px) + padding_px, longest_px)};
-}
-
-/// Returns column widths in percent. Columns that fit into an even share get their own width, the narrowest first. The
-/// others share the rest by the square roots of their lengths; none is narrower than its longest word if there is room.
-/// Without this Qt breaks words of narrow columns. Empty if the whole table fits.
-std::vector<double> widths_of(const Table& table) {
-  constexpr double text_width_px = 673;
-  QFont font("DejaVu Sans");
-  font.setPixelSize(text_px);
-  font.setBold(true);
-  const QFontMetricsF metrics(font);
-  std::vector<Need> needs;
-  for (std::size_t column = 0; column < table.header.size(); ++column) needs.push_back(need_of(table, column, metrics));
-  std::vector<std::size_t> order(needs.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t x, std::size_t y) { return needs[x].line_px < needs[y].line_px; });
-  std::vector<double> widths(needs.size(), 0);
-  double left_px = text_width_px;
-  while (!order.empty() && needs[order.front()].line_px <= left_px / static_cast<double>(order.size())) {
-    left_px -= widths[order.front()] = needs[order.front()].line_px;
-    order.erase(order.begin());
-  }
-  if (order.empty()) return {};
-  while (true) {
-    double roots = 0;
-    for (const std::size_t i : order) roots += std::sqrt(needs[i].line_px);
-    for (const std::size_t i : order) widths[i] = left_px * std::sqrt(needs[i].line_px) / roots;
-    const auto tight = std::find_if(order.begin(), order.end(), [&](std::size_t i) {
-      return order.size() > 1 && widths[i] < needs[i].word_px && needs[i].word_px < left_px;
-    });
-    if (tight == order.end()) break;
-    left_px -= widths[*tight] = needs[*tight].word_px;
-    order.erase(tight);
-  }
-  for (double& width : widths) width *= 100 / text_width_px;
-  return widths;
 }
 
 /// Appends block after block. Starts a block of text unless an empty one waits: Qt leaves an empty block after a table,
@@ -174,7 +122,8 @@ class TextWriter {
 
   void operator()(const Paragraph& paragraph) {
     begin_block(spaced(0, after_paragraph));
-    insert(cursor_, paragraph.text, letters(text_px, paragraph.role == Paragraph::Role::note ? soft : ink));
+    insert(cursor_, paragraph.text,
+           paragraph.role == Paragraph::Role::note ? letters(note_px, soft) : letters(text_px));
   }
 
   void operator()(const List& list) {
@@ -207,6 +156,13 @@ class TextWriter {
   void operator()(const ValueTable& table) {
     if (table.values.empty()) return;
     caption(table.caption);
+    constexpr std::size_t long_list = 12;
+    if (const std::size_t half = (table.values.size() + 1) / 2;
+        table.values.size() > long_list && short_values(table)) {
+      const auto middle = table.values.begin() + static_cast<std::ptrdiff_t>(half);
+      beside(ValueTable{"", {table.values.begin(), middle}}, ValueTable{"", {middle, table.values.end()}});
+      return;
+    }
     QTextTable* cells = begin_table(static_cast<int>(table.values.size()), 2, ruled({38, 62}));
     for (std::size_t r = 0; r < table.values.size(); ++r) {
       fill(cells->cellAt(static_cast<int>(r), 0), plain(table.values[r].name), CellKind::header);
@@ -217,26 +173,38 @@ class TextWriter {
 
   void operator()(const Figure& figure) {
     begin_block(spaced(0, 2));
-    draw(figure);
-    line(qt(figure.caption), letters(text_px, soft), spaced(0, after_paragraph));
+    draw(figure, figure_height_px);
+    line(qt(figure.caption), letters(note_px, soft), spaced(0, after_paragraph));
   }
 
   void operator()(const FigurePairs& pairs) {
     // One table per row, so that a row can move to the next page as a whole.
-    for (std::size_t i = 0; i < pairs.figures.size(); i += 2) {
-      QTextTable* cells = begin_table(1, 2, borderless({50, 50}));
-      for (std::size_t k = i; k < std::min(i + 2, pairs.figures.size()); ++k) {
+    std::size_t columns = 0;
+    for (std::size_t i = 0; i < pairs.figures.size(); i += columns) {
+      columns = figures_in_a_row(pairs, i);
+      QTextTable* cells = begin_table(1, static_cast<int>(columns),
+                                      borderless(std::vector<double>(columns, 100.0 / static_cast<double>(columns))));
+      for (std::size_t k = i; k < std::min(i + columns, pairs.figures.size()); ++k) {
         cursor_ = cells->cellAt(0, static_cast<int>(k - i)).firstCursorPosition();
-        draw(pairs.figures[k]);
-        cursor_.insertBlock(spaced(0, after_paragraph));
-        cursor_.insertText(qt(pairs.figures[k].caption), letters(text_px, soft));
+        draw(pairs.figures[k], paired_height_px(pairs.figures[k], columns));
+        cursor_.insertBlock(beside_others());
+        cursor_.insertText(qt(pairs.figures[k].caption), letters(note_px, soft));
       }
       end_table();
     }
   }
 
   void operator()(const TablePairs& pairs) {
-    for (const auto& table : pairs.tables) std::visit(*this, table);
+    for (std::size_t i = 0; i < pairs.tables.size(); ++i) {
+      const bool pair = i + 1 < pairs.tables.size() &&
+                        std::visit([&](const auto& left, const auto& right) { return beside(left, right); },
+                                   pairs.tables[i], pairs.tables[i + 1]);
+      if (pair) {
+        ++i;
+      } else {
+        std::visit(*this, pairs.tables[i]);
+      }
+    }
   }
 
   void operator()(const VerdictBox& box) {
@@ -301,6 +269,29 @@ class TextWriter {
   }
 
  private:
+  /// Most height of one of `columns` figures side by side: the letters of a plot stay readable, a picture has none.
+  static double paired_height_px(const Figure& figure, std::size_t columns) {
+    constexpr double readable_in_pairs = 0.5, readable_in_threes = 0.45;
+    if (!figure.drawing || figure.drawing->labels.empty()) return picture_height_px;
+    return (columns == 2 ? readable_in_pairs : readable_in_threes) * figure.drawing->height;
+  }
+
+  /// Number of figures in the row that begins with `first`: four narrow ones, all of three, or two, so that those of
+  /// camera and twin stay side by side.
+  static std::size_t figures_in_a_row(const FigurePairs& pairs, std::size_t first) {
+    constexpr double between = 1.03;
+    const auto fit = [&](std::size_t columns) {
+      const auto begin = pairs.figures.begin() + static_cast<std::ptrdiff_t>(first);
+      return std::all_of(begin, begin + static_cast<std::ptrdiff_t>(columns), [&](const Figure& one) {
+        return one.drawing &&
+               DrawingTextObject::size_of(*one.drawing, paired_height_px(one, columns)).width() * between <=
+                   text_width_px / static_cast<double>(columns);
+      });
+    };
+    if (first + 4 <= pairs.figures.size() && fit(4)) return 4;
+    return pairs.figures.size() == 3 && first == 0 && fit(3) ? 3 : 2;
+  }
+
   /// Widths of the columns in percent; empty: by their contents.
   static QTextTableFormat borderless(const std::vector<double>& widths_percent = {}) {
     QTextTableFormat format;
@@ -323,6 +314,14 @@ class TextWriter {
     format.setBorderBrush(rule);
     format.setBorderCollapse(true);
     return format;
+  }
+
+  /// Removes the lines above and below the cells of the empty column between two tables.
+  static void clear_gap(QTextTable& cells, int column) {
+    QTextTableCellFormat gap;
+    gap.setBorder(0);
+    gap.setPadding(0);
+    for (int row = 0; row < cells.rows(); ++row) cells.cellAt(row, column).setFormat(gap);
   }
 
   void begin_block(const QTextBlockFormat& format) {
@@ -351,6 +350,72 @@ class TextWriter {
     waiting_ = true;
   }
 
+  /// Whether every value fits into a quarter of the width.
+  static bool short_values(const ValueTable& table) {
+    Table values{"", {""}, {}};
+    for (const NamedValue& one : table.values) values.rows.push_back({one.value});
+    return narrowest_px(values).front() < text_width_px / 4;
+  }
+
+  /// Writes two tables of values as one with an empty column between them. Returns false if one is much longer.
+  bool beside(const ValueTable& left, const ValueTable& right) {
+    const std::size_t fewer = std::min(left.values.size(), right.values.size());
+    const std::size_t more = std::max(left.values.size(), right.values.size());
+    if (2 * fewer < more) return false;
+    const int captions = left.caption.empty() && right.caption.empty() ? 0 : 1;
+    QTextTable* cells = begin_table(static_cast<int>(more) + captions, 5, ruled({21, 28, 2, 21, 28}));
+    clear_gap(*cells, 2);
+    int column = 0;
+    for (const ValueTable* table : {&left, &right}) {
+      if (captions > 0) {
+        cells->mergeCells(0, column, 1, 2);
+        fill(cells->cellAt(0, column), strong(table->caption), CellKind::header);
+      }
+      for (int r = 0; r < static_cast<int>(table->values.size()); ++r) {
+        const NamedValue& one = table->values[static_cast<std::size_t>(r)];
+        fill(cells->cellAt(r + captions, column), plain(one.name), CellKind::header);
+        fill(cells->cellAt(r + captions, column + 1), one.value, CellKind::value);
+      }
+      column = 3;
+    }
+    end_table();
+    return true;
+  }
+
+  /// Writes two tables as one with an empty column between them, if their columns fit. Returns whether it did.
+  bool beside(const Table& left, const Table& right) {
+    constexpr double gap_px = 12;
+    std::vector<double> widths = narrowest_px(left);
+    widths.push_back(gap_px);
+    for (const double width : narrowest_px(right)) widths.push_back(width);
+    const double sum_px = std::accumulate(widths.begin(), widths.end(), 0.0);
+    if (sum_px > text_width_px) return false;
+    for (double& width : widths) width *= 100 / sum_px;
+    const int left_columns = static_cast<int>(left.header.size()), gap = left_columns;
+    const int columns = gap + 1 + static_cast<int>(right.header.size());
+    const int rows = static_cast<int>(std::max(left.rows.size(), right.rows.size())) + 2;
+    QTextTableFormat format = ruled(widths);
+    format.setHeaderRowCount(2);
+    QTextTable* cells = begin_table(rows, columns, format);
+    clear_gap(*cells, gap);
+    for (const auto& [table, first] : {std::pair(&left, 0), std::pair(&right, gap + 1)}) {
+      cells->mergeCells(0, first, 1, static_cast<int>(table->header.size()));
+      fill(cells->cellAt(0, first), strong(table->caption), CellKind::header);
+      for (int c = 0; c < static_cast<int>(table->header.size()); ++c) {
+        fill(cells->cellAt(1, first + c), plain(table->header[static_cast<std::size_t>(c)]), CellKind::header);
+        for (int r = 0; r < static_cast<int>(table->rows.size()); ++r)
+          fill(cells->cellAt(r + 2, first + c), table->rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)],
+               c == 0 ? CellKind::header : CellKind::value);
+      }
+    }
+    end_table();
+    return true;
+  }
+  template <typename Left, typename Right>
+  bool beside(const Left& /*left*/, const Right& /*right*/) {
+    return false;
+  }
+
   void caption(const std::string& text) {
     if (!text.empty()) line(qt(text), bold(letters(text_px)), spaced(4, 0));
   }
@@ -362,9 +427,9 @@ class TextWriter {
     insert(cursor, text, kind == CellKind::header ? bold(base) : base);
   }
 
-  void draw(const Figure& figure) {
+  void draw(const Figure& figure, double most_height_px) {
     if (figure.drawing) {
-      cursor_.insertText(QString(QChar::ObjectReplacementCharacter), drawings_.add(*figure.drawing));
+      cursor_.insertText(QString(QChar::ObjectReplacementCharacter), drawings_.add(*figure.drawing, most_height_px));
     } else {
       insert(cursor_, missing("no figure: " + figure.drawing.error().message), letters(text_px));
     }

@@ -17,10 +17,12 @@ class DrawingTextObject final : public QObject, public QTextObjectInterface {
 
  public:
   static constexpr int object_type = QTextFormat::UserObject + 1;
-  static constexpr int index_property = 1;
+  static constexpr int index_property = 1, height_property = 2;
   explicit DrawingTextObject(double page_width_px);
-  /// Adds a drawing. Returns the format of the character that represents it.
-  [[nodiscard]] QTextCharFormat add(const Drawing& drawing);
+  /// Adds a drawing that is at most this high. Returns the format of the character that represents it.
+  [[nodiscard]] QTextCharFormat add(const Drawing& drawing, double most_height_px);
+  /// Returns the size of a drawing on a page, before the width of the page limits it.
+  [[nodiscard]] static QSizeF size_of(const Drawing& drawing, double most_height_px);
   QSizeF intrinsicSize(QTextDocument* document, int position, const QTextFormat& format) override;
   void drawObject(QPainter* painter, const QRectF& area, QTextDocument* document, int position,
                   const QTextFormat& format) override;

@@ -12,6 +12,7 @@
 #include <QTextTable>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "bench/gui/presenters/document_text.h"
@@ -23,12 +24,17 @@ namespace {
 // Layout in CSS pixels of 1/96 inch.
 constexpr double px_per_mm = 96 / 25.4;
 constexpr double page_width = 210 * px_per_mm, page_height = 297 * px_per_mm;
-constexpr double margin = 16 * px_per_mm, foot = 8 * px_per_mm;
+constexpr double margin = 16 * px_per_mm, margin_above = 13 * px_per_mm, margin_below = 20 * px_per_mm;
+constexpr double foot = 8 * px_per_mm;  ///< height of the label below the text, inside the margin
 constexpr int writer_dpi = 1200;
+/// Without this room, the lower edge of the last line or its cell would move to the next page.
+constexpr double room_below_px = 10;
 
+/// Page of the last line of a block. A line in the room below the text is drawn on the next page.
 int page_of(const QTextDocument& document, const QTextBlock& block) {
+  constexpr double rounding_px = 1;
   const QRectF place = document.documentLayout()->blockBoundingRect(block);
-  return static_cast<int>(place.bottom() / document.pageSize().height());
+  return static_cast<int>((place.bottom() + room_below_px - rounding_px) / document.pageSize().height());
 }
 
 QTextTable* table_at(const QTextBlock& block) {
@@ -58,7 +64,7 @@ QTextBlock lowest_of(const QTextDocument& document, const QTextTable& table, int
 /// Returns the block that has to be on the same page as a heading or caption: the first line below, the end of a short
 /// table, or the first row of a longer one.
 QTextBlock belongs_to(const QTextDocument& document, const QTextBlock& block) {
-  constexpr int few_rows = 6;
+  constexpr int few_rows = 5;
   QTextBlock content = content_after(block);
   if (!content.isValid()) return content;
   const QTextBlock below = content_after(content);
@@ -98,21 +104,39 @@ RowExtent extent_of(const QTextDocument& document, const QTextTable& table, int 
   return out;
 }
 
+/// Adds room below the text of a row.
+void extend_row(QTextDocument& document, QTextTable& table, int row, double by_px) {
+  for (int column = 0; column < table.columns(); ++column) {
+    QTextTableCell cell = table.cellAt(row, column);
+    QTextTableCellFormat format = cell.format().toTableCellFormat();
+    format.setBottomPadding(format.bottomPadding() + by_px);
+    cell.setFormat(format);
+  }
+  lay_out_from(document, table.firstPosition());
+}
+
 /// Moves a row that would be split to the next page by extending the row before it, because Qt has no page break before
-/// a row. Rows higher than half a page stay, and so does the first below the header, which moves with its caption.
+/// a row. A row that is extended too far moves itself or is split; the extension that leaves the row highest on the
+/// next page is taken. Rows higher than half a page stay, and so does the first below the header, which moves with its
+/// caption.
 void keep_rows_whole(QTextDocument& document, QTextTable& table) {
+  constexpr double step_px = 2, most_px = 2 * room_below_px + 12;
   const double height = document.pageSize().height();
   for (int row = 2; row < table.rows(); ++row) {
     const auto [top, bottom] = extent_of(document, table, row);
     const double page_end = height * std::floor(bottom / height);
     if (top >= page_end || bottom - top > height / 2) continue;
-    for (int column = 0; column < table.columns(); ++column) {
-      QTextTableCell cell = table.cellAt(row - 1, column);
-      QTextTableCellFormat format = cell.format().toTableCellFormat();
-      format.setBottomPadding(format.bottomPadding() + page_end - top);
-      cell.setFormat(format);
+    double best_px = page_end - top, highest = std::numeric_limits<double>::infinity();
+    for (double less_px = 0; less_px <= most_px; less_px += step_px) {
+      const double by_px = page_end - top - less_px;
+      extend_row(document, table, row - 1, by_px);
+      const double before = extent_of(document, table, row - 1).top, moved = extent_of(document, table, row).top;
+      extend_row(document, table, row - 1, -by_px);
+      if (before >= page_end || moved < page_end || moved >= highest) continue;
+      best_px = by_px;
+      highest = moved;
     }
-    lay_out_from(document, table.firstPosition());
+    extend_row(document, table, row - 1, best_px);
   }
 }
 
@@ -138,8 +162,19 @@ bool is_cut(const QTextDocument& document, const QTextBlock& block) {
 
 void move_to_next_page(QTextDocument& document, const QTextBlock& block) {
   const QTextBlock moved = with_headings(block);
-  QTextBlockFormat format = moved.blockFormat();
+  const double height = document.pageSize().height();
+  const auto top = [&] { return document.documentLayout()->blockBoundingRect(moved).top() / height; };
+  const double before = top();
+  const QTextBlockFormat old = moved.blockFormat();
+  QTextBlockFormat format = old;
   format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+  QTextCursor(moved).setBlockFormat(format);
+  lay_out_from(document, moved.position());
+  // A block in the last millimetres of a page has been moved by Qt already: a break would leave an empty page.
+  constexpr double rounding = 0.001;
+  if (std::floor(top() + rounding) <= std::floor(before) + 1) return;
+  format = old;
+  format.setTopMargin(old.topMargin() + (std::floor(before) + 1 - before) * height);
   QTextCursor(moved).setBlockFormat(format);
   lay_out_from(document, moved.position());
 }
@@ -185,7 +220,7 @@ void paint_pages(QPdfWriter& writer, QTextDocument& document, const QString& lab
     if (page > 0) writer.newPage();
     painter.save();
     painter.scale(scale, scale);
-    painter.translate(margin, margin);
+    painter.translate(margin, margin_above);
     QFont font("DejaVu Sans");
     font.setPixelSize(9);
     font.setStyleStrategy(QFont::PreferNoShaping);
@@ -212,7 +247,7 @@ void paint_pages(QPdfWriter& writer, QTextDocument& document, const QString& lab
 
 Result<void> write_pdf(const Document& document, const std::filesystem::path& file) {
   const double text_width = page_width - 2 * margin;
-  const double text_height = page_height - 2 * margin - foot;
+  const double text_height = page_height - margin_above - margin_below;
   DrawingTextObject drawings(text_width);
   QTextDocument text;
   text.setUndoRedoEnabled(false);
@@ -225,8 +260,6 @@ Result<void> write_pdf(const Document& document, const std::filesystem::path& fi
   text.setDefaultFont(font);
   text.documentLayout()->registerHandler(DrawingTextObject::object_type, &drawings);
   write_text(text, drawings, document);
-  // Without this room, the lower edge of the last line or its cell would move to the next page.
-  constexpr double room_below_px = 10;
   QTextFrameFormat page = text.rootFrame()->frameFormat();
   page.setBottomMargin(room_below_px);
   text.rootFrame()->setFrameFormat(page);

@@ -47,7 +47,7 @@ QStringList texts_of(const std::string& html) {
 /// Dark pixels at 100 dpi in the last millimetre above the foot of the pages, where only edges of tables may be: a line
 /// there would be on two pages.
 int dark_above_the_foot(const std::filesystem::path& pdf, const std::filesystem::path& stem) {
-  (void)output_of("pdftoppm", {"-r", "100", "-gray", "-x", "0", "-y", "1069", "-W", "827", "-H", "5",
+  (void)output_of("pdftoppm", {"-r", "100", "-gray", "-x", "0", "-y", "1085", "-W", "827", "-H", "5",
                                QString::fromStdString(pdf.string()), QString::fromStdString(stem.string())});
   int dark = 0;
   for (const auto& entry : std::filesystem::directory_iterator(stem.parent_path())) {
@@ -125,7 +125,7 @@ TEST_F(PdfReport, LosesNoHeadingWhereverItsPagesBreak) {
     const QString pages = output_of("pdftotext", {"-raw", QString::fromStdString(file.string()), "-"});
     // Without the margin at the foot, in points: a page also holds what its clip leaves out.
     const QStringList above_the_foot = output_of("pdftotext", {"-raw", "-r", "72", "-x", "0", "-y", "0", "-W", "595",
-                                                               "-H", "770", QString::fromStdString(file.string()), "-"})
+                                                               "-H", "785", QString::fromStdString(file.string()), "-"})
                                            .split('\f');
     for (const QString& page : pages.split('\f'))
       EXPECT_EQ(page.contains("Tested by"), page.contains("Signature:")) << rows << " rows: signatures on two pages";
