@@ -11,6 +11,7 @@
 #include "bench/judgement/zone_demands.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
+#include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
 
@@ -74,6 +75,24 @@ std::optional<double> freedom_of(const TodPoint& point, const CurveUncertainty* 
   return point.fit.clusters > 1 ? std::optional(std::max(1.0, point.fit.clusters - 1)) : std::nullopt;
 }
 
+/// Interval of S75 at the set contrast if target and camera disagree about it by more than two standard errors of the
+/// contrast that the camera observed. Either can be right: the interval contains those of both cases.
+std::optional<Interval> interval_at_both_contrasts(const TodPoint& point, const Interval& s75_mrad,
+                                                   const JudgementInput& evidence) {
+  constexpr double standard_errors = 2;
+  if (evidence.uncertainty != nullptr || !evidence.air_transmittance || !(contrast_seen_k(point) > 0)) return {};
+  const double set_k = *evidence.air_transmittance * std::abs(point.set_delta_t_k);
+  const double ln_ratio = std::log(contrast_seen_k(point) / set_k);
+  const double se = contrast_se_k(point).value_or(0) / contrast_seen_k(point);
+  if (!std::isfinite(ln_ratio) || std::abs(ln_ratio) <= standard_errors * se) return {};
+  const std::vector<double> slopes = contrast_slopes(evidence.curve);
+  const double factor = std::exp(slopes[static_cast<std::size_t>(&point - evidence.curve.points.data())] * ln_ratio);
+  Interval both = s75_mrad;
+  if (both.low) *both.low *= std::min(1.0, factor);
+  if (both.high) *both.high *= std::max(1.0, factor);
+  return both;
+}
+
 /// Judges an acuity limit. Default rule: pass if the whole 95 % interval is at or above the limit, fail if it is below;
 /// a one-sided interval decides in its direction. If a free lapse rate fits the data significantly better, the union of
 /// the intervals of both fits counts.
@@ -86,7 +105,9 @@ Demand judged_acuity(const AcuityLimit& limit, const JudgementInput& evidence) {
     demand.reason = "this contrast was not measured";
     return demand;
   }
-  const Deciding deciding = deciding_of(*point, uncertainty);
+  Deciding deciding = deciding_of(*point, uncertainty);
+  const auto both = interval_at_both_contrasts(*point, deciding.s75_mrad, evidence);
+  if (both) deciding = {*both, deciding.s75_mrad};
   const Interval& s75_mrad = deciding.s75_mrad;
   const double largest_mrad = 1 / limit.least_acuity_per_mrad;
   demand.result = acuity_per_mrad(point->fit);
@@ -113,6 +134,9 @@ Demand judged_acuity(const AcuityLimit& limit, const JudgementInput& evidence) {
     demand.reason = "the threshold cannot be identified from the data (" + std::string(to_string(point->fit.verdict)) +
                     ", " + words_of(demand.interval) + ")";
   }
+  if (both)
+    demand.reason += "; the camera observed " + rounded(contrast_seen_k(*point)) + " K of " +
+                     rounded(std::abs(point->set_delta_t_k)) + " K, and the interval contains both contrasts";
   if (point->lapse_warning)
     demand.reason += "; a free lapse rate fits the data better, so the intervals of both fits count";
   withhold(demand, point->adequacy);

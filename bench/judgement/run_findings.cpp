@@ -26,6 +26,14 @@ void add(TodPoint& point, const AdequacyFinding& finding) {
   point.adequacy->findings.push_back(finding);
 }
 
+/// Relative deviation from which a finding names a contrast that is allowed: beyond its noise and beyond what the
+/// estimate itself can be off.
+double noticed_contrast_deviation(const TodPoint& point) {
+  constexpr double least = 0.02, standard_errors = 4;
+  const double se_k = contrast_se_k(point).value_or(0);
+  return std::max(least, standard_errors * se_k / std::abs(point.set_delta_t_k));
+}
+
 AdequacyFinding unfit(FindingKind kind, const ConstancyFigure& figure, std::string sentence) {
   return {.kind = kind, .value = figure.value, .limit = figure.limit, .sentence = std::move(sentence), .unfit = true};
 }
@@ -117,10 +125,15 @@ std::map<double, double> gross_contrast_deviations(const Plan& plan) {
 std::optional<double> contrast_deviation(const Plan& plan, const TodPoint& point,
                                          std::span<const Presentation> presentations) {
   if (plan.camera.contrast != ContrastUnit::kelvin || !(std::abs(point.set_delta_t_k) > 0)) return std::nullopt;
-  const double air = presentations.empty() ? 1 : presentations.front().air_transmittance.value_or(1);
+  const double air = contrast_transmittance(plan, presentations).value_or(1);
   double deviation = point.delta_t_k / (air * point.set_delta_t_k) - 1;
   if (const auto own = deviation_on_the_way(plan, point, presentations)) deviation = *own;
   return std::isfinite(deviation) ? std::optional(deviation) : std::nullopt;
+}
+
+std::optional<double> contrast_transmittance(const Plan& plan, std::span<const Presentation> presentations) {
+  if (plan.camera.contrast != ContrastUnit::kelvin || presentations.empty()) return std::nullopt;
+  return presentations.front().air_transmittance.value_or(1);
 }
 
 std::vector<std::string> add_run_findings(TodCurve& curve, const Plan& plan, const RunFacts& run) {
@@ -138,6 +151,16 @@ std::vector<std::string> add_run_findings(TodCurve& curve, const Plan& plan, con
                                    "allowed): the target or the temperature scale of the camera is wrong",
                                    point.delta_t_k, point.set_delta_t_k, percent.value, percent.limit)));
       sentences.push_back(point.adequacy->findings.back().sentence);
+    } else if (deviation && std::abs(*deviation) > noticed_contrast_deviation(point)) {
+      const ConstancyFigure percent{100 * *deviation, 100 * allowed};
+      AdequacyFinding noticed =
+          unfit(FindingKind::contrast_deviation, percent,
+                fmt::format("the camera observed {:.3f} K, but {:.3f} K were set ({:+.1f} %, {:.1f} % are allowed): "
+                            "compare the target and the temperature scale of the camera",
+                            point.delta_t_k, point.set_delta_t_k, percent.value, percent.limit));
+      noticed.unfit = false;
+      sentences.push_back(noticed.sentence);
+      add(point, noticed);
     }
     for (const AdequacyFinding& finding : of_all) add(point, finding);
   }

@@ -41,6 +41,11 @@ inline constexpr double gross_contrast_deviation = 1.0 / 3;
 [[nodiscard]] std::optional<double> contrast_deviation(const Plan& plan, const TodPoint& point,
                                                        std::span<const Presentation> presentations);
 
+/// Returns JudgementInput::air_transmittance of a camera's run; empty if its contrasts are grey levels or none was
+/// shown.
+[[nodiscard]] std::optional<double> contrast_transmittance(const Plan& plan,
+                                                           std::span<const Presentation> presentations);
+
 /// Observations of the run for the points of its curve.
 struct RunFacts {
   std::span<const Presentation> presentations{};

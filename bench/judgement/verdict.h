@@ -126,6 +126,9 @@ struct JudgementInput {
   std::optional<std::string> ended_early{};
   JudgedWhen judged = JudgedWhen::at_end_of_run;
   const CurveUncertainty* uncertainty = nullptr;  ///< of the curve; null: the plan has no budget
+  /// Transmittance of the bench, if camera and target both state the contrast in kelvin. Without a budget, a limit is
+  /// then judged at the set contrast as each of them shows it. Empty: the contrasts are not compared.
+  std::optional<double> air_transmittance{};
   /// Measures of the camera, or of the simulated sensor alone; empty: none measured.
   std::optional<std::vector<MeasuredQuantity>> measures{};
 };

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "bench/judgement/run_findings.h"
 #include "bench/report/report.h"
 #include "bench/report/report_csv.h"
 #include "bench/run/report_data.h"
@@ -152,6 +153,7 @@ ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const O
        .comparison = outcome.comparison,
        .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt,
        .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
+       .air_transmittance = provenance.camera ? contrast_transmittance(plan, outcome.presentations) : std::nullopt,
        .measures = outcome.measures ? std::optional(quantities_of(measure_lines(*outcome.measures))) : std::nullopt});
   auto closed = close_session(open, provenance, outcome.verdict, outcome.ended_by);
   if (!closed && !outcome.ended_by) outcome.ended_by = closed.error();

@@ -10,6 +10,7 @@
 
 #include "acquisition/base/safe_file.h"
 #include "acquisition/base/try.h"
+#include "bench/judgement/run_findings.h"
 #include "bench/judgement/verdict_record.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/strict_toml.h"
@@ -437,15 +438,17 @@ std::optional<std::string> ended_early(const Session& session) {
 
 Verdict verdict_of(const Session& session) {
   if (session.verdict) return *session.verdict;
-  return judge({.limits = session.plan.limits,
-                .curve = session.curve.value_or(TodCurve{}),
-                .comparison = session.comparison,
-                .ended_early = ended_early(session),
-                .judged = JudgedWhen::afterwards,
-                .uncertainty = session.uncertainty ? &*session.uncertainty : nullptr,
-                .measures = session.measures && session.measures->main
-                                ? std::optional(quantities_of(*session.measures->main))
-                                : std::nullopt});
+  return judge(
+      {.limits = session.plan.limits,
+       .curve = session.curve.value_or(TodCurve{}),
+       .comparison = session.comparison,
+       .ended_early = ended_early(session),
+       .judged = JudgedWhen::afterwards,
+       .uncertainty = session.uncertainty ? &*session.uncertainty : nullptr,
+       .air_transmittance =
+           session.provenance.camera ? contrast_transmittance(session.plan, session.presentations) : std::nullopt,
+       .measures = session.measures && session.measures->main ? std::optional(quantities_of(*session.measures->main))
+                                                              : std::nullopt});
 }
 
 Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict) {
