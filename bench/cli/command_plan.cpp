@@ -14,6 +14,7 @@
 #include "bench/judgement/verdict.h"
 #include "bench/text/files.h"
 #include "bench/twin/acuity_limits.h"
+#include "bench/twin/direct_results.h"
 
 namespace todbench {
 namespace {
@@ -25,7 +26,7 @@ void print_plan(const Console& console, const Plan& plan, const ExperimentInputs
   std::vector<TableRow> contrasts;
   for (const auto& c : prediction.contrasts)
     contrasts.push_back({fixed(c.delta_t_k, 3), fixed(c.s75_mrad, 3), fixed(c.uncertainty_percent, 1)});
-  console.table({"dT [K]", "expected S75 [mrad]", "95 % half-width [%]"}, contrasts);
+  console.table({"dT [K]", "expected S75 [mrad]", "95 % half-width of 19 in 20 runs, at most [%]"}, contrasts);
   console.text("");
   const auto& measured_s = prediction.figures.predicted_measurement_s;
   console.text((measured_s ? "trials of the simulation: " : "trials: ") + std::to_string(prediction.figures.trials) +
@@ -126,8 +127,10 @@ int run_plan(Console& console, const PlanArguments& asked, const Program& progra
   if (!loaded) return report_error(console, loaded.error());
   const Plan& plan = loaded->plan();
   EffectPlanner planner;
-  const auto inputs = experiment_inputs(*loaded, planner);
+  auto inputs = experiment_inputs(*loaded, planner);
   if (!inputs) return report_error(console, inputs.error());
+  if (auto refined = refine_thresholds(*inputs, plan.seed, program.stop->token()); !refined)
+    return report_error(console, refined.error());
   if (asked.optimise) return run_optimise(console, asked, plan, *inputs, program);
   auto prediction = predict_plan(plan, *inputs);
   if (!prediction) return report_error(console, prediction.error());

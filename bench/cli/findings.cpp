@@ -33,7 +33,10 @@ void print_frontier(const Console& console, const std::vector<PrecisionChoice>& 
     header.push_back("at " + fixed(contrast.delta_t_k, 2) + " K");
   header.emplace_back("");
   console.text("");
-  console.text("precision of S75 by frames and kind of answers; the half-width is the largest of all contrasts:");
+  console.text(
+      "precision of S75 by frames and kind of answers; the half-width is the largest of all contrasts, and that which "
+      "19 in "
+      "20 runs do not exceed:");
   console.table(header, rows);
 }
 

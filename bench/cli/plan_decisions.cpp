@@ -26,7 +26,7 @@ const DecisionChances* chances_at(const DecisionDesign& design, int over_percent
 }
 
 void print_designs(const Console& console, const DecisionForecast& forecast) {
-  TableRow header{"frames", "phases", "bench time [s]", "trials [%]", "with budget [%]"};
+  TableRow header{"frames", "phases", "bench time [s]", "expected trials [%]", "with budget [%]"};
   for (const int over : shown_cameras) header.push_back(fmt::format("{:+d} %", over));
   const bool fleet =
       std::ranges::any_of(forecast.designs, [](const auto& design) { return design.consumer_risk.has_value(); });
@@ -47,7 +47,9 @@ void print_designs(const Console& console, const DecisionForecast& forecast) {
     row.emplace_back(design.planned ? "planned" : "");
     rows.push_back(std::move(row));
   }
-  console.text("half-widths at 95 % and probability of a decision, for cameras this far above the limit:");
+  console.text(
+      "expected half-widths at 95 % and probability of a decision, for cameras this far above the limit (19 in 20 runs "
+      "have at most the half-width of the table above, which is larger):");
   console.table(header, rows);
 }
 
@@ -135,8 +137,9 @@ void print_decisions(const Console& console, const std::vector<DecisionForecast>
   for (const DecisionForecast& forecast : forecasts) {
     console.text("");
     console.text("decision at " + in_words(forecast));
-    console.text(fmt::format("a camera like the simulated one is {:+.1f} % above the limit",
-                             forecast.expected_over_limit_percent));
+    console.text(fmt::format("a camera like the simulated one is {:.1f} % {} the limit",
+                             std::abs(forecast.expected_over_limit_percent),
+                             forecast.expected_over_limit_percent < 0 ? "below" : "above"));
     print_designs(console, forecast);
     const auto planned = std::ranges::find_if(forecast.designs, &DecisionDesign::planned);
     if (planned != forecast.designs.end()) print_planned(console, *planned);

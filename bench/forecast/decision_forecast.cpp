@@ -190,14 +190,14 @@ void finish(DecisionForecast& forecast) {
   if (enough != forecast.designs.end()) forecast.enough_bench_s = enough->bench_s;
 }
 
-const ContrastPrediction* at_contrast(const PlanPrediction& prediction, double delta_t_k) {
+}  // namespace
+
+const ContrastPrediction* expected_at(const PlanPrediction& prediction, double delta_t_k) {
   const auto found = std::ranges::find_if(prediction.contrasts, [&](const ContrastPrediction& contrast) {
     return same_contrast(contrast.delta_t_k, delta_t_k) && contrast.s75_mrad;
   });
   return found == prediction.contrasts.end() ? nullptr : &*found;
 }
-
-}  // namespace
 
 std::optional<ExpectedUncertainty> expected_uncertainty(const ContrastPrediction& contrast,
                                                         const CurveUncertainty* budget) {
@@ -242,7 +242,7 @@ Result<std::vector<DecisionForecast>> decision_forecasts(const Plan& asked, cons
   TODBENCH_TRY(const auto budget, curve_uncertainty(plan, expected_curve(planned), {}, std::nullopt));
   const CurveUncertainty* rows = budget ? &*budget : nullptr;
   for (const AcuityLimit& limit : plan.limits.acuity) {
-    const ContrastPrediction* contrast = at_contrast(planned, limit.delta_t_k);
+    const ContrastPrediction* contrast = expected_at(planned, limit.delta_t_k);
     if (contrast != nullptr) forecasts.push_back(forecast_of(limit, 1 / *contrast->s75_mrad, rows));
   }
   const std::vector<Plan> plans = varied_plans(plan, inputs);
@@ -251,7 +251,7 @@ Result<std::vector<DecisionForecast>> decision_forecasts(const Plan& asked, cons
     const auto presentations = expected_presentations(plans[i], inputs.plates, prediction.contrasts);
     const double bench_s = laboratory_time(plans[i], inputs, presentations);
     for (DecisionForecast& forecast : forecasts) {
-      const ContrastPrediction* contrast = at_contrast(prediction, forecast.delta_t_k);
+      const ContrastPrediction* contrast = expected_at(prediction, forecast.delta_t_k);
       if (contrast == nullptr) continue;
       auto design = design_of(plans[i], *contrast, bench_s, forecast, rows);
       if (!design) continue;

@@ -24,6 +24,9 @@ struct ExpectedUncertainty {
   JoinedUncertainty stated{};  ///< rows of the budget that the trials do not reduce
 };
 
+/// Returns the contrast if it is expected to have a threshold; null otherwise.
+[[nodiscard]] const ContrastPrediction* expected_at(const PlanPrediction& prediction, double delta_t_k);
+
 /// Returns the uncertainty that a prediction expects at a contrast, with the rows of `budget` (null: no budget); empty
 /// without a threshold.
 [[nodiscard]] std::optional<ExpectedUncertainty> expected_uncertainty(const ContrastPrediction& contrast,

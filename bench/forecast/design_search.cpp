@@ -261,6 +261,10 @@ Error not_found(const DesignRequest& request, double half_width_percent, const S
 
 Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs, const DesignRequest& request,
                                std::stop_token stop) {
+  if (request.decide && asked.limits.acuity.empty())
+    return fail(ErrorCode::invalid_input,
+                "the plan has no limit on an acuity that a design could decide: state "
+                "[[limits.acuity]], or ask for a half-width");
   Plan plan = as_measured(with_frames(asked, inputs));
   if (plan.camera.id.empty()) plan.target.phases = plan.simulation.phases;
   BestDesign found;

@@ -8,6 +8,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/normal.h"
+#include "bench/forecast/decision_forecast.h"
 #include "bench/judgement/acuity_uncertainty.h"
 #include "bench/plan/quantity.h"
 #include "bench/text/text.h"
@@ -60,6 +61,21 @@ std::string words_of_fleet(const FleetForecast& now, const FleetForecast& better
       percent(better.good_rejected_most), percent(now.bad_accepted), percent(better.bad_accepted));
 }
 
+/// Replaces the chances of the normal law by those that `plan --decide` states.
+void as_decided(LimitOutlook& out, const ExpectedUncertainty& expected, double ln_acuity, double ln_limit,
+                const LimitsPlan& limits) {
+  const auto passes = [&](double ln_over) { return decision_chances(ln_over, expected, limits).pass; };
+  out.p_rejected = 1 - passes(ln_acuity - ln_limit);
+  constexpr double likely = 0.95, widest = 2;
+  double low = 0, high = widest;
+  if (passes(high) < likely) return;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (low + high) / 2;
+    (passes(middle) < likely ? low : high) = middle;
+  }
+  out.passes_95_from_per_mrad = std::exp(ln_limit + high);
+}
+
 }  // namespace
 
 TodCurve expected_curve(const PlanPrediction& prediction) {
@@ -87,15 +103,25 @@ Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanP
   for (const AcuityLimit& limit : plan.limits.acuity) {
     const TodPoint* point = point_at(curve, limit.delta_t_k);
     if (point == nullptr || !point->fit.threshold || !point->fit.ci95.high) continue;
-    const double trials = std::log(*point->fit.ci95.high / *point->fit.threshold) / normal_z95;
+    const ContrastPrediction* contrast = expected_at(prediction, limit.delta_t_k);
+    const auto expected =
+        contrast == nullptr ? std::nullopt : expected_uncertainty(*contrast, *budget ? &**budget : nullptr);
+    const double trials = expected ? expected->se * expected->interval_factor / normal_z95
+                                   : std::log(*point->fit.ci95.high / *point->fit.threshold) / normal_z95;
     const PointUncertainty* stated = *budget ? point_at(**budget, limit.delta_t_k) : nullptr;
     const double u_stated = stated != nullptr ? stated->u_stated : 0;
     const double ln_acuity = -std::log(*point->fit.threshold), ln_limit = std::log(limit.least_acuity_per_mrad);
     const FleetRow* row = row_of_acuity(plan.limits, limit.delta_t_k);
-    const auto planned = outlook(plan.limits, row, std::hypot(trials, u_stated), ln_acuity, ln_limit);
-    const auto fourfold = outlook(plan.limits, row, std::hypot(trials / 2, u_stated), ln_acuity, ln_limit);
+    auto planned = outlook(plan.limits, row, std::hypot(trials, u_stated), ln_acuity, ln_limit);
+    auto fourfold = outlook(plan.limits, row, std::hypot(trials / 2, u_stated), ln_acuity, ln_limit);
     if (!planned) return tl::unexpected(planned.error());
     if (!fourfold) return tl::unexpected(fourfold.error());
+    if (expected) {
+      ExpectedUncertainty with_four = *expected;
+      with_four.se /= 2;
+      as_decided(*planned, *expected, ln_acuity, ln_limit, plan.limits);
+      as_decided(*fourfold, with_four, ln_acuity, ln_limit, plan.limits);
+    }
     forecasts.push_back({.delta_t_k = limit.delta_t_k,
                          .least_acuity_per_mrad = limit.least_acuity_per_mrad,
                          .expected_acuity_per_mrad = std::exp(ln_acuity),

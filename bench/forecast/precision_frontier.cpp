@@ -47,8 +47,11 @@ double deciding_ln(const PrecisionChoice& choice, const std::vector<double>& flo
 }
 
 void recommend(std::vector<PrecisionChoice>& choices, const std::vector<double>& floors) {
+  const auto seconds = [](const PrecisionChoice& choice) {
+    return choice.bench_s > 0 ? choice.bench_s : choice.seconds;
+  };
   const auto price = [&](const PrecisionChoice& choice) {
-    return std::pow(deciding_ln(choice, floors), 2) * std::max(choice.seconds, 1e-3);
+    return std::pow(deciding_ln(choice, floors), 2) * std::max(seconds(choice), 1e-3);
   };
   const auto comparable = [](const PrecisionChoice& choice) {
     return choice.answers == AnswerKind::graded && choice.half_width_percent;
@@ -62,7 +65,7 @@ void recommend(std::vector<PrecisionChoice>& choices, const std::vector<double>&
   constexpr double nearly = 1.05;
   const double most = price(*best) * (std::ranges::any_of(floors, [](double floor) { return floor > 0; }) ? nearly : 1);
   for (PrecisionChoice& choice : choices) {
-    if (comparable(choice) && price(choice) <= most && choice.seconds < best->seconds) best = &choice;
+    if (comparable(choice) && price(choice) <= most && seconds(choice) < seconds(*best)) best = &choice;
   }
   best->recommended = true;
 }
@@ -98,7 +101,8 @@ Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const 
     auto prediction = predict_plan(as_measured(other), inputs);
     if (!prediction) return tl::unexpected(prediction.error());
     PrecisionChoice choice{.answers = answers, .frames = count};
-    choice.seconds = computing + bench_s(other, inputs, prediction->contrasts);
+    choice.bench_s = bench_s(other, inputs, prediction->contrasts);
+    choice.seconds = computing + choice.bench_s;
     choice.half_width_percent = prediction->figures.predicted_uncertainty_percent;
     choice.contrasts = std::move(prediction->contrasts);
     choice.planned = planned.kind == answers && (answers == AnswerKind::binary || own == count);

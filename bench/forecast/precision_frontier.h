@@ -16,9 +16,11 @@ struct PrecisionChoice {
   std::vector<int> frames{1};  ///< per presentation: of every contrast, or one number for each
   std::vector<ContrastPrediction> contrasts{};
   std::optional<double> half_width_percent{};  ///< half the 95 % interval of S75, the largest over the contrasts
+  double bench_s = 0;                          ///< of the bench alone; 0 without a camera
   double seconds = 0;    ///< of the measurement with the camera, or of the simulation if the plan has no camera
   bool planned = false;  ///< the choice of the plan
-  /// The graded choice with the smallest squared half-width times seconds. The half-width contains the rows of the
+  /// The graded choice with the smallest squared half-width times the seconds of the bench (without a camera, of the
+  /// simulation), so that the load of the computer changes no recommendation. The half-width contains the rows of the
   /// budget, which frames do not reduce; with such rows, the fastest choice within 5 % of the smallest product.
   bool recommended = false;
 };

@@ -183,16 +183,36 @@ std::optional<double> needed_share(const Demand& demand, const BillInput& input)
   return std::clamp(*half * *half / (margin * margin - floor * floor), least, 1.0);
 }
 
+/// Time of the run with the presentations that the decisions on acuity need, and with all of it.
+void add_least_time(AccuracyBill& bill, const BillInput& input, const std::map<double, double>& share_needed) {
+  const auto times = times_of(input.presentations);
+  if (!times || share_needed.empty()) return;
+  double needed_s = times->changes_s + times->looking_s, all_s = needed_s;
+  for (const auto& [delta_t_k, seconds] : times->presentations_s) {
+    const auto share = share_needed.find(delta_t_k);
+    needed_s += share == share_needed.end() ? 0 : share->second * seconds;
+    all_s += seconds;
+  }
+  bill.sentences.push_back(fmt::format(
+      "The decisions on acuity alone would have taken about {} s of the {} s for changes, location and presentations: "
+      "the changes of the target and the location of the plate stay.",
+      significant(needed_s, 2), significant(all_s, 2)));
+}
+
 void add_least(AccuracyBill& bill, const BillInput& input) {
   if (input.verdict == nullptr) return;
+  std::map<double, double> share_needed;
   for (const Demand& demand : input.verdict->demands) {
     const auto share = needed_share(demand, input);
     if (!share) continue;
+    double& most = share_needed[*demand.delta_t_k];
+    most = std::max(most, *share);
     const auto all = count_at(input, *demand.delta_t_k);
     const auto needed = static_cast<std::size_t>(std::ceil(*share * static_cast<double>(all) - 1e-9));
     bill.sentences.push_back(fmt::format("The decision on the acuity at {} K needs about {} of the {} presentations.",
                                          stated(*demand.delta_t_k), needed, all));
   }
+  add_least_time(bill, input, share_needed);
 }
 
 void add_left_out(AccuracyBill& bill, const SensorPlan& effects) {

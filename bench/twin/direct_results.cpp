@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/twin/direct_results.h"
 
+#include <cmath>
 #include <utility>
 
 #include "bench/twin/twin_shapes.h"
@@ -58,6 +59,26 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
   }
   if (!results.ended_by) add_spread(inputs, options, results);
   return results;
+}
+
+Result<void> refine_thresholds(ExperimentInputs& inputs, std::uint64_t seed, std::stop_token stop) {
+  constexpr double standard_error_percent = 0.4;
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  for (ContrastOutlook& outlook : inputs.outlooks) {
+    DirectEstimateOptions options{.motion = inputs.motion, .accuracy = inputs.accuracy, .seed = seed, .stop = stop};
+    options.accuracy.standard_error_percent = standard_error_percent;
+    auto found = direct_estimate(inputs.sensor, inputs.effects, observer, {std::abs(outlook.delta_t_k)}, options);
+    if (!found && found.error().code != ErrorCode::interrupted) {
+      options.accuracy.standard_error_percent = 0;
+      found = direct_estimate(inputs.sensor, inputs.effects, observer, {std::abs(outlook.delta_t_k)}, options);
+    }
+    if (found) {
+      outlook.s75_pitch = found->front().s75_pitch;
+    } else if (found.error().code == ErrorCode::interrupted) {
+      return tl::unexpected(found.error());
+    }
+  }
+  return {};
 }
 
 }  // namespace todbench

@@ -11,9 +11,11 @@
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/rng.h"
 #include "bench/forecast/comparison_forecast.h"
+#include "bench/forecast/limit_forecast.h"
 #include "bench/forecast/precision_frontier.h"
 #include "bench/judgement/limit_decision.h"
 #include "bench/plan/plan_options.h"
+#include "bench/twin/direct_results.h"
 
 namespace todbench {
 namespace {
@@ -114,6 +116,56 @@ LoadedPlan acceptance_near_its_limits() {
   plan.limits.acuity = {{16.9, 0.47}, {0.23, 0.30}};
   plan.limits.fleet_sd_percent = 3;
   return LoadedPlan::load(plan).value();
+}
+
+TEST(DecisionForecasts, AgreeWithTheLimitForecastAboutOneCamera) {
+  const LoadedPlan loaded = acceptance_near_its_limits();
+  EffectPlanner planner;
+  const ExperimentInputs inputs = experiment_inputs(loaded, planner).value();
+  const Plan measured = as_measured(with_frames(loaded.plan(), inputs));
+  const auto limits = limit_forecasts(loaded.plan(), predict_plan(measured, inputs).value());
+  const auto decisions = decision_forecasts(loaded.plan(), inputs);
+
+  ASSERT_TRUE(limits && decisions);
+  ASSERT_EQ(limits->size(), decisions->size());
+  for (std::size_t i = 0; i < limits->size(); ++i) {
+    const DecisionForecast& decision = (*decisions)[i];
+    const auto planned = std::ranges::find_if(decision.designs, &DecisionDesign::planned);
+    ASSERT_NE(planned, decision.designs.end());
+    const LimitForecast& limit = (*limits)[i];
+    EXPECT_NEAR(100 * (limit.expected_acuity_per_mrad / limit.least_acuity_per_mrad - 1),
+                decision.expected_over_limit_percent, 1e-6);
+    // The cameras are in steps of 1 %: the chance of the camera from which 95 % pass lies between those of neighbours.
+    const double over = 100 * (limit.planned.passes_95_from_per_mrad / limit.least_acuity_per_mrad - 1);
+    for (const CameraChance& camera : planned->cameras) {
+      if (camera.over_limit_percent < over) {
+        EXPECT_LE(camera.chances.pass, 0.951) << camera.over_limit_percent;
+      } else {
+        EXPECT_GE(camera.chances.pass, 0.949) << camera.over_limit_percent;
+      }
+    }
+  }
+}
+
+TEST(Thresholds, OfAPlanAreThoseOfDirectEstimatesAfterRefinement) {
+  Plan plan;
+  plan.camera.ifov_mrad = 1.3085;
+  plan.target.delta_t_k = {16.9, 0.23};
+  plan.target.distance_m = 2;
+  plan.target.plates = {"tcat-a", "tcat-b"};
+  plan.simulation.sensor = "sc2000";
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+  EffectPlanner planner;
+  ExperimentInputs inputs = experiment_inputs(loaded, planner).value();
+  ASSERT_EQ(inputs.outlooks.size(), 2u);
+  const double first_mrad = inputs.outlooks[1].s75_pitch * inputs.sensor.ifov_mrad();
+
+  ASSERT_TRUE(refine_thresholds(inputs, 1, {}));
+
+  // Fits of two sessions of the acceptance plan with the emulated camera at 0.23 K: 3.44 and 3.45 mrad.
+  EXPECT_LT(first_mrad, 3.35) << "the first tier is lower: the refinement has something to do";
+  EXPECT_NEAR(inputs.outlooks[1].s75_pitch * inputs.sensor.ifov_mrad(), 3.445, 0.035);
+  EXPECT_NEAR(inputs.outlooks[0].s75_pitch * inputs.sensor.ifov_mrad(), 2.09, 0.02);
 }
 
 TEST(DecisionForecasts, ShowTimeAgainstTheProbabilityOfADecision) {
