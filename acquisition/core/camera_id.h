@@ -2,6 +2,7 @@
 // The text that identifies a camera: SCHEME:NAME. The scheme selects the back end that opens it.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@ inline constexpr std::string_view v4l2 = "v4l2";  ///< UVC and other kernel came
 inline constexpr std::string_view usb = "usb";    ///< cameras with a protocol of their own on USB
 inline constexpr std::string_view file = "file";  ///< recordings
 inline constexpr std::string_view sim = "sim";    ///< simulated sensors
+inline constexpr std::array all{gige, u3v, v4l2, usb, file, sim};
 }  // namespace camera_scheme
 
 /// Returns "SCHEME:NAME" with the name unchanged: "file:PATH", "sim:sc2000", "gige:192.168.1.10".

@@ -234,8 +234,9 @@ Result<void> apply_certificate(Plan& plan, std::size_t row, const std::filesyste
                                               "' has no role: state role = \"black body\", whose uncertainty enters "
                                               "the budget, \"plate stage\" or \"other\"");
   } else if (!instrument.dcc_quantity.empty()) {
-    return fail(ErrorCode::invalid_input, "dcc_quantity is for the role \"black body\" only: the uncertainty of no "
-                                          "other instrument is taken from its certificate");
+    return fail(ErrorCode::invalid_input,
+                "dcc_quantity is for the role \"black body\" only: the uncertainty of no "
+                "other instrument is taken from its certificate");
   }
   instrument.dcc.clear();
   instrument.dcc_quantity.clear();

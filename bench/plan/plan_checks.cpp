@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "acquisition/core/camera_id.h"
 #include "acquisition/core/control_text.h"
 #include "bench/plan/collimator.h"
 #include "bench/plan/quantity.h"
@@ -36,7 +37,15 @@ ValueMistakes check_address(const Plan& plan, const std::string& address) {
 
 ValueMistakes check_camera_id(const Plan& plan, std::size_t /*row*/) {
   const std::string& id = plan.camera.id;
-  if (id.empty() || (id.find(':') != std::string::npos && !id.starts_with(':') && !id.ends_with(':'))) return {};
+  const auto colon = id.find(':');
+  if (id.empty()) return {};
+  if (colon != std::string::npos && colon > 0 && colon + 1 < id.size()) {
+    const std::string scheme = id.substr(0, colon);
+    const std::vector<std::string> known(camera_scheme::all.begin(), camera_scheme::all.end());
+    if (std::find(known.begin(), known.end(), scheme) != known.end()) return {};
+    return {{std::nullopt, "unknown scheme \"" + one_line(scheme) + "\", expected one of " + quoted_list(known) +
+                               nearest_name_hint(scheme, known)}};
+  }
   return {{std::nullopt, "expected SCHEME:NAME as listed by 'todbench devices', found \"" + one_line(id) + "\""}};
 }
 

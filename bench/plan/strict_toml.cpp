@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <set>
 #include <utility>
 
@@ -119,6 +120,31 @@ std::optional<std::string> scalar_text(const toml::node& node) {
   return std::nullopt;
 }
 
+/// The line with this number, from 1; empty beyond the end.
+std::string_view line_at(std::string_view text, std::size_t number) {
+  for (std::size_t i = 1; i < number; ++i) {
+    const auto end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  return text.substr(0, text.find_first_of("\r\n"));
+}
+
+/// Two frequent mistakes in a line KEY = VALUE: a decimal comma, and a text without quotes. Empty for others.
+std::string mistake_hint(std::string_view line) {
+  static const std::regex comma(R"(\s*([\w.-]+)\s*=\s*(-?\d+),(\d+)\s*(#.*)?)");
+  static const std::regex word(R"(\s*([\w.-]+)\s*=\s*([A-Za-z][^"'#\[\]{}]*?)\s*(#.*)?)");
+  constexpr std::size_t longest = 200;
+  if (line.size() > longest) return {};
+  const std::string whole(line);
+  std::smatch found;
+  if (std::regex_match(whole, found, comma))
+    return "; decimals have a point: " + found[1].str() + " = " + found[2].str() + "." + found[3].str();
+  if (std::regex_match(whole, found, word))
+    return "; a text has quotes: " + found[1].str() + " = \"" + one_line(found[2].str()) + "\"";
+  return {};
+}
+
 }  // namespace
 
 Result<TomlReader> TomlReader::parse(std::string_view text, const std::string& file) {
@@ -128,8 +154,9 @@ Result<TomlReader> TomlReader::parse(std::string_view text, const std::string& f
   try {
     document->root = toml::parse(text, file);
   } catch (const toml::parse_error& error) {
-    return fail_at(ErrorCode::invalid_input, file + ":" + std::to_string(error.source().begin.line),
-                   "not valid TOML: " + one_line(error.description()));
+    const auto line = error.source().begin.line;
+    return fail_at(ErrorCode::invalid_input, file + ":" + std::to_string(line),
+                   "not valid TOML: " + one_line(error.description()) + mistake_hint(line_at(text, line)));
   }
   Table* root = document->open(&document->root, "", 1);
   return TomlReader(std::move(document), root);

@@ -349,6 +349,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "plan.toml:3: key 'phases' in [target]: expected a whole number"},
         Mistake{"camera_without_ifov", "[camera]\nid = \"gige:A-1\"\n",
                 "plan.toml:1: missing key 'ifov_mrad' in [camera]"},
+        Mistake{"camera_of_unknown_scheme", "[camera]\nid = \"gigee:A-1\"\nifov_mrad = 1\n",
+                "plan.toml:2: key 'id' in [camera]: unknown scheme \"gigee\", expected one of 'gige', 'u3v', 'v4l2', "
+                "'usb', 'file', 'sim', did you mean 'gige'?"},
         Mistake{"camera_without_scheme", "[camera]\nid = \"A-1\"\nifov_mrad = 1\n",
                 "plan.toml:2: key 'id' in [camera]: expected SCHEME:NAME"},
         Mistake{"list_as_setting", "[camera.settings]\nA = [1]\n",

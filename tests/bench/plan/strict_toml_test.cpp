@@ -54,6 +54,14 @@ INSTANTIATE_TEST_SUITE_P(
                     "plan.toml:1: unknown key 'tarjet', did you mean 'target'?"},
         TomlMistake{"unknown_before_missing", "[[limit]]\n\nleats = 1\n",
                     "plan.toml:3: unknown key 'leats' in [limit], did you mean 'least'?"},
+        TomlMistake{
+            "decimal_comma", "[target]\ndistance_m = 1,309\n",
+            "plan.toml:2: not valid TOML: Error while parsing key-value pair: expected a comment or whitespace, "
+            "saw ','; decimals have a point: distance_m = 1.309"},
+        TomlMistake{
+            "text_without_quotes", "name = mine # of us\n",
+            "plan.toml:1: not valid TOML: Error while parsing value: could not determine value type; a text has "
+            "quotes: name = \"mine\""},
         TomlMistake{"missing_key", "\n[[limit]]\n",
                     "plan.toml:2: missing key 'least' in [limit], expected a finite number"},
         TomlMistake{"wrong_type", "[target]\ndistance_m = \"2\"\n",
