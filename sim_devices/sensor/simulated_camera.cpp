@@ -64,6 +64,9 @@ class SimulatedSource final : public FrameSource {
     frame.host_time_ns = monotonic_ns();
     frame.significant_bits = info_.significant_bits;
     frame.scale = scale_;
+    // It has none. Strong noise of rows looks like one, and the wait after it would never end: it is in time of the
+    // host, in which a fast simulation makes many more frames.
+    frame.correction = CorrectionState::idle;
     ++index_;
     return frame;
   }
