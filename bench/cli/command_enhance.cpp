@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/effect_decisions.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/run_display.h"
@@ -157,8 +158,10 @@ Result<std::filesystem::path> measured_session(Console& console, const LoadedPla
   RunDisplay shown(console, loaded.plan());
   ExperimentOptions options{.folder = folder / "session"};
   options.existing = existing;
-  const auto outcome = scan > 1 ? measure_scanned(loaded, scan, options, shown.listener(), stop)
-                                : measure_plan(loaded, options, shown.listener(), stop);
+  if (scan > 1) {
+    TODBENCH_TRY(options.host.on_opened, scan_on_opened(loaded, scan));
+  }
+  const auto outcome = measure_plan(loaded, options, shown.listener(), stop);
   console.end_progress();
   if (!outcome) return tl::unexpected(outcome.error());
   if (outcome->ended_by) return tl::unexpected(*outcome->ended_by);

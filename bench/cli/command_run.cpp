@@ -369,15 +369,13 @@ int run_resume(Console& console, const MeasureArguments& asked, const Program& p
   if (!asked.run.keys.given.empty() || program.common.seed_given)
     return report_error(
         console, {ErrorCode::invalid_input, "--resume uses the plan of the session, so no option may change the plan"});
-  const auto session =
-      open_session(asked.resumed, {.accept_changed = asked.opening.accept_changed, .accept_cut_off = true});
-  if (!session) return report_error(console, session.error());
-  auto outcome =
-      measure_shown(console, session->plan, folder_of(asked.run, named_after(asked.resumed, "-resumed")), asked.serve,
-                    [&](const ExperimentOptions& options, const ExperimentListener& listener) {
-                      return resume_session(asked.resumed, options, listener, program.stop->token(), asked.opening,
-                                            asked.run_modules ? RunModules::yes : RunModules::no);
-                    });
+  auto run =
+      open_interrupted_run(asked.resumed, nullptr, asked.opening, asked.run_modules ? RunModules::yes : RunModules::no);
+  if (!run) return report_error(console, run.error());
+  auto outcome = measure_shown(console, run->session.plan, folder_of(asked.run, named_after(asked.resumed, "-resumed")),
+                               asked.serve, [&](const ExperimentOptions& options, const ExperimentListener& listener) {
+                                 return resume_session(*std::move(run), options, listener, program.stop->token());
+                               });
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   return show_measured(console, *outcome);

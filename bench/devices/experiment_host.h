@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "acquisition/base/result.h"
 #include "bench/devices/pause.h"
 #include "bench/session/session_clock.h"
 #include "sim_devices/module/picture_stage.h"
@@ -14,6 +16,8 @@
 #include "tod/presentation/operator_request.h"
 
 namespace todbench {
+
+struct OpenedBench;
 
 /// Stages of an enhancement package, behind the modules of the plan. They process the frames of the camera and of its
 /// twin.
@@ -35,6 +39,9 @@ struct ExperimentHost {
   AskOperator ask_operator{};
   HostClocks clocks = host_clocks();
   AddedStages added{};
+  /// Changes or refuses the opened devices before the run, and returns the note of the session about that. Empty: the
+  /// devices are used as opened.
+  std::function<Result<std::string>(OpenedBench& bench)> on_opened{};
 };
 
 }  // namespace todbench

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "acquisition/base/host_clock.h"
-#include "acquisition/base/try.h"
 #include "acquisition/core/forwarding_source.h"
 #include "bench/text/text.h"
 #include "sim_devices/sensor/super_resolution_stage.h"
@@ -126,22 +125,22 @@ class ScanningSource final : public ForwardingSource {
 
 }  // namespace
 
-Result<void> scan_with_stage(OpenedBench& bench, const StageScan& scan) {
+Result<std::string> scan_with_stage(OpenedBench& bench, const StageScan& scan) {
   if (!bench.target->capabilities().sets_shift) {
     return fail(ErrorCode::invalid_input, "the target cannot scan a pixel: it has no stage that sets shifts (" +
                                               bench.target->capabilities().description + ")");
   }
   if (!(scan.pixel_mm > 0) || scan.steps < 2)
     return fail(ErrorCode::invalid_input, "a scan needs two places or more and a pixel above 0 mm");
-  bench.warnings.push_back(
-      fmt::format("the stage visits {0} x {0} places of a pixel in turn, one frame at each, in steps of {1:.4g} mm: "
-                  "curve, blur and noise of this session are those of a scanned picture, not of the camera at rest",
-                  scan.steps, scan.pixel_mm / scan.steps));
   const auto shared = std::make_shared<ScanState>();
   shared->target = std::move(bench.target);
   bench.camera = std::make_unique<ScanningSource>(std::move(bench.camera), shared, scan, !bench.simulated);
   bench.target = std::make_unique<ScannedTarget>(shared);
-  return {};
+  return fmt::format(
+      "the stage visits {0} x {0} places of a pixel in turn, one frame at each, in steps of {1:.4g} mm: curve, blur "
+      "and "
+      "noise of this session are those of a scanned picture, not of the camera at rest",
+      scan.steps, scan.pixel_mm / scan.steps);
 }
 
 std::vector<int> scan_factors(const EnhancementPackage& package) {
@@ -166,26 +165,13 @@ Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int di
   return {};
 }
 
-Result<ExperimentOutcome> measure_scanned(const LoadedPlan& loaded, int steps, const ExperimentOptions& options,
-                                          const ExperimentListener& listener, std::stop_token stop) {
-  const Plan& plan = loaded.plan();
-  if (plan.camera.id.empty()) return fail(ErrorCode::invalid_input, "the plan names no camera: [camera] id is missing");
-  const auto today = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
-  if (auto valid = check_calibration(plan, today); !valid) return tl::unexpected(valid.error());
+Result<std::function<Result<std::string>(OpenedBench&)>> scan_on_opened(const LoadedPlan& loaded, int steps) {
   // The noise of a pixel comes from successive frames, whose edges are at other places of the scan.
   if (loaded.observer().sensor_noise_factor != 1)
     return fail(ErrorCode::invalid_input,
                 "an observer whose noise is proportional to the sensor noise cannot judge the frames of a scan");
-  EffectPlanner planner;
-  TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
-  if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  TODBENCH_TRY(OpenedBench bench, open_bench(loaded, stop, options.host, listener.on_phase, listener.on_wait));
-  const StageScan scan{.steps = steps, .pixel_mm = plan.target.distance_m * plan.camera.ifov_mrad};
-  if (auto scanned = scan_with_stage(bench, scan); !scanned) return tl::unexpected(scanned.error());
-  // Among the notes of the session, which its report shows.
-  inputs.warnings.push_back(std::move(bench.warnings.back()));
-  bench.warnings.pop_back();
-  return measure_on_bench(loaded, inputs, std::move(bench), options, listener, std::move(stop));
+  const StageScan scan{.steps = steps, .pixel_mm = loaded.plan().target.distance_m * loaded.plan().camera.ifov_mrad};
+  return [scan](OpenedBench& bench) { return scan_with_stage(bench, scan); };
 }
 
 }  // namespace todbench

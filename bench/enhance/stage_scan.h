@@ -2,12 +2,13 @@
 // A stage that scans a pixel for super-resolution: it moves the plate between the frames of a camera.
 #pragma once
 
-#include <stop_token>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "acquisition/base/result.h"
+#include "bench/devices/devices.h"
 #include "bench/enhance/package_file.h"
-#include "bench/run/experiment.h"
 
 namespace todbench {
 
@@ -21,9 +22,9 @@ struct StageScan {
 /// requested place, as super_resolution_stage() assumes with FrameShifts::scan. Frames taken while the target changes
 /// count, but the plate is not moved for them. Sequence numbers continue without the dropped frames, so that lost
 /// frames remain visible. Whether the plate really moves, the frames show (ScanWatch). Call before the bench is
-/// recorded. Errors: `invalid_input` if the target does not set shifts, or the pixel has no size. A move that fails
-/// ends the run with `integrity`, or `interrupted`.
-[[nodiscard]] Result<void> scan_with_stage(OpenedBench& bench, const StageScan& scan);
+/// recorded. Returns the note of the session about the scan. Errors: `invalid_input` if the target does not set shifts,
+/// or the pixel has no size. A move that fails ends the run with `integrity`, or `interrupted`.
+[[nodiscard]] Result<std::string> scan_with_stage(OpenedBench& bench, const StageScan& scan);
 
 /// Returns, for each super-resolution of the package by a known scan, how many places along an axis of a pixel it
 /// needs.
@@ -33,10 +34,9 @@ struct StageScan {
 /// combine wrong places.
 [[nodiscard]] Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither);
 
-/// measure_plan() with a stage that scans steps x steps places of a pixel. Errors: those of measure_plan() and
-/// scan_with_stage().
-[[nodiscard]] Result<ExperimentOutcome> measure_scanned(const LoadedPlan& loaded, int steps,
-                                                        const ExperimentOptions& options,
-                                                        const ExperimentListener& listener, std::stop_token stop);
+/// ExperimentHost::on_opened for a stage that scans steps x steps places of a pixel: calls scan_with_stage().
+/// `invalid_input` for an observer that cannot judge the frames of a scan.
+[[nodiscard]] Result<std::function<Result<std::string>(OpenedBench&)>> scan_on_opened(const LoadedPlan& loaded,
+                                                                                      int steps);
 
 }  // namespace todbench

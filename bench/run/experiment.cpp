@@ -221,6 +221,10 @@ Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const Experimen
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
   auto bench = open_bench(loaded, stop, options.host, listener.on_phase, listener.on_wait);
   if (!bench) return tl::unexpected(bench.error());
+  if (options.host.on_opened) {
+    TODBENCH_TRY(std::string note_of_session, options.host.on_opened(*bench));
+    inputs->warnings.push_back(std::move(note_of_session));
+  }
   return measure_on_bench(loaded, *inputs, *std::move(bench), options, listener, std::move(stop));
 }
 

@@ -90,7 +90,7 @@ Result<RecordedRun> open_recorded_run(const std::filesystem::path& session, cons
   if (!recorded) return tl::unexpected(recorded.error());
   auto recording = open_recorded_bench(session, pause);
   if (!recording) return tl::unexpected(recording.error());
-  RecordedRun run{*std::move(recorded), *std::move(recording), {}, {}};
+  RecordedRun run{session, *std::move(recorded), *std::move(recording), {}, {}};
   run.plan = run.session.plan;
   // The author of a session chooses the programs that would run here.
   if (has_modules(run.plan, run.session.parts.sensor) && modules != RunModules::yes) {

@@ -2,6 +2,7 @@
 // Measures a session again from its recorded frames.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ enum class RunModules { no, yes };
 
 /// A recorded session that is ready to be measured again.
 struct RecordedRun {
+  std::filesystem::path folder;
   Session session;
   RecordedBench recording;
   /// Of the session, without recording, physical measures and their limits: the frames are those of the trials.

@@ -11,7 +11,6 @@
 
 #include "acquisition/base/try.h"
 #include "bench/devices/reconnecting_source.h"
-#include "bench/twin/module_chain.h"
 
 namespace todbench {
 namespace {
@@ -24,7 +23,7 @@ struct Splice {
 /// The recorded frames, then those of the camera. Sequence numbers continue.
 class SplicedSource final : public FrameSource {
  public:
-  SplicedSource(std::unique_ptr<FrameSource> recorded, std::shared_ptr<ReconnectingSource> camera,
+  SplicedSource(std::unique_ptr<FrameSource> recorded, std::unique_ptr<FrameSource> camera,
                 std::shared_ptr<Splice> splice)
       : info_(camera->info()), camera_(std::move(camera)), splice_(std::move(splice)), source_(std::move(recorded)) {}
 
@@ -52,12 +51,12 @@ class SplicedSource final : public FrameSource {
     return present()->correct_nonuniformity();
   }
 
-  /// Changes to the camera at the end of the recording; after that, waits for a camera that was lost.
-  [[nodiscard]] Result<void> recover(std::stop_token stop) {
-    if (switched_) return camera_->recover(std::move(stop));
+  [[nodiscard]] bool switched() const { return switched_; }
+  /// Changes to the camera at the end of the recording.
+  [[nodiscard]] Result<void> switch_over() {
     splice_->live = switched_ = true;
     const std::lock_guard lock(mutex_);
-    source_ = camera_;
+    source_ = std::move(camera_);
     return source_->start();
   }
 
@@ -69,7 +68,7 @@ class SplicedSource final : public FrameSource {
   }
 
   SourceInfo info_;
-  std::shared_ptr<ReconnectingSource> camera_;
+  std::unique_ptr<FrameSource> camera_;  ///< until the change
   std::shared_ptr<Splice> splice_;
   bool switched_ = false;
   std::optional<std::uint64_t> offset_;  ///< of the camera's numbers; modulo 2^64
@@ -112,13 +111,12 @@ class SplicedTarget final : public Target {
 class SplicedHost final : public RunController {
  public:
   SplicedHost(RecordedBench& recorded, std::unique_ptr<RunController> host, std::shared_ptr<Splice> splice,
-              SplicedSource& source, std::shared_ptr<ReconnectingSource> camera)
+              SplicedSource& source)
       : recorded_(std::move(recorded.bench.host)),
         host_(std::move(host)),
         answers_(recorded.answers),
         splice_(std::move(splice)),
-        source_(source),
-        camera_(std::move(camera)) {}
+        source_(source) {}
 
   [[nodiscard]] Result<std::int64_t> now_ns(Moment why) override { return present().now_ns(why); }
   [[nodiscard]] Result<bool> rests(std::stop_token stop) override { return present().rests(std::move(stop)); }
@@ -134,10 +132,13 @@ class SplicedHost final : public RunController {
       // A loss that the first part survived. One that ended it is that of the gap.
       if (auto back = recorded_->recover(stop); back || stop.stop_requested()) return back;
     }
-    return source_.recover(std::move(stop));
+    if (!source_.switched()) return source_.switch_over();
+    if (host_->recovers()) return host_->recover(std::move(stop));
+    return fail(ErrorCode::disconnected,
+                "camera " + source_.info().id + " was lost and did not return with the same identity and settings");
   }
   void resumed() override {
-    if (splice_->live) camera_->confirm_registration();
+    if (splice_->live && host_->recovers()) host_->resumed();
   }
 
  private:
@@ -150,72 +151,52 @@ class SplicedHost final : public RunController {
   std::shared_ptr<const RecordedAnswers> answers_;
   std::shared_ptr<Splice> splice_;
   SplicedSource& source_;  ///< of the same bench
-  std::shared_ptr<ReconnectingSource> camera_;
 };
 
-/// The camera of the plan without waiting for its return: that is added here.
-Result<OpenedBench> open_live_bench(const LoadedPlan& loaded, const ExperimentOptions& options,
-                                    const ExperimentListener& listener, const SourceInfo& recorded,
-                                    std::stop_token stop) {
-  Plan plan = loaded.plan();
-  plan.camera.reconnect_s = 0;
-  TODBENCH_TRY(const LoadedPlan without, loaded.with(std::move(plan)));
-  if (listener.on_phase) listener.on_phase("opening " + loaded.plan().camera.id);
-  auto bench = open_bench(without, std::move(stop), options.host, listener.on_phase, listener.on_wait);
-  if (!bench) return bench;
-  if (auto same = restore_settings(*bench->camera, loaded.plan().camera.settings, recorded); !same)
-    return fail(ErrorCode::invalid_input, "the session cannot be resumed: " + same.error().message);
-  return bench;
-}
-
-OpenedBench spliced(RecordedBench recorded, OpenedBench live, const Plan& plan) {
+/// Puts the recorded devices in front of the live ones. Keeps warnings and patience of the live bench.
+void splice_in_front(RecordedBench recorded, OpenedBench& live) {
   const auto splice = std::make_shared<Splice>();
-  const auto patience = std::chrono::milliseconds(static_cast<long>(plan.camera.reconnect_s * 1000));
-  const auto camera = std::make_shared<ReconnectingSource>(
-      std::move(live.camera), [id = plan.camera.id] { return camera_registry().open(id); },
-      ReconnectionOptions{.patience = patience, .settings = plan.camera.settings});
-  auto source = std::make_unique<SplicedSource>(std::move(recorded.bench.camera), camera, splice);
-  OpenedBench bench;
-  bench.simulated = recorded.bench.simulated;
-  bench.patience = patience;
-  bench.warnings = std::move(live.warnings);
-  bench.target = std::make_unique<SplicedTarget>(std::move(recorded.bench.target), std::move(live.target),
-                                                 recorded.answers, splice);
-  bench.host = std::make_unique<SplicedHost>(recorded, std::move(live.host), splice, *source, camera);
-  bench.camera = std::move(source);
-  return bench;
+  auto source = std::make_unique<SplicedSource>(std::move(recorded.bench.camera), std::move(live.camera), splice);
+  live.target = std::make_unique<SplicedTarget>(std::move(recorded.bench.target), std::move(live.target),
+                                                recorded.answers, splice);
+  live.host = std::make_unique<SplicedHost>(recorded, std::move(live.host), splice, *source);
+  live.camera = std::move(source);
+  live.simulated = recorded.bench.simulated;
 }
 
 }  // namespace
 
-Result<ExperimentOutcome> resume_session(const std::filesystem::path& session, ExperimentOptions options,
-                                         const ExperimentListener& listener, std::stop_token stop,
+Result<RecordedRun> open_interrupted_run(const std::filesystem::path& session, const Pause* pause,
                                          const Opening& opening, RunModules modules) {
-  TODBENCH_TRY(RecordedRun run,
-               open_recorded_run(session, options.host.pause,
-                                 {.accept_changed = opening.accept_changed, .accept_cut_off = true}, modules));
+  TODBENCH_TRY(
+      RecordedRun run,
+      open_recorded_run(session, pause, {.accept_changed = opening.accept_changed, .accept_cut_off = true}, modules));
   if (run.session.provenance.state == SessionState::complete)
     return fail(ErrorCode::invalid_input,
                 session.string() + ": the session is complete, so there is nothing to resume");
+  return run;
+}
+
+Result<ExperimentOutcome> resume_session(RecordedRun run, ExperimentOptions options, const ExperimentListener& listener,
+                                         std::stop_token stop) {
   Plan plan = run.session.plan;
   plan.measurement.record_frames = false;
   TODBENCH_TRY(const LoadedPlan loaded, LoadedPlan::of(std::move(plan), run.session.parts));
-  const auto today = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
-  if (auto valid = check_calibration(loaded.plan(), today); !valid) return tl::unexpected(valid.error());
-  EffectPlanner planner;
-  TODBENCH_TRY(ExperimentInputs inputs, experiment_inputs(loaded, planner));
-  TODBENCH_TRY(OpenedBench live, open_live_bench(loaded, options, listener, run.recording.bench.camera->info(), stop));
-  inputs.warnings.push_back("resumed: the first part of the run is session " + session.string());
-  OriginRecord origin{.session = std::filesystem::absolute(session).lexically_normal().string(),
-                      .manifest_sha256 = run.session.manifest_sha256,
-                      .signed_by = "",
-                      .then = judged_by(loaded),
-                      .now = judged_by(loaded),
-                      .resumed = true};
-  options.origin = std::move(origin);
+  options.origin = OriginRecord{.session = std::filesystem::absolute(run.folder).lexically_normal().string(),
+                                .manifest_sha256 = run.session.manifest_sha256,
+                                .signed_by = "",
+                                .then = judged_by(loaded),
+                                .now = judged_by(loaded),
+                                .resumed = true};
+  options.host.on_opened = [&run, &loaded](OpenedBench& live) -> Result<std::string> {
+    const SourceInfo recorded = run.recording.bench.camera->info();
+    if (auto same = restore_settings(*live.camera, loaded.plan().camera.settings, recorded); !same)
+      return fail(ErrorCode::invalid_input, "the session cannot be resumed: " + same.error().message);
+    splice_in_front(std::move(run.recording), live);
+    return "resumed: the first part of the run is session " + run.folder.string();
+  };
   const auto answers = run.recording.answers;
-  auto outcome = measure_on_bench(loaded, inputs, spliced(std::move(run.recording), std::move(live), loaded.plan()),
-                                  options, listener, std::move(stop));
+  auto outcome = measure_plan(loaded, options, listener, std::move(stop));
   if (auto agreed = answers->agreed(); !agreed) return tl::unexpected(agreed.error());
   return outcome;
 }

@@ -10,15 +10,18 @@
 
 namespace todbench {
 
+/// Opens an interrupted session to be resumed. Errors: those of open_recorded_run(); `invalid_input` for a session that
+/// is complete.
+[[nodiscard]] Result<RecordedRun> open_interrupted_run(const std::filesystem::path& session, const Pause* pause,
+                                                       const Opening& opening = {},
+                                                       RunModules modules = RunModules::no);
+
 /// Measures the plan of an interrupted session to its end, into a new session. The recorded frames and answers give the
 /// first part again, with the same trials; at their end the camera takes over as after a loss: the plate is located
 /// again, the presentation is repeated, and the gap is an interruption of the run (a new segment). Camera, settings and
 /// temperature scale must be those of the recording. The frames of the new session are not recorded. Errors: those of
-/// open_recorded_run(), open_bench() and measure_on_bench(); `invalid_input` for a session that is complete, or for
-/// another camera.
-[[nodiscard]] Result<ExperimentOutcome> resume_session(const std::filesystem::path& session, ExperimentOptions options,
-                                                       const ExperimentListener& listener, std::stop_token stop,
-                                                       const Opening& opening = {},
-                                                       RunModules modules = RunModules::no);
+/// measure_plan(); `invalid_input` for another camera.
+[[nodiscard]] Result<ExperimentOutcome> resume_session(RecordedRun run, ExperimentOptions options,
+                                                       const ExperimentListener& listener, std::stop_token stop);
 
 }  // namespace todbench

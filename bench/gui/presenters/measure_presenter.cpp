@@ -218,7 +218,9 @@ void MeasurePresenter::resume_run(const std::filesystem::path& session, const Pl
       bench_.sessions_folder() / session_folder_name(session_name(session) + "-resumed");
   bench_.run(Activity::measuring, [this, run = run_, session, folder](const Plan&, const std::stop_token& stop) {
     const ExperimentOptions options{.folder = folder, .existing = ExistingFolder::number, .host = host()};
-    return hand_over(run, resume_session(session, options, listener(), stop), {});
+    auto opened = open_interrupted_run(session, options.host.pause);
+    if (!opened) return hand_over(run, tl::unexpected(opened.error()), {});
+    return hand_over(run, resume_session(*std::move(opened), options, listener(), stop), {});
   });
   emit updated();
 }
