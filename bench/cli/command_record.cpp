@@ -16,6 +16,7 @@
 #include "bench/devices/camera_settings.h"
 #include "bench/devices/devices.h"
 #include "bench/judgement/verdict.h"
+#include "bench/run/recorded_bench.h"
 #include "bench/session/provenance.h"
 
 namespace todbench {
@@ -43,11 +44,7 @@ class Sink {
       sink.tiff_ = *std::move(tiff);
       return sink;
     }
-    StreamHeader header;
-    header.info = info;
-    header.created_utc = utc_now();
-    header.created_host_ns = monotonic_ns();
-    auto stream = FrameStreamWriter::create(file, header);
+    auto stream = FrameStreamWriter::create(file, header_now(info));
     if (!stream) return tl::unexpected(stream.error());
     sink.stream_ = *std::move(stream);
     return sink;

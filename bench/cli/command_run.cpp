@@ -16,7 +16,6 @@
 #include "bench/cli/watch.h"
 #include "bench/devices/emulation.h"
 #include "bench/devices/terminal_operator.h"
-#include "bench/forecast/bill_forecast.h"
 #include "bench/judgement/demand_kinds.h"
 #include "bench/judgement/verdict_record.h"
 #include "bench/plan/resources.h"
@@ -214,22 +213,20 @@ void print_uncertainty(const Console& console, const ExperimentOutcome& outcome)
   if (!missing.empty()) console.text("not stated in the budget: " + missing);
 }
 
-/// The bill of a run, with the forecast of its plan if there is one.
-AccuracyBill bill_of(const ExperimentOutcome& outcome, const LoadedPlan* loaded = nullptr) {
+AccuracyBill bill_of(const ExperimentOutcome& outcome, BillForecast forecast = BillForecast::left_out) {
   AccuracyBill bill = accuracy_bill({.presentations = outcome.presentations,
                                      .curve = outcome.curve,
                                      .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
                                      .verdict = &outcome.verdict,
                                      .effects = outcome.effects,
                                      .wall_s = outcome.figures.wall_s});
-  if (loaded == nullptr) return bill;
-  if (const auto forecast = bill_forecast(*loaded)) add_forecast(bill, *forecast);
+  if (forecast == BillForecast::shown && outcome.forecast) add_forecast(bill, *outcome.forecast);
   return bill;
 }
 
 /// Prints what the time of the run bought.
-void print_bill(const Console& console, const ExperimentOutcome& outcome, const LoadedPlan* loaded = nullptr) {
-  const AccuracyBill bill = bill_of(outcome, loaded);
+void print_bill(const Console& console, const ExperimentOutcome& outcome, BillForecast shown = BillForecast::left_out) {
+  const AccuracyBill bill = bill_of(outcome, shown);
   const bool forecast = bill.forecast_s.has_value();
   std::vector<TableRow> rows;
   for (const BillRow& row : bill.rows) {
@@ -263,12 +260,12 @@ int finish(Console& console, const ExperimentOutcome& outcome) {
 
 }  // namespace
 
-int show_measured(Console& console, const ExperimentOutcome& outcome, const LoadedPlan* loaded) {
+int show_measured(Console& console, const ExperimentOutcome& outcome, BillForecast forecast) {
   if (console.json()) {
     Json json = curve_json(outcome.curve, outcome.effects, outcome.figures);
     if (outcome.uncertainty) add_uncertainty(json, *outcome.uncertainty);
     add_verdict(json, outcome.verdict);
-    json["bill"] = bill_json(bill_of(outcome, loaded));
+    json["bill"] = bill_json(bill_of(outcome, forecast));
     add_measures(json, outcome);
     add_display(json, outcome);
     console.object(json);
@@ -281,7 +278,7 @@ int show_measured(Console& console, const ExperimentOutcome& outcome, const Load
     print_uncertainty(console, outcome);
     print_measures(console, outcome);
     print_display(console, outcome);
-    print_bill(console, outcome, loaded);
+    print_bill(console, outcome, forecast);
     print_verdict(console, outcome);
   }
   return finish(console, outcome);
@@ -353,7 +350,7 @@ int run_measure(Console& console, const MeasureArguments& asked, const Program& 
                                });
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
-  return show_measured(console, *outcome, &*loaded);
+  return show_measured(console, *outcome, BillForecast::shown);
 }
 
 /// Returns the name of a session folder for a session made from another one.

@@ -2,6 +2,7 @@
 #include "bench/cli/plan_decisions.h"
 
 #include <fmt/format.h>
+#include "tod/presentation/largest_contrast.h"
 
 #include <algorithm>
 #include <array>
@@ -197,8 +198,7 @@ std::string design_toml(const BestDesign& found) {
 Result<std::optional<ViewingProposal>> viewing_of(const std::vector<double>& delta_t_k, const ExperimentInputs& inputs,
                                                   std::stop_token stop) {
   if (!inputs.observer.eye || !inputs.observer.display || delta_t_k.empty()) return std::nullopt;
-  const double largest =
-      std::abs(*std::ranges::max_element(delta_t_k, {}, [](double contrast) { return std::abs(contrast); }));
+  const double largest = std::abs(largest_contrast_k(delta_t_k));
   auto found = propose_viewing(inputs.sensor, inputs.effects, inputs.observer, largest, std::move(stop));
   if (found) return *found;
   if (found.error().code == ErrorCode::interrupted) return tl::unexpected(found.error());

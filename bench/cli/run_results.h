@@ -7,8 +7,12 @@
 
 namespace todbench {
 
+/// Whether the bill of a run stands beside its forecast.
+enum class BillForecast { left_out, shown };
+
 /// Prints curve, comparison, uncertainty, measures, bill and verdict of a measured run, or its JSON object, and returns
-/// the exit code. `loaded`: plan whose forecast the bill compares with the run; null: none.
-[[nodiscard]] int show_measured(Console& console, const ExperimentOutcome& outcome, const LoadedPlan* loaded = nullptr);
+/// the exit code.
+[[nodiscard]] int show_measured(Console& console, const ExperimentOutcome& outcome,
+                                BillForecast forecast = BillForecast::left_out);
 
 }  // namespace todbench

@@ -10,6 +10,7 @@
 #include "hvs/observer/template_observer.h"
 #include "tod/measurement/measurement.h"
 #include "tod/plate/test_pattern.h"
+#include "tod/presentation/largest_contrast.h"
 
 namespace todbench {
 namespace {
@@ -20,13 +21,12 @@ constexpr double driven_px = 1;
 constexpr std::array<std::array<double, 2>, 6> shifts_px{{{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {0, 0}}};
 
 std::vector<TargetState> states_of(const Plan& plan) {
-  const auto contrast = std::ranges::max_element(plan.target.delta_t_k, {}, [](double k) { return std::abs(k); });
   const double pixel_mm = plan.camera.ifov_mrad * plan.target.distance_m;
   std::vector<TargetState> states;
   for (const auto& [x, y] : shifts_px)
     states.push_back({.plate = plan.target.plates.front(),
                       .mounting = plan.target.mountings.front(),
-                      .delta_t_k = *contrast,
+                      .delta_t_k = largest_contrast_k(plan.target.delta_t_k),
                       .shift_mm = driven_px * pixel_mm * cv::Point2d(x, y)});
   return states;
 }

@@ -16,6 +16,7 @@
 #include "bench/forecast/precision_frontier.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
+#include "tod/presentation/largest_contrast.h"
 
 namespace todbench {
 namespace {
@@ -190,8 +191,7 @@ Plan candidate(Plan plan, const std::vector<int>& mountings, int phases) {
 std::vector<double> not_needed(const Plan& plan) {
   std::vector<double> out;
   if (plan.limits.equivalence_margin_percent || plan.limits.acuity.empty()) return out;
-  const auto highest =
-      std::ranges::max(plan.target.delta_t_k, {}, [](double delta_t_k) { return std::abs(delta_t_k); });
+  const double highest = largest_contrast_k(plan.target.delta_t_k);
   for (const double delta_t_k : plan.target.delta_t_k) {
     const bool limited = std::ranges::any_of(
         plan.limits.acuity, [&](const AcuityLimit& limit) { return same_contrast(limit.delta_t_k, delta_t_k); });

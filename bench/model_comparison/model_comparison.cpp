@@ -22,6 +22,7 @@
 #include "sim_devices/sensor/sensor_key.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
+#include "tod/presentation/largest_contrast.h"
 
 namespace todbench {
 namespace {
@@ -134,8 +135,7 @@ class Chain {
     auto package = made_stages(model.package, {});
     std::ranges::move(package, std::back_inserter(stages_));
     scene_.plate = loaded.plates().front();
-    const auto& contrasts = loaded.plan().target.delta_t_k;
-    scene_.delta_t_k = *std::ranges::max_element(contrasts, {}, [](double contrast) { return std::abs(contrast); });
+    scene_.delta_t_k = largest_contrast_k(loaded.plan().target.delta_t_k);
     scene_.background_k = model_.spec().scene_temperature_k;
     scene_.distance_m = loaded.plan().target.distance_m;
     if (sensor_module(loaded.sensor()) != nullptr) module_.emplace(loaded.sensor(), loaded.plan().seed, nullptr);

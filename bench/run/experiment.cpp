@@ -254,7 +254,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   if (!start) return abandon(open, plan, provenance, start.error());
 
   // Made before the run: the report states how good it was.
-  const auto bench_forecast = bill_forecast(plan, inputs);
+  auto forecast = bill_forecast(plan, inputs);
 
   const auto begin = Clock::now();
   const std::int64_t begin_ns = monotonic_ns();
@@ -292,9 +292,8 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   const FittedCurve& fitted = fit->get(stop);
   keep_shape(result, fitted.said, open);
   const double wall_s = seconds_since(begin);
-  if (bench_forecast) {
-    const auto sentence =
-        forecast_beside_outcome(*bench_forecast, result, fitted.curve, inputs.effects, wall_s, begin_ns);
+  if (forecast) {
+    const auto sentence = forecast_beside_outcome(*forecast, result, fitted.curve, inputs.effects, wall_s, begin_ns);
     if (!sentence.empty()) {
       note(*folder, listener, sentence);
       result.notes.push_back(sentence);
@@ -302,6 +301,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   }
   provenance.run = run_record(result, wall_s);
   ExperimentOutcome outcome = outcome_of(open, fitted.curve, result, std::move(measures), inputs, *provenance.run);
+  if (forecast) outcome.forecast = *std::move(forecast);
   if (!outcome.ended_by) {
     FromCamera camera{.curve = &fitted.curve,
                       .functions = &fitted.functions_of_twin(),

@@ -142,15 +142,16 @@ std::filesystem::path recorded_frames(const std::filesystem::path& session) {
   return session / "frames" / "camera.todrec";
 }
 
+StreamHeader header_now(SourceInfo info) {
+  return {.info = std::move(info), .created_utc = utc_now(), .created_host_ns = monotonic_ns(), .annotations = {}};
+}
+
 Result<std::shared_ptr<FrameStreamWriter>> record_bench(OpenedBench& bench, const std::filesystem::path& session) {
   const std::filesystem::path file = recorded_frames(session);
   std::error_code problem;
   std::filesystem::create_directories(file.parent_path(), problem);
   if (problem) return fail(ErrorCode::io, file.parent_path().string() + ": cannot be created: " + problem.message());
-  StreamHeader header;
-  header.info = bench.camera->info();
-  header.created_utc = utc_now();
-  header.created_host_ns = monotonic_ns();
+  StreamHeader header = header_now(bench.camera->info());
   header.annotations = {
       {format_key, std::string(answers_format)},
       {target_key, bench.target->capabilities().description},

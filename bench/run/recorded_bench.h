@@ -11,6 +11,10 @@
 namespace todbench {
 
 class FrameStreamWriter;
+struct StreamHeader;
+
+/// Returns the header of a recording of this camera that begins now.
+[[nodiscard]] StreamHeader header_now(SourceInfo info);
 
 /// Path of the recording of a session.
 [[nodiscard]] std::filesystem::path recorded_frames(const std::filesystem::path& session);

@@ -11,6 +11,7 @@
 #include "bench/plan/plan_options.h"
 #include "bench/twin/simulated_responses.h"
 #include "sim_devices/sensor/sensor_model.h"
+#include "tod/presentation/largest_contrast.h"
 #include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
@@ -47,7 +48,7 @@ CameraSurrogate::CameraSurrogate(const LoadedPlan& loaded, const ExperimentInput
       halo_fit_(loaded.sensor(), samples_of(loaded)),
       samples_per_pitch_(samples_of(loaded)) {
   const Plan& plan = loaded.plan();
-  for (const double delta_t_k : plan.target.delta_t_k) largest_k_ = std::max(largest_k_, std::abs(delta_t_k));
+  largest_k_ = std::abs(largest_contrast_k(plan.target.delta_t_k));
   // A module of the plan stands behind the camera; these pictures come from the camera itself.
   possible_ = plan.camera.contrast == ContrastUnit::kelvin && inputs.sensor.modules.empty() &&
               CameraOpticsFit::models(loaded.sensor());

@@ -30,7 +30,7 @@ struct CostPoint {
   std::string knob;     ///< "wavelengths", "phases", "wrap", "band", "draws", "trials", "tolerance", "planner"
   std::string setting;  ///< value of the knob: "4", "1.5e-05", "5 %", "normal"
   bool paired = false;  ///< same random numbers as its reference: the error is that of the knob alone
-  std::optional<double> wall_s{};         ///< empty, as the following ones, if not measured
+  std::optional<double> wall_s{};         ///< processor time; empty, as the following ones, if not measured
   std::optional<double> error_percent{};  ///< of the 75 % acuity against the reference; the largest over contrasts
   std::optional<double> standard_error_percent{};  ///< stated by the estimate; the largest over contrasts
   std::string not_measured{};                      ///< reason, a clause; empty if measured
@@ -49,7 +49,7 @@ struct CostPoint {
 struct CostFrontier {
   std::vector<CostPoint> points;
   std::vector<ThresholdEstimate> reference;  ///< empty, like `points`, if no contrast has a threshold
-  double reference_s = 0;                    ///< wall time of the reference
+  double reference_s = 0;                    ///< processor time of the reference, as CostPoint::wall_s
   int reference_draws = 0;
   int paired_draws = 0;  ///< of the paired points and of their reference
   double reference_standard_error_percent = 0;

@@ -24,15 +24,6 @@ double cell_sinc(double x) {
   return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
 }
 
-double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy) {
-  double band = 16;
-  for (const Effect effect : all_effects) {
-    const EffectRow& row = row_of(effect);
-    if (row.band != nullptr && plan.simulates(effect)) band = std::min(band, row.band(spec, accuracy));
-  }
-  return band;
-}
-
 }  // namespace
 
 LegendreValues legendre(double x, int degree) {

@@ -13,18 +13,6 @@
 namespace todbench {
 namespace {
 
-/// Highest relevant frequency in cycles per pitch: the cut-off of the optics, or the frequency at which they have
-/// reduced the signal to the tolerance. Without either the spectrum of a sharp shape is unlimited; a limit of 16 cycles
-/// per pitch leaves an error near 1/(pi^2 16) at edges.
-double needed_band(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy) {
-  double band = 16;
-  for (const Effect effect : all_effects) {
-    const EffectRow& row = row_of(effect);
-    if (row.band != nullptr && plan.simulates(effect)) band = std::min(band, row.band(spec, accuracy));
-  }
-  return band;
-}
-
 /// Pitches round a window within which shapes are computed exactly.
 constexpr double near_field = 32;
 
@@ -44,7 +32,7 @@ ImageChain::ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, Scen
       motion_(motion),
       spread_(spread_of(scope())),
       readout_slope_(readout_slope_of(scope())),
-      band_per_pitch_(needed_band(spec_, plan_, accuracy_)) {
+      band_per_pitch_(highest_frequency(spec_, plan_, accuracy_)) {
   CV_Assert(std::abs(readout_slope_.y) < 0.9);
   points_per_pitch_ = 16 * static_cast<int>(std::ceil((2 * band_per_pitch_ + 0.1) / 16));
 }

@@ -78,6 +78,15 @@ TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& 
   };
 }
 
+double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy) {
+  double band = 16;
+  for (const Effect effect : all_effects) {
+    const EffectRow& row = row_of(effect);
+    if (row.band != nullptr && plan.simulates(effect)) band = std::min(band, row.band(spec, accuracy));
+  }
+  return band;
+}
+
 cv::Point2d readout_slope_of(const ChainScope& scope) {
   cv::Point2d slope(0, 0);
   for (const Effect effect : all_effects) {

@@ -44,6 +44,11 @@ class FootprintMtf {
 /// is a product over the axes, so only an eighth of the plane and one axis are computed.
 [[nodiscard]] TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope);
 
+/// Highest relevant frequency in cycles per pitch: the cut-off of the optics, or the frequency at which they have
+/// reduced the signal to the tolerance. Without either the spectrum of a sharp shape is unlimited; a limit of 16 cycles
+/// per pitch leaves an error near 1/(pi^2 16) at edges.
+[[nodiscard]] double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy);
+
 /// Motion of the target from one row of samples to the next, in pitches: the sum over the rows of stage::Readout.
 [[nodiscard]] cv::Point2d readout_slope_of(const ChainScope& scope);
 

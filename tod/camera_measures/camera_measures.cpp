@@ -19,6 +19,7 @@
 #include "tod/measures/pixel_noise.h"
 #include "tod/measures/shading.h"
 #include "tod/presentation/absolute_target.h"
+#include "tod/presentation/largest_contrast.h"
 #include "tod/presentation/target_failure.h"
 #include "tod/registration/registration.h"
 
@@ -158,15 +159,9 @@ class Run {
     return present(target_, taker_, state);
   }
 
-  [[nodiscard]] double largest_step() const {
-    double largest = 0;
-    for (const double step : options_.transfer_steps_k) largest = std::abs(step) > std::abs(largest) ? step : largest;
-    return largest;
-  }
-
   /// Locates the plate at the contrast that shows it best.
   Result<void> locate(CameraMeasures& measures) {
-    const double largest = largest_step();
+    const double largest = largest_contrast_k(options_.transfer_steps_k);
     if (largest == 0)
       return fail(ErrorCode::invalid_input, "the plate cannot be located, because all contrasts of the steps are 0 K");
     const auto shown = show(largest);
@@ -364,8 +359,7 @@ class Run {
   }
 
   Result<void> time_latency(CameraMeasures& measures) {
-    const double contrast_k =
-        *std::ranges::max_element(options_.transfer_steps_k, {}, [](double k) { return std::abs(k); });
+    const double contrast_k = largest_contrast_k(options_.transfer_steps_k);
     const auto put = [&](double x_mm) -> Result<void> {
       const auto shown = present(target_, taker_, {plate().name, Mounting::identity, contrast_k, {x_mm, 0}});
       return shown ? Result<void>() : tl::unexpected(shown.error());
@@ -464,7 +458,7 @@ class Run {
     mrtd.pitch_mrad = options_.measurement.ifov_mrad;
     mrtd.registration_frames = options_.measurement.registration_frames;
     mrtd.response = response_;
-    mrtd.locating_k = largest_step();
+    mrtd.locating_k = largest_contrast_k(options_.transfer_steps_k);
     const ShowState show = [this](const TargetState& state, const std::function<void()>& work) {
       TargetAfterWork target(target_, work);
       return present(target, taker_, state);

@@ -3,8 +3,7 @@
 
 #include <utility>
 
-#include "acquisition/base/host_clock.h"
-#include "bench/session/provenance.h"
+#include "bench/run/recorded_bench.h"
 
 namespace todbench {
 namespace {
@@ -86,11 +85,7 @@ void CameraDesk::serve(FrameSource& camera) {
 }
 
 Result<void> CameraDesk::record(const std::filesystem::path& file, const SourceInfo& info) {
-  StreamHeader header;
-  header.info = info;
-  header.created_utc = utc_now();
-  header.created_host_ns = monotonic_ns();
-  auto stream = FrameStreamWriter::create(file, header);
+  auto stream = FrameStreamWriter::create(file, header_now(info));
   if (!stream) return tl::unexpected(stream.error());
   const std::lock_guard lock(mutex_);
   stream_ = *std::move(stream);

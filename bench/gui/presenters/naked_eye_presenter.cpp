@@ -8,6 +8,7 @@
 
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/gui/presenters/person_presenter.h"
+#include "bench/gui/presenters/viewing_presenter.h"
 #include "bench/plan/descriptions.h"
 #include "hvs/eye/display_levels.h"
 
@@ -34,7 +35,7 @@ NakedEyePresenter::NakedEyePresenter(QObject* parent) : QObject(parent) {
 
 QString NakedEyePresenter::begin(const Plan& plan, const NakedEyeQuestion& question,
                                  const std::filesystem::path& sessions, std::optional<int> shown_ms) {
-  if (!has_display(plan)) return "The plan has no section [display]: state the pixel pitch, distance and luminances.";
+  if (!has_display(plan)) return no_display_sentence;
   auto model = load_observer_at("hvs-2", plan.display);
   if (!model) return QString::fromStdString(model.error().message);
   const NakedEyeTask task{.model = *std::move(model),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/viewing_presenter.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include "bench/plan/descriptions.h"
 #include "bench/plan/loaded_plan.h"
 #include "sim_devices/prediction/viewing_proposal.h"
+#include "tod/presentation/largest_contrast.h"
 
 namespace todbench {
 namespace {
@@ -16,8 +16,7 @@ namespace {
 Result<std::string> proposal_in_words(const Plan& plan, const std::stop_token& stop) {
   TODBENCH_TRY(const LoadedPlan loaded, LoadedPlan::load(plan));
   TODBENCH_TRY(const auto observer, load_observer_at("hvs-2", plan.display));
-  double largest = 0;
-  for (const double delta_t_k : plan.target.delta_t_k) largest = std::max(largest, std::abs(delta_t_k));
+  const double largest = std::abs(largest_contrast_k(plan.target.delta_t_k));
   TODBENCH_TRY(const ViewingProposal viewing,
                propose_viewing(loaded.sensor(), full_plan(loaded.sensor(), {}, {}), observer, largest, stop));
   return in_words(viewing, plan.display);
@@ -30,8 +29,7 @@ ViewingPresenter::ViewingPresenter(QObject* parent) : QObject(parent) {}
 void ViewingPresenter::propose(const Plan& plan) {
   ++number_;
   busy_ = has_display(plan);
-  words_ = busy_ ? QString("Zooms and distances are compared.")
-                 : QString("The plan has no section [display]: state the pixel pitch, distance and luminances.");
+  words_ = busy_ ? QString("Zooms and distances are compared.") : QString(no_display_sentence);
   if (busy_) {
     jobs_.start([this, plan, number = number_](const std::stop_token& stop) {
       const auto found = proposal_in_words(plan, stop);

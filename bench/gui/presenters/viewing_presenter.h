@@ -10,6 +10,9 @@
 
 namespace todbench {
 
+inline constexpr const char* no_display_sentence =
+    "The plan has no section [display]: state the pixel pitch, distance and luminances.";
+
 /// Used in the thread of the window. The estimates run on another thread.
 class ViewingPresenter final : public QObject {
   Q_OBJECT
