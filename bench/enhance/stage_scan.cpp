@@ -138,8 +138,7 @@ Result<std::string> scan_with_stage(OpenedBench& bench, const StageScan& scan) {
   bench.target = std::make_unique<ScannedTarget>(shared);
   return fmt::format(
       "the stage visits {0} x {0} places of a pixel in turn, one frame at each, in steps of {1:.4g} mm: curve, blur "
-      "and "
-      "noise of this session are those of a scanned picture, not of the camera at rest",
+      "and noise of this session are those of a scanned picture, not of the camera at rest",
       scan.steps, scan.pixel_mm / scan.steps);
 }
 

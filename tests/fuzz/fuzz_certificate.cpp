@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::require(!found.error().message.empty());
     return 0;
   }
-  if (const auto row = black_body_row(*found, "a.xml"))
+  if (const auto row = black_body_row(*found, "", "a.xml"))
     fuzz::require(std::isfinite(row->value) && row->value >= 0 && row->coverage_factor > 0);
   return 0;
 }
