@@ -6,6 +6,7 @@
 #include "bench/cli/commands.h"
 #include "bench/devices/devices.h"
 #include "bench/devices/emulation.h"
+#include "bench/run_control/control_api.h"
 
 namespace todbench {
 namespace {
@@ -14,16 +15,7 @@ int run_devices(Console& console) {
   const auto listing = camera_registry().list();
   for (const auto& warning : listing.warnings) console.note(warning);
   if (console.json()) {
-    Json cameras = Json::array();
-    for (const auto& c : listing.cameras) {
-      cameras.push_back({{"id", c.id},
-                         {"vendor", c.vendor},
-                         {"model", c.model},
-                         {"serial", c.serial},
-                         {"transport", c.transport},
-                         {"address", c.address}});
-    }
-    console.object({{"cameras", cameras}, {"warnings", listing.warnings}});
+    console.object(cameras_json(listing));
     return 0;
   }
   std::vector<TableRow> rows;

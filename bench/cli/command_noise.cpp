@@ -10,10 +10,8 @@
 #include <span>
 #include <utility>
 
-#include "acquisition/core/camera_id.h"
 #include "acquisition/core/correction_watch.h"
 #include "acquisition/core/integrity_gate.h"
-#include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/input_gate.h"
 #include "bench/cli/noise_components.h"
@@ -119,12 +117,8 @@ cv::Mat1b saturated_pixels(const Frame& frame) {
 
 /// Reads all complete frames that are separate exposures.
 Result<Frames> frames_of(const std::string& id, Console& console) {
-  auto source =
-      recording_backend()->open(has_scheme(id, camera_scheme::file) ? id : camera_id(camera_scheme::file, id));
-  // A recording is an input file here, not a device.
-  if (!source) return fail(ErrorCode::invalid_input, source.error().message);
-  if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());
-  for (const auto& warning : (*source)->info().warnings) console.note(warning);
+  const auto source = started_recording(console, id);
+  if (!source) return tl::unexpected(source.error());
   InputGate gate;
   Frames frames;
   frames.kelvin = (*source)->info().scale.calibrated();

@@ -4,13 +4,19 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 
+#include "acquisition/core/frame_source.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/core/moved_picture.h"
 #include "acquisition/core/repeat_cadence.h"
+#include "bench/cli/console.h"
 
 namespace todbench {
+
+/// Opens and starts a recording, by file or by id, as the input of a command, and prints its warnings.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> started_recording(Console& console, const std::string& id);
 
 /// Judges every frame of a recording of a static scene in order. Repeated frames, gaps and pixels at an end of the
 /// counts are left to the command, which knows their effect on its number.

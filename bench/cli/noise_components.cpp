@@ -4,8 +4,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "acquisition/core/camera_id.h"
-#include "acquisition/recording/recording_backend.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/input_gate.h"
 #include "bench/judgement/verdict.h"
@@ -53,12 +51,8 @@ tl::unexpected<Error> corrected(int frame) {
 }
 
 Result<WholeRecording> whole_recording(Console& console, const std::string& id, AcrossCorrections across) {
-  auto source =
-      recording_backend()->open(has_scheme(id, camera_scheme::file) ? id : camera_id(camera_scheme::file, id));
-  // A recording is an input file here, not a device.
-  if (!source) return fail(ErrorCode::invalid_input, source.error().message);
-  if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());
-  for (const auto& warning : (*source)->info().warnings) console.note(warning);
+  const auto source = started_recording(console, id);
+  if (!source) return tl::unexpected(source.error());
   InputGate gate;
   WholeRecording whole;
   whole.kelvin = (*source)->info().scale.calibrated();

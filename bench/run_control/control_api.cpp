@@ -76,6 +76,19 @@ std::string type_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+Json cameras_json(const CameraRegistry::Listing& listing) {
+  Json cameras = Json::array();
+  for (const auto& c : listing.cameras) {
+    cameras.push_back({{"id", c.id},
+                       {"vendor", c.vendor},
+                       {"model", c.model},
+                       {"serial", c.serial},
+                       {"transport", c.transport},
+                       {"address", c.address}});
+  }
+  return {{"cameras", cameras}, {"warnings", listing.warnings}};
+}
+
 ControlAnswer control_error(int status, std::string_view sentence) {
   return json_answer({{"error", sentence}}, status);
 }
@@ -97,24 +110,17 @@ struct ControlHandlers {
 
   static ControlAnswer cameras(ControlApi& api, const Segments&, const ControlRequest&) {
     const std::lock_guard lock(api.listing_);
-    std::vector<std::string> warnings;
+    CameraRegistry::Listing shown;
     // A search for devices would disturb the camera of a run.
     if (api.queue_.is_running()) {
-      warnings.emplace_back("a run uses the devices: these cameras were found before it");
+      shown.warnings.emplace_back("a run uses the devices: these cameras were found before it");
     } else if (api.options_.list_cameras) {
       api.last_listing_ = api.options_.list_cameras();
     }
-    warnings.insert(warnings.begin(), api.last_listing_.warnings.begin(), api.last_listing_.warnings.end());
-    Json cameras = Json::array();
-    for (const auto& c : api.last_listing_.cameras) {
-      cameras.push_back({{"id", c.id},
-                         {"vendor", c.vendor},
-                         {"model", c.model},
-                         {"serial", c.serial},
-                         {"transport", c.transport},
-                         {"address", c.address}});
-    }
-    return json_answer({{"cameras", cameras}, {"warnings", warnings}});
+    const CameraRegistry::Listing& last = api.last_listing_;
+    shown.cameras = last.cameras;
+    shown.warnings.insert(shown.warnings.begin(), last.warnings.begin(), last.warnings.end());
+    return json_answer(cameras_json(shown));
   }
 
   static ControlAnswer plans(ControlApi&, const Segments&, const ControlRequest&) {

@@ -13,11 +13,15 @@
 
 #include "acquisition/core/camera_registry.h"
 #include "bench/run_control/run_queue.h"
+#include "bench/text/json.h"
 
 namespace todbench {
 
 /// The OpenAPI 3.0 description, compiled in.
 [[nodiscard]] std::string_view openapi_json();
+
+/// Returns {"cameras": [{"id", "vendor", ...}], "warnings": [...]}.
+[[nodiscard]] Json cameras_json(const CameraRegistry::Listing& listing);
 
 struct ControlRequest {
   std::string method;  ///< "GET", "POST", "HEAD"

@@ -114,15 +114,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
     }
     // An effect that is negligible for the sensor alone may matter behind a module.
     inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
-    inputs.sensor = as_planned(loaded.sensor(), inputs.effects);
-    auto accuracy = accuracy_of(plan);
-    if (!accuracy) return tl::unexpected(accuracy.error());
-    inputs.accuracy = *accuracy;
-    if (!ifov->empty()) inputs.warnings.push_back(*std::move(ifov));
-    return inputs;
-  }
-  auto effects = planned_effects(plan, loaded.sensor(), inputs.observer, planner);
-  if (effects) {
+  } else if (auto effects = planned_effects(plan, loaded.sensor(), inputs.observer, planner)) {
     inputs.effects = std::move(effects->plan);
     inputs.outlooks = std::move(effects->outlooks);
     inputs.warnings = std::move(effects->warnings);
