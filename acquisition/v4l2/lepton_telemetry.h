@@ -26,12 +26,9 @@ struct LeptonTelemetry {
   std::uint32_t time_last_ffc_ms = 0;      ///< since power-up, of the last flat-field correction
   std::optional<double> kelvin_per_count;  ///< of the linear temperature mode; empty: counts are proportional to flux
 
-  [[nodiscard]] bool ffc_desired() const { return (status >> 3U & 1U) != 0; }
   [[nodiscard]] FfcState ffc_state() const { return static_cast<FfcState>(status >> 4U & 3U); }
   /// Automatic gain: the counts have no radiometric meaning.
   [[nodiscard]] bool agc() const { return (status >> 12U & 1U) != 0; }
-  [[nodiscard]] bool shutter_locked() const { return (status >> 15U & 1U) != 0; }
-  [[nodiscard]] bool too_hot() const { return (status >> 20U & 1U) != 0; }
   /// Time since the last correction, correct across a wrap of the 32-bit clock; empty before the first correction.
   [[nodiscard]] std::optional<double> since_ffc_s() const;
   bool operator==(const LeptonTelemetry&) const = default;

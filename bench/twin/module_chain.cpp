@@ -91,10 +91,6 @@ int settle_frames(const std::vector<ModulePlan>& modules) {
   return sum;
 }
 
-void put_modules_behind(OpenedBench& bench, const std::vector<ModulePlan>& modules, const ModuleLine& on_error_line) {
-  put_stages_behind(bench, module_stages(modules, on_error_line));
-}
-
 void put_stages_behind(OpenedBench& bench, std::vector<std::unique_ptr<ChainStage>> stages) {
   if (stages.empty()) return;
   constexpr std::size_t no_picture = std::numeric_limits<std::size_t>::max();

@@ -32,10 +32,8 @@ using ModuleLine = std::function<void(std::string_view line)>;
                                                                      const ModuleLine& on_error_line);
 /// Returns the number of frames to discard after a change of the target. Memories of successive modules add up.
 [[nodiscard]] int settle_frames(const std::vector<ModulePlan>& modules);
-/// Passes every frame of the bench through the modules; their output is judged (ProcessedAs::judged). Without modules
-/// the bench stays as it is.
-void put_modules_behind(OpenedBench& bench, const std::vector<ModulePlan>& modules, const ModuleLine& on_error_line);
-/// Does the same with stages.
+/// Passes every frame of the bench through the stages; their output is judged (ProcessedAs::judged). Without stages the
+/// bench stays as it is.
 void put_stages_behind(OpenedBench& bench, std::vector<std::unique_ptr<ChainStage>> stages);
 
 /// Stores the noise of the run in counts and its correlation in every point. With stages behind the camera, it is the

@@ -36,7 +36,6 @@ class EyeFilter {
   EyeFilter(const EyeParameters& eye, double luminance_cd_m2);
 
   [[nodiscard]] double pupil_mm() const { return pupil_mm_; }
-  [[nodiscard]] double illuminance_td() const { return illuminance_td_; }
   /// H^2 at a frequency in cycles per degree, for detection of a known pattern: d'^2 per square of the contrast and
   /// square degree. 0 at frequency 0 and from the diffraction limit on.
   [[nodiscard]] double detection_power(double frequency_per_degree) const;

@@ -30,14 +30,6 @@ double long_exposure_mtf(const TurbulentPath& path, double cycles_per_mrad) {
   return std::exp(-long_exposure_exponent(path, cycles_per_mrad));
 }
 
-std::optional<double> short_exposure_mtf(const TurbulentPath& path, double aperture_m, PropagationField field,
-                                         double cycles_per_mrad) {
-  const double relative = wavelength_m(path) * cycles_per_mrad * 1000 / aperture_m;
-  if (relative > 1) return std::nullopt;
-  const double a = field == PropagationField::near_field ? 1 : 0.5;
-  return std::exp(-long_exposure_exponent(path, cycles_per_mrad) * (1 - a * std::cbrt(relative)));
-}
-
 double tilt_sd_mrad(const TurbulentPath& path, double aperture_m) {
   return 1000 * std::sqrt(0.182 * std::pow(aperture_m / fried_spherical_m(path), 5.0 / 3)) * wavelength_m(path) /
          aperture_m;

@@ -2,8 +2,6 @@
 // Turbulence of the air on a horizontal path of constant Cn2.
 #pragma once
 
-#include <optional>
-
 namespace todbench {
 
 struct TurbulentPath {
@@ -22,11 +20,6 @@ struct TurbulentPath {
 [[nodiscard]] double long_exposure_exponent(const TurbulentPath& path, double cycles_per_mrad);
 /// Long exposure: exp[-3.44 (lambda nu / r0)^(5/3)], r0 spherical (Fried 1966).
 [[nodiscard]] double long_exposure_mtf(const TurbulentPath& path, double cycles_per_mrad);
-enum class PropagationField { near_field, far_field };
-/// Short exposure: the exponent times 1 - a (lambda nu / D)^(1/3), a = 1 in the near field and 1/2 in the far field. It
-/// can exceed the long exposure. Empty beyond the cut-off of the aperture, nu > D / lambda.
-[[nodiscard]] std::optional<double> short_exposure_mtf(const TurbulentPath& path, double aperture_m,
-                                                       PropagationField field, double cycles_per_mrad);
 /// Standard deviation of the image dance per axis in mrad: sqrt(0.182 (D / r0)^(5/3)) lambda / D (Noll 1976).
 [[nodiscard]] double tilt_sd_mrad(const TurbulentPath& path, double aperture_m);
 

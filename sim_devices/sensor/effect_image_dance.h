@@ -39,7 +39,6 @@ class ImageDance {
   /// Precondition: `spec` is as_planned().
   explicit ImageDance(const SensorSpec& spec);
   [[nodiscard]] bool still() const { return sd_pitch_ == 0; }
-  [[nodiscard]] double sd_pitch() const { return sd_pitch_; }
   /// Displacement of exposure `exposure` in the sequence that `stream` numbers.
   [[nodiscard]] cv::Point2d displacement_pitch(const RandomStream& stream, std::uint64_t exposure) const;
 

@@ -242,11 +242,6 @@ Result<void> ScpiClient::check_report(std::string_view text, const std::string& 
   return {};
 }
 
-Result<std::vector<double>> ScpiClient::query_numbers(std::string_view text, std::size_t count,
-                                                      const std::stop_token& stop) {
-  return query_form(text, comma_form(count), stop);
-}
-
 Result<std::vector<double>> ScpiClient::query_form(std::string_view text, std::string_view form,
                                                    const std::stop_token& stop) {
   auto answer = query(text, stop);

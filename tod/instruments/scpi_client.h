@@ -49,11 +49,8 @@ class ScpiClient {
   [[nodiscard]] Result<void> command(std::string_view text, const std::stop_token& stop);
   /// Sends a query and returns its answer without the line end. Errors: `invalid_input` if the instrument refuses.
   [[nodiscard]] Result<std::string> query(std::string_view text, const std::stop_token& stop);
-  /// Returns the answer of a query: `count` finite numbers separated by commas. Any other answer is `disconnected`,
+  /// Returns the finite numbers of an answer of the form `form` (numbers_in()). Any other answer is `disconnected`,
   /// because later answers cannot be trusted.
-  [[nodiscard]] Result<std::vector<double>> query_numbers(std::string_view text, std::size_t count,
-                                                          const std::stop_token& stop);
-  /// Same for an answer of the form `form` (numbers_in()).
   [[nodiscard]] Result<std::vector<double>> query_form(std::string_view text, std::string_view form,
                                                        const std::stop_token& stop);
 

@@ -91,8 +91,6 @@ class SetUpStep {
 
   /// Per pixel and frame, from differences of successive frames; 0: not measured.
   [[nodiscard]] double temporal_noise_k() const { return temporal_noise_k_; }
-  /// As it affects an observer: successive frames show only a part of noise with memory.
-  [[nodiscard]] double noise_of_frame_k() const { return noise_of_frame_k_; }
   [[nodiscard]] std::optional<double> noise_counts() const { return noise_counts_; }
   [[nodiscard]] std::optional<double> lag1_correlation() const { return lag1_correlation_; }
 
@@ -125,7 +123,9 @@ class SetUpStep {
   std::function<void(const std::string&)> note_;
   SaturationWatch saturation_, saturation_behind_;
   std::map<std::string, double> learnt_response_;  ///< by plate; replaces that of the options
-  double temporal_noise_k_ = 0, noise_of_frame_k_ = 0;
+  double temporal_noise_k_ = 0;
+  /// As it affects an observer: successive frames show only a part of noise with memory.
+  double noise_of_frame_k_ = 0;
   double memory_ratio_ = 1;              ///< of JudgedMemory
   std::vector<double> noted_contrasts_;  ///< after the stages
   std::optional<double> noise_counts_, lag1_correlation_;

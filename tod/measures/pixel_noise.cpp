@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
-#include <numbers>
 
 #include "acquisition/base/distributions.h"
 #include "tod/measures/medians.h"
@@ -77,21 +76,6 @@ Result<PixelNoise> pixel_noise(std::span<const cv::Mat1d> frames) {
   cv::meanStdDev(noise.mean_frame - cv::mean(noise.mean_frame)[0], mean, sd);
   noise.fixed_pattern_variance = sd[0] * sd[0] * pixels / (pixels - 1) - variance / n;
   return noise;
-}
-
-double variance_of_rounded(double sd_counts, double phase_counts) {
-  const auto above = [&](double edge) {
-    return 0.5 * std::erfc((edge - phase_counts) / (sd_counts * std::numbers::sqrt2));
-  };
-  // A normal value in single steps of one count, within 40 standard deviations.
-  const int reach = static_cast<int>(std::ceil(40 * sd_counts)) + 2;
-  const int middle = static_cast<int>(std::lround(phase_counts));
-  double mean = 0, square = 0;
-  for (int count = middle - reach; count <= middle + reach; ++count) {
-    const double share = above(count - 0.5) - above(count + 0.5), distance = count - phase_counts;
-    mean += share * distance, square += share * distance * distance;
-  }
-  return square - mean * mean;
 }
 
 }  // namespace todbench

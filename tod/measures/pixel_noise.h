@@ -36,8 +36,4 @@ struct PixelNoise {
 /// the mean between two counts (at 0.3 counts from 0.10 to 0.17 counts^2).
 inline constexpr double least_measurable_noise_counts = 0.5;
 
-/// Variance of a normal value with this standard deviation after rounding to whole counts; `phase_counts` is the mean's
-/// distance from a whole count. sd^2 + 1/12 if the noise is above a count.
-[[nodiscard]] double variance_of_rounded(double sd_counts, double phase_counts);
-
 }  // namespace todbench

@@ -41,21 +41,6 @@ ResolvedPerMrad resolved_values(LogLinearCurve ctf) {
       [ctf = std::move(ctf)](double contrast) -> std::optional<double> { return ctf.root_excess_integral(contrast); };
 }
 
-Result<LogLinearCurve> geometric_mean(const LogLinearCurve& horizontal, const LogLinearCurve& vertical) {
-  std::vector<double> frequencies;
-  for (const auto& point : horizontal.points()) frequencies.push_back(point.frequency);
-  for (const auto& point : vertical.points()) frequencies.push_back(point.frequency);
-  std::sort(frequencies.begin(), frequencies.end());
-  frequencies.erase(std::unique(frequencies.begin(), frequencies.end()), frequencies.end());
-  std::vector<CurvePoint> points;
-  for (const double f : frequencies) {
-    const auto h = horizontal.at(f), v = vertical.at(f);
-    if (h && v) points.push_back({f, std::sqrt(*h) * std::sqrt(*v)});
-  }
-  if (points.size() < 2) return fail(ErrorCode::invalid_input, "the two curves have no frequencies in common");
-  return LogLinearCurve::of(points, "mean");
-}
-
 std::string_view to_string(DominantLimit limit) {
   return limit == DominantLimit::contrast ? "contrast" : "resolution";
 }

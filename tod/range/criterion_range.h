@@ -29,11 +29,8 @@ using ResolvedPerMrad = std::function<std::optional<double>(double apparent_cont
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve curve);
 /// The 2-D frequency of ACQUIRE, sqrt(f_h f_v) at the same contrast.
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve horizontal, LogLinearCurve vertical);
-/// TTP: the integral of sqrt(C / CTF) over the frequencies at which CTF < C, in 1/mrad. For two axes pass their
-/// geometric_mean().
+/// TTP: the integral of sqrt(C / CTF) over the frequencies at which CTF < C, in 1/mrad.
 [[nodiscard]] ResolvedPerMrad resolved_values(LogLinearCurve ctf);
-/// sqrt(h v) at the frequencies of both curves in their common range. Errors: `invalid_input` if they do not overlap.
-[[nodiscard]] Result<LogLinearCurve> geometric_mean(const LogLinearCurve& horizontal, const LogLinearCurve& vertical);
 
 struct Criterion {
   double at_half = 0;  ///< N50 or V50, > 0

@@ -2,7 +2,6 @@
 // Target transfer probability functions, by name: from cycles or values on a target to the probability of a task.
 #pragma once
 
-#include <array>
 #include <string_view>
 
 namespace todbench {
@@ -14,8 +13,6 @@ enum class ProbabilityForm {
   ttp_2004,   ///< E = 1.51 + 0.24 x: V / V50 of the TTP metric as published in 2004
   fixed_1_5,  ///< E = 1.5: newer code for V / V50
 };
-inline constexpr std::array all_probability_forms{ProbabilityForm::johnson, ProbabilityForm::ttp_2004,
-                                                  ProbabilityForm::fixed_1_5};
 /// "johnson", "ttp-2004", "fixed-1.5".
 [[nodiscard]] std::string_view to_string(ProbabilityForm form);
 

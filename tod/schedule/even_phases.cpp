@@ -275,20 +275,4 @@ EvenPhases even_phases(std::span<const PhasedTriangle> triangles, std::size_t gr
   return out;
 }
 
-double wraparound_discrepancy(std::span<const cv::Point2d> points) {
-  assert(!points.empty());
-  const auto kernel = [](double difference) {
-    const double x = fraction(difference);
-    return 1.5 - x * (1 - x);
-  };
-  double sum = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j)
-      sum += 2 * kernel(points[i].x - points[j].x) * kernel(points[i].y - points[j].y);
-    sum += 1.5 * 1.5;
-  }
-  const auto n = static_cast<double>(points.size());
-  return std::sqrt(std::max(0.0, sum / (n * n) - 16.0 / 9));
-}
-
 }  // namespace todbench

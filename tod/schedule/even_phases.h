@@ -38,8 +38,4 @@ struct EvenPhases {
 /// the groups are displaced as for one triangle.
 [[nodiscard]] EvenPhases even_phases(std::span<const PhasedTriangle> triangles, std::size_t groups, int count);
 
-/// Wrap-around L2 discrepancy of points on the unit torus (Hickernell 1998); integer parts do not count. The root mean
-/// square for n independent points is 0.687 / sqrt(n). Precondition: not empty.
-[[nodiscard]] double wraparound_discrepancy(std::span<const cv::Point2d> points);
-
 }  // namespace todbench

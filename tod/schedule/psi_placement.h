@@ -40,8 +40,6 @@ class PsiPlacement {
   /// Mean and standard deviation of the marginal posterior of ln threshold.
   [[nodiscard]] double mean_ln_threshold() const { return mean_; }
   [[nodiscard]] double sd_ln_threshold() const { return sd_; }
-  /// Mean of ln slope.
-  [[nodiscard]] double mean_ln_slope() const { return mean_q_; }
   /// Expected reduction by one answer at `size` of the entropy of the marginal of ln threshold, in nats, >= 0.
   [[nodiscard]] double expected_gain(double size) const;
 

@@ -116,11 +116,6 @@ void GvspCamera::restart_numbers(std::uint16_t block_id, ClockRestart clock) {
   if (clock == ClockRestart::begins_anew) state_->clock_ns = 0;
 }
 
-void GvspCamera::freeze(unsigned frames) {
-  const std::lock_guard lock(state_->mutex);
-  state_->frozen_frames = frames;
-}
-
 void GvspCamera::pull_cable(std::chrono::milliseconds time) {
   const std::lock_guard lock(state_->mutex);
   state_->link_down_until = Clock::now() + time;

@@ -103,8 +103,6 @@ class GvspCamera {
   void set_faults(const GvspFaults& faults);
   /// Sets the block id of the next frame. The clock restarts at 0 with it, or continues.
   void restart_numbers(std::uint16_t block_id, ClockRestart clock);
-  /// Repeats the last picture in the next `frames` frames, as a shutter does.
-  void freeze(unsigned frames);
   /// Pulls the cable for this time: nothing is received or sent, but the camera continues.
   void pull_cable(std::chrono::milliseconds time);
   /// Loses control messages for this time, while frames still arrive.

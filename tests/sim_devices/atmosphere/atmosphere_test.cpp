@@ -12,6 +12,7 @@
 #include "sim_devices/atmosphere/radiative_path.h"
 #include "sim_devices/atmosphere/spectral_air.h"
 #include "sim_devices/atmosphere/turbulence.h"
+#include "tests/sim_devices/atmosphere/short_exposure.h"
 #include "tests/support/source_file.h"
 
 namespace todbench {

@@ -10,6 +10,7 @@
 #include "sim_devices/sensor/effect_turbulence.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
+#include "tests/sim_devices/atmosphere/short_exposure.h"
 #include "tests/sim_devices/reference.h"
 
 namespace todbench {

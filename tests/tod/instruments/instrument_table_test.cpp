@@ -292,14 +292,14 @@ TEST(InstrumentTableTest, Vxi11CarriesTheSameTalk) {
   ASSERT_TRUE(client) << client.error().message;
 
   EXPECT_EQ(client->identity().serial, "42");
-  EXPECT_THAT(client->query_numbers("VAL?", 2, {}).value(), ElementsAre(1.5, -2));
+  EXPECT_THAT(client->query_form("VAL?", "{},{}", {}).value(), ElementsAre(1.5, -2));
   EXPECT_EQ(client->query("MEAS:LONG?", {}).value(), std::string(5000, '7')) << "in more than one piece";
   EXPECT_TRUE(client->command("SOUR:SOME 1,2,3,4,5,6,7,8,9", {}));
   EXPECT_EQ(client->command("NONSENSE", {}).error().code, ErrorCode::invalid_input);
   const auto refused = client->query("NONSENSE?", {});
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("-113"));
-  EXPECT_THAT(client->query_numbers("VAL?", 2, {}).value(), ElementsAre(1.5, -2)) << "still in step";
+  EXPECT_THAT(client->query_form("VAL?", "{},{}", {}).value(), ElementsAre(1.5, -2)) << "still in step";
 }
 
 TEST(InstrumentTableTest, ThePortMapperSaysWhereVxi11Is) {

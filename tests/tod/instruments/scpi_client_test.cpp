@@ -86,7 +86,7 @@ TEST(ScpiClientTest, QueriesAndCommandsReportWhatTheInstrumentRefuses) {
   const auto server = instrument({answering("VALue?", "1.5,-2E3"), answering("TEXT?", "\"1,2\""), answering("GO", "")});
   auto client = connect(server->endpoint()).value();
 
-  EXPECT_THAT(client.query_numbers("VAL?", 2, {}).value(), ElementsAre(1.5, -2000));
+  EXPECT_THAT(client.query_form("VAL?", "{},{}", {}).value(), ElementsAre(1.5, -2000));
   EXPECT_EQ(client.query("TEXT?", {}).value(), "\"1,2\"");
   EXPECT_TRUE(client.command("GO", {}));
   const auto refused_command = client.command("STOP", {});
@@ -96,7 +96,7 @@ TEST(ScpiClientTest, QueriesAndCommandsReportWhatTheInstrumentRefuses) {
   EXPECT_EQ(refused_command.error().code, ErrorCode::invalid_input);
   EXPECT_THAT(refused_query.error().message,
               HasSubstr("STOP?: rejected by the instrument: '-113,\"Undefined header\"'"));
-  EXPECT_THAT(client.query_numbers("VAL?", 2, {}).value(), ElementsAre(1.5, -2000)) << "still in step";
+  EXPECT_THAT(client.query_form("VAL?", "{},{}", {}).value(), ElementsAre(1.5, -2000)) << "still in step";
 }
 
 TEST(ScpiClientTest, AnswersThatAreNotTheNumbersAskedForEndTheConnection) {
@@ -104,7 +104,7 @@ TEST(ScpiClientTest, AnswersThatAreNotTheNumbersAskedForEndTheConnection) {
     const auto server = instrument({answering("VALue?", answer)});
     auto client = connect(server->endpoint()).value();
 
-    const auto numbers = client.query_numbers("VAL?", 2, {});
+    const auto numbers = client.query_form("VAL?", "{},{}", {});
 
     ASSERT_FALSE(numbers) << answer;
     EXPECT_EQ(numbers.error().code, ErrorCode::disconnected);

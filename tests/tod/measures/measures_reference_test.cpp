@@ -86,13 +86,6 @@ TEST(PixelNoise, RefusesFramesThatAreNone) {
   EXPECT_FALSE(pixel_noise(std::vector<cv::Mat1d>{frame, frame, cv::Mat1d(2, 3, std::nan(""))}));
 }
 
-TEST(VarianceOfRounded, IsThatOfTheReference) {
-  for (const auto& reference : test::reference_cases("sitf_netd", "quantisation")) {
-    const double variance = variance_of_rounded(reference["sd_counts"], reference["phase_counts"]);
-    EXPECT_NEAR(variance, reference["variance_of_rounded"], 1e-9);
-  }
-}
-
 std::vector<std::vector<int>> places_of(const cv::Mat1b& mask) {
   std::vector<std::vector<int>> places;
   for (int y = 0; y < mask.rows; ++y) {

@@ -200,7 +200,7 @@ TEST(Ttp, AgreesWithTheClosedFormOfTheReference) {
   }
 }
 
-TEST(Ttp, TwoAxesAreTheGeometricMeanInsideTheIntegral) {
+TEST(Ttp, IntegralOfEachAxisIsThatOfTheReference) {
   for (const auto& reference : cases("mrtd_ttp", "ttp_two_axes")) {
     const auto h = exponential(reference["horizontal"][0], 1 / reference["horizontal"][1].get<double>(), 20);
     const auto v = exponential(reference["vertical"][0], 1 / reference["vertical"][1].get<double>(), 20);
@@ -208,8 +208,6 @@ TEST(Ttp, TwoAxesAreTheGeometricMeanInsideTheIntegral) {
 
     EXPECT_NEAR(h.root_excess_integral(contrast), reference["integral_h"].get<double>(), ten_digits);
     EXPECT_NEAR(v.root_excess_integral(contrast), reference["integral_v"].get<double>(), ten_digits);
-    EXPECT_NEAR(geometric_mean(h, v)->root_excess_integral(contrast),
-                reference["integral_of_geometric_mean_ctf"].get<double>(), ten_digits);
   }
 }
 

@@ -17,6 +17,23 @@
 namespace todbench {
 namespace {
 
+/// Wrap-around L2 discrepancy of points on the unit torus (Hickernell 1998); integer parts do not count. The root mean
+/// square for n independent points is 0.687 / sqrt(n). Precondition: not empty.
+double wraparound_discrepancy(std::span<const cv::Point2d> points) {
+  const auto kernel = [](double difference) {
+    const double x = difference - std::floor(difference);
+    return 1.5 - x * (1 - x);
+  };
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      sum += 2 * kernel(points[i].x - points[j].x) * kernel(points[i].y - points[j].y);
+    sum += 1.5 * 1.5;
+  }
+  const auto n = static_cast<double>(points.size());
+  return std::sqrt(std::max(0.0, sum / (n * n) - 16.0 / 9));
+}
+
 ConstantStimuliOptions demonstration(int phases) {
   ConstantStimuliOptions options;
   options.drawings = {testing::shipped_plate("tcat-a"), testing::shipped_plate("tcat-b")};
