@@ -40,7 +40,7 @@ int run_judge(Console& console, JudgeArguments a, const Program& program) {
                                    a.opening, a.run_modules ? RunModules::yes : RunModules::no);
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
-  return show_measured(console, *outcome);
+  return show_run(console, *outcome);
 }
 
 }  // namespace

@@ -1,18 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Output of a finished run, the same for every command that measures.
+// Output of a finished run, the same for every command that measures or simulates.
 #pragma once
 
 #include "bench/cli/console.h"
+#include "bench/report/accuracy_bill.h"
 #include "bench/run/experiment.h"
+#include "bench/text/json.h"
 
 namespace todbench {
 
-/// Whether the bill of a run stands beside its forecast.
-enum class BillForecast { left_out, shown };
+/// Parts of the output that not every command has.
+struct RunShown {
+  bool curve = true;      ///< printed; the JSON object has it always
+  bool effects = false;   ///< of the simulated sensor, printed
+  bool forecast = false;  ///< beside the bill, if the run has one
+};
 
-/// Prints curve, comparison, uncertainty, measures, bill and verdict of a measured run, or its JSON object, and returns
-/// the exit code.
-[[nodiscard]] int show_measured(Console& console, const ExperimentOutcome& outcome,
-                                BillForecast forecast = BillForecast::left_out);
+/// Prints curve, comparison, uncertainty, measures, bill and verdict of a run, or its JSON object, and returns the exit
+/// code.
+[[nodiscard]] int show_run(Console& console, const ExperimentOutcome& outcome, const RunShown& shown = {});
+/// The printed text of show_run().
+void print_run(const Console& console, const ExperimentOutcome& outcome, const RunShown& shown);
+/// Names the session, or why the run ended early, and returns the exit code.
+[[nodiscard]] int finish_run(Console& console, const ExperimentOutcome& outcome);
+
+void print_curve(const Console& console, const TodCurve& curve);
+[[nodiscard]] AccuracyBill bill_of(const ExperimentOutcome& outcome, const RunShown& shown = {});
+/// Adds the verdict to the JSON of a run.
+void add_verdict(Json& json, const Verdict& verdict);
 
 }  // namespace todbench
