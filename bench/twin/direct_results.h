@@ -30,9 +30,9 @@ struct DirectResults {
                                            const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
                                            std::stop_token stop);
 
-/// Replaces the thresholds of the planner's first tier, which are up to 6 % low where noise decides, by direct estimates
-/// with a standard error of 0.4 % or, if that needs too many draws, of the usual ones. A contrast without an estimate
-/// keeps its own. Errors: `interrupted`.
+/// Replaces the thresholds of the planner's first tier, which are up to 6 % low where noise decides, by direct
+/// estimates with a standard error of 0.4 % or, if that needs too many draws, of the usual ones. A contrast without an
+/// estimate keeps its own. Errors: `interrupted`.
 [[nodiscard]] Result<void> refine_thresholds(ExperimentInputs& inputs, std::uint64_t seed, std::stop_token stop);
 
 }  // namespace todbench
