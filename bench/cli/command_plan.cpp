@@ -7,6 +7,7 @@
 #include "bench/cli/findings.h"
 #include "bench/cli/plan_decisions.h"
 #include "bench/cli/simulation_plan.h"
+#include "bench/forecast/bench_time.h"
 #include "bench/forecast/bill_forecast.h"
 #include "bench/forecast/comparison_forecast.h"
 #include "bench/forecast/limit_forecast.h"
@@ -188,6 +189,7 @@ int run_plan(Console& console, const PlanArguments& asked, const Program& progra
     if (asked.decide) print_decisions(console, decisions);
   }
   for (const auto& warning : prediction->warnings) console.note(warning);
+  if (const std::string remark = resume_remark(plan, bill ? bill->total_s : 0); !remark.empty()) console.note(remark);
   if (inputs->observer.display) {
     if (const auto warning = small_sample_warning(*inputs->observer.display)) console.note(*warning);
   }

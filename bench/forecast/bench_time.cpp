@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/forecast/bench_time.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -254,6 +256,16 @@ BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, c
   }
   if (before != nullptr && !plates.empty()) walk.measure(*before, plates.front().name, plates.front().width_mm);
   return walk.finished(frame_rate_hz);
+}
+
+std::string resume_remark(const Plan& plan, double bench_s) {
+  constexpr double long_run_s = 600;
+  if (plan.measurement.record_frames || plan.target.kind == TargetKind::scene || bench_s < long_run_s) return {};
+  return fmt::format(
+      "the run takes about {:.0f} minutes and keeps no frames: after an interruption it begins again. With "
+      "record_frames "
+      "of [measurement], or --record-frames, `todbench measure --resume` goes on with it",
+      bench_s / 60);
 }
 
 }  // namespace todbench

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -48,6 +49,10 @@ struct BenchTime {
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates,
                                    const std::vector<TargetState>& listed, double frame_rate_hz,
                                    std::optional<double> presentations);
+
+/// Returns a sentence if a run of this bench time keeps no frames, so that `measure --resume` could not go on with it
+/// after an interruption; empty for runs of less than ten minutes and of a simulated scene.
+[[nodiscard]] std::string resume_remark(const Plan& plan, double bench_s);
 
 /// Returns the presentations of a constant schedule for bench_time(); of an adaptive schedule those of its visits,
 /// because it stays in a set-up for a whole visit. They do not depend on the frames per presentation. Choosing their

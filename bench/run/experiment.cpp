@@ -7,8 +7,10 @@
 
 #include "acquisition/base/host_clock.h"
 #include "acquisition/base/try.h"
+#include "acquisition/core/camera_id.h"
 #include "acquisition/recording/frame_stream.h"
 #include "bench/devices/observed_source.h"
+#include "bench/forecast/bench_time.h"
 #include "bench/forecast/bill_forecast.h"
 #include "bench/forecast/comparison_forecast.h"
 #include "bench/run/fitted_curve.h"
@@ -255,6 +257,10 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
 
   // Made before the run: the report states how good it was.
   auto forecast = bill_forecast(plan, inputs);
+  if (forecast && !options.host.added.as_recorded && !has_scheme(plan.camera.id, camera_scheme::file)) {
+    if (const std::string remark = resume_remark(plan, forecast->total_s); !remark.empty())
+      note(*folder, listener, remark);
+  }
 
   const auto begin = Clock::now();
   const std::int64_t begin_ns = monotonic_ns();

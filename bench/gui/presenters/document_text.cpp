@@ -361,7 +361,7 @@ class TextWriter {
   bool beside(const ValueTable& left, const ValueTable& right) {
     const std::size_t fewer = std::min(left.values.size(), right.values.size());
     const std::size_t more = std::max(left.values.size(), right.values.size());
-    if (2 * fewer < more) return false;
+    if (fewer == 0 || 2 * fewer < more) return false;
     const int captions = left.caption.empty() && right.caption.empty() ? 0 : 1;
     QTextTable* cells = begin_table(static_cast<int>(more) + captions, 5, ruled({21, 28, 2, 21, 28}));
     clear_gap(*cells, 2);

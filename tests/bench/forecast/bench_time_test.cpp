@@ -187,5 +187,17 @@ TEST(BenchTimeOfMeasures, AddsTheirStepsAndFrames) {
               1e-9);
 }
 
+TEST(ResumeRemark, IsMadeOfALongRunThatKeepsNoFrames) {
+  Plan plan;
+  plan.target.kind = TargetKind::scpi;
+  EXPECT_EQ(resume_remark(plan, 599), "");
+  EXPECT_NE(resume_remark(plan, 7200).find("about 120 minutes and keeps no frames"), std::string::npos);
+  plan.measurement.record_frames = true;
+  EXPECT_EQ(resume_remark(plan, 7200), "");
+  plan.measurement.record_frames = false;
+  plan.target.kind = TargetKind::scene;
+  EXPECT_EQ(resume_remark(plan, 7200), "");
+}
+
 }  // namespace
 }  // namespace todbench

@@ -55,7 +55,10 @@ TEST(MeasurementNuc, IsRefusedWhereTheCameraTakesNoCommandAndTellsNothing) {
   const SmallBench bench;
   MeasurementOptions options = test::options_of(bench);
   options.nuc_interval_s = 60;
-  DisturbedSource source(bench.camera(), [](std::uint64_t, Frame frame) -> Result<Frame> { return frame; });
+  DisturbedSource source(bench.camera(), [](std::uint64_t, Frame frame) -> Result<Frame> {
+    frame.correction = CorrectionState::unknown;
+    return frame;
+  });
   source.takes_commands = false;
 
   const auto result = bench.run(source, options);
