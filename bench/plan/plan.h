@@ -401,10 +401,14 @@ inline constexpr std::array all_instrument_roles{InstrumentRole::by_name, Instru
                                                  InstrumentRole::plate_stage, InstrumentRole::other};
 [[nodiscard]] constexpr std::string_view to_string(InstrumentRole role) {
   switch (role) {
-    case InstrumentRole::by_name: return "by name";
-    case InstrumentRole::black_body: return "black body";
-    case InstrumentRole::plate_stage: return "plate stage";
-    case InstrumentRole::other: break;
+    case InstrumentRole::by_name:
+      return "by name";
+    case InstrumentRole::black_body:
+      return "black body";
+    case InstrumentRole::plate_stage:
+      return "plate stage";
+    case InstrumentRole::other:
+      break;
   }
   return "other";
 }
