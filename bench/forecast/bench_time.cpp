@@ -263,8 +263,7 @@ std::string resume_remark(const Plan& plan, double bench_s) {
   if (plan.measurement.record_frames || plan.target.kind == TargetKind::scene || bench_s < long_run_s) return {};
   return fmt::format(
       "the run takes about {:.0f} minutes and keeps no frames: after an interruption it begins again. With "
-      "record_frames "
-      "of [measurement], or --record-frames, `todbench measure --resume` goes on with it",
+      "record_frames of [measurement], or --record-frames, `todbench measure --resume` goes on with it",
       bench_s / 60);
 }
 

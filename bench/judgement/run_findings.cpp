@@ -144,23 +144,18 @@ std::vector<std::string> add_run_findings(TodCurve& curve, const Plan& plan, con
   for (TodPoint& point : curve.points) {
     const auto deviation = contrast_deviation(plan, point, run.presentations);
     const double allowed = allowed_contrast_deviation(plan, point, curve.points.size());
-    if (deviation && std::abs(*deviation) > allowed) {
+    const bool beyond = deviation && std::abs(*deviation) > allowed;
+    if (beyond || (deviation && std::abs(*deviation) > noticed_contrast_deviation(point))) {
       const ConstancyFigure percent{100 * *deviation, 100 * allowed};
-      add(point, unfit(FindingKind::contrast_deviation, percent,
-                       fmt::format("the camera observed {:.3f} K, but {:.3f} K were set ({:+.1f} %, {:.1f} % are "
-                                   "allowed): the target or the temperature scale of the camera is wrong",
-                                   point.delta_t_k, point.set_delta_t_k, percent.value, percent.limit)));
-      sentences.push_back(point.adequacy->findings.back().sentence);
-    } else if (deviation && std::abs(*deviation) > noticed_contrast_deviation(point)) {
-      const ConstancyFigure percent{100 * *deviation, 100 * allowed};
-      AdequacyFinding noticed =
+      AdequacyFinding finding =
           unfit(FindingKind::contrast_deviation, percent,
-                fmt::format("the camera observed {:.3f} K, but {:.3f} K were set ({:+.1f} %, {:.1f} % are allowed): "
-                            "compare the target and the temperature scale of the camera",
-                            point.delta_t_k, point.set_delta_t_k, percent.value, percent.limit));
-      noticed.unfit = false;
-      sentences.push_back(noticed.sentence);
-      add(point, noticed);
+                fmt::format("the camera observed {:.3f} K, but {:.3f} K were set ({:+.1f} %, {:.1f} % are allowed): {}",
+                            point.delta_t_k, point.set_delta_t_k, percent.value, percent.limit,
+                            beyond ? "the target or the temperature scale of the camera is wrong"
+                                   : "compare the target and the temperature scale of the camera"));
+      finding.unfit = beyond;
+      sentences.push_back(finding.sentence);
+      add(point, finding);
     }
     for (const AdequacyFinding& finding : of_all) add(point, finding);
   }

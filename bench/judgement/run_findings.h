@@ -54,8 +54,9 @@ struct RunFacts {
   std::span<const AdequacyFinding> others{};  ///< about the whole run
 };
 
-/// Adds the findings to the adequacy of the points; each makes its point unfit for a decision. Changes of the camera
-/// apply to all points. Returns the sentences without duplicates.
+/// Adds the findings to the adequacy of the points. Each makes its point unfit for a decision, except a deviation of
+/// the contrast that is allowed and still large enough to be named. Changes of the camera apply to all points. Returns
+/// the sentences without duplicates.
 std::vector<std::string> add_run_findings(TodCurve& curve, const Plan& plan, const RunFacts& run);
 
 }  // namespace todbench
