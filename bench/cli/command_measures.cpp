@@ -38,10 +38,19 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-/// Without a statement about halos, the low end is open if only the bound on their share limits it.
+/// Whether the intervals have low ends. Without a statement about halos, one is open if only the bound on their share
+/// limits it.
+bool low_known(const SlantedEdge& edge, std::size_t i, const SfrArguments& arguments) {
+  return edge.low_known[i] || arguments.halo_at_most;
+}
+
 Interval interval_of(const SlantedEdge& edge, std::size_t i, const SfrArguments& arguments) {
-  const bool low = edge.low_known[i] || arguments.halo_at_most;
-  return {low ? std::optional(edge.mtf_low[i]) : std::nullopt, edge.mtf_high[i]};
+  return {low_known(edge, i, arguments) ? std::optional(edge.mtf_low[i]) : std::nullopt, edge.mtf_high[i]};
+}
+
+/// Relative to a source of the size of the picture.
+Interval interval_in_picture(const SlantedEdge& edge, std::size_t i, const SfrArguments& arguments) {
+  return {low_known(edge, i, arguments) ? std::optional(edge.mtf_low_in_picture[i]) : std::nullopt, edge.mtf_high[i]};
 }
 
 /// Returns the tails that remain for the stated aperture, band and pitch.
@@ -60,7 +69,11 @@ Result<TailBounds> tail_bounds(const SfrArguments& a) {
 
 Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
   Json intervals = Json::array();
-  for (std::size_t i = 0; i < edge.mtf.size(); ++i) intervals.push_back(json_interval(interval_of(edge, i, arguments)));
+  Json in_picture = Json::array();
+  for (std::size_t i = 0; i < edge.mtf.size(); ++i) {
+    intervals.push_back(json_interval(interval_of(edge, i, arguments)));
+    in_picture.push_back(json_interval(interval_in_picture(edge, i, arguments)));
+  }
   const std::optional<double> pitch = arguments.pitch_mrad;
   const auto per_mrad = [&](const std::optional<double>& per_pitch) {
     return pitch && per_pitch ? json_number(*per_pitch / *pitch) : Json();
@@ -79,6 +92,7 @@ Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
           {"frequency_per_mrad", pitch ? json_numbers(scaled(edge.frequency_per_pitch, 1 / *pitch)) : Json()},
           {"mtf", json_numbers(edge.mtf)},
           {"mtf_ci95", intervals},
+          {"mtf_ci95_in_picture", in_picture},
           {"widest_halo_pitch", json_number(edge.widest_halo_pitch)},
           {"halo_allowance", json_number(edge.halo_allowance)},
           {"wide_halo_ci95", {json_number(edge.wide_halo_least), json_number(edge.wide_halo_most)}},
@@ -94,18 +108,20 @@ void print_sfr(Console& console, const SlantedEdge& edge, const SfrArguments& ar
   std::vector<TableRow> rows;
   for (std::size_t i = 0; i < edge.mtf.size(); i += 5) {
     const double frequency = edge.frequency_per_pitch[i];
-    TableRow row{fixed(frequency, 2), fixed(edge.mtf[i], 4), range(interval_of(edge, i, arguments), 4)};
+    TableRow row{fixed(frequency, 2), fixed(edge.mtf[i], 4), range(interval_of(edge, i, arguments), 4),
+                 range(interval_in_picture(edge, i, arguments), 4)};
     if (arguments.pitch_mrad) row.insert(row.begin() + 1, fixed(frequency / *arguments.pitch_mrad, 4));
     rows.push_back(row);
   }
-  TableRow header{"cycles per pitch", "MTF", "95 %"};
+  TableRow header{"cycles per pitch", "MTF", "95 %", "95 % in picture"};
   if (arguments.pitch_mrad) header.insert(header.begin() + 1, "cycles per mrad");
   console.table(header, rows);
   console.text("");
   console.text("MTF 0.5 at " + fixed(edge.mtf50_per_pitch, 4) + " cycles per pitch");
-  console.text("relative to a source of the size of the picture: without halos wider than " +
+  console.text("The MTF is relative to a source of the size of the picture: it is without halos wider than " +
                fixed(edge.widest_halo_pitch, 1) + " pitches, which are at most " + fixed(100 * edge.wide_halo_most, 1) +
-               " % of the step");
+               " % of the step. The first interval is relative to a source of any size, the second to one of the size "
+               "of the picture.");
 }
 
 /// Whether values reach the end of the range of the file's type, so that they may be clipped.

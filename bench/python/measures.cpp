@@ -112,6 +112,9 @@ void add_edge(py::module_& module) {
           "mtf_low", [](const SlantedEdge& edge) { return array_of(edge.mtf_low); },
           "Lower ends of the 95 % intervals; see low_known.")
       .def_property_readonly(
+          "mtf_low_in_picture", [](const SlantedEdge& edge) { return array_of(edge.mtf_low_in_picture); },
+          doc("SlantedEdge::mtf_low_in_picture"))
+      .def_property_readonly(
           "mtf_high", [](const SlantedEdge& edge) { return array_of(edge.mtf_high); },
           "Upper ends of the 95 % intervals.")
       .def_readonly("low_known", &SlantedEdge::low_known, doc("SlantedEdge::low_known"));

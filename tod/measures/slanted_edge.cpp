@@ -431,11 +431,8 @@ std::optional<double> mtf50_of(const SlantedEdge& edge) {
   return std::nullopt;
 }
 
-/// Whether the picture shows that there are halos wider than those of the MTF: more than four times the error of the
-/// method.
-bool shows_wide_halos(const SlantedEdge& edge) {
-  return edge.wide_halo_least > 0.002;
-}
+/// Four times the error of the method: a smaller share of the step in wide halos does not count.
+constexpr double least_wide_share = 0.002;
 
 void add_notes(SlantedEdge& edge, const Found& found) {
   if (std::abs(found.trend.sag) > noted_bend_pitch && std::abs(found.trend.sag) > sure * found.trend.sag_u)
@@ -451,10 +448,10 @@ void add_notes(SlantedEdge& edge, const Found& found) {
         fmt::format("the fields beside the edge are uneven by {:.1f} % of the step; the fit of the tails tells shading "
                     "from halos",
                     100 * found.shading));
-  if (shows_wide_halos(edge))
+  if (edge.wide_halo_most > least_wide_share)
     edge.notes.push_back(
-        fmt::format("{:.1f} to {:.1f} % of the step are in halos wider than {:.1f} pitches, which this "
-                    "picture shows in part only: the lower ends of the intervals allow for them",
+        fmt::format("{:.1f} to {:.1f} % of the step are in halos wider than {:.1f} pitches, which a larger picture "
+                    "would tell from shading: the lower ends of the intervals allow for them",
                     100 * edge.wide_halo_least, 100 * edge.wide_halo_most, edge.widest_halo_pitch));
   if (std::any_of(edge.mtf.begin() + 1, edge.mtf.end(), [](double value) { return value > 1.02; }))
     edge.notes.emplace_back("the MTF exceeds 1: the camera sharpens its picture");
@@ -513,7 +510,8 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   edge.halo_allowance = tails->fit.halo_allowance();
   edge.wide_halo_least = tails->fit.least_wide_share(), edge.wide_halo_most = tails->fit.most_wide_share();
   edge.mtf = std::move(transfer.mtf), edge.mtf_low = std::move(transfer.low), edge.mtf_high = std::move(transfer.high);
-  if (shows_wide_halos(edge))
+  edge.mtf_low_in_picture = edge.mtf_low;
+  if (edge.wide_halo_most > least_wide_share)
     std::for_each(edge.mtf_low.begin() + 1, edge.mtf_low.end(), [&](double& low) { low *= 1 - edge.wide_halo_most; });
   edge.mtf50_per_pitch = mtf50_of(edge);
   add_notes(edge, *found);

@@ -48,12 +48,15 @@ struct SlantedEdge {
   int rows = 0;                ///< lines across the edge that were used
   std::vector<double> frequency_per_pitch;  ///< 0 ... 1 cycle per pitch, along the normal
   std::vector<double> mtf;                  ///< 1 at frequency 0
-  std::vector<double> mtf_low, mtf_high;    ///< 95 %, not symmetric: use both ends
+  std::vector<double> mtf_low, mtf_high;    ///< 95 %, not symmetric: use both ends; relative to a source of any size
+  /// Lower ends relative to a source of the size of the picture: as `mtf_low`, but without halos wider than
+  /// `widest_halo_pitch`.
+  std::vector<double> mtf_low_in_picture;
   std::vector<bool> low_known;              ///< false: only TailBounds::most_halo limits `mtf_low`
   double widest_halo_pitch = 0;             ///< largest sigma of a halo that belongs to the MTF
   double halo_allowance = 0;                ///< largest share of the step in halos that the interval allows for
-  /// 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If its lower end is above 0.002,
-  /// `mtf_low` is lower by the share at its upper end, and thus relative to a source of any size.
+  /// 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If its upper end is above 0.002,
+  /// `mtf_low` is lower than `mtf_low_in_picture` by that share.
   double wide_halo_least = 0, wide_halo_most = 0;
   double displacement_pitch = 0;          ///< standard deviation of the lines about the edge if significant
   std::optional<double> mtf50_per_pitch;  ///< lowest frequency at which the MTF is 0.5

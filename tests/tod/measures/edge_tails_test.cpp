@@ -63,23 +63,20 @@ TEST(SlantedEdge, HoldsTheTruthOfLensesWithTailsAndHalos) {
 
   EXPECT_EQ(found.edges, 64);
   EXPECT_GE(found.inside[1] + found.inside[2], 112);
+  EXPECT_GE(found.inside_any[1] + found.inside_any[2], 112);
   // Pictures that tell halos from shading have both ends.
   EXPECT_LE(found.open[1], 6);
 }
 
 TEST(SlantedEdge, ALowEndAllowsForHalosThatThePictureShowsInPart) {
-  int found = 0;
   for (const double share : {0.05, 0.1}) {
-    for (const double sigma : {31.0, 45.0, 60.0}) {
+    for (const double sigma : {20.0, 31.0, 45.0, 60.0}) {
       const TailedLens lens{.halos = {{share, sigma}}};
       const TailedProfile profile(lens, 5);
       for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         const TailedEdge made{.rows = 120, .columns = 120, .noise = 0.002};
         const SlantedEdge edge = slanted_edge(made.picture(profile, seed), {}).value();
-        found += edge.wide_halo_least > 0.002 ? 1 : 0;
-        EXPECT_GE(edge.wide_halo_most, 0.5 * share) << share << " " << sigma;
         for (const std::size_t i : {std::size_t{5}, std::size_t{20}}) {
-          if (edge.wide_halo_least <= 0.002) continue;
           const double truth = lens.mtf(edge.frequency_per_pitch[i], made.angle_deg);
           EXPECT_LE(edge.mtf_low[i], truth) << share << " " << sigma;
           EXPECT_GE(edge.mtf_high[i], truth) << share << " " << sigma;
@@ -87,8 +84,6 @@ TEST(SlantedEdge, ALowEndAllowsForHalosThatThePictureShowsInPart) {
       }
     }
   }
-  // Shading could be the cause of the others; `wide_halo_most` says how many halos are possible.
-  EXPECT_GE(found, 4);
 }
 
 TEST(SlantedEdge, FindsNoWideHalosInPicturesWithout) {

@@ -18,6 +18,7 @@ struct TailCoverage {
   using Each = std::array<double, frequencies.size()>;
   int edges = 0, refused = 0;
   Each inside{}, error{}, below{}, above{};  ///< sums over the edges; below and above: from the MTF to the ends
+  Each inside_any{};                         ///< intervals that hold the MTF relative to a source of any size
   Each open{};                               ///< intervals without a low end
 };
 
@@ -55,10 +56,12 @@ inline TailCoverage tail_coverage(std::uint64_t first, std::uint64_t last) {
       for (std::size_t k = 0; k < TailCoverage::frequencies.size(); ++k) {
         const auto i = static_cast<std::size_t>(std::lround(100 * TailCoverage::frequencies[k]));
         const double truth = lens.mtf(edge->frequency_per_pitch[i], made.angle_deg, edge->widest_halo_pitch);
-        out.inside[k] += edge->mtf_low[i] <= truth && truth <= edge->mtf_high[i] ? 1 : 0;
+        out.inside[k] += edge->mtf_low_in_picture[i] <= truth && truth <= edge->mtf_high[i] ? 1 : 0;
+        const double of_any_source = lens.mtf(edge->frequency_per_pitch[i], made.angle_deg);
+        out.inside_any[k] += edge->mtf_low[i] <= of_any_source && of_any_source <= edge->mtf_high[i] ? 1 : 0;
         out.open[k] += edge->low_known[i] ? 0 : 1;
         out.error[k] += edge->mtf[i] - truth;
-        out.below[k] += edge->mtf[i] - edge->mtf_low[i], out.above[k] += edge->mtf_high[i] - edge->mtf[i];
+        out.below[k] += edge->mtf[i] - edge->mtf_low_in_picture[i], out.above[k] += edge->mtf_high[i] - edge->mtf[i];
       }
     }
   }
