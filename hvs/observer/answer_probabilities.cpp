@@ -28,6 +28,9 @@ constexpr float none = -std::numeric_limits<float>::infinity();
 constexpr std::size_t strata = 8;
 constexpr int least_vectors = 4;
 
+/// No detour by long double: the values are rounded to float.
+using Plain = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
 using Strata = std::array<float, strata>;
 using Shares = std::array<double, Choice::max_alternatives>;
 
@@ -60,6 +63,29 @@ float largest(float* lanes) {
   return lanes[0];
 }
 
+/// The first of the largest values. Precondition: a multiple of `block` values.
+std::size_t place_of_largest(std::span<const float> values) {
+  float lanes[block];
+  std::fill(lanes, lanes + block, none);
+  for (std::size_t first = 0; first < values.size(); first += block) {
+    for (std::size_t t = 0; t < block; ++t) lanes[t] = values[first + t] > lanes[t] ? values[first + t] : lanes[t];
+  }
+  return static_cast<std::size_t>(std::find(values.begin(), values.end(), largest(lanes)) - values.begin());
+}
+
+/// Copies the scores of the templates of a block that can win, and `none` in place of the others. Template t cannot win
+/// if it is behind by more than sqrt(limit * (mean variance of the two scores - covariance[t])).
+TODBENCH_MULTIVERSION
+void keep_contenders(const float* scores, const float* covariance, const float* variance, float best,
+                     float best_variance, float limit, float* kept) {
+  for (std::size_t t = 0; t < block; ++t) {
+    const float behind = best - scores[t];
+    const float most = limit * ((best_variance + variance[t]) / 2 - covariance[t]);
+    const bool able = static_cast<int>(behind <= 0) | static_cast<int>(behind * behind <= most);
+    kept[t] = able ? scores[t] : none;
+  }
+}
+
 /// Templates that can win: the blocks that contain one, and their alternatives.
 struct Contenders {
   std::bitset<max_blocks> blocks;
@@ -72,35 +98,37 @@ Contenders contenders(const ScoreNoise& noise, const ScoreNoiseLevels& levels, c
   Contenders out;
   const double sd = levels.total();
   const auto rows = room.rows;
-  out.first = static_cast<std::size_t>(std::max_element(rows.begin(), rows.end()) - rows.begin());
+  out.first = place_of_largest(rows);
   if (sd > 0) {
     const auto numbers = room.numbers.first(noise.rank());
     noise.copy_factor(out.first, numbers);
     noise.weigh(levels, numbers);
     noise.weigh(levels, numbers);
     noise.scores(numbers, room.along);  // covariances with the best
+  } else {
+    std::fill(room.along.begin(), room.along.end(), 0.0F);
   }
-  // behind > reach sd sqrt(2 (variance - covariance)), squared, with the mean variance of the two scores.
   const ScoreNoise::Shares shares = noise.shares(levels);
-  const float own = noise.variance(shares, out.first);
   const auto limit = static_cast<float>(2 * std::pow(reach_sd * sd, 2));
   float best_of_others = none;
-  for (std::size_t t = 0; t < noise.size(); ++t) {
-    const float behind = rows[out.first] - rows[t];
-    if (behind > 0 && (sd == 0 || behind * behind > limit * ((own + noise.variance(shares, t)) / 2 - room.along[t])))
-      continue;
-    out.blocks.set(t / block);
-    out.alternatives.set(t / noise.row());
-    if (t / noise.row() != out.first / noise.row() && rows[t] > best_of_others) {
-      best_of_others = rows[t];
-      out.second = t;
-    }
+  for (std::size_t first = 0; first < noise.size(); first += block) {
+    float variances[block], kept[block], lanes[block];
+    for (std::size_t t = 0; t < block; ++t) variances[t] = noise.variance(shares, first + t);
+    keep_contenders(&rows[first], &room.along[first], variances, rows[out.first], noise.variance(shares, out.first),
+                    limit, kept);
+    std::copy(kept, kept + block, lanes);
+    const float best = largest(lanes);
+    if (best == none) continue;
+    out.blocks.set(first / block);
+    out.alternatives.set(first / noise.row());
+    if (first / noise.row() == out.first / noise.row() || best <= best_of_others) continue;
+    best_of_others = best;
+    out.second = first + static_cast<std::size_t>(std::find(kept, kept + block, best) - kept);
   }
   return out;
 }
 
-/// Finds the unit direction from the second to the first template, and its product with those that can win. False if
-/// the two templates are equal.
+/// Finds the unit direction from the second to the first template. False if the two are equal.
 bool find_direction(const ScoreNoise& noise, const ScoreNoiseLevels& levels, const Contenders& able,
                     const AnswerRoom& room) {
   const auto numbers = room.numbers.first(noise.rank());
@@ -112,13 +140,6 @@ bool find_direction(const ScoreNoise& noise, const ScoreNoiseLevels& levels, con
   for (const float number : room.direction) square += std::pow(static_cast<double>(number), 2);
   if (square == 0) return false;
   for (float& number : room.direction) number = static_cast<float>(static_cast<double>(number) / std::sqrt(square));
-  std::copy(room.direction.begin(), room.direction.end(), numbers.begin());
-  noise.weigh(levels, numbers);
-  // Only blocks with templates that can win are drawn.
-  for (std::size_t first = 0; first < noise.size(); first += block) {
-    if (able.blocks[first / block])
-      block_product(noise.factor(first), numbers.data(), noise.rank(), &room.along[first]);
-  }
   return true;
 }
 
@@ -135,7 +156,7 @@ Strata values_in_strata(double share) {
   Strata out;
   for (std::size_t v = 0; v < strata; ++v) {
     const double p = (static_cast<double>(v) + share) / strata;
-    out[v] = static_cast<float>(-std::numbers::sqrt2 * boost::math::erfc_inv(2 * p));
+    out[v] = static_cast<float>(-std::numbers::sqrt2 * boost::math::erfc_inv(2 * p, Plain()));
   }
   return out;
 }
@@ -165,9 +186,11 @@ void draw_block(const ScoreNoise& noise, const AnswerRoom& room, std::size_t fir
     block_product(noise.factor(first), room.numbers.data() + j * rank, rank, drawn[j].data());
 }
 
-/// Share of wins of each alternative under each draw across the direction, over the strata; equal scores share.
+/// Share of wins of each alternative under each draw across the direction, over the strata; equal scores share. The
+/// products of the direction with the templates are found where `direction` is not empty: a block of the factor is then
+/// read once for them and for the draws.
 std::array<Shares, products_at_once> winners(const ScoreNoise& noise, const Contenders& able, const AnswerRoom& room,
-                                             float scale, const Vectors& vectors) {
+                                             float scale, const Vectors& vectors, std::span<const float> direction) {
   using Tops = std::array<std::array<float, Choice::max_alternatives>, strata>;
   std::array<Tops, products_at_once> tops;
   for (Tops& of_vector : tops)
@@ -180,6 +203,8 @@ std::array<Shares, products_at_once> winners(const ScoreNoise& noise, const Cont
       for (auto& lanes : best[j].lanes) std::fill(lanes, lanes + block, none);
     for (std::size_t first = o * noise.row(); first < (o + 1) * noise.row(); first += block) {
       if (!able.blocks[first / block]) continue;
+      if (!direction.empty())
+        block_product(noise.factor(first), direction.data(), direction.size(), &room.along[first]);
       draw_block(noise, room, first, vectors.count, drawn);
       for (std::size_t j = 0; j < vectors.count; ++j)
         take_block(drawn[j].data(), &room.rows[first], &room.along[first], scale, vectors.values[j], best[j]);
@@ -228,10 +253,14 @@ AnswerProbabilities answer_probabilities(const ScoreNoise& noise, std::span<cons
     return out;
   }
   const int vectors = std::max(least_vectors, (draws + static_cast<int>(strata) - 1) / static_cast<int>(strata));
+  const std::span<float> weighted = room.numbers.subspan(products_at_once * noise.rank(), noise.rank());
+  std::copy(room.direction.begin(), room.direction.end(), weighted.begin());
+  noise.weigh(levels, weighted);
   Shares sum{}, squares{};
   for (int vector = 0; vector < vectors;) {
     const Vectors drawn = draw_vectors(noise, levels, stream, vector, vectors, room);
-    const auto shares = winners(noise, able, room, static_cast<float>(sd), drawn);
+    const auto shares =
+        winners(noise, able, room, static_cast<float>(sd), drawn, vector == 0 ? weighted : std::span<float>());
     for (std::size_t j = 0; j < drawn.count; ++j) {
       for (std::size_t o = 0; o < shares[j].size(); ++o) {
         sum[o] += shares[j][o];

@@ -16,7 +16,7 @@ namespace todbench {
 struct AnswerRoom {
   std::span<float> rows;       ///< ScoreNoise::size() elements
   std::span<float> along;      ///< ScoreNoise::size() elements
-  std::span<float> numbers;    ///< products_at_once times ScoreNoise::rank() elements
+  std::span<float> numbers;    ///< products_at_once + 1 times ScoreNoise::rank() elements
   std::span<float> direction;  ///< ScoreNoise::rank() elements
 };
 

@@ -107,17 +107,17 @@ class PreparedTemplateObserver final : public PreparedObserver {
     if (side * side <= stack_samples && templates <= stack_templates && own.size() <= stack_templates &&
         own.rank() <= stack_samples) {
       std::array<float, stack_samples> signal, direction;
-      std::array<float, products_at_once * stack_samples> numbers;
+      std::array<float, (products_at_once + 1) * stack_samples> numbers;
       std::array<float, stack_templates> scores, rows, along;
       return {choice, probabilities(patch, contrast_k, noise, draws, std::span(signal).first(side * side),
                                     std::span(scores).first(templates),
                                     {.rows = std::span(rows).first(own.size()),
                                      .along = std::span(along).first(own.size()),
-                                     .numbers = std::span(numbers).first(products_at_once * own.rank()),
+                                     .numbers = std::span(numbers).first((products_at_once + 1) * own.rank()),
                                      .direction = std::span(direction).first(own.rank())})};
     }
     std::vector<float> signal(side * side), scores(templates);
-    std::vector<float> rows(own.size()), along(own.size()), numbers(products_at_once * own.rank()),
+    std::vector<float> rows(own.size()), along(own.size()), numbers((products_at_once + 1) * own.rank()),
         direction(own.rank());
     return {choice, probabilities(patch, contrast_k, noise, draws, signal, scores,
                                   {.rows = rows, .along = along, .numbers = numbers, .direction = direction})};
