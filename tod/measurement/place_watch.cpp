@@ -16,6 +16,7 @@ constexpr double certain = 6;               ///< standard errors; both axes: exp
 constexpr double negligible_px = 0.05;      ///< costs less than 0.1 % of acuity
 constexpr double well_known_px = 0.03;      ///< standard error below which further presentations are not averaged
 constexpr double visible = 3;               ///< least contrast of the triangles in its standard error
+constexpr double noted_scale_error = 0.03;  ///< of the movement of the stage, beyond four standard errors
 constexpr double search_px = 6;             ///< search range
 constexpr std::size_t looks_for_cause = 5;  ///< further presentations to distinguish the stage from a knock
 constexpr std::size_t most_told = 400;
@@ -225,11 +226,14 @@ Result<void> PlaceWatch::finish() const {
 
 std::vector<std::string> PlaceWatch::notes() const {
   std::vector<std::string> notes;
-  if (cv::norm(farthest_px_) > 0)
-    notes.push_back(
-        fmt::format("a drift of the picture was followed: in presentation {} the plate was ({:+.2f}, {:+.2f}) px from "
-                    "the requested place",
-                    farthest_presentation_, farthest_px_.x, farthest_px_.y));
+  if (cv::norm(farthest_px_) > 0) {
+    const auto stage = fit_stage(told());
+    const std::string cause = stage && !moves_as_asked(*stage, noted_scale_error)
+                                  ? motion_clause(*stage) + ", and the observed places were used"
+                                  : "a drift of the picture was followed";
+    notes.push_back(fmt::format("{}: in presentation {} the plate was ({:+.2f}, {:+.2f}) px from the requested place",
+                                cause, farthest_presentation_, farthest_px_.x, farthest_px_.y));
+  }
   if (largest_turn_px_ > negligible_px)
     notes.push_back(
         fmt::format("the plate turned relative to the picture by up to {:.2f} px at its edge", largest_turn_px_));

@@ -95,25 +95,6 @@ const std::array named_motions{
 /// A movement matches a named one within this and four standard errors.
 constexpr double like = 0.15;
 
-std::string motion_clause(const StageFit& fit) {
-  const cv::Matx22d& m = fit.seen_per_asked;
-  const auto near = [&](const cv::Matx22d& to) {
-    for (int k = 0; k < 4; ++k) {
-      if (std::abs(m.val[k] - to.val[k]) > like + 4 * fit.standard_error.val[k]) return false;
-    }
-    return true;
-  };
-  for (const NamedMotion& motion : named_motions) {
-    if (near(motion.seen_per_asked)) return motion.clause;
-  }
-  if (near({m(0, 0), 0, 0, m(1, 1)}))
-    return fmt::format("the stage moves by {:.2f} times the requested shift along x and by {:.2f} times along y",
-                       m(0, 0), m(1, 1));
-  return fmt::format(
-      "a requested pixel along x moves the picture by ({:.2f}, {:.2f}) px, one along y by ({:.2f}, {:.2f}) px", m(0, 0),
-      m(1, 0), m(0, 1), m(1, 1));
-}
-
 struct Step {
   double squares = 0;  ///< weighted, explained
   cv::Point2d by_px;
@@ -212,6 +193,25 @@ std::optional<StageFit> fit_stage(std::span<const ShiftSeen> places) {
   }
   fit.explained = before > 0 ? taken / before : 0;
   return fit;
+}
+
+std::string motion_clause(const StageFit& fit) {
+  const cv::Matx22d& m = fit.seen_per_asked;
+  const auto near = [&](const cv::Matx22d& to) {
+    for (int k = 0; k < 4; ++k) {
+      if (std::abs(m.val[k] - to.val[k]) > like + 4 * fit.standard_error.val[k]) return false;
+    }
+    return true;
+  };
+  for (const NamedMotion& motion : named_motions) {
+    if (near(motion.seen_per_asked)) return motion.clause;
+  }
+  if (near({m(0, 0), 0, 0, m(1, 1)}))
+    return fmt::format("the stage moves by {:.2f} times the requested shift along x and by {:.2f} times along y",
+                       m(0, 0), m(1, 1));
+  return fmt::format(
+      "a requested pixel along x moves the picture by ({:.2f}, {:.2f}) px, one along y by ({:.2f}, {:.2f}) px", m(0, 0),
+      m(1, 0), m(0, 1), m(1, 1));
 }
 
 bool moves_as_asked(const StageFit& fit, double most_deviation) {

@@ -36,6 +36,9 @@ struct StageFit {
 /// and four standard errors.
 [[nodiscard]] bool moves_as_asked(const StageFit& fit, double most_deviation);
 
+/// The movement as a clause: "the stage moves along x with the wrong sign".
+[[nodiscard]] std::string motion_clause(const StageFit& fit);
+
 /// Likely cause of wrong places, as a clause: "the stage moves along x with the wrong sign". It needs about six places;
 /// with fewer it only states the last one.
 [[nodiscard]] std::string likely_cause(std::span<const ShiftSeen> places);

@@ -65,6 +65,17 @@ Studied cooled_f4() {
   });
 }
 
+/// Judged by hvs-2 at a display: at 3.6 arcmin a sample the camera limits the acuity, at 1.8 arcmin the eye does.
+Studied seen_by_an_eye(const std::string& name, Studied camera, double pixel_pitch_mm, double zoom) {
+  camera.design.name = name;
+  camera.design.display = ViewedDisplay{.pixel_pitch_mm = pixel_pitch_mm,
+                                        .viewing_distance_m = 0.6,
+                                        .luminance_white_cd_m2 = 120,
+                                        .luminance_black_cd_m2 = 0.3,
+                                        .zoom = zoom};
+  return camera;
+}
+
 std::vector<Studied> designs() {
   const SensorSpec pattern = with([](SensorSpec& s) { s.fixed_pattern_k = 0.1; });
   const SensorSpec rounded = with([](SensorSpec& s) { s.kelvin_per_count = s.netd_k; });
@@ -77,6 +88,9 @@ std::vector<Studied> designs() {
           {{.name = "microscan", .microscan = 2}},
           uncooled_17_um(),
           cooled_f4(),
+          seen_by_an_eye("eye, SC2000 at 2.4 arcmin", {default_design()}, 0.21, 2),
+          seen_by_an_eye("eye, uncooled 17 um at 1.8 arcmin", uncooled_17_um(), 0.315, 1),
+          seen_by_an_eye("eye, cooled f/4 at 3.6 arcmin", cooled_f4(), 0.21, 3),
           other_camera("noise 5 % above the twin", [](SensorSpec& s) { s.netd_k *= 1.05; }),
           other_camera("noise 20 % above the twin", [](SensorSpec& s) { s.netd_k *= 1.2; }),
           other_camera("f-number 20 % above the twin", [](SensorSpec& s) { s.f_number *= 1.2; }),

@@ -35,7 +35,8 @@ struct GradedDesign {
   std::vector<int> frames{4};
   int microscan = 1;
   std::vector<double> delta_t_k{16.9, 1.93, 0.23};
-  double distance_m = 2;  ///< with that of the camera the shipped plates suit 2.6 mm a pixel
+  double distance_m = 2;                   ///< with that of the camera the shipped plates suit 2.6 mm a pixel
+  std::optional<ViewedDisplay> display{};  ///< of hvs-2, which judges in place of hvs-1
 };
 
 /// What a plan of defaults shows with a camera of 50 Hz, and the frames that are chosen for it (with_frames()).
@@ -65,6 +66,9 @@ inline Plan plan_of(const GradedDesign& design, std::uint64_t seed) {
   plan.schedule.answers = AnswersChoice::graded;
   plan.schedule.frames_per_presentation = design.frames;
   plan.fit.estimator = EstimatorChoice::twin_shape;
+  if (!design.display) return plan;
+  plan.observer = "hvs-2";
+  plan.display = *design.display;
   return plan;
 }
 

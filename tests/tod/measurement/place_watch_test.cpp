@@ -128,6 +128,16 @@ TEST(PlaceWatch, FollowsASlowDriftAndNotesIt) {
   }
 }
 
+TEST(PlaceWatch, NamesTheScaleOfAStageThatItFollows) {
+  const SimulatedBench bench = bench_at({16.9}, 12);
+
+  const auto result = run_with(bench, [](PlateScene& s, int) { s.shift_mm.y *= 0.85; });
+
+  ASSERT_TRUE(result.has_value());
+  EXPECT_EQ(reason(result), "");
+  EXPECT_THAT(result->notes, ::testing::Contains(HasSubstr("by 0.85 times along y, and the observed places were")));
+}
+
 TEST(PlaceWatch, RefusesAPlateThatTurnsBetweenPresentations) {
   const SimulatedBench bench = bench_at({16.9});
 
