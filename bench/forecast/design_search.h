@@ -41,16 +41,18 @@ struct BestDesign {
   /// error that reverses its sign with this rotation enters S75 with this share; its scatter is in the interval.
   double unpaired_share = 0;
   std::vector<double> dropped_contrasts_k{};
+  /// Bench time of the best design whose contrasts settle, if the best one has a settling band.
+  std::optional<double> settled_s{};
 };
 
-/// Searches mountings of each plate, phases, and frames of each contrast. The presentations are in the order of
-/// constant_stimuli(): its fast changes run during the slow ones, so that no other nesting takes less time. A design
-/// has at least five set-ups, which the intervals of graded answers need (or those of the plan, if it has fewer), three
-/// phases and eight presentations of a contrast. Mountings are taken in pairs of counterparts. The plate is located in
-/// fewer frames than planned if their noise is at most 0.15 % of the highest contrast. With `decide` and
-/// without an equivalence margin, contrasts without a limit are left out, except the highest one, which locates the
-/// plate. Errors: `invalid_input` (no design examined meets the request; the message states the least half-width, or
-/// the rows of the budget that prevent the decision), predict_plan(), `interrupted`.
+/// Searches mountings of each plate, phases, frames of each contrast, and whether the contrasts settle. The
+/// presentations are in the order of constant_stimuli(): its fast changes run during the slow ones, so that no other
+/// nesting takes less time. A design has at least five set-ups, which the intervals of graded answers need (or those of
+/// the plan, if it has fewer), three phases and eight presentations of a contrast. Mountings are taken in pairs of
+/// counterparts. The plate is located in fewer frames than planned if their noise is at most 0.15 % of the highest
+/// contrast. With `decide` and without an equivalence margin, contrasts without a limit are left out, except the
+/// highest one, which locates the plate. Errors: `invalid_input` (no design examined meets the request; the message
+/// states the least half-width, or the rows of the budget that prevent the decision), predict_plan(), `interrupted`.
 [[nodiscard]] Result<BestDesign> best_design(const Plan& plan, const ExperimentInputs& inputs,
                                              const DesignRequest& request, std::stop_token stop);
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bias and coverage of presentations with contrasts of their own, as docs/validation/coverage.md states them.
+// TODBENCH_STUDY_RUNS: runs of each design (200 without it). TODBENCH_STUDY_FOLDER: where they are kept; what is there
+// is not made again.
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <cstdlib>
 
 #include "tests/bench/studies/moving_contrasts.h"
+#include "tests/support/temporary_folder.h"
 
 namespace todbench {
 namespace {
@@ -16,7 +19,12 @@ TEST_P(MovingContrastStudy, HoldsTheThresholdOfTheCamera) {
   const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
   const int runs = asked == nullptr ? 200 : std::atoi(asked);
 
-  const auto summary = testing::study_of(GetParam(), 7000, runs);
+  const testing::TemporaryFolder temporary;
+  const char* kept = std::getenv("TODBENCH_STUDY_FOLDER");
+  testing::MovingRecord record((kept != nullptr ? std::filesystem::path(kept) : temporary.path()) /
+                               "moving_contrasts.csv");
+
+  const auto summary = testing::study_of(GetParam(), 7000, runs, record);
 
   for (const auto& one : summary) {
     std::printf("%-32s %6.2f K  bias %+.2f +- %.2f %%  sd %.2f  half %.2f  covered %d of %d\n", GetParam().name.c_str(),

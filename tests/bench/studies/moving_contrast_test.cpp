@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/bench/studies/moving_contrasts.h"
+#include "tests/support/temporary_folder.h"
 
 namespace todbench {
 namespace {
@@ -11,7 +12,9 @@ namespace {
 void expect_truth(const testing::MovingContrasts& design) {
   constexpr int runs = 3;
 
-  const auto summary = testing::study_of(design, 100, runs);
+  const testing::TemporaryFolder folder;
+  testing::MovingRecord record(folder.path() / "runs.csv");
+  const auto summary = testing::study_of(design, 100, runs, record);
 
   ASSERT_EQ(summary.size(), design.judged_k.size()) << design.name;
   for (const auto& one : summary) {

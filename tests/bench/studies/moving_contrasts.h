@@ -6,9 +6,12 @@
 
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,6 +68,8 @@ struct MovingContrasts {
   SensorSpec camera = plain_sensor(), twin = plain_sensor();
   bool ramp = true;  ///< otherwise within a settling band
   double time_constant_s = 2.2;
+  int phases = 6;
+  std::vector<int> frames{4}, mountings_per_plate{0};
   std::vector<double> judged_k{10, 3.5, 1.2, 0.5, 0.3};  ///< contrasts of the result; of a ramp, none of the plan
 };
 
@@ -78,8 +83,9 @@ inline Plan plan_of(const MovingContrasts& design, std::uint64_t seed) {
   plan.seed = seed;
   plan.camera.id = "sim:sc2000";
   plan.camera.ifov_mrad = design.camera.ifov_mrad();
-  plan.target.phases = 6;
-  plan.schedule.frames_per_presentation = {4};
+  plan.target.phases = design.phases;
+  plan.target.mountings_per_plate = design.mountings_per_plate;
+  plan.schedule.frames_per_presentation = design.frames;
   if (design.ramp) {
     plan.schedule.kind = ScheduleKind::ramp;
     plan.schedule.ramp_k_per_s = 7.3;  // 10 s from 16.9 to 0.23 K
@@ -197,11 +203,45 @@ struct MovingSummary {
   int covered = 0, runs = 0;
 };
 
-inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::uint64_t first_seed, int runs) {
+/// Runs of studies in a file, one contrast a row: design; seed; contrast; ln S75; half of its interval.
+class MovingRecord {
+ public:
+  explicit MovingRecord(std::filesystem::path file) : file_(std::move(file)) {
+    std::ifstream in(file_);
+    for (std::string line; std::getline(in, line);) {
+      const std::size_t end = line.find(';');
+      std::istringstream numbers(line.substr(end + 1));
+      std::uint64_t seed = 0;
+      char mark = 0;
+      MovingResult row;
+      numbers >> seed >> mark >> row.delta_t_k >> mark >> row.ln_s75 >> mark >> row.half;
+      if (numbers) runs_[{line.substr(0, end), seed}].push_back(row);
+    }
+  }
+
+  /// The run of a seed, made and kept if the file has none.
+  const std::vector<MovingResult>& run(const MovingContrasts& design, std::uint64_t seed, Surfaces& surfaces) {
+    auto& rows = runs_[{design.name, seed}];
+    if (!rows.empty()) return rows;
+    rows = moving_run(design, seed, surfaces);
+    std::ofstream out(file_, std::ios::app);
+    out.precision(12);
+    for (const MovingResult& row : rows)
+      out << design.name << ";" << seed << ";" << row.delta_t_k << ";" << row.ln_s75 << ";" << row.half << "\n";
+    return rows;
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::map<std::pair<std::string, std::uint64_t>, std::vector<MovingResult>> runs_;
+};
+
+inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::uint64_t first_seed, int runs,
+                                           MovingRecord& record) {
   Surfaces surfaces;
   std::map<double, std::vector<MovingResult>> by_contrast;
   for (int i = 0; i < runs; ++i)
-    for (const MovingResult& one : moving_run(design, first_seed + static_cast<std::uint64_t>(i), surfaces))
+    for (const MovingResult& one : record.run(design, first_seed + static_cast<std::uint64_t>(i), surfaces))
       by_contrast[one.delta_t_k].push_back(one);
   std::vector<MovingSummary> out;
   for (const auto& [delta_t_k, results] : by_contrast) {
@@ -225,18 +265,32 @@ inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::u
 }
 
 inline std::vector<MovingContrasts> moving_designs() {
-  SensorSpec blurred = plain_sensor(), noisy = blurred, columns = blurred;
+  SensorSpec blurred = plain_sensor(), noisy = blurred, columns = blurred, stopped = blurred, patterned = blurred;
   blurred.aberration_sigma_pitch = 0.35;
   noisy.netd_k *= 2;
   columns.column_noise_k = 0.035;
+  stopped.f_number *= 2;
+  patterned.fixed_pattern_k = 0.05;
   MovingContrasts band{.name = "band, equal", .ramp = false};
   band.judged_k = {16.9, 1.93, 0.23};
+  MovingContrasts band_blur = band, band_noise = band;
+  band_blur.name = "band, blur", band_blur.camera = blurred;
+  // The design of least bench time for 2.5 % on the default bench (design_search.h).
+  MovingContrasts band_best = band;
+  band_best.name = "band, least time for 2.5 %", band_best.phases = 14;
+  band_best.frames = {1, 1, 6}, band_best.mountings_per_plate = {3, 2};
+  band_noise.name = "band, noise x 2", band_noise.camera = noisy;
   return {band,
           {.name = "ramp, equal"},
           {.name = "ramp, equal, black body of 8 s", .time_constant_s = 8},
           {.name = "ramp, blur", .camera = blurred},
           {.name = "ramp, noise x 2", .camera = noisy},
-          {.name = "ramp, column noise", .camera = columns}};
+          {.name = "ramp, column noise", .camera = columns},
+          {.name = "ramp, f-number x 2", .camera = stopped},
+          {.name = "ramp, fixed pattern 0.05 K", .camera = patterned},
+          band_blur,
+          band_noise,
+          band_best};
 }
 
 }  // namespace todbench::testing
