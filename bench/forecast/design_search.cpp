@@ -18,6 +18,7 @@
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "tod/presentation/largest_contrast.h"
+#include "tod/schedule/even_phases.h"
 
 namespace todbench {
 namespace {
@@ -347,6 +348,11 @@ std::vector<std::string> in_words(const BestDesign& found) {
                     : fmt::format("{} set-ups, each with its counterpart rotated by 180 degrees: an error that changes "
                                   "its sign with this rotation cancels",
                                   found.set_ups));
+  const int phases = best.plan.target.phases;
+  out.push_back(
+      fmt::format("{} phases in each set-up cancel every harmonic of the pixel grid below {:.1f} per pixel; "
+                  "what is left has a new start in each set-up, and its scatter is in the interval",
+                  phases, least_harmonic(phases)));
   if (found.settled_s)
     out.push_back(
         fmt::format("presentations begin within {:g} % of the set contrast, and their own frames give their "

@@ -242,6 +242,10 @@ std::vector<PhasedTriangle> phased_triangles(const TargetPlate& plate, Mounting 
   return all;
 }
 
+double least_harmonic(int count) {
+  return std::sqrt(best_lattices(count).front().shortest());
+}
+
 EvenPhases even_phases(std::span<const PhasedTriangle> triangles, std::size_t groups, int count) {
   assert(groups > 0);
   EvenPhases out;

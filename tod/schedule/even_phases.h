@@ -29,6 +29,10 @@ struct EvenPhases {
   cv::Point2d cell[2];  ///< sides of the lattice cell: a shift of a group by multiples of it changes nothing
 };
 
+/// Harmonics of the pixel grid below this number per pixel are absent from the mean over `count` > 0 phases of a group:
+/// the length of the shortest dual vector.
+[[nodiscard]] double least_harmonic(int count);
+
 /// `count` shifts for each of `groups` > 0. Those of a group are a lattice: of all with that many points, the one whose
 /// shortest dual vector is longest. The mean of a function of the phase over it has no error from harmonics below that,
 /// for every triangle. The groups are displaced relative to each other so that the phases of each size, and of each
