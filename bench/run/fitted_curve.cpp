@@ -39,9 +39,29 @@ FittedTrials trials_to_fit(const MeasurementResult& run, const Plan& plan, const
   return {.own = at_set_contrasts(run.trials, *surface, air), .surface = *std::move(surface)};
 }
 
+namespace {
+
+/// Takes the thresholds out.
+void withhold(TodCurve& curve) {
+  for (TodPoint& point : curve.points) {
+    point.fit = {};
+    point.free_lapse_fit.reset();
+    point.lapse_warning = false;
+    point.orientations.reset();
+  }
+}
+
+}  // namespace
+
 std::optional<AdequacyFinding> take_ramp_of(TodCurve& curve, TwinShapesOutcome& said, const MeasurementResult& run,
                                             const FittedTrials& fitted, const Plan& plan) {
-  if (plan.schedule.kind != ScheduleKind::ramp || !fitted.surface || said.ended_by) return std::nullopt;
+  if (plan.schedule.kind != ScheduleKind::ramp) return std::nullopt;
+  if (!fitted.surface || said.ended_by) {
+    withhold(curve);
+    said.notes.emplace_back(
+        "the ramp ended early: its answers belong to contrasts between the set ones, so no threshold is stated");
+    return std::nullopt;
+  }
   auto taken = take_ramp(curve, run, *fitted.surface, plan);
   if (!taken) {
     said.ended_by = with_context("the ramp", taken.error());

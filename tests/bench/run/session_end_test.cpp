@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "bench/run/fitted_curve.h"
 #include "bench/session/manifest.h"
 #include "bench/session/open_session.h"
 #include "tests/support/temporary_folder.h"
@@ -78,6 +79,25 @@ TEST(SessionEnd, LeavesNothingInTheFolderThatTheManifestDoesNotList) {
 
   ASSERT_TRUE(run) << run.error().message;
   EXPECT_TRUE(check_manifest(run->folder)->intact());
+}
+
+// The answers of a contrast are then those of a part of the ramp, and their function is not that of one contrast.
+TEST(RampThatEndedEarly, HasNoThresholds) {
+  Plan plan;
+  plan.schedule.kind = ScheduleKind::ramp;
+  const std::vector<Level> levels{{1, 10, 40}, {2, 30, 40}, {3, 39, 40}};
+  TodCurve curve;
+  TodPoint& point = curve.points.emplace_back();
+  point.set_delta_t_k = 11, point.delta_t_k = 10, point.levels = levels;
+  point.fit = fit_psychometric(levels, {}).value();
+  ASSERT_TRUE(point.fit.usable());
+  TwinShapesOutcome said;
+
+  EXPECT_FALSE(take_ramp_of(curve, said, {}, {}, plan));
+
+  EXPECT_FALSE(point.fit.threshold);
+  EXPECT_FALSE(point.fit.usable());
+  EXPECT_THAT(said.notes, Contains(HasSubstr("the ramp ended early")));
 }
 
 }  // namespace
