@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "bench/plan/plan_keys.h"
@@ -343,6 +344,23 @@ std::vector<QStringList> rows_of_text(const QString& text) {
   return rows;
 }
 
+namespace {
+
+/// Whether a key of [measures] belongs only to measures that are off.
+bool of_measure_that_is_off(std::string_view path, const MeasuresPlan& measures) {
+  constexpr std::string_view section = "measures.";
+  if (!path.starts_with(section)) return false;
+  const std::string_view key = path.substr(section.size());
+  if (key == "noise_frames") return !measures.noise && !measures.pixels;
+  if (key.starts_with("response_")) return !measures.response && !measures.gain_control;
+  return std::ranges::any_of(measure_keys, [&](const MeasureKey& measure) {
+    return key.size() > measure.name.size() && key.starts_with(measure.name) && key[measure.name.size()] == '_' &&
+           !(measures.*measure.requested);
+  });
+}
+
+}  // namespace
+
 QString idle_reason(const PlanField& field, const Plan& plan) {
   const std::string path = field.paths.empty() ? std::string() : field.paths.front();
   const auto is_one_of = [&path](std::initializer_list<std::string_view> names) {
@@ -361,6 +379,7 @@ QString idle_reason(const PlanField& field, const Plan& plan) {
     return "No effect until the humidity of the air is stated.";
   if (plan.camera.nuc_interval_s <= 0 && path == "camera.nuc_command")
     return "No effect: no correction is commanded (nuc_interval_s is 0).";
+  if (of_measure_that_is_off(path, plan.measures)) return "No effect: the measure is off.";
   return {};
 }
 

@@ -234,5 +234,26 @@ TEST(PlanFields, PutLimitsAndAnEmptyMarginIntoThePlan) {
   EXPECT_FALSE(plan.limits.equivalence_margin_percent);
 }
 
+TEST(PlanFields, OfAMeasureThatIsOffHaveNoEffect) {
+  const auto idle = [](std::string_view path, const Plan& plan) {
+    for (const PlanField& field : plan_fields()) {
+      if (!field.paths.empty() && field.paths.front() == path) return !idle_reason(field, plan).isEmpty();
+    }
+    ADD_FAILURE() << path;
+    return false;
+  };
+  Plan plan;
+  EXPECT_TRUE(idle("measures.noise_frames", plan));
+  EXPECT_TRUE(idle("measures.response_steps", plan));
+  EXPECT_TRUE(idle("measures.source_size_px", plan));
+  EXPECT_FALSE(idle("measures.source_size", plan)) << "switches it on";
+  EXPECT_FALSE(idle("measures.gain_control", plan));
+
+  plan.measures.pixels = plan.measures.gain_control = plan.measures.source_size = true;
+  EXPECT_FALSE(idle("measures.noise_frames", plan)) << "the pixel search uses them";
+  EXPECT_FALSE(idle("measures.response_steps", plan)) << "the gain is described after the same steps";
+  EXPECT_FALSE(idle("measures.source_size_px", plan));
+}
+
 }  // namespace
 }  // namespace todbench
