@@ -115,10 +115,16 @@ std::optional<std::pair<OutlyingResult, std::optional<std::size_t>>> most_improb
   return worst;
 }
 
-ReferenceValue reference_of(const std::vector<LaboratoryValue>& kept, const ItemComparison& item,
+/// Whether results of several laboratories were set aside.
+bool several(const std::vector<OutlyingResult>& outlying) {
+  return std::ranges::any_of(outlying, [&](const auto& one) { return one.laboratory != outlying.front().laboratory; });
+}
+
+ReferenceValue reference_of(const std::vector<LaboratoryValue>& kept, const ItemComparison& item, bool selection,
                             const MedianConsensus& median) {
-  if (item.kept.consistent()) return {ReferenceMethod::weighted_mean, item.weighted, 2, 2 * item.weighted.u};
-  if (4 * largest_consistent_subset(kept).size() >= 3 * kept.size())
+  if (!selection && item.kept.consistent())
+    return {ReferenceMethod::weighted_mean, item.weighted, 2, 2 * item.weighted.u};
+  if (!selection && 4 * largest_consistent_subset(kept).size() >= 3 * kept.size())
     return {ReferenceMethod::median, median.median, 2, (*median.ci95.high - *median.ci95.low) / 2};
   const double t = distribution::quantile(distribution::StudentsT(static_cast<double>(kept.size() - 1)), 0.975);
   const double u = item.paule_mandel.hartung_knapp;
@@ -152,12 +158,13 @@ DegreeOfEquivalence degree_of(const ItemComparison& item, const std::vector<bool
   return out;
 }
 
-ItemComparison compared(ComparedItem&& from, const std::vector<bool>& kept, std::uint64_t seed) {
+ItemComparison compared(ComparedItem&& from, const std::vector<bool>& kept, bool selection, std::uint64_t seed) {
   ItemComparison out;
   out.item = std::move(from);
-  const auto values = kept_results(out.item, kept);
+  const std::vector<bool> used = selection ? std::vector<bool>(kept.size(), true) : kept;
+  const auto values = kept_results(out.item, used);
   out.all = consistency(out.item.results);
-  out.kept = consistency(values);
+  out.kept = consistency(kept_results(out.item, kept));
   out.weighted = weighted_mean(values);
   MedianConsensus median = monte_carlo_median(values, seed, MedianDetail::median);
   out.median = median.median;
@@ -170,14 +177,15 @@ ItemComparison compared(ComparedItem&& from, const std::vector<bool>& kept, std:
   for (const std::size_t i : largest_consistent_subset(out.item.results)) subset.push_back(out.item.results[i]);
   for (const auto& member : subset) out.consistent_laboratories.push_back(member.laboratory);
   out.consistent_subset = weighted_mean(subset);
-  out.reference = reference_of(values, out, median);
+  out.reference = reference_of(values, out, selection, median);
   if (out.reference.method == ReferenceMethod::median)
     median = monte_carlo_median(values, seed, MedianDetail::differences);
   std::size_t next = 0;
   for (std::size_t i = 0; i < out.item.results.size(); ++i) {
-    const bool from_draws = kept[i] && !median.difference_half95.empty();
-    out.degrees.push_back(degree_of(out, kept, i, from_draws ? median.difference_half95[next] : 0));
-    next += kept[i] ? 1 : 0;
+    const bool from_draws = used[i] && !median.difference_half95.empty();
+    out.degrees.push_back(degree_of(out, used, i, from_draws ? median.difference_half95[next] : 0));
+    out.degrees.back().outlying = !kept[i];
+    next += used[i] ? 1 : 0;
   }
   return out;
 }
@@ -249,7 +257,9 @@ Result<RoundRobin> evaluated(std::vector<ComparedItem> items, std::uint64_t seed
     out.outlying.push_back(std::move(worst->first));
   }
   out.laboratories = summaries(items, kept, out.outlying);
-  for (std::size_t j = 0; j < items.size(); ++j) out.items.push_back(compared(std::move(items[j]), kept[j], seed + j));
+  out.reference_from_all = several(out.outlying);
+  for (std::size_t j = 0; j < items.size(); ++j)
+    out.items.push_back(compared(std::move(items[j]), kept[j], out.reference_from_all, seed + j));
   return out;
 }
 

@@ -51,7 +51,7 @@ struct ItemComparison {
   ReferenceValue reference;
   ConsistencyCheck all, kept;  ///< of all results, and of those that are not outlying
   std::vector<DegreeOfEquivalence> degrees;
-  // Other estimates, from the results that are not outlying.
+  // Other estimates, from the results that the reference value comes from.
   Consensus weighted, median;
   RandomEffects dersimonian_laird, paule_mandel;
   double dersimonian_laird_sd = 0, paule_mandel_sd = 0;  ///< between laboratories
@@ -79,6 +79,9 @@ struct RoundRobin {
   std::vector<ItemComparison> items;
   std::vector<LaboratorySummary> laboratories;  ///< by name
   std::vector<OutlyingResult> outlying;         ///< in the order in which they were found
+  /// Several laboratories are outlying: reference values and estimates come from all results, because the others agree
+  /// by selection.
+  bool reference_from_all = false;
   /// No result outlying and every item consistent.
   [[nodiscard]] bool consistent() const;
 };
@@ -88,8 +91,9 @@ inline constexpr double outlying_significance = 0.025;
 
 /// Evaluates a comparison. The errors of a laboratory are taken as independent between items. The most improbable
 /// outlying laboratory or result is set aside and the rest tested again. If this would leave no more than half of the
-/// laboratories of an item, none is set aside. `seed` draws the medians. Errors: `invalid_input` (no item, or an item
-/// with fewer than two laboratories).
+/// laboratories of an item, none is set aside. If several laboratories are outlying, all may understate their
+/// uncertainties: the reference values then come from all results. `seed` draws the medians. Errors: `invalid_input`
+/// (no item, or an item with fewer than two laboratories).
 [[nodiscard]] Result<RoundRobin> evaluated(std::vector<ComparedItem> items, std::uint64_t seed);
 
 }  // namespace todbench

@@ -165,6 +165,10 @@ VerdictBox round_robin_verdict(const RoundRobin& found) {
           plain((one.item.empty() ? ", over all its items" : ", item " + one.item + ", " + one.quantity) + ": zeta = " +
                 shown(one.zeta, 2) + ". Chance gives any laboratory so much with " + p_text(one.p) + "."));
     }
+    if (found.reference_from_all)
+      box.paragraphs.push_back(
+          plain("Several laboratories deviate: all may understate their uncertainties. The reference values therefore "
+                "come from all results."));
   } else {
     box.word = "? INCONSISTENT", box.mood = Mood::open;
     box.paragraphs.push_back(

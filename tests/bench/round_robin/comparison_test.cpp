@@ -93,6 +93,22 @@ TEST(RoundRobin, OfLaboratoriesThatScatterHasTheMeanOfPauleAndMandel) {
   EXPECT_FALSE(found->consistent());
 }
 
+TEST(RoundRobin, ThatNamesSeveralLaboratoriesHasReferenceValuesFromAllResults) {
+  // 8 and 12 of eight: both are named, and the other six are too similar by selection.
+  const auto found = evaluated(
+      {item_of("a", {{10, 0.2}, {10.1, 0.2}, {9.9, 0.2}, {10, 0.2}, {10.1, 0.2}, {9.9, 0.2}, {8, 0.2}, {12, 0.2}})}, 1);
+
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->outlying.size(), 2u);
+  const ItemComparison& item = found->items[0];
+  EXPECT_EQ(item.reference.method, ReferenceMethod::paule_mandel);
+  EXPECT_NEAR(item.reference.value.value, 10, 1e-9);
+  // Equal u: t(0.975, 7) sqrt(s^2 / 8), s^2 = (4 * 0.1^2 + 2 * 2^2) / 7.
+  EXPECT_NEAR(item.reference.expanded_u, 2.364624 * std::sqrt(8.04 / 7 / 8), 1e-6);
+  EXPECT_TRUE(item.degrees[6].outlying && item.degrees[7].outlying && !item.degrees[0].outlying);
+  EXPECT_TRUE(item.degrees[6].in_reference);
+}
+
 TEST(RoundRobin, OfAFewDiscrepantResultsHasTheMedian) {
   // chi2 = 4 * 2.3^2 = 21 with nine degrees of freedom, p = 0.012. The largest zeta is 2.3 / 0.9487, p = 0.14 of ten.
   const auto found = evaluated(
