@@ -18,6 +18,19 @@ Interval mtf_interval(double low, double high) {
   return {low > 0 ? std::optional(low) : std::nullopt, high};
 }
 
+/// How wide halos enter the interval; empty: there are none.
+std::string halo_clause(const EdgeMtf& edge, const Interval& interval) {
+  if (!interval.low) return "; noise hides how large halos are, so that the interval has no lower end";
+  if (edge.wide_halo_most <= least_wide_share) return "";
+  if (edge.wide_halo_least > least_wide_share)
+    return fmt::format("; the lower end allows for {:.1f} % of the step in halos wider than {:.0f} pitches",
+                       100 * edge.wide_halo_most, edge.widest_halo_pitch);
+  return fmt::format(
+      "; relative to a source of the size of the plate, which cannot tell halos wider than {:.0f} pitches "
+      "from shading (up to {:.1f} % of the step)",
+      edge.widest_halo_pitch, 100 * edge.wide_halo_most);
+}
+
 /// Adds "mtf_x" for the rectangle nearest to the centre, "mtf_x (NAME)" for the others.
 void add_edge(MeasureLines& out, const MtfMeasure& mtf, const EdgeMtf& edge, const std::string& name) {
   const double f = mtf.frequency_per_pitch;
@@ -26,9 +39,9 @@ void add_edge(MeasureLines& out, const MtfMeasure& mtf, const EdgeMtf& edge, con
   const std::string frames = fmt::format("{} frames of plate {} at {:g} K, {} {} of '{}', {:.2f} degrees from the axis",
                                          mtf.frames, mtf.plate, mtf.said_delta_t_k, edge.sides,
                                          edge.sides == 1 ? "side" : "opposite sides", edge.place, edge.angle_deg);
-  out.lines.push_back(
-      measure_line("mtf_" + axis + name, edge.at(f), interval,
-                   fmt::format("at {:g} cycles per pitch, {:.4g} per mrad: {}", f, f / mtf.pitch_mrad, frames)));
+  out.lines.push_back(measure_line("mtf_" + axis + name, edge.at(f), interval,
+                                   fmt::format("at {:g} cycles per pitch, {:.4g} per mrad: {}{}", f, f / mtf.pitch_mrad,
+                                               frames, halo_clause(edge, interval))));
   if (edge.mtf50_per_pitch)
     out.lines.push_back(measure_line("mtf50_" + axis + name, *edge.mtf50_per_pitch / mtf.pitch_mrad, {}, frames));
   if (edge.model.empty()) return;

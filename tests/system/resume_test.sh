@@ -59,7 +59,7 @@ if new[:complete] != old[:complete]: print(f"{now}: the trials of the first part
 record = json.load(open(now + "/provenance.json"))
 # A run that was killed while it fitted its trials has nothing left to measure.
 segments = 2 if complete < len(whole) else 1
-if (record["state"], record["interrupted"], record["segments"]) != ("complete", True, segments): print(now, record["state"], record["interrupted"], record["segments"])
+if (record["state"], record["interrupted"], record["segments"]) != ("complete", segments == 2, segments): print(now, record["state"], record["interrupted"], record["segments"])
 if not record["origin"]["resumed"] or not record["origin"]["session"].endswith(then): print(now, record["origin"])
 curve = lambda folder: next(row for row in csv.DictReader(open(folder + "/curve.csv")) if row["side"] == "measured")
 a, b = curve("whole"), curve(now)

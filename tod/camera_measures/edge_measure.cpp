@@ -64,6 +64,12 @@ std::optional<double> first_half(const EdgeMtf& edge) {
   return std::nullopt;
 }
 
+/// A plate rarely tells halos wider than a quarter of it from shading. The lower end allows for them only if the plate
+/// shows that there are some; otherwise it is relative to a source of the size of the plate, as the MTF is.
+double low_of(const SlantedEdge& side, std::size_t k) {
+  return side.wide_halo_least > least_wide_share ? side.mtf_low[k] : side.mtf_low_in_picture[k];
+}
+
 /// Mean over the sides. Tails are common to the sides: the mean does not shorten their intervals.
 EdgeMtf mean_of(const std::vector<SlantedEdge>& sides) {
   EdgeMtf mean;
@@ -84,7 +90,7 @@ EdgeMtf mean_of(const std::vector<SlantedEdge>& sides) {
     bool low_known = true;
     for (const SlantedEdge& side : sides) {
       sum += side.mtf[k];
-      below += (side.mtf[k] - side.mtf_low[k]) / count, above += (side.mtf_high[k] - side.mtf[k]) / count;
+      below += (side.mtf[k] - low_of(side, k)) / count, above += (side.mtf_high[k] - side.mtf[k]) / count;
       least = std::min(least, side.mtf[k]), most = std::max(most, side.mtf[k]);
       low_known = low_known && side.low_known[k];
     }

@@ -431,9 +431,6 @@ std::optional<double> mtf50_of(const SlantedEdge& edge) {
   return std::nullopt;
 }
 
-/// Four times the error of the method: a smaller share of the step in wide halos does not count.
-constexpr double least_wide_share = 0.002;
-
 void add_notes(SlantedEdge& edge, const Found& found) {
   if (std::abs(found.trend.sag) > noted_bend_pitch && std::abs(found.trend.sag) > sure * found.trend.sag_u)
     edge.notes.push_back(fmt::format("the edge is bent by {:.2f} pixels", std::abs(found.trend.sag)));

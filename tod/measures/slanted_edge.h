@@ -27,6 +27,9 @@ struct PlateTails {
   double step = 1;      ///< signed step of the picture for a step of 1 of the model
 };
 
+/// Four times the error of the method: a smaller share of the step in wide halos does not count.
+inline constexpr double least_wide_share = 0.002;
+
 struct SlantedEdgeOptions {
   std::optional<EdgeAxis> axis{};  ///< empty: across the edge in the picture
   TailBounds tails{};              ///< for tails fitted to the picture itself
@@ -52,11 +55,11 @@ struct SlantedEdge {
   /// Lower ends relative to a source of the size of the picture: as `mtf_low`, but without halos wider than
   /// `widest_halo_pitch`.
   std::vector<double> mtf_low_in_picture;
-  std::vector<bool> low_known;              ///< false: only TailBounds::most_halo limits `mtf_low`
-  double widest_halo_pitch = 0;             ///< largest sigma of a halo that belongs to the MTF
-  double halo_allowance = 0;                ///< largest share of the step in halos that the interval allows for
-  /// 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If its upper end is above 0.002,
-  /// `mtf_low` is lower than `mtf_low_in_picture` by that share.
+  std::vector<bool> low_known;   ///< false: only TailBounds::most_halo limits `mtf_low`
+  double widest_halo_pitch = 0;  ///< largest sigma of a halo that belongs to the MTF
+  double halo_allowance = 0;     ///< largest share of the step in halos that the interval allows for
+  /// 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If its upper end is above
+  /// least_wide_share, `mtf_low` is lower than `mtf_low_in_picture` by that share.
   double wide_halo_least = 0, wide_halo_most = 0;
   double displacement_pitch = 0;          ///< standard deviation of the lines about the edge if significant
   std::optional<double> mtf50_per_pitch;  ///< lowest frequency at which the MTF is 0.5
