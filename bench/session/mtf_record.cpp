@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bench/session/measure_row.h"
+#include "tod/camera_measures/mtf50.h"
 
 namespace todbench {
 namespace {
@@ -18,16 +19,19 @@ Interval mtf_interval(double low, double high) {
   return {low > 0 ? std::optional(low) : std::nullopt, high};
 }
 
-/// How wide halos enter the interval; empty: there are none.
-std::string halo_clause(const EdgeMtf& edge, const Interval& interval) {
-  if (!interval.low) return "; noise hides how large halos are, so that the interval has no lower end";
-  if (edge.wide_halo_most <= least_wide_share) return "";
-  if (edge.wide_halo_least > least_wide_share)
-    return fmt::format("; the lower end allows for {:.1f} % of the step in halos wider than {:.0f} pitches",
-                       100 * edge.wide_halo_most, edge.widest_halo_pitch);
+Interval over(const Interval& interval, double divisor) {
+  const auto divided = [&](const std::optional<double>& end) {
+    return end ? std::optional(*end / divisor) : std::nullopt;
+  };
+  return {divided(interval.low), divided(interval.high)};
+}
+
+/// Statement about halos that the interval of the MTF does not contain; empty if the picture excludes them.
+std::string unseen_halos(const EdgeMtf& edge) {
+  if (edge.wide_halo_most <= least_wide_share) return {};
   return fmt::format(
-      "; relative to a source of the size of the plate, which cannot tell halos wider than {:.0f} pitches "
-      "from shading (up to {:.1f} % of the step)",
+      "; relative to a source of the size of the plate: halos with a sigma above {:.3g} pixels can hold up to {:.2g} % "
+      "of the light",
       edge.widest_halo_pitch, 100 * edge.wide_halo_most);
 }
 
@@ -38,12 +42,14 @@ void add_edge(MeasureLines& out, const MtfMeasure& mtf, const EdgeMtf& edge, con
   const std::string axis(to_string(edge.axis));
   const std::string frames = fmt::format("{} frames of plate {} at {:g} K, {} {} of '{}', {:.2f} degrees from the axis",
                                          mtf.frames, mtf.plate, mtf.said_delta_t_k, edge.sides,
-                                         edge.sides == 1 ? "side" : "opposite sides", edge.place, edge.angle_deg);
-  out.lines.push_back(measure_line("mtf_" + axis + name, edge.at(f), interval,
-                                   fmt::format("at {:g} cycles per pitch, {:.4g} per mrad: {}{}", f, f / mtf.pitch_mrad,
-                                               frames, halo_clause(edge, interval))));
+                                         edge.sides == 1 ? "side" : "opposite sides", edge.place, edge.angle_deg) +
+                             unseen_halos(edge);
+  out.lines.push_back(
+      measure_line("mtf_" + axis + name, edge.at(f), interval,
+                   fmt::format("at {:g} cycles per pitch, {:.4g} per mrad: {}", f, f / mtf.pitch_mrad, frames)));
   if (edge.mtf50_per_pitch)
-    out.lines.push_back(measure_line("mtf50_" + axis + name, *edge.mtf50_per_pitch / mtf.pitch_mrad, {}, frames));
+    out.lines.push_back(measure_line("mtf50_" + axis + name, *edge.mtf50_per_pitch / mtf.pitch_mrad,
+                                     over(mtf50_interval(edge), mtf.pitch_mrad), frames));
   if (edge.model.empty()) return;
   const auto k = static_cast<std::size_t>(std::lround(f * static_cast<double>(edge.model.size() - 1)));
   out.lines.push_back(measure_line(

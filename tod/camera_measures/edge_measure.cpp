@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tod/camera_measures/mtf50.h"
 #include "tod/camera_measures/plate_offset.h"
 #include "tod/camera_measures/plate_tails.h"
 
@@ -55,19 +56,9 @@ cv::Rect region_of(const Polygon& outline, std::size_t side, EdgeAxis axis, cons
   return {first, last + cv::Point(1, 1)};
 }
 
-std::optional<double> first_half(const EdgeMtf& edge) {
-  for (std::size_t i = 1; i < edge.mtf.size(); ++i) {
-    if (edge.mtf[i] > 0.5) continue;
-    const double share = (edge.mtf[i - 1] - 0.5) / (edge.mtf[i - 1] - edge.mtf[i]);
-    return edge.frequency_per_pitch[i - 1] + share * (edge.frequency_per_pitch[i] - edge.frequency_per_pitch[i - 1]);
-  }
-  return std::nullopt;
-}
-
-/// A plate rarely tells halos wider than a quarter of it from shading. The lower end allows for them only if the plate
-/// shows that there are some; otherwise it is relative to a source of the size of the plate, as the MTF is.
-double low_of(const SlantedEdge& side, std::size_t k) {
-  return side.wide_halo_least > least_wide_share ? side.mtf_low[k] : side.mtf_low_in_picture[k];
+/// Halos wider than the plate count only if the picture shows them: a plate of some 100 pixels never excludes them.
+const std::vector<double>& low_of(const SlantedEdge& side) {
+  return side.wide_halo_least > least_wide_share ? side.mtf_low : side.mtf_low_in_picture;
 }
 
 /// Mean over the sides. Tails are common to the sides: the mean does not shorten their intervals.
@@ -90,7 +81,7 @@ EdgeMtf mean_of(const std::vector<SlantedEdge>& sides) {
     bool low_known = true;
     for (const SlantedEdge& side : sides) {
       sum += side.mtf[k];
-      below += (side.mtf[k] - low_of(side, k)) / count, above += (side.mtf_high[k] - side.mtf[k]) / count;
+      below += (side.mtf[k] - low_of(side)[k]) / count, above += (side.mtf_high[k] - side.mtf[k]) / count;
       least = std::min(least, side.mtf[k]), most = std::max(most, side.mtf[k]);
       low_known = low_known && side.low_known[k];
     }
@@ -99,7 +90,7 @@ EdgeMtf mean_of(const std::vector<SlantedEdge>& sides) {
     mean.low.push_back(low_known ? std::max(0.0, value - std::max(below, apart)) : 0);
     mean.high.push_back(value + std::max(above, apart));
   }
-  mean.mtf50_per_pitch = first_half(mean);
+  mean.mtf50_per_pitch = first_half(mean.frequency_per_pitch, mean.mtf);
   return mean;
 }
 

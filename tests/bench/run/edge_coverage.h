@@ -14,6 +14,7 @@
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
 #include "tod/camera_measures/edge_measure.h"
+#include "tod/camera_measures/mtf50.h"
 
 namespace todbench::testing {
 
@@ -32,6 +33,7 @@ struct EdgeCoverage {
   static constexpr std::array frequencies{0.1, 0.25, 0.5};
   std::array<double, frequencies.size()> within{};  ///< share of the edges whose interval holds the closed form
   std::array<double, frequencies.size()> mean_error{};
+  double half_within = 0;  ///< the same of the frequency at which the MTF is 0.5
   int edges = 0, single_sided = 0;
   double largest_error = 0;
 };
@@ -70,11 +72,17 @@ inline Result<EdgeCoverage> edge_coverage(double aberration_pitch, int seeds, do
       ++out.edges;
       out.single_sided += edge.sides == 2 ? 0 : 1;
       const double angle = edge.angle_deg * std::numbers::pi / 180;
-      for (std::size_t k = 0; k < EdgeCoverage::frequencies.size(); ++k) {
-        const double f = EdgeCoverage::frequencies[k], u = f * std::cos(angle), w = f * std::sin(angle);
+      const auto expected_at = [&](double f) {
+        const double u = f * std::cos(angle), w = f * std::sin(angle);
         const double spread = std::exp(-2 * std::pow(std::numbers::pi * halo.sigma_px * f, 2));
-        const double expected =
-            std::abs(edge.axis == EdgeAxis::x ? truth(u, w) : truth(w, u)) * (1 - halo.share + halo.share * spread);
+        return std::abs(edge.axis == EdgeAxis::x ? truth(u, w) : truth(w, u)) * (1 - halo.share + halo.share * spread);
+      };
+      double below = 0.1, above = 1;  // the MTF of these sensors is 0.5 once between them
+      for (int i = 0; i < 40; ++i) (expected_at(0.5 * (below + above)) > 0.5 ? below : above) = 0.5 * (below + above);
+      const Interval half = mtf50_interval(edge);
+      out.half_within += half.low.value_or(0) <= below && above <= half.high.value_or(1) ? 1 : 0;
+      for (std::size_t k = 0; k < EdgeCoverage::frequencies.size(); ++k) {
+        const double f = EdgeCoverage::frequencies[k], expected = expected_at(f);
         out.within[k] += edge.low_at(f) <= expected && expected <= edge.high_at(f) ? 1 : 0;
         out.mean_error[k] += edge.at(f) - expected;
         out.largest_error = std::max(out.largest_error, std::abs(edge.at(f) - expected));
@@ -83,6 +91,7 @@ inline Result<EdgeCoverage> edge_coverage(double aberration_pitch, int seeds, do
   }
   for (std::size_t k = 0; k < EdgeCoverage::frequencies.size(); ++k)
     out.within[k] /= out.edges, out.mean_error[k] /= out.edges;
+  out.half_within /= out.edges;
   return out;
 }
 

@@ -57,6 +57,13 @@ TEST(PhysicalMeasures, FindTheMtfOfTheSensorModelAndJudgeIt) {
   ASSERT_NE(x, nullptr);
   EXPECT_EQ(x->value, outcome->measures->mtf->edges[0].at(0.25));
   EXPECT_LT(x->ci95.low.value(), x->value.value());
+  // Halos wider than the plate are named, not allowed for.
+  EXPECT_GT(x->ci95.low.value(), 0.95 * x->value.value());
+  EXPECT_THAT(x->conditions, HasSubstr("relative to a source of the size of the plate"));
+  const auto* half = line_of(session->measures->main, "mtf50_x");
+  ASSERT_NE(half, nullptr);
+  EXPECT_LT(half->ci95.low.value(), half->value.value());
+  EXPECT_GT(half->ci95.high.value(), half->value.value());
   ASSERT_NE(line_of(session->measures->twin, "mtf_x_model"), nullptr);
   ASSERT_GE(outcome->verdict.demands.size(), 3u);
   EXPECT_EQ(outcome->verdict.demands[outcome->verdict.demands.size() - 2].decision, VerdictKind::pass);
@@ -350,6 +357,7 @@ TEST(PlateEdges, AreFoundInTheMiddleAndInTheCornersAndHoldTheTruth) {
     // 40 edges: standard error 0.035.
     for (const double share : coverage->within)
       EXPECT_GT(share, 0.95 - 4 * 0.035) << aberration_pitch << " " << f_number;
+    EXPECT_GT(coverage->half_within, 0.95 - 4 * 0.035) << aberration_pitch << " " << f_number;
   }
 }
 
