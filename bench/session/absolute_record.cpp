@@ -7,6 +7,7 @@
 #include <string>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/normal.h"
 #include "bench/session/measure_row.h"
 
 namespace todbench {
@@ -19,6 +20,18 @@ Interval repeatability_interval(const AbsoluteMeasure& measure) {
     return measure.repeatability_k * std::sqrt(freedom / quantile(distribution::ChiSquared(freedom), probability));
   };
   return {.low = end(0.975), .high = end(0.025)};
+}
+
+/// Error at the temperature with the largest one. The interval holds for every temperature together (Bonferroni): the
+/// largest of several errors is also the one with the largest random part.
+Estimate largest_error(const AbsoluteMeasure& measure) {
+  const double freedom = measure.degrees_of_freedom;
+  const AbsoluteLevel& worst = measure.worst();
+  const double value = worst.seen_k - worst.expected_k;
+  if (!(freedom > 0)) return measure.deviation_k(worst);
+  const double t = quantile(distribution::StudentsT(freedom), 1 - 0.025 / freedom);
+  const double half = std::hypot(t * measure.u_k, normal_z95 * measure.source_u_k);
+  return {value, value - half, value + half};
 }
 
 /// Mean over the temperatures, with the lowest and the highest in the conditions.
@@ -44,7 +57,7 @@ void add_lines(MeasureLines& out, const AbsoluteMeasure& measure) {
       fmt::format("{} temperatures of the black body from {:g} to {:g} K, upwards and downwards, {} frames each",
                   measure.levels.size(), measure.levels.front().set_k, measure.levels.back().set_k, measure.frames);
   const AbsoluteLevel& worst = measure.worst();
-  add("absolute_error", measure.deviation_k(worst), fmt::format("at {:.3f} K; {}", worst.said_k, range));
+  add("absolute_error", largest_error(measure), fmt::format("at {:.3f} K; {}", worst.said_k, range));
   add("absolute_slope", measure.slope, range);
   add("absolute_offset", measure.offset_k, "in the middle of " + range);
   out.lines.push_back(measure_line("repeatability", measure.repeatability_k, repeatability_interval(measure), range));

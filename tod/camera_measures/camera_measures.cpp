@@ -661,6 +661,20 @@ Estimate GeometryMeasure::ifov_mrad(EdgeAxis axis) const {
   return {mm.value / distance_m, mm.low / distance_m, mm.high / distance_m};
 }
 
+namespace {
+
+/// Distortion with an interval for places beyond the plate. A plate within q of the corner does not show a term of
+/// fifth order: it is taken to be at most half of that of third order, either way, and weighted with 1 - q^2.
+Estimate continued(const PlateGeometry& geometry) {
+  constexpr double fifth_order = 0.5;
+  const Estimate& k = geometry.distortion_percent;
+  const double q = std::min(1.0, geometry.farthest_px / geometry.corner_px);
+  const double unseen = fifth_order * std::max(std::abs(k.low), std::abs(k.high)) * (1 - q * q);
+  return {k.value, k.value - std::hypot(k.value - k.low, unseen), k.value + std::hypot(k.high - k.value, unseen)};
+}
+
+}  // namespace
+
 Estimate GeometryMeasure::field_of_view_deg(EdgeAxis axis) const {
   const double half_px = 0.5 * (axis == EdgeAxis::x ? picture.width : picture.height);
   const auto angle_deg = [&](double mrad_per_px, double distortion_percent) {
@@ -671,7 +685,7 @@ Estimate GeometryMeasure::field_of_view_deg(EdgeAxis axis) const {
       r = half_px / (1 + 0.01 * distortion_percent * std::pow(r / geometry.corner_px, 2));
     return 2 * std::atan(1e-3 * mrad_per_px * r) * 180 / std::numbers::pi;
   };
-  const Estimate ifov = ifov_mrad(axis), &k = geometry.distortion_percent;
+  const Estimate ifov = ifov_mrad(axis), k = continued(geometry);
   const double value = angle_deg(ifov.value, k.value);
   return {value, value - std::hypot(value - angle_deg(ifov.low, k.value), value - angle_deg(ifov.value, k.high)),
           value + std::hypot(angle_deg(ifov.high, k.value) - value, angle_deg(ifov.value, k.low) - value)};

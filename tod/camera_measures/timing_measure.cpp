@@ -42,6 +42,13 @@ TimeLine line_through(std::span<const FrameTimes> times, std::int64_t FrameTimes
 }
 
 constexpr double half_percent = 0.025;
+constexpr double stamp_step_ms = 1e-6;  // time stamps are whole nanoseconds
+
+/// Times that deviate from the line by less than a step of the time stamps show no jitter.
+Estimate seen_jitter(const Estimate& jitter_ms) {
+  if (jitter_ms.value >= stamp_step_ms) return jitter_ms;
+  return {0, 0, std::max(jitter_ms.high, stamp_step_ms)};
+}
 
 }  // namespace
 
@@ -65,8 +72,8 @@ Result<TimingMeasure> frame_timing(std::span<const FrameTimes> times) {
   const auto of_jitter = [&](double probability) {
     return 1e3 * line.sd_s * std::sqrt(freedom / quantile(distribution::ChiSquared(freedom), probability));
   };
-  out.jitter_ms = {1e3 * line.sd_s, of_jitter(1 - half_percent), of_jitter(half_percent)};
-  out.largest_deviation_ms = 1e3 * line.largest_s;
+  out.jitter_ms = seen_jitter({1e3 * line.sd_s, of_jitter(1 - half_percent), of_jitter(half_percent)});
+  out.largest_deviation_ms = out.jitter_ms.value > 0 ? 1e3 * line.largest_s : 0;
   if (out.device_clock) out.arrival_ms = 1e3 * line_through(times, &FrameTimes::host_ns).sd_s;
   return out;
 }

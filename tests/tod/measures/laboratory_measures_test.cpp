@@ -273,6 +273,22 @@ TEST(FrameTiming, HoldsRateAndJitterAndCountsGaps) {
   EXPECT_THAT(jitter, ::testing::AllOf(::testing::Ge(181), ::testing::Le(199)));
 }
 
+TEST(FrameTiming, StatesNoJitterBelowTheStepOfTheTimeStamps) {
+  std::vector<FrameTimes> times;
+  for (std::uint64_t i = 0; i < 500; ++i) {
+    const auto ns = static_cast<std::int64_t>(20000000 * i + 1);
+    times.push_back({i, ns, ns});
+  }
+
+  const auto found = frame_timing(times);
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->jitter_ms.value, 0);
+  EXPECT_EQ(found->jitter_ms.low, 0);
+  EXPECT_EQ(found->jitter_ms.high, 1e-6);
+  EXPECT_EQ(found->largest_deviation_ms, 0);
+}
+
 /// A stage whose runs start at known times of a camera with a known latency.
 class KnownStage final : public MovingTarget, public FrameSource {
  public:
