@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/distributions.h"
 #include "acquisition/base/normal.h"
 #include "bench/judgement/limit_decision.h"
 #include "bench/text/text.h"
@@ -59,13 +60,38 @@ std::string words_of(const Interval& interval, std::string_view unit) {
   return "no interval";
 }
 
+/// Largest difference of the axes over the contrasts, of either sign; the ends are the largest of all contrasts. Empty
+/// if a contrast has no thresholds by direction.
+std::optional<MeasuredQuantity> largest_orientation(const TodCurve& curve) {
+  MeasuredQuantity largest{.measure = "orientation", .value = 0, .ci95 = {0, 0}};
+  for (const TodPoint& point : curve.points) {
+    if (!point.orientations || point.orientations->set_ups < 2) return std::nullopt;
+    const double value = point.orientations->axes_percent, freedom = point.orientations->set_ups - 1;
+    const double half = quantile(distribution::StudentsT(freedom), 0.975) * point.orientations->axes_se_percent;
+    const Interval ends = of_either_sign({value - half, value + half});
+    largest.value = std::max(*largest.value, std::abs(value));
+    largest.ci95 = {std::max(*largest.ci95.low, *ends.low), std::max(*largest.ci95.high, *ends.high)};
+  }
+  return curve.points.empty() ? std::nullopt : std::optional(largest);
+}
+
+/// Quantities of the curve are not among those of measures.json.
+std::optional<MeasuredQuantity> measured_quantity(const Quantity& quantity, const JudgementInput& evidence) {
+  if (quantity.name == "orientation") return largest_orientation(evidence.curve);
+  const MeasuredQuantity* found = quantity_of(evidence, quantity.name);
+  return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
 Demand judged(const DemandKindRow& asked, double limit, const JudgementInput& evidence) {
   const Quantity& quantity = *asked.quantity;
   Demand demand{.kind = asked.kind, .limit = limit};
   demand.conformity = ConformityDecision::inconclusive;
-  const MeasuredQuantity* measured = quantity_of(evidence, quantity.name);
-  if (measured == nullptr || !measured->value) {
-    demand.reason = "this quantity was not measured";
+  const std::optional<MeasuredQuantity> measured = measured_quantity(quantity, evidence);
+  if (!measured || !measured->value) {
+    demand.reason = quantity.name == "orientation"
+                        ? "the thresholds by direction are not known at every contrast: they need graded answers of "
+                          "at least three plates and mountings"
+                        : "this quantity was not measured";
     return demand;
   }
   demand.result = measured->value;

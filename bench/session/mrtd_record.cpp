@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -30,6 +31,16 @@ std::string with_reason(const std::string& words, const MrtdPoint& point) {
   return point.reason.empty() ? words : words + "; " + point.reason;
 }
 
+/// The axes have other bars at other phases, so that their errors are independent. Precondition: both have a threshold.
+Interval interval_of_mean(double mean, const MrtdPoint& x, const MrtdPoint& y) {
+  const auto apart = [&](std::optional<double> Interval::*end) -> std::optional<double> {
+    if (!(x.ci95.*end) || !(y.ci95.*end)) return std::nullopt;
+    return 0.5 * std::hypot(*(x.ci95.*end) - *x.threshold_k, *(y.ci95.*end) - *y.threshold_k);
+  };
+  const auto below = apart(&Interval::low), above = apart(&Interval::high);
+  return {below ? std::optional(mean - *below) : std::nullopt, above ? std::optional(mean + *above) : std::nullopt};
+}
+
 void add_mrtd_lines(MeasureLines& out, const MrtdMeasure& mrtd) {
   for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
     const MrtdPoint* point = mrtd.stated(axis);
@@ -43,7 +54,8 @@ void add_mrtd_lines(MeasureLines& out, const MrtdMeasure& mrtd) {
   }
   const MrtdPoint *x = mrtd.stated(EdgeAxis::x), *y = mrtd.stated(EdgeAxis::y);
   if (x != nullptr && y != nullptr && x->threshold_k && y->threshold_k) {
-    out.lines.push_back(measure_line("mrtd_mean", 0.5 * (*x->threshold_k + *y->threshold_k), {},
+    const double mean = 0.5 * (*x->threshold_k + *y->threshold_k);
+    out.lines.push_back(measure_line("mrtd_mean", mean, interval_of_mean(mean, *x, *y),
                                      mrtd_conditions(mrtd, "mean of mrtd_x and mrtd_y")));
   }
   if (const MrtdPoint* spot = mrtd.stated_spot()) {

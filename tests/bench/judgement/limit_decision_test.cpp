@@ -123,6 +123,31 @@ TEST(MeasureLimits, OnAnMtfAreLowerOnes) {
   EXPECT_EQ(verdict.decision, VerdictKind::fail);
 }
 
+TEST(MeasureLimits, OnTheAxesDecideByTheContrastWithTheLargestDifference) {
+  LimitsPlan limits;
+  limits.measures = {{"orientation", std::nullopt, 4}};
+  const auto decided = [&](std::vector<std::optional<double>> axes_percent) {
+    TodCurve curve;
+    for (const auto& axes : axes_percent) {
+      TodPoint point;
+      point.set_delta_t_k = 1.0 + static_cast<double>(curve.points.size());
+      if (axes) point.orientations = Orientations{.axes_percent = *axes, .axes_se_percent = 0.5, .set_ups = 8};
+      curve.points.push_back(point);
+    }
+    return demand_of(judge({.limits = limits, .curve = curve, .comparison = std::nullopt}), DemandKind{"orientation"});
+  };
+
+  // t(7 degrees of freedom, 97.5 %) = 2.365: half-widths of 1.18 %.
+  EXPECT_EQ(decided({1, -2.5}).decision, VerdictKind::pass);
+  EXPECT_EQ(decided({1, -3.5}).decision, VerdictKind::inconclusive);
+  EXPECT_EQ(decided({6, -2.5}).decision, VerdictKind::fail);
+  EXPECT_NEAR(decided({1, -2.5}).interval.high.value(), 2.5 + 0.5 * 2.365, 1e-3);
+  EXPECT_NEAR(decided({6, -2.5}).interval.low.value(), 6 - 0.5 * 2.365, 1e-3);
+  const Demand open = decided({1, std::nullopt});
+  EXPECT_EQ(open.decision, VerdictKind::inconclusive);
+  EXPECT_THAT(open.reason, ::testing::HasSubstr("graded answers"));
+}
+
 TEST(ZoneLimits, AreDemandsOnWhatWasSeenOfTheZone) {
   LimitsPlan limits;
   limits.zones = {{.name = "centre", .bad_pixels = 0, .clusters = 0},

@@ -38,7 +38,7 @@ TEST(Quantities, AreFoundWithAPlaceButLimitedWithoutOne) {
   EXPECT_EQ(find_quantity("mtf"), nullptr);
   EXPECT_NE(find_limited_quantity("mtf_x"), nullptr);
   EXPECT_EQ(find_limited_quantity("mtf_x (corner)"), nullptr);
-  EXPECT_EQ(find_limited_quantity("mtf50_x"), nullptr);
+  EXPECT_EQ(find_limited_quantity("mtf_x_model"), nullptr);
 }
 
 }  // namespace
