@@ -10,6 +10,7 @@
 
 #include "hvs/observer/identification_bank.h"
 #include "hvs/observer/open_parameters.h"
+#include "hvs/observer/seen_picture.h"
 #include "sim_devices/prediction/bar_pattern.h"
 #include "sim_devices/prediction/bar_profile.h"
 #include "sim_devices/prediction/seen_window.h"
@@ -83,6 +84,8 @@ class BarTrial {
     auto bank = IdentificationBank::build(task.observer, alternatives, spec.samples_per_pitch());
     if (!bank) return tl::unexpected(bank.error());
     trial.bank_.emplace(*std::move(bank));
+    if (task.observer.eye && task.criterion == BarCriterion::bars_resolved)
+      trial.picture_.emplace(task.observer, trial.bank_->window_samples());
     for (std::size_t phase = 0; phase < bar_phases; ++phase) {
       trial.four_.push_back(trial.seen(imager, BarPattern::four_bars, phase));
       if (task.criterion == BarCriterion::four_or_five)
@@ -160,7 +163,7 @@ class BarTrial {
   [[nodiscard]] Seen of(cv::Mat1f window) const {
     Seen out;
     if (task_.criterion == BarCriterion::bars_resolved) {
-      out.profile = bar_profile(window, frequency_per_sample(), task_.axis);
+      out.profile = bar_profile(picture_ ? picture_->of(window) : window, frequency_per_sample(), task_.axis);
       return out;
     }
     out.scores = bank_->project(without_background(task_.observer, window));
@@ -182,19 +185,24 @@ class BarTrial {
       squares += cv::norm(sensor, cv::NORM_L2SQR) / static_cast<double>(sensor.total());
       sensor_.push_back(of(sensor));
       const cv::Mat1f white = noise.white(static_cast<std::uint64_t>(d));
-      if (!task_.observer.eye) {
+      if (!task_.observer.eye || picture_) {
         white_.push_back(of(white));
-        continue;
+      } else {
+        white_.push_back({.scores = bank_->project(white), .profile = {}});
       }
-      white_.push_back({.scores = bank_->project(white), .profile = {}});
-      cv::Mat1f eye(bank_->eye_points(), bank_->eye_points());
-      RandomStream(task_.seed, "mrtd.eye")
-          .sub(static_cast<std::uint64_t>(d))
-          .fill_normal({eye.ptr<float>(), eye.total()});
-      eye_.push_back(std::move(bank_->project_eye({&eye, 1}).front()));
+      if (task_.observer.eye) eye_.push_back(eye_noise(static_cast<std::uint64_t>(d)));
     }
     noise_k_ = std::sqrt(squares / task_.draws);
     return {};
+  }
+
+  /// Noise of the eye of standard deviation 1: in a score, or in a displayed sample of the seen picture.
+  [[nodiscard]] Seen eye_noise(std::uint64_t draw) const {
+    const int points = picture_ ? bank_->window_samples() : bank_->eye_points();
+    cv::Mat1f eye(points, points);
+    RandomStream(task_.seed, "mrtd.eye").sub(draw).fill_normal({eye.ptr<float>(), eye.total()});
+    if (picture_) return {.scores = {}, .profile = bar_profile(eye, frequency_per_sample(), task_.axis)};
+    return {.scores = std::move(bank_->project_eye({&eye, 1}).front()), .profile = {}};
   }
 
   /// Noise of the observer per sample, relative to the contrast.
@@ -230,7 +238,9 @@ class BarTrial {
     own_ = white_;
     for (std::size_t d = 0; d < own_.size(); ++d) {
       for (std::size_t i = 0; i < own_[d].scores.size(); ++i)
-        own_[d].scores[i] = white * white_[d].scores[i] + eye * eye_[d][i];
+        own_[d].scores[i] = white * white_[d].scores[i] + eye * eye_[d].scores[i];
+      for (std::size_t i = 0; i < own_[d].profile.size(); ++i)
+        own_[d].profile[i] = white * white_[d].profile[i] + eye * eye_[d].profile[i];
     }
   }
 
@@ -267,21 +277,17 @@ class BarTrial {
   SensorSpec spec_;
   double frequency_per_pitch_;
   std::optional<IdentificationBank> bank_;
-  std::vector<Seen> four_, other_;       ///< by phase
-  std::vector<Seen> sensor_, white_;     ///< by draw
-  std::vector<std::vector<float>> eye_;  ///< by draw; only with an eye
-  std::vector<Seen> own_;                ///< by draw, at the present contrast; only with an eye
+  std::optional<SeenPicture> picture_;  ///< only if an eye reads the gaps of the picture
+  std::vector<Seen> four_, other_;      ///< by phase
+  std::vector<Seen> sensor_, white_;    ///< by draw
+  std::vector<Seen> eye_;               ///< by draw; only with an eye
+  std::vector<Seen> own_;               ///< by draw, at the present contrast; only with an eye
   std::vector<float> nothing_;
   double noise_k_ = 0;
 };
 
 Result<void> check_bars(const VirtualMrtdTask& task, const SensorSpec& spec) {
   if (task.frequencies_per_mrad.empty()) return fail(ErrorCode::invalid_input, "at least one frequency is needed");
-  if (task.observer.eye && task.criterion == BarCriterion::bars_resolved) {
-    return fail(ErrorCode::invalid_input,
-                "the criterion bars-resolved reads the gaps of the picture and does not model the eye of observer " +
-                    task.observer.name + "; use four-or-five or detection");
-  }
   if (task.draws < 64) return fail(ErrorCode::invalid_input, "at least 64 draws are needed");
   for (const double f : task.frequencies_per_mrad) {
     const double side = 3.5 / (f * spec.ifov_mrad()) * spec.samples_per_pitch();

@@ -21,9 +21,11 @@
 namespace todbench {
 
 enum class BarCriterion {
-  four_or_five,   ///< two intervals with four and five bars: which had four? 75 %, free of bias
-  bars_resolved,  ///< yes or no: every gap is lower than both its bars; 75 % yes, 5 % yes without bars
-  detection       ///< two intervals, one with four bars: which one? 75 %; not an MRTD
+  four_or_five,  ///< two intervals with four and five bars: which had four? 75 %, free of bias
+  /// Yes or no: every gap is lower than both its bars; 75 % yes, 5 % yes without bars. With an eye in the picture
+  /// behind display and eye (SeenPicture), otherwise in that of the camera.
+  bars_resolved,
+  detection  ///< two intervals, one with four bars: which one? 75 %; not an MRTD
 };
 [[nodiscard]] std::string_view to_string(BarCriterion criterion);
 
@@ -61,7 +63,7 @@ struct VirtualMrtdPoint {
 /// One point per frequency. Noise of camera and observer as in identify(). Both intervals have independent noise and
 /// fixed pattern. Patterns are in one of 8 x 2 phases (eight across the bars). The proportion is over all pairs of
 /// draws. Errors: `invalid_input` (no frequency above 0, a pattern with fewer than 4 or more than 400 samples on a
-/// side, no noise, counts coarser than the noise, resolved bars with an eye), `interrupted`.
+/// side, no noise, counts coarser than the noise), `interrupted`.
 [[nodiscard]] Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task);
 
 /// Pictures of virtual_mrtd() for another observer. Immutable, thread-safe.

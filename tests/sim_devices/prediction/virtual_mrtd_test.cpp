@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -191,8 +192,44 @@ TEST(VirtualMrtd, OfAnEyeIsBoundedByTheIdealObserverAndFollowsItsLight) {
   ASSERT_TRUE(seen.spread_k);
   EXPECT_LT(seen.spread_k->first, *seen.threshold_k);
   EXPECT_GT(seen.spread_k->second, *seen.threshold_k);
+}
+
+TEST(VirtualMrtd, ResolvesBarsBehindDisplayAndEye) {
+  VirtualMrtdTask task = sc2000_bars({0.3});
+  task.draws = 400;
   task.criterion = BarCriterion::bars_resolved;
-  EXPECT_FALSE(virtual_mrtd(task));
+  const auto seen_at = [&](double arcmin, double gain, double factor) {
+    task.observer = {
+        .name = "hvs-2",
+        .internal_noise = 0,
+        .sensor_noise_factor = factor,
+        .eye = EyeParameters{},
+        .window_margin_arcmin = 6,
+        .display = ViewedDisplay{.pixel_pitch_mm = 1000 * 2 * std::tan(arcmin / 120 * std::numbers::pi / 180),
+                                 .viewing_distance_m = 1,
+                                 .luminance_white_cd_m2 = 100}};
+    task.observer.eye->sensitivity *= gain;
+    if (gain > 1) task.observer.eye->contrast_noise = 0;
+    const auto found = virtual_mrtd(task);
+    EXPECT_TRUE(found) << found.error().message;
+    return found ? found->front() : VirtualMrtdPoint{};
+  };
+
+  const auto perfect = seen_at(3, 1e4, 1), same = seen_at(3, 1e5, 1);
+  const auto near_by = seen_at(3, 1, 1.75), far = seen_at(1.5, 1, 1.75), farther = seen_at(0.9, 1, 1.75);
+
+  ASSERT_TRUE(perfect.threshold_k && same.threshold_k && near_by.threshold_k);
+  EXPECT_NEAR(*perfect.threshold_k / *same.threshold_k, 1, 1e-3) << "the noise of the sensor alone";
+  EXPECT_GT(*perfect.threshold_k, perfect.ideal_k);
+  EXPECT_GT(*near_by.threshold_k, 1.6 * *perfect.threshold_k) << "1.75 times the noise of the sensor";
+  EXPECT_GT(far.threshold_k.value_or(1e9), *near_by.threshold_k);
+  EXPECT_GT(farther.threshold_k.value_or(2e9), far.threshold_k.value_or(1e9));
+  ASSERT_TRUE(near_by.spread_k);
+  EXPECT_LT(near_by.spread_k->first, *near_by.threshold_k);
+  EXPECT_GT(near_by.spread_k->second, *near_by.threshold_k);
+  std::printf("resolved: ideal %.4f, perfect eye %.4f, at 3' %.4f, at 1.5' %.4f, at 0.9' %.4f K\n", perfect.ideal_k,
+              *perfect.threshold_k, *near_by.threshold_k, far.threshold_k.value_or(-1),
+              farther.threshold_k.value_or(-1));
 }
 
 TEST(VirtualMrtd, NeedsMoreContrastToResolveThanToTellApart) {
