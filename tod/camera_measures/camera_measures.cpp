@@ -145,6 +145,8 @@ class Run {
     return {};
   }
 
+  [[nodiscard]] double transmittance() const { return options_.measurement.air_transmittance.value_or(1); }
+
   [[nodiscard]] const TargetPlate& plate() const { return options_.measurement.plates.front(); }
 
   /// Shows the first plate at a contrast; returns the state that the target reported.
@@ -330,7 +332,7 @@ class Run {
     const double said_k = lit.said_delta_t_k - 0.5 * (before.said_delta_t_k + after.said_delta_t_k);
     SourcePictures pictures{before.picture, lit.picture, after.picture};
     if (before.plate_k && lit.plate_k && after.plate_k && said_k != 0)
-      pictures.plate_rise = (*lit.plate_k - 0.5 * (*before.plate_k + *after.plate_k)) / said_k;
+      pictures.plate_rise = transmittance() * (*lit.plate_k - 0.5 * (*before.plate_k + *after.plate_k)) / said_k;
     TODBENCH_TRY(SourceSize effect, source_size(pictures, *options_.source_plate, where_));
     measures.source = SourceSizeMeasure{.plate = options_.source_plate->name,
                                         .frames = options_.source_frames,
@@ -348,14 +350,17 @@ class Run {
     return {};
   }
 
-  /// Presents a state of `target`, in which a target may stand for that of the run.
+  /// Presents a state of `target`, in which a target may stand for that of the run. The returned contrast is that
+  /// behind air and collimator, if their transmittance is stated.
   Result<PresentedTarget> present(Target& target, FrameTaker& taker, const TargetState& state) {
     TODBENCH_TRY(const TargetChange change, change_target(target, taker, host_, state, stop_));
     if (!change.frames) return tl::unexpected(change.frames.error());
     if (!change.presented) return target_failure("presenting the target", change.presented.error());
     TODBENCH_TRY(const std::int64_t there_ns, host_.now_ns(Moment::scene_changed));
     taker.scene_changed(there_ns);
-    return *change.presented;
+    PresentedTarget shown = *change.presented;
+    shown.state.delta_t_k *= transmittance();
+    return shown;
   }
 
   Result<void> time_latency(CameraMeasures& measures) {
