@@ -13,7 +13,7 @@ void add_transfer(MeasureLines& out, const TransferMeasure& transfer) {
   const SignalTransfer& line = transfer.line;
   const double half = transfer.slope_half_width();
   const std::string conditions =
-      fmt::format("{} steps of {} frames, observed contrast over the contrast reported by the target",
+      fmt::format("{} steps of {} frames, observed contrast over that of the target behind air and collimator",
                   transfer.steps.size(), transfer.frames_each);
   out.lines.push_back(measure_line("transfer_slope", line.slope, {line.slope - half, line.slope + half}, conditions));
   out.lines.push_back(measure_line("transfer_offset", line.offset, {}, conditions));
