@@ -15,6 +15,7 @@
 #include "bench/plan/plan_options.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "bench/twin/direct_results.h"
 #include "bench/twin/module_chain.h"
 #include "hvs/eye/contrast_sensitivity.h"
 #include "hvs/eye/eye_optics.h"
@@ -250,9 +251,7 @@ Result<std::vector<double>> moduli_of(const ComparedModel& model, Chain& chain, 
       const double per_sample = 60 / arcmin_per_sample(*seeing.display);
       for (const double f : cycles) moduli.push_back(eye_mtf(f * per_sample, eye.pupil_mm()));
       notes.push_back(
-          fmt::format("{}: its MTF is that of the optics of the eye, without display and sensitivity; its "
-                      "acuities are stated without the spread of its open parameters",
-                      model.name));
+          fmt::format("{}: its MTF is that of the optics of the eye, without display and sensitivity", model.name));
       return moduli;
     }
     const double sigma = model.observer.spec.blur_sigma_samples;
@@ -331,6 +330,24 @@ Result<void> compare_pictures(ModelComparison& comparison, const LoadedPlan& pla
   return {};
 }
 
+/// Adds S75 over the open parameters of an observer with an eye to the curve of one side.
+void add_spread(const LoadedPlan& loaded, const ComparedModel& model, PackageResult& result,
+                std::vector<std::string>& notes, std::stop_token stop) {
+  if (!loaded.observer().eye || result.curve.points.empty()) return;
+  const bool package = model.kind == ModelKind::package && !model.package.stages.empty();
+  if (package || has_modules(loaded.plan(), loaded.sensor())) {
+    notes.push_back(model.name +
+                    ": no spread over the open parameters of the observer, because the direct estimate does not "
+                    "include a package or a module");
+    return;
+  }
+  const auto inputs = full_inputs(loaded);
+  if (!inputs) return;
+  const DirectResults direct = direct_results(result.curve, *inputs, {}, loaded.plan().seed, std::move(stop));
+  keep_direct(direct, inputs->sensor.ifov_mrad(), result.curve);
+  for (const std::string& sentence : direct.notes) notes.push_back(model.name + ": " + sentence);
+}
+
 }  // namespace
 
 std::string_view to_string(ModelKind kind) {
@@ -407,6 +424,8 @@ Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, 
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
     const bool programs = package || has_modules(loaded->plan(), loaded->sensor());
     if (result->error && !programs) return fail(model->name, *result->error);
+    add_spread(*loaded, *model, *result, comparison.notes, stop);
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
   }
   comparison.ratios = paired_ratios(comparison.result_b.trials, comparison.result_a.trials, fit_options(plan.plan()));
   withhold_undecided(comparison.ratios, comparison.result_b, comparison.result_a);

@@ -43,6 +43,22 @@ Section acuity_comparison(const ModelComparison& comparison) {
                                    : plain("not shown")});
   }
   Section section{"Acuity", {std::move(table)}};
+  List spreads;
+  for (const auto& [side, result] : {std::pair("A", &comparison.result_a), std::pair("B", &comparison.result_b)}) {
+    for (const TodPoint& point : result->curve.points) {
+      if (!point.s75_spread_mrad) continue;
+      const Interval acuity = acuity_interval({point.s75_spread_mrad->first, point.s75_spread_mrad->second});
+      spreads.items.push_back(plain(std::string(side) + " at " + stated(point.set_delta_t_k) + " K: " +
+                                    significant(*acuity.low, 3) + " to " + significant(*acuity.high, 3) + " per mrad"));
+    }
+  }
+  if (!spreads.items.empty()) {
+    section.blocks.emplace_back(Paragraph{strong("Acuity over the open parameters of the observer")});
+    section.blocks.emplace_back(
+        Paragraph{plain("These are the acuities at the ends of the ranges of all open parameters together. They are "
+                        "not confidence intervals: no probability belongs to them.")});
+    section.blocks.emplace_back(std::move(spreads));
+  }
   if (!comparison.result_a.curve.points.empty() && !comparison.result_b.curve.points.empty()) {
     Plot plot = tod_figure({"A: " + comparison.a.name, &comparison.result_a.curve},
                            {"B: " + comparison.b.name, &comparison.result_b.curve}, {});

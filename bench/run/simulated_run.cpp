@@ -42,16 +42,7 @@ void add_direct(SimulatedRun& run, const Plan& plan, const ExperimentInputs& inp
     note(open.folder, open.listener, sentence);
     run.result.notes.push_back(std::move(sentence));
   }
-  const double pitch_mrad = inputs.sensor.ifov_mrad();
-  for (auto& point : run.curve.points) {
-    const auto found = direct.points.find(point.delta_t_k);
-    if (found == direct.points.end()) continue;
-    point.direct_s75_mrad = found->second.s75_pitch * pitch_mrad;
-    point.direct_s75_se_mrad = found->second.standard_error_pitch * pitch_mrad;
-    const auto spread = direct.spread_pitch.find(point.delta_t_k);
-    if (spread == direct.spread_pitch.end()) continue;
-    point.s75_spread_mrad = {spread->second.first * pitch_mrad, spread->second.second * pitch_mrad};
-  }
+  keep_direct(direct, inputs.sensor.ifov_mrad(), run.curve);
 }
 
 /// The curve of the trials, with what the run says about each point.

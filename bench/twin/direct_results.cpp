@@ -61,6 +61,18 @@ DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inpu
   return results;
 }
 
+void keep_direct(const DirectResults& direct, double pitch_mrad, TodCurve& curve) {
+  for (auto& point : curve.points) {
+    const auto found = direct.points.find(point.delta_t_k);
+    if (found == direct.points.end()) continue;
+    point.direct_s75_mrad = found->second.s75_pitch * pitch_mrad;
+    point.direct_s75_se_mrad = found->second.standard_error_pitch * pitch_mrad;
+    const auto spread = direct.spread_pitch.find(point.delta_t_k);
+    if (spread == direct.spread_pitch.end()) continue;
+    point.s75_spread_mrad = {spread->second.first * pitch_mrad, spread->second.second * pitch_mrad};
+  }
+}
+
 Result<void> refine_thresholds(ExperimentInputs& inputs, std::uint64_t seed, std::stop_token stop) {
   constexpr double standard_error_percent = 0.4;
   TemplateObserver observer(inputs.observer, triangle_alternatives());

@@ -30,6 +30,9 @@ struct DirectResults {
                                            const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
                                            std::stop_token stop);
 
+/// Writes estimates and spreads into the points of the curve.
+void keep_direct(const DirectResults& direct, double pitch_mrad, TodCurve& curve);
+
 /// Replaces the thresholds of the planner's first tier, which are up to 6 % low where noise decides, by direct
 /// estimates with a standard error of 0.4 % or, if that needs too many draws, of the usual ones. A contrast without an
 /// estimate keeps its own. Errors: `interrupted`.

@@ -126,5 +126,22 @@ TEST(ModelComparison, IsRefusedBetweenKinds) {
   EXPECT_FALSE(read_compared_model("/no/such/file.toml"));
 }
 
+TEST(ModelComparison, StatesTheSpreadOfAnObserverWithAnEye) {
+  const auto plan = small_plan("16.9", 6,
+                               "[display]\npixel_pitch_mm = 0.27\nviewing_distance_m = 0.5\nzoom = 3\n"
+                               "luminance_white_cd_m2 = 200\n");
+  const auto blind = read_compared_model("hvs-1"), seeing = read_compared_model("hvs-2");
+  ASSERT_TRUE(blind && seeing);
+
+  const auto found = compare_models(plan, *blind, *seeing, {}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  const TodPoint &of_blind = found->result_a.curve.points.at(0), &of_seeing = found->result_b.curve.points.at(0);
+  EXPECT_FALSE(of_blind.s75_spread_mrad);
+  ASSERT_TRUE(of_seeing.s75_spread_mrad && of_seeing.direct_s75_mrad);
+  EXPECT_LT(of_seeing.s75_spread_mrad->first, *of_seeing.direct_s75_mrad);
+  EXPECT_GT(of_seeing.s75_spread_mrad->second, *of_seeing.direct_s75_mrad);
+}
+
 }  // namespace
 }  // namespace todbench
