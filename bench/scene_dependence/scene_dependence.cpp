@@ -14,7 +14,6 @@
 #include "bench/devices/devices.h"
 #include "bench/devices/processed_source.h"
 #include "bench/devices/terminal_operator.h"
-#include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/twin/module_chain.h"
 #include "tod/measurement/judged_contrast.h"
@@ -409,8 +408,6 @@ Result<SceneDependence> plan_scene_dependence(const LoadedPlan& loaded, const En
                                               const SceneDependenceOptions& options, const ExperimentHost& host,
                                               std::stop_token stop) {
   const Plan& plan = loaded.plan();
-  if (auto blind = refuse_eye(loaded.observer(), "a study of scene dependence"); !blind)
-    return tl::unexpected(blind.error());
   if (package != nullptr) {
     if (auto same = refuse_finer_pictures(*package, "the response to a bar"); !same)
       return tl::unexpected(same.error());

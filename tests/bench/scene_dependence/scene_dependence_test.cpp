@@ -56,6 +56,23 @@ TEST(SceneDependence, OfALinearCameraIsNone) {
   }
 }
 
+TEST(SceneDependence, IsThatOfTheCameraWhateverObserverThePlanNames) {
+  Plan plan = bar_plan().plan();
+  plan.observer = "hvs-2";
+  plan.display.pixel_pitch_mm = 0.27, plan.display.viewing_distance_m = 0.6;
+  plan.display.luminance_white_cd_m2 = 200;
+  const auto seeing = LoadedPlan::load(plan);
+  ASSERT_TRUE(seeing) << seeing.error().message;
+  const SceneDependenceOptions short_study{.cycles = 3, .frames = 4};
+
+  const auto found = plan_scene_dependence(*seeing, nullptr, 40, short_study, {}, {});
+  const auto blind = plan_scene_dependence(bar_plan(), nullptr, 40, short_study, {}, {});
+
+  ASSERT_TRUE(found && blind) << found.error().message;
+  ASSERT_EQ(found->sizes.size(), blind->sizes.size());
+  for (std::size_t i = 0; i < found->sizes.size(); ++i) EXPECT_EQ(found->sizes[i].ratio, blind->sizes[i].ratio);
+}
+
 TEST(SceneDependence, OfALinearFilterIsNone) {
   StagePlan stage;
   stage.kind = StagePlan::Kind::sharpen;
