@@ -36,8 +36,10 @@ class RecordedSource : public FrameSource {
     auto recorded = recording_.read(position_);
     if (!recorded) {
       dead_ = true;
+      // Not `disconnected`: that is the end of a recording, which is no failure.
+      const bool wrong = recorded.error().code == ErrorCode::invalid_input;
       return fail("reading frame " + std::to_string(position_) + " of " + recording_.info.id,
-                  with_code(ErrorCode::disconnected, recorded.error()));
+                  with_code(wrong ? ErrorCode::invalid_input : ErrorCode::integrity, recorded.error()));
     }
     return frame(std::move(*recorded));
   }

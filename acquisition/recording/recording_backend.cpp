@@ -14,6 +14,7 @@
 #include "acquisition/recording/file_content.h"
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/frame_stream.h"
+#include "acquisition/recording/plausible_values.h"
 #include "acquisition/recording/raw_recording.h"
 #include "acquisition/recording/tiff_stack.h"
 
@@ -67,6 +68,7 @@ Result<std::map<std::string, double>> parsed_query(const std::string& query) {
 struct StatedFormat {
   RawRecordingFormat raw;
   bool states_samples = false;  ///< byte order or sign
+  bool states_sign = false;
   std::optional<ValueUnit> unit{};
 };
 
@@ -91,7 +93,8 @@ Result<StatedFormat> stated_format(std::map<std::string, double> values) {
   const bool calibrated = values.contains("kelvin_per_count");
   const double kelvin_per_count = take("kelvin_per_count", 0);
   const double offset_k = take("offset_k", 0);
-  stated.states_samples = values.contains("byte_order") || values.contains("signed");
+  stated.states_sign = values.contains("signed");
+  stated.states_samples = values.contains("byte_order") || stated.states_sign;
   if (take("byte_order", 0) != 0) format.byte_order = RawByteOrder::big;
   if (take("signed", 0) != 0) format.sign = RawSign::with;
   if (values.contains("unit")) stated.unit = static_cast<ValueUnit>(static_cast<int>(take("unit", 0)));
@@ -113,6 +116,12 @@ std::string no_format(const std::filesystem::path& path, const FileContent& cont
                       content.start +
                       ", whatever its name says). If it is a raw recording, state its width and height "
                       "in pixels: ?width=640&height=480");
+}
+
+Result<Recording> checked(const std::filesystem::path& path, Result<Recording> recording, const KnownValues& known) {
+  if (!recording) return recording;
+  if (auto plausible = check_values(*recording, known); !plausible) return fail(path.string(), plausible.error());
+  return recording;
 }
 
 class RecordingBackend : public CameraBackend {
@@ -158,7 +167,11 @@ Result<Recording> open_recording(const std::filesystem::path& path, const std::s
   if (content.kind == FileKind::unknown) {
     if (format.width == 0 && format.height == 0) return fail(ErrorCode::invalid_input, no_format(path, content));
     if (stated->unit) return fail(ErrorCode::invalid_input, path.string() + ": raw values are counts; remove unit");
-    return open_raw_recording(path, format);
+    const bool with_sign = format.sign == RawSign::with;
+    const auto sign = with_sign             ? KnownValues::Sign::stated_signed
+                      : stated->states_sign ? KnownValues::Sign::stated_unsigned
+                                            : KnownValues::Sign::assumed_unsigned;
+    return checked(path, open_raw_recording(path, format), {sign, with_sign});
   }
   if (format.width != 0 || format.height != 0)
     return fail(ErrorCode::invalid_input,
@@ -166,7 +179,10 @@ Result<Recording> open_recording(const std::filesystem::path& path, const std::s
   if (stated->states_samples)
     return fail(ErrorCode::invalid_input,
                 path.string() + ": a TIFF file contains byte order and sign; do not state them");
-  return open_tiff_stack(path, {format.significant_bits, format.frame_rate_hz, format.scale, stated->unit});
+  auto stack = open_tiff_stack(path, {format.significant_bits, format.frame_rate_hz, format.scale, stated->unit});
+  const bool with_sign =
+      stack && stack->info.settings.contains("Counts") && stated->unit.value_or(ValueUnit::counts) == ValueUnit::counts;
+  return checked(path, std::move(stack), {KnownValues::Sign::in_file, with_sign, stated->unit});
 }
 
 std::unique_ptr<CameraBackend> recording_backend() {

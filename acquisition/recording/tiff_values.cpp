@@ -33,12 +33,26 @@ Result<void> widen(ValueRange& range, const cv::Mat& values) {
   return {};
 }
 
+/// Every value must be a whole count, so every picture is read.
+Result<ValueCounts> whole_counts(std::uint64_t pictures, const std::function<Result<cv::Mat>(std::uint64_t)>& read) {
+  const ValueCounts same{0, 1, ValueUnit::counts};
+  for (std::uint64_t k = 0; k < pictures; ++k) {
+    TODBENCH_TRY(const auto values, read(k));
+    if (auto counts = same.counts(values); !counts) return fail("picture " + std::to_string(k + 1), counts.error());
+  }
+  return same;
+}
+
 Result<ValueCounts> temperature_counts(const ValueRange& range, ValueUnit unit) {
   const double coldest_k = range.low + (unit == ValueUnit::celsius ? zero_celsius_k : 0);
   if (!(coldest_k > 0))
     return fail(ErrorCode::invalid_input,
-                fmt::format("the lowest value, {:.6g}, is no temperature in {}: state another unit", range.low,
-                            unit == ValueUnit::celsius ? "degrees Celsius" : "kelvin"));
+                unit == ValueUnit::celsius
+                    ? fmt::format("the lowest value, {:.6g}, is no temperature in degrees Celsius: state another unit",
+                                  range.low)
+                    : fmt::format("the lowest value, {:.6g}, is no temperature in kelvin: state unit=celsius if the "
+                                  "values are degrees Celsius",
+                                  range.low));
   const auto step = std::find_if(steps_k.begin(), steps_k.end(),
                                  [&](double candidate) { return (range.high - range.low) / candidate <= most_steps; });
   if (step == steps_k.end())
@@ -100,7 +114,7 @@ Result<ValueCounts> value_counts(int depth, std::optional<ValueUnit> unit, bool 
                 std::string("the values are ") + (whole ? "signed: state ?unit=counts, or kelvin_per_count and offset_k"
                                                         : "floating point: state ?unit=kelvin, celsius or counts"));
   if (whole) return ValueCounts{signed_offset, 1, {}};
-  if (*unit == ValueUnit::counts) return ValueCounts{0, 1, unit};
+  if (*unit == ValueUnit::counts) return whole_counts(pictures, read);
   if (calibrated)
     return fail(ErrorCode::invalid_input, "the values are temperatures: do not state kelvin_per_count beside the unit");
   ValueRange range;

@@ -32,7 +32,8 @@ struct ValueCounts {
 /// Finds the conversion for values of OpenCV's type `depth`. Unsigned values are counts. Signed ones are raised by
 /// 32768. Floating-point values in kelvin or degrees Celsius get the smallest step of the series 1, 2, 5, from 0.1 mK
 /// to 0.1 K, in which all of them fit; for that every picture is read once. Errors: `invalid_input` (signed or
-/// floating-point values without a unit, a unit that does not fit, a range above 6553 K), and those of `read`.
+/// floating-point values without a unit, a unit that does not fit, fractions stated as counts, a range above 6553 K),
+/// and those of `read`.
 [[nodiscard]] Result<ValueCounts> value_counts(int depth, std::optional<ValueUnit> unit, bool calibrated,
                                                std::uint64_t pictures,
                                                const std::function<Result<cv::Mat>(std::uint64_t)>& read);

@@ -82,7 +82,7 @@ TEST(RawRecording, AFileThatShrinksWhileItIsReadEndsTheSource) {
   const auto frame = source->next(1s);
 
   ASSERT_FALSE(frame);
-  EXPECT_EQ(frame.error().code, ErrorCode::disconnected);
+  EXPECT_EQ(frame.error().code, ErrorCode::integrity);
 }
 
 TEST(RecordingBackend, OpensARawFileWithItsGeometryAndScaleInTheId) {
