@@ -2,10 +2,12 @@
 // todbench record
 #include <fmt/format.h>
 
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "acquisition/core/camera_id.h"
@@ -13,6 +15,7 @@
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/tiff_writer.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/input_gate.h"
 #include "bench/devices/camera_settings.h"
 #include "bench/devices/devices.h"
 #include "bench/judgement/verdict.h"
@@ -72,7 +75,18 @@ struct Recorded {
   std::map<std::string, std::uint64_t> rejected;
   std::uint64_t lost = 0;
   std::optional<Error> ended_by;
+  std::optional<Error> damaged;  ///< too many frames that the file cannot mark as damaged
 };
+
+/// Damages that a file does not mark, unlike incomplete frames. A camera may repeat frames or their numbers.
+constexpr std::array unmarked_damages{Rejection::byte_swapped, Rejection::repeated, Rejection::out_of_order};
+
+std::optional<Error> unmarked_damage(const IntegrityGate& gate, const Recorded& recorded, const std::string& camera) {
+  const std::span damages(unmarked_damages);
+  const bool is_file = has_scheme(camera, camera_scheme::file);
+  const auto sound = judge_damages(gate.rejected_by_reason(), recorded.arrived, is_file ? damages : damages.first(1));
+  return sound ? std::nullopt : std::optional(sound.error());
+}
 
 /// Notes features that read back otherwise; fails if they scale counts.
 Result<void> apply_settings(FrameSource& camera, const std::vector<std::string>& settings, Console& console) {
@@ -127,6 +141,7 @@ Recorded take_frames(FrameSource& camera, Sink& sink, const RecordArguments& a, 
   camera.stop();
   for (const auto& [reason, count] : gate.rejected_by_reason())
     recorded.rejected[std::string(to_string(reason))] = count;
+  recorded.damaged = unmarked_damage(gate, recorded, a.camera);
   recorded.lost = gate.lost();
   recorded.numbering = gate.numbering();
   return recorded;
@@ -252,7 +267,11 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
                  (recorded.frames == 1 ? " frame, " : " frames, ") + std::to_string(recorded.lost) + " lost" +
                  doubtful);
   }
-  if (as_wanted(recorded, a)) return 0;
+  if (as_wanted(recorded, a)) {
+    if (!recorded.damaged) return 0;
+    console.error(recorded.damaged->message + "; all frames are in " + file.string());
+    return exit_code(recorded.damaged->code);
+  }
   if (!recorded.ended_by) recorded.ended_by = Error{ErrorCode::timeout, "no frame arrived"};
   console.error("ended early: " + recorded.ended_by->message +
                 (recorded.frames > 0 ? "; the frames so far are in " + file.string() : "; no frame was saved"));

@@ -11,8 +11,8 @@ namespace {
 /// Share of all frames; a smaller share is left out and reported.
 constexpr double most_damaged_share = 0.01;
 
-constexpr std::array damages{Rejection::incomplete, Rejection::wrong_size, Rejection::repeated, Rejection::out_of_order,
-                             Rejection::byte_swapped};
+constexpr std::array all_damages{Rejection::incomplete, Rejection::wrong_size, Rejection::repeated,
+                                 Rejection::out_of_order, Rejection::byte_swapped};
 
 std::string sentence_of(Rejection reason, const std::string& frames) {
   switch (reason) {
@@ -31,7 +31,25 @@ std::string sentence_of(Rejection reason, const std::string& frames) {
   }
 }
 
+bool many(std::uint64_t count, std::uint64_t frames) {
+  return static_cast<double>(count) > most_damaged_share * static_cast<double>(frames);
+}
+
+std::string of_all(std::uint64_t count, std::uint64_t frames) {
+  return std::to_string(count) + " of " + std::to_string(frames) + " frames";
+}
+
 }  // namespace
+
+Result<void> judge_damages(const std::map<Rejection, std::uint64_t>& rejected, std::uint64_t frames,
+                           std::span<const Rejection> damages) {
+  for (const Rejection reason : damages) {
+    const auto found = rejected.find(reason);
+    if (found != rejected.end() && many(found->second, frames))
+      return fail(ErrorCode::integrity, sentence_of(reason, of_all(found->second, frames)));
+  }
+  return {};
+}
 
 Result<std::unique_ptr<FrameSource>> started_recording(Console& console, const std::string& id) {
   auto source =
@@ -48,7 +66,7 @@ bool InputGate::takes(const Frame& frame) {
   const auto reason = gate_.judge(frame);
   cadence_.see(reason == Rejection::frozen);
   if (reason == Rejection::frozen) return true;
-  for (const Rejection damage : damages) {
+  for (const Rejection damage : all_damages) {
     if (reason != damage) continue;
     ++damaged_[damage];
     return false;
@@ -62,18 +80,10 @@ bool InputGate::takes(const Frame& frame) {
 }
 
 Result<void> InputGate::verdict() const {
-  const auto many = [&](std::uint64_t count) {
-    return static_cast<double>(count) > most_damaged_share * static_cast<double>(frames_);
-  };
-  const auto of_all = [&](std::uint64_t count) {
-    return std::to_string(count) + " of " + std::to_string(frames_) + " frames";
-  };
-  for (const auto& [reason, count] : damaged_) {
-    if (many(count)) return fail(ErrorCode::integrity, sentence_of(reason, of_all(count)));
-  }
-  if (!many(moved_frames_)) return {};
+  if (auto sound = judge_damages(damaged_, frames_, all_damages); !sound) return sound;
+  if (!many(moved_frames_, frames_)) return {};
   return fail(ErrorCode::integrity,
-              of_all(moved_frames_) +
+              of_all(moved_frames_, frames_) +
                   " are oriented or shifted differently from the frames before them; the first of them: " + how_moved_ +
                   ". Record a scene that stands still");
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "acquisition/core/frame_source.h"
@@ -17,6 +18,11 @@ namespace todbench {
 
 /// Opens and starts a recording, by file or by id, as the input of a command, and prints its warnings.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> started_recording(Console& console, const std::string& id);
+
+/// Judges the damages that a gate counted in so many frames, each alone. Error: `integrity` if more than 1 % of the
+/// frames have one of `damages`.
+[[nodiscard]] Result<void> judge_damages(const std::map<Rejection, std::uint64_t>& rejected, std::uint64_t frames,
+                                         std::span<const Rejection> damages);
 
 /// Judges every frame of a recording of a static scene in order. Repeated frames, gaps and pixels at an end of the
 /// counts are left to the command, which knows their effect on its number.

@@ -2,6 +2,9 @@
 // The noise of recordings, as a user asks for it.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -162,6 +165,55 @@ TEST(NoiseCommand, RefusesFramesThatAreByteSwappedRotatedOrRepeated) {
     expect_refused(todbench({"noise", file}), 5, sentence);
     expect_refused(todbench({"noise", file, "--components-only"}), 5, sentence);
   }
+}
+
+TEST(RecordCommand, EndsWithFiveForFramesThatAreByteSwappedOrRepeatedAndKeepsThem) {
+  const TemporaryFolder folder;
+  const auto swapped = [](std::size_t, std::string frame) {
+    for (std::size_t i = 0; i < frame.size(); i += 2) std::swap(frame[i], frame[i + 1]);
+    return frame;
+  };
+  const auto same = [](std::size_t, const std::string& frame) { return frame; };
+  std::vector<std::string> seen;
+  const auto repeated = [&](std::size_t k, const std::string& frame) {
+    seen.push_back(frame);
+    return k >= 30 ? seen[k - 4] : frame;
+  };
+  for (const auto& [frames, code, sentence] :
+       {std::tuple{changed_frames(swapped), 5, "40 of 40 frames have the two bytes of their pixels swapped"},
+        {changed_frames(repeated), 5, "repeat an earlier frame"},
+        {changed_frames(same), 0, ""}}) {
+    const std::string file = folder.write("frames.raw", frames).string() + "?width=80&height=60";
+    const Ended ended =
+        todbench({"record", "file:" + file, "--out", (folder.path() / "copy.todrec").string(), "--force", "--json"});
+
+    EXPECT_EQ(ended.code, code) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr(sentence));
+    EXPECT_EQ(one_object(ended)["frames"], 40);
+  }
+}
+
+TEST(NoiseCommand, NamesStatementsThatContradictTheFile) {
+  const TemporaryFolder folder;
+  const std::string around_zero = folder
+                                      .write("a.raw", changed_frames([](std::size_t, std::string frame) {
+                                               for (std::size_t i = 0; i < frame.size(); i += 2) {
+                                                 const int count = static_cast<unsigned char>(frame[i]) +
+                                                                   256 * static_cast<unsigned char>(frame[i + 1]);
+                                                 const auto less = static_cast<std::uint16_t>(count - 8000);
+                                                 frame[i] = static_cast<char>(less & 255);
+                                                 frame[i + 1] = static_cast<char>(less >> 8);
+                                               }
+                                               return frame;
+                                             }))
+                                      .string() +
+                                  "?width=80&height=60";
+  const std::string unsigned_frames = folder.write("b.raw", white_frames(8000, 5)).string() + "?width=80&height=60";
+
+  expect_refused(todbench({"noise", around_zero}), 2, "state signed=yes");
+  expect_refused(todbench({"noise", around_zero + "&signed=yes&kelvin_per_count=0.01"}), 2, "offset_k");
+  EXPECT_EQ(todbench({"noise", around_zero + "&signed=yes", "--contrast-over-noise", "8"}).code, 0);
+  expect_refused(todbench({"noise", unsigned_frames + "&bits=10"}), 2, "bits=10 is stated, but a count is 80");
 }
 
 TEST(NoiseCommand, TakesEachExposureOnceOfACameraThatSendsItTwice) {
