@@ -38,19 +38,12 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-/// Whether the intervals have low ends. Without a statement about halos, one is open if only the bound on their share
-/// limits it.
-bool low_known(const SlantedEdge& edge, std::size_t i, const SfrArguments& arguments) {
-  return edge.low_known[i] || arguments.halo_at_most;
-}
-
-Interval interval_of(const SlantedEdge& edge, std::size_t i, const SfrArguments& arguments) {
-  return {low_known(edge, i, arguments) ? std::optional(edge.mtf_low[i]) : std::nullopt, edge.mtf_high[i]};
-}
-
-/// Relative to a source of the size of the picture.
-Interval interval_in_picture(const SlantedEdge& edge, std::size_t i, const SfrArguments& arguments) {
-  return {low_known(edge, i, arguments) ? std::optional(edge.mtf_low_in_picture[i]) : std::nullopt, edge.mtf_high[i]};
+/// Interval with one of the lower ends of an edge. Without a statement about halos, it is open if only the bound on
+/// their share limits it.
+Interval interval_of(const SlantedEdge& edge, const std::vector<double>& low, std::size_t i,
+                     const SfrArguments& arguments) {
+  const bool known = edge.low_known[i] || arguments.halo_at_most;
+  return {known ? std::optional(low[i]) : std::nullopt, edge.mtf_high[i]};
 }
 
 /// Returns the tails that remain for the stated aperture, band and pitch.
@@ -71,8 +64,8 @@ Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
   Json intervals = Json::array();
   Json in_picture = Json::array();
   for (std::size_t i = 0; i < edge.mtf.size(); ++i) {
-    intervals.push_back(json_interval(interval_of(edge, i, arguments)));
-    in_picture.push_back(json_interval(interval_in_picture(edge, i, arguments)));
+    intervals.push_back(json_interval(interval_of(edge, edge.mtf_low, i, arguments)));
+    in_picture.push_back(json_interval(interval_of(edge, edge.mtf_low_in_picture, i, arguments)));
   }
   const std::optional<double> pitch = arguments.pitch_mrad;
   const auto per_mrad = [&](const std::optional<double>& per_pitch) {
@@ -108,8 +101,8 @@ void print_sfr(Console& console, const SlantedEdge& edge, const SfrArguments& ar
   std::vector<TableRow> rows;
   for (std::size_t i = 0; i < edge.mtf.size(); i += 5) {
     const double frequency = edge.frequency_per_pitch[i];
-    TableRow row{fixed(frequency, 2), fixed(edge.mtf[i], 4), range(interval_of(edge, i, arguments), 4),
-                 range(interval_in_picture(edge, i, arguments), 4)};
+    TableRow row{fixed(frequency, 2), fixed(edge.mtf[i], 4), range(interval_of(edge, edge.mtf_low, i, arguments), 4),
+                 range(interval_of(edge, edge.mtf_low_in_picture, i, arguments), 4)};
     if (arguments.pitch_mrad) row.insert(row.begin() + 1, fixed(frequency / *arguments.pitch_mrad, 4));
     rows.push_back(row);
   }

@@ -131,13 +131,14 @@ ReferenceValue reference_of(const std::vector<LaboratoryValue>& kept, const Item
   return {ReferenceMethod::paule_mandel, {item.paule_mandel.mean.value, u}, t, t * u};
 }
 
-/// Difference of a result from the reference value with its expanded uncertainty, k = 2. A kept result is correlated
-/// with a mean that contains it: u^2(d) = u^2 - u_ref^2 (Cox 2002, equation 5). From the mean of the other results this
-/// is u^2 / sqrt(u^2 + u_others^2), which does not cancel if one laboratory has nearly all the weight.
+/// Difference of a result from the reference value, without saying whether it is outlying, with its expanded
+/// uncertainty, k = 2. A kept result is correlated with a mean that contains it: u^2(d) = u^2 - u_ref^2 (Cox 2002,
+/// equation 5). From the mean of the other results this is u^2 / sqrt(u^2 + u_others^2), which does not cancel if one
+/// laboratory has nearly all the weight.
 DegreeOfEquivalence degree_of(const ItemComparison& item, const std::vector<bool>& kept, std::size_t which,
                               double half95) {
   const LaboratoryValue& own = item.item.results[which];
-  DegreeOfEquivalence out{.result = own, .in_reference = kept[which], .outlying = !kept[which]};
+  DegreeOfEquivalence out{.result = own, .in_reference = kept[which]};
   out.difference = own.value - item.reference.value.value;
   std::vector<bool> others = kept;
   others[which] = false;

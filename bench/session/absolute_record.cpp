@@ -29,7 +29,7 @@ Estimate largest_error(const AbsoluteMeasure& measure) {
   const AbsoluteLevel& worst = measure.worst();
   const double value = worst.seen_k - worst.expected_k;
   if (!(freedom > 0)) return measure.deviation_k(worst);
-  const double t = quantile(distribution::StudentsT(freedom), 1 - 0.025 / freedom);
+  const double t = quantile(distribution::StudentsT(freedom), 1 - 0.025 / static_cast<double>(measure.levels.size()));
   const double half = std::hypot(t * measure.u_k, normal_z95 * measure.source_u_k);
   return {value, value - half, value + half};
 }

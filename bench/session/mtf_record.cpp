@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bench/session/measure_row.h"
-#include "tod/camera_measures/mtf50.h"
+#include "tod/measures/mtf50.h"
 
 namespace todbench {
 namespace {
@@ -26,7 +26,7 @@ Interval over(const Interval& interval, double divisor) {
   return {divided(interval.low), divided(interval.high)};
 }
 
-/// Statement about halos that the interval of the MTF does not contain; empty if the picture excludes them.
+/// Statement about halos wider than the plate can tell from shading; empty if it excludes them.
 std::string unseen_halos(const EdgeMtf& edge) {
   if (edge.wide_halo_most <= least_wide_share) return {};
   return fmt::format(
@@ -48,8 +48,9 @@ void add_edge(MeasureLines& out, const MtfMeasure& mtf, const EdgeMtf& edge, con
       measure_line("mtf_" + axis + name, edge.at(f), interval,
                    fmt::format("at {:g} cycles per pitch, {:.4g} per mrad: {}", f, f / mtf.pitch_mrad, frames)));
   if (edge.mtf50_per_pitch)
-    out.lines.push_back(measure_line("mtf50_" + axis + name, *edge.mtf50_per_pitch / mtf.pitch_mrad,
-                                     over(mtf50_interval(edge), mtf.pitch_mrad), frames));
+    out.lines.push_back(
+        measure_line("mtf50_" + axis + name, *edge.mtf50_per_pitch / mtf.pitch_mrad,
+                     over(mtf50_interval(edge.frequency_per_pitch, edge.low, edge.high), mtf.pitch_mrad), frames));
   if (edge.model.empty()) return;
   const auto k = static_cast<std::size_t>(std::lround(f * static_cast<double>(edge.model.size() - 1)));
   out.lines.push_back(measure_line(

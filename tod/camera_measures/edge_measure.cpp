@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
-#include "tod/camera_measures/mtf50.h"
 #include "tod/camera_measures/plate_offset.h"
 #include "tod/camera_measures/plate_tails.h"
+#include "tod/measures/mtf50.h"
 
 namespace todbench {
 namespace {

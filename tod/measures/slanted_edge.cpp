@@ -12,6 +12,7 @@
 #include "tod/measures/edge_line.h"
 #include "tod/measures/edge_transfer.h"
 #include "tod/measures/medians.h"
+#include "tod/measures/mtf50.h"
 
 namespace todbench {
 namespace {
@@ -422,15 +423,6 @@ Result<double> line_displacement(const Found& found) {
   return std::max(0.0, variance);
 }
 
-std::optional<double> mtf50_of(const SlantedEdge& edge) {
-  for (std::size_t i = 1; i < edge.mtf.size(); ++i) {
-    if (edge.mtf[i] > 0.5) continue;
-    const double share = (edge.mtf[i - 1] - 0.5) / (edge.mtf[i - 1] - edge.mtf[i]);
-    return edge.frequency_per_pitch[i - 1] + share * (edge.frequency_per_pitch[i] - edge.frequency_per_pitch[i - 1]);
-  }
-  return std::nullopt;
-}
-
 void add_notes(SlantedEdge& edge, const Found& found) {
   if (std::abs(found.trend.sag) > noted_bend_pitch && std::abs(found.trend.sag) > sure * found.trend.sag_u)
     edge.notes.push_back(fmt::format("the edge is bent by {:.2f} pixels", std::abs(found.trend.sag)));
@@ -510,7 +502,7 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   edge.mtf_low_in_picture = edge.mtf_low;
   if (edge.wide_halo_most > least_wide_share)
     std::for_each(edge.mtf_low.begin() + 1, edge.mtf_low.end(), [&](double& low) { low *= 1 - edge.wide_halo_most; });
-  edge.mtf50_per_pitch = mtf50_of(edge);
+  edge.mtf50_per_pitch = first_half(edge.frequency_per_pitch, edge.mtf);
   add_notes(edge, *found);
   return edge;
 }

@@ -29,7 +29,7 @@ struct EvenPhases {
   cv::Point2d cell[2];  ///< sides of the lattice cell: a shift of a group by multiples of it changes nothing
 };
 
-/// Harmonics of the pixel grid below this number per pixel are absent from the mean over `count` > 0 phases of a group:
+/// Lowest harmonic of the pixel grid, in cycles per pixel, that the mean over `count` > 0 phases of a group contains:
 /// the length of the shortest dual vector.
 [[nodiscard]] double least_harmonic(int count);
 

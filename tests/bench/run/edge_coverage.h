@@ -14,7 +14,7 @@
 #include "sim_devices/sensor/sensor_model.h"
 #include "sim_devices/sensor/transfer_functions.h"
 #include "tod/camera_measures/edge_measure.h"
-#include "tod/camera_measures/mtf50.h"
+#include "tod/measures/mtf50.h"
 
 namespace todbench::testing {
 
@@ -79,7 +79,7 @@ inline Result<EdgeCoverage> edge_coverage(double aberration_pitch, int seeds, do
       };
       double below = 0.1, above = 1;  // the MTF of these sensors is 0.5 once between them
       for (int i = 0; i < 40; ++i) (expected_at(0.5 * (below + above)) > 0.5 ? below : above) = 0.5 * (below + above);
-      const Interval half = mtf50_interval(edge);
+      const Interval half = mtf50_interval(edge.frequency_per_pitch, edge.low, edge.high);
       out.half_within += half.low.value_or(0) <= below && above <= half.high.value_or(1) ? 1 : 0;
       for (std::size_t k = 0; k < EdgeCoverage::frequencies.size(); ++k) {
         const double f = EdgeCoverage::frequencies[k], expected = expected_at(f);

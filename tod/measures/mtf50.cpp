@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tod/camera_measures/mtf50.h"
+#include "tod/measures/mtf50.h"
 
 #include <cstddef>
 
@@ -22,11 +22,11 @@ std::optional<double> first_half(const std::vector<double>& frequency, const std
   return frequency[i - 1] + share * (frequency[i] - frequency[i - 1]);
 }
 
-Interval mtf50_interval(const EdgeMtf& edge) {
-  const std::size_t i = first_at_most_half(edge.low);
-  const bool known = i < edge.low.size() && edge.low[i] > 0;
-  return {known ? first_half(edge.frequency_per_pitch, edge.low) : std::nullopt,
-          first_half(edge.frequency_per_pitch, edge.high)};
+Interval mtf50_interval(const std::vector<double>& frequency, const std::vector<double>& low,
+                        const std::vector<double>& high) {
+  const std::size_t i = first_at_most_half(low);
+  const bool known = i < low.size() && low[i] > 0;
+  return {known ? first_half(frequency, low) : std::nullopt, first_half(frequency, high)};
 }
 
 }  // namespace todbench

@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "acquisition/base/interval.h"
-#include "tod/camera_measures/edge_measure.h"
 
 namespace todbench {
 
 /// Lowest frequency at which `values` are 0.5, linear between the tabulated ones; empty if all but the first are above.
 [[nodiscard]] std::optional<double> first_half(const std::vector<double>& frequency, const std::vector<double>& values);
 
-/// 95 % interval of `mtf50_per_pitch`: the lowest frequencies at which the ends of the interval of the MTF are 0.5. An
-/// end is empty if its MTF is above 0.5 everywhere or not known there.
-[[nodiscard]] Interval mtf50_interval(const EdgeMtf& edge);
+/// Interval of that frequency: the lowest frequencies at which the ends of the interval of the MTF are 0.5. An end is
+/// empty if its MTF is above 0.5 everywhere, or if it is not known there (`low` is 0).
+[[nodiscard]] Interval mtf50_interval(const std::vector<double>& frequency, const std::vector<double>& low,
+                                      const std::vector<double>& high);
 
 }  // namespace todbench
