@@ -203,10 +203,11 @@ std::vector<LaboratorySummary> summaries(const std::vector<ComparedItem>& items,
     }
   }
   std::vector<LaboratorySummary> out;
-  for (const auto& [name, laboratory] : found) {
+  for (const auto& entry : found) {
+    const LaboratoryZeta& laboratory = entry.second;
     const double zeta = laboratory.combined();
-    const bool named = std::ranges::any_of(outlying, [&](const auto& o) { return o.laboratory == name; });
-    out.push_back({name, laboratory.items, zeta, two_sided(zeta), named});
+    const bool named = std::ranges::any_of(outlying, [&](const auto& o) { return o.laboratory == entry.first; });
+    out.push_back({entry.first, laboratory.items, zeta, two_sided(zeta), named});
   }
   return out;
 }
