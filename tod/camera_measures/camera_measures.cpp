@@ -8,16 +8,12 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <span>
 
-#include "acquisition/base/distributions.h"
 #include "acquisition/base/median.h"
 #include "acquisition/base/try.h"
 #include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
-#include "tod/measures/pixel_noise.h"
-#include "tod/measures/shading.h"
 #include "tod/presentation/absolute_target.h"
 #include "tod/presentation/largest_contrast.h"
 #include "tod/presentation/target_failure.h"
@@ -28,31 +24,6 @@ namespace {
 
 constexpr int least_side_px = 8;
 constexpr double found_within_px = 6;  // of the expected place of a moving plate
-constexpr int attempts = 3;            // to take a cube without a correction in it
-
-/// Standard deviation in time of each pixel, without changes of whole frames.
-class PixelSquares {
- public:
-  void add(const cv::Mat1d& frame) {
-    cv::Mat1d change = frame.clone();
-    if (first_.empty()) first_ = frame.clone(), sum_ = cv::Mat1d::zeros(frame.size()), squares_ = sum_.clone();
-    change -= first_;
-    change -= cv::mean(change)[0];
-    sum_ += change;
-    squares_ += change.mul(change);
-    ++frames_;
-  }
-  /// Precondition: at least two frames.
-  [[nodiscard]] cv::Mat1d sd() const {
-    cv::Mat1d variance = (squares_ - sum_.mul(sum_) / frames_) / (frames_ - 1.0), root;
-    cv::sqrt(cv::max(variance, 0.0), root);
-    return root;
-  }
-
- private:
-  int frames_ = 0;
-  cv::Mat1d first_, sum_, squares_;
-};
 
 /// A target at an absolute temperature instead of a contrast.
 class TargetAtTemperature final : public Target {
@@ -537,114 +508,36 @@ class Run {
     return {};
   }
 
-  struct Cube {
-    NoiseCube frames;
-    NoiseMeasure measure;
-    PixelSquares squares;
-    std::vector<cv::Mat1f> pixel_frames{};  ///< of the window in which pixels are examined
-  };
-
   /// Window in which pixels are examined.
   [[nodiscard]] cv::Rect pixel_window(const cv::Rect& field) const {
     return options_.pixels->whole_frame ? cv::Rect(0, 0, source_.info().width, source_.info().height) : field;
   }
 
-  Result<void> keep_pixels(Cube& cube, const Frame& frame, const cv::Rect& field) const {
-    if (!options_.pixels || cube.pixel_frames.size() >= most_pixel_frames) return {};
-    const auto kelvin = window_kelvin(frame, pixel_window(field));
-    if (!kelvin) return tl::unexpected(kelvin.error());
-    cv::Mat1f single;
-    kelvin->convertTo(single, CV_32F);
-    cube.pixel_frames.push_back(std::move(single));
-    return {};
-  }
-
-  /// Frames with no correction between them; empty if one occurred.
-  Result<std::optional<Cube>> take_cube(const cv::Rect& field) {
-    Cube cube;
-    double last_s = -1;
-    for (int k = 0; k < options_.noise_frames; ++k) {
-      const auto frame = taker_.next(stop_);
-      if (!frame) return tl::unexpected(frame.error());
-      const double since_s = taker_.since_nuc_s(*frame);
-      if (k > 0 && since_s >= 0 && (last_s < 0 || since_s < last_s)) return std::nullopt;
-      last_s = since_s;
-      const auto kelvin = window_kelvin(*frame, field);
-      if (!kelvin) return tl::unexpected(kelvin.error());
-      if (auto added = cube.frames.add(*kelvin); !added) return tl::unexpected(added.error());
-      cube.squares.add(*kelvin);
-      if (auto kept = keep_pixels(cube, *frame, field); !kept) return tl::unexpected(kept.error());
-      if (k == 0) cube.measure.first_frame = frame->sequence;
-      cube.measure.last_frame = frame->sequence;
-      if (since_s >= 0) cube.measure.since_correction_s = since_s;
-    }
-    return cube;
-  }
-
   Result<void> measure_noise(CameraMeasures& measures) {
-    const auto where = field();
-    if (!where) return tl::unexpected(where.error());
+    TODBENCH_TRY(const cv::Rect where, field());
     if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
     if (auto corrected = correct(); !corrected) return tl::unexpected(corrected.error());
-    std::optional<Cube> cube;
-    for (int attempt = 0; attempt < attempts && !cube; ++attempt) {
-      auto taken = take_cube(*where);
-      if (!taken) return tl::unexpected(taken.error());
-      cube = *std::move(taken);
-    }
-    if (!cube)
-      return fail(
-          ErrorCode::integrity,
-          "the camera corrects its non-uniformity so often that no uninterrupted series of frames could be recorded");
-    if (const auto change = cube->frames.abrupt_change())
-      return fail(ErrorCode::integrity,
-                  fmt::format("the picture changed abruptly before frame {} of the series", *change + 1));
-    auto noise = summed_up(*cube);
-    if (!noise) return tl::unexpected(noise.error());
-    noise->field = *where;
-    if (options_.pixels) tell_pixels(measures, *cube, *where, *noise);
-    measures.noise = *std::move(noise);
+    NoiseOptions noise{.frames = options_.noise_frames, .field = where};
+    if (options_.pixels) noise.pixel_window = pixel_window(where);
+    TODBENCH_TRY(NoiseSeries series, measure_series_noise(taker_, source_.info().scale, noise, stop_));
+    if (options_.pixels) tell_pixels(measures, series, where);
+    measures.noise = std::move(series.noise);
     return {};
   }
 
-  /// Temperature of a count at the level of the frames; empty: the scale is not known.
-  [[nodiscard]] std::optional<double> kelvin_per_count(double at_k) const {
-    const auto& scale = source_.info().scale;
-    const auto counts = scale.counts(at_k);
-    const auto kelvin = counts ? scale.kelvin_per_count(*counts) : std::nullopt;
-    return kelvin && *kelvin > 0 ? kelvin : std::nullopt;
-  }
-
-  void tell_pixels(CameraMeasures& measures, const Cube& cube, const cv::Rect& field, const NoiseMeasure& noise) {
+  void tell_pixels(CameraMeasures& measures, const NoiseSeries& series, const cv::Rect& field) {
     const cv::Rect window = pixel_window(field);
-    PixelScene scene{.shading = {}, .responsivity = {}, .unit_per_count = kelvin_per_count(noise.mean_k)};
+    PixelScene scene{.shading = {},
+                     .responsivity = {},
+                     .unit_per_count = kelvin_per_count_at(source_.info().scale, series.noise.mean_k)};
     if (step_pictures_.size() > 2)
       scene.responsivity = responsivity_in_triangles(step_pictures_, plate(), where_, window, field);
-    auto found = measure_pixels(cube.pixel_frames, {source_.info().width, source_.info().height}, window,
+    auto found = measure_pixels(series.pixel_frames, {source_.info().width, source_.info().height}, window,
                                 std::move(scene), *options_.pixels);
     if (found)
       measures.pixels = *std::move(found);
     else
       measures.reasons.push_back("pixels: " + found.error().message);
-  }
-
-  [[nodiscard]] Result<NoiseMeasure> summed_up(const Cube& cube) const {
-    NoiseMeasure noise = cube.measure;
-    const cv::Mat1d mean = cube.frames.mean_frame();
-    const Shading shading = shading_of(mean);
-    const auto table = cube.frames.table_without(shading.surface);
-    if (!table) return tl::unexpected(table.error());
-    noise.table = *table;
-    noise.table.pixel_memory = cube.frames.pixel_memory();
-    noise.frames = table->frames, noise.rows = table->rows, noise.columns = table->columns;
-    noise.mean_k = cv::mean(mean)[0];
-    noise.shading_range_k = shading.range, noise.shading_sd_k = shading.sd;
-    noise.lag1_correlation = cube.frames.lag1_correlation();
-    noise.pixel_sd_k = cube.squares.sd();
-    noise.pattern_k = mean - noise.mean_k - shading.surface;
-    const auto per_count = kelvin_per_count(noise.mean_k);
-    if (per_count) noise.noise_counts = std::sqrt(std::max(0.0, temporal_variance(*table).variance)) / *per_count;
-    return noise;
   }
 
   FrameSource& source_;
@@ -660,103 +553,6 @@ class Run {
 };
 
 }  // namespace
-
-Estimate GeometryMeasure::ifov_mrad(EdgeAxis axis) const {
-  const Estimate& mm = axis == EdgeAxis::x ? geometry.mm_per_px_x : geometry.mm_per_px_y;
-  return {mm.value / distance_m, mm.low / distance_m, mm.high / distance_m};
-}
-
-namespace {
-
-/// Distortion with an interval for places beyond the plate. A plate within q of the corner does not show a term of
-/// fifth order: it is taken to be at most half of that of third order, either way, and weighted with 1 - q^2.
-Estimate continued(const PlateGeometry& geometry) {
-  constexpr double fifth_order = 0.5;
-  const Estimate& k = geometry.distortion_percent;
-  const double q = std::min(1.0, geometry.farthest_px / geometry.corner_px);
-  const double unseen = fifth_order * std::max(std::abs(k.low), std::abs(k.high)) * (1 - q * q);
-  return {k.value, k.value - std::hypot(k.value - k.low, unseen), k.value + std::hypot(k.high - k.value, unseen)};
-}
-
-}  // namespace
-
-Estimate GeometryMeasure::field_of_view_deg(EdgeAxis axis) const {
-  const double half_px = 0.5 * (axis == EdgeAxis::x ? picture.width : picture.height);
-  const auto angle_deg = [&](double mrad_per_px, double distortion_percent) {
-    // Place without distortion that the lens moves to the border: r (1 + k (r / R)^2) = half_px.
-    double r = half_px;
-    constexpr int rounds = 50;  // the distortion of a lens converges in ten
-    for (int i = 0; i < rounds; ++i)
-      r = half_px / (1 + 0.01 * distortion_percent * std::pow(r / geometry.corner_px, 2));
-    return 2 * std::atan(1e-3 * mrad_per_px * r) * 180 / std::numbers::pi;
-  };
-  const Estimate ifov = ifov_mrad(axis), k = continued(geometry);
-  const double value = angle_deg(ifov.value, k.value);
-  return {value, value - std::hypot(value - angle_deg(ifov.low, k.value), value - angle_deg(ifov.value, k.high)),
-          value + std::hypot(angle_deg(ifov.high, k.value) - value, angle_deg(ifov.value, k.low) - value)};
-}
-
-Estimate GeometryMeasure::aspect_ratio() const {
-  const Estimate &x = geometry.mm_per_px_x, &y = geometry.mm_per_px_y;
-  const double value = x.value / y.value;
-  return {value, value * (1 - std::hypot(1 - x.low / x.value, y.high / y.value - 1)),
-          value * (1 + std::hypot(x.high / x.value - 1, 1 - y.low / y.value))};
-}
-
-const BarsCtf* CtfMeasure::stated(EdgeAxis axis) const {
-  const BarsCtf* nearest = nullptr;
-  const auto apart = [&](const BarsCtf& group) { return std::abs(group.frequency_per_pitch - frequency_per_pitch); };
-  for (const BarsCtf& group : bars.groups) {
-    if (group.axis == axis && (nearest == nullptr || apart(group) < apart(*nearest))) nearest = &group;
-  }
-  return nearest;
-}
-
-std::optional<ComponentEstimate> CameraMeasures::temporal_variance_k2() const {
-  if (!noise) return std::nullopt;
-  return temporal_variance(noise->table);
-}
-
-std::optional<double> PlatePicture::residual_over_noise() const {
-  if (!(seen.temporal_noise_k > 0) || seen.frames < 1) return std::nullopt;
-  return residual_k / (seen.temporal_noise_k / std::sqrt(seen.frames));
-}
-
-double TransferMeasure::slope_half_width() const {
-  return quantile(distribution::StudentsT(line.degrees_of_freedom), 0.975) * line.slope_u;
-}
-
-Estimate SourceSizeMeasure::slope() const {
-  const double slope = effect.reference_k / said_delta_t_k;
-  const double half = std::abs(1.96 * effect.reference_u_k / said_delta_t_k);
-  return {slope, slope - half, slope + half};
-}
-
-std::optional<Estimate> CameraMeasures::netd_extended_k() const {
-  if (!noise || !source || !(source->slope().value > 0)) return std::nullopt;
-  if (noise->noise_counts && *noise->noise_counts < least_measurable_noise_counts) return std::nullopt;
-  const ComponentEstimate variance = *temporal_variance_k2();
-  if (!(variance.variance > 0)) return std::nullopt;
-  const Estimate slope = source->slope();
-  const double netd = std::sqrt(variance.variance) / slope.value;
-  const double half = netd * std::hypot(0.25 * (variance.high - variance.low) / variance.variance,
-                                        (slope.high - slope.low) / (2 * slope.value));
-  return Estimate{netd, netd - half, netd + half};
-}
-
-std::optional<double> CameraMeasures::netd_k() const {
-  if (!noise || !transfer || !(transfer->line.slope > 0)) return std::nullopt;
-  if (noise->noise_counts && *noise->noise_counts < least_measurable_noise_counts) return std::nullopt;
-  return std::sqrt(std::max(0.0, temporal_variance_k2()->variance)) / transfer->line.slope;
-}
-
-std::optional<double> CameraMeasures::netd_relative_half_width() const {
-  const auto netd = netd_k();
-  if (!netd || !(*netd > 0)) return std::nullopt;
-  const ComponentEstimate variance = *temporal_variance_k2();
-  const double of_noise = 0.25 * (variance.high - variance.low) / variance.variance;
-  return std::hypot(of_noise, transfer->slope_half_width() / transfer->line.slope);
-}
 
 Result<CameraMeasures> measure_camera(FrameSource& source, Target& target, const CameraMeasuresOptions& options,
                                       RunController& host, std::stop_token stop) {

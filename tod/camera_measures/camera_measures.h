@@ -15,6 +15,7 @@
 #include "tod/camera_measures/edge_measure.h"
 #include "tod/camera_measures/gain_control.h"
 #include "tod/camera_measures/mrtd_measure.h"
+#include "tod/camera_measures/noise_measure.h"
 #include "tod/camera_measures/pixel_measure.h"
 #include "tod/camera_measures/plate_geometry.h"
 #include "tod/camera_measures/response_measure.h"
@@ -58,21 +59,6 @@ struct CameraMeasuresOptions {
   /// Plates, frames to average, corrections, timeouts and integrity as in the TOD measurement. The first plate is shown
   /// in identity mounting.
   MeasurementOptions measurement;
-};
-
-/// Noise of a cube of frames of the plate at a contrast of 0, in kelvin of the camera's scale.
-struct NoiseMeasure {
-  int frames = 0, rows = 0, columns = 0;  ///< of the part of the picture that the plate covers
-  std::uint64_t first_frame = 0, last_frame = 0;
-  std::optional<double> since_correction_s{};  ///< at the last frame; empty: no correction is known
-  double mean_k = 0;                           ///< mean temperature reported by the camera
-  NoiseTable table;                            ///< without shading
-  double shading_range_k = 0, shading_sd_k = 0;
-  std::optional<double> lag1_correlation{};
-  std::optional<double> noise_counts{};  ///< temporal, in steps of the camera's counts; empty: not known
-  cv::Rect field{};                      ///< in the frame
-  cv::Mat1d pixel_sd_k{};                ///< temporal noise of each pixel without changes of whole frames
-  cv::Mat1d pattern_k{};                 ///< mean frame minus its mean and shading
 };
 
 /// One step of the signal transfer.

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Noise of a camera from an uninterrupted series of frames.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "acquisition/core/radiometric_scale.h"
+#include "tod/measurement/frame_taker.h"
+#include "tod/measures/three_d_noise.h"
+
+namespace todbench {
+
+/// Noise of a cube of frames of the plate at a contrast of 0, in kelvin of the camera's scale.
+struct NoiseMeasure {
+  int frames = 0, rows = 0, columns = 0;  ///< of the part of the picture that the plate covers
+  std::uint64_t first_frame = 0, last_frame = 0;
+  std::optional<double> since_correction_s{};  ///< at the last frame; empty: no correction is known
+  double mean_k = 0;                           ///< mean temperature reported by the camera
+  NoiseTable table;                            ///< without shading
+  double shading_range_k = 0, shading_sd_k = 0;
+  std::optional<double> lag1_correlation{};
+  std::optional<double> noise_counts{};  ///< temporal, in steps of the camera's counts; empty: not known
+  cv::Rect field{};                      ///< in the frame
+  cv::Mat1d pixel_sd_k{};                ///< temporal noise of each pixel without changes of whole frames
+  cv::Mat1d pattern_k{};                 ///< mean frame minus its mean and shading
+};
+
+struct NoiseOptions {
+  int frames = 64;                         ///< at least 5
+  cv::Rect field;                          ///< part of the frame that the plate covers
+  std::optional<cv::Rect> pixel_window{};  ///< kept of each frame to examine its pixels; empty: not kept
+};
+
+struct NoiseSeries {
+  NoiseMeasure noise;
+  std::vector<cv::Mat1f> pixel_frames{};  ///< the pixel window of at most `most_pixel_frames` frames, in kelvin
+};
+
+/// Takes frames of a scene that does not change, with no non-uniformity correction between them, and sums up their
+/// noise. Errors: `integrity` (three series were interrupted by corrections, the picture changed abruptly), those of
+/// FrameTaker::next(), window_kelvin() and NoiseCube.
+[[nodiscard]] Result<NoiseSeries> measure_series_noise(FrameTaker& taker, const RadiometricScale& scale,
+                                                       const NoiseOptions& options, const std::stop_token& stop);
+
+/// Kelvin of a count at a temperature; empty: the scale does not tell.
+[[nodiscard]] std::optional<double> kelvin_per_count_at(const RadiometricScale& scale, double at_k);
+
+}  // namespace todbench
