@@ -16,6 +16,7 @@
 #include "acquisition/aravis/gvcp_client.h"
 #include "acquisition/aravis/host_network.h"
 #include "acquisition/aravis/u3v_registers.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/serial_number.h"
 
@@ -250,27 +251,25 @@ Result<GObjectPtr<ArvDevice>> AravisBackend::open_device(const Found& found) {
   const DescriptionReading reading{
       .patience = options_.description_patience, .stop = options_.stop, .on_progress = options_.on_progress};
   const bool on_usb = options_.transport == AravisTransport::usb3_vision;
-  auto description = on_usb                   ? read_safe_description(found.usb, reading)
-                     : is_ipv4(found.address) ? read_safe_description(found.address, reading)
-                                              : Result<std::optional<std::string>>(std::nullopt);
-  if (!description) return tl::unexpected(description.error());
+  TODBENCH_TRY(auto description, on_usb                   ? read_safe_description(found.usb, reading)
+                                 : is_ipv4(found.address) ? read_safe_description(found.address, reading)
+                                                          : Result<std::optional<std::string>>(std::nullopt));
   GErrorSlot error;
   GObjectPtr<ArvDevice> device(arv_interface_open_device(interface(), found.name.c_str(), error.out()));
   if (!device) return fail(ErrorCode::not_found, error ? error.message() : "the camera is no longer connected");
   if (ARV_IS_GV_DEVICE(device.get()) && arv_gv_device_is_controller(ARV_GV_DEVICE(device.get())) == 0) {
     return fail(ErrorCode::not_found, "busy: another program controls it");
   }
-  if (const auto safe = guard_device(device.get(), *description); !safe) return tl::unexpected(safe.error());
+  if (const auto safe = guard_device(device.get(), description); !safe) return tl::unexpected(safe.error());
   return device;
 }
 
 Result<std::unique_ptr<FrameSource>> AravisBackend::open(const std::string& id) {
   const auto stated = camera_name(id, scheme());
   if (!stated) return fail(ErrorCode::invalid_input, "'" + id + "' does not begin with " + scheme() + ":");
-  const auto found = find(id, *stated);
-  if (!found) return tl::unexpected(found.error());
-  const std::string& name = found->name;
-  auto opened = open_device(*found);
+  TODBENCH_TRY(const auto found, find(id, *stated));
+  const std::string& name = found.name;
+  auto opened = open_device(found);
   if (!opened) return fail("opening " + name, opened.error());
   GObjectPtr<ArvDevice> device = std::move(*opened);
   GErrorSlot error;

@@ -12,6 +12,7 @@
 #include "acquisition/aravis/test_ramp.h"
 #include "acquisition/aravis/u3v_registers.h"
 #include "acquisition/base/host_clock.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/control_text.h"
 
 namespace todbench {
@@ -60,16 +61,13 @@ Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> 
   arv_camera_stop_acquisition(source->camera_.get(), nullptr);
   source->family_ = family_of(arv_camera_get_device(source->camera_.get()), source->info_);
   source->bytes_swapped_ = source->family_.high_byte_first;
-  auto warnings = prepare_camera(source->camera_.get(), source->family_, source->options_.pixel_format);
-  if (!warnings) return tl::unexpected(warnings.error());
+  TODBENCH_TRY(auto warnings, prepare_camera(source->camera_.get(), source->family_, source->options_.pixel_format));
   source->setup_warnings_ = source->info_.warnings;
-  source->setup_warnings_.insert(source->setup_warnings_.end(), warnings->begin(), warnings->end());
+  source->setup_warnings_.insert(source->setup_warnings_.end(), warnings.begin(), warnings.end());
   source->configure_transport();
-  const auto read = source->refresh();
-  if (!read) return tl::unexpected(read.error());
+  if (const auto read = source->refresh(); !read) return tl::unexpected(read.error());
   // A stream is opened here once so that info() contains the socket buffer before the first run.
-  const auto stream = source->create_stream();
-  if (!stream) return tl::unexpected(stream.error());
+  if (const auto stream = source->create_stream(); !stream) return tl::unexpected(stream.error());
   if (const auto checked = source->check_byte_order(); !checked) return tl::unexpected(checked.error());
   return std::unique_ptr<FrameSource>(std::move(source));
 }
@@ -128,9 +126,7 @@ void AravisSource::configure_transport() {
 
 Result<void> AravisSource::refresh() {
   ArvDevice* device = arv_camera_get_device(camera_.get());
-  auto format = read_stream_format(camera_.get());
-  if (!format) return tl::unexpected(format.error());
-  format_ = *format;
+  TODBENCH_TRY(format_, read_stream_format(camera_.get()));
   if (stated_frame_) format_.width = stated_frame_->width, format_.height = stated_frame_->height;
   if (bytes_swapped_) format_.big_endian = !format_.big_endian;
   // Eight-bit pixels are a display picture behind a gain control; the camera's scale does not apply to them.
@@ -146,9 +142,7 @@ Result<void> AravisSource::refresh() {
   info_.significant_bits = format_.significant_bits;
   info_.frame_rate_hz = read_frame_rate(camera_.get(), family_);
   info_.scale = *scale_;
-  auto settings = read_settings(device);
-  if (!settings) return tl::unexpected(settings.error());
-  info_.settings = *std::move(settings);
+  TODBENCH_TRY(info_.settings, read_settings(device));
   info_.settings["CameraFamily"] = family_.name;
   info_.settings["AravisVersion"] = to_string(running_aravis());
   if (stated_kelvin_per_count_) info_.settings[scale_feature] = control_text(*stated_kelvin_per_count_);

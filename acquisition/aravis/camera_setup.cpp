@@ -12,6 +12,7 @@
 #include "acquisition/aravis/genicam_features.h"
 #include "acquisition/aravis/object_parameters.h"
 #include "acquisition/aravis/u3v_registers.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -165,9 +166,8 @@ Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraF
   ArvDevice* device = arv_camera_get_device(camera);
   std::vector<std::string> warnings;
   for (const auto& preference : family.choices) {
-    auto warning = apply(device, preference);
-    if (!warning) return tl::unexpected(warning.error());
-    if (*warning) warnings.push_back(**warning);
+    TODBENCH_TRY(auto warning, apply(device, preference));
+    if (warning) warnings.push_back(*warning);
   }
   // Chunks contain nothing that is measured, and those of GigE Vision 1.x come without the size of the picture.
   const std::string chunks = has_feature(device, chunk_mode) ? get_feature(device, chunk_mode).value_or("") : "";
@@ -177,8 +177,7 @@ Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraF
       warnings.push_back("The camera still appends chunk data to its frames: " + off.error().message + ".");
     }
   }
-  const auto chosen = choose_pixel_format(device, wanted);
-  if (!chosen) return tl::unexpected(chosen.error());
+  if (const auto chosen = choose_pixel_format(device, wanted); !chosen) return tl::unexpected(chosen.error());
   return warnings;
 }
 

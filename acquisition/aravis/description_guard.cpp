@@ -11,6 +11,7 @@
 
 #include "acquisition/aravis/gev_registers.h"
 #include "acquisition/aravis/gvcp_client.h"
+#include "acquisition/base/try.h"
 #include "acquisition/description/description.h"
 #include "acquisition/description/description_url.h"
 #include "acquisition/description/description_zip.h"
@@ -166,13 +167,11 @@ Result<std::optional<std::string>> read_safe_description(const std::string& ipv4
   for (const std::uint32_t where : {gev::first_url, gev::second_url}) {
     const auto text = gvcp_read_text(ipv4, where, url_bytes, url_patience);
     if (!text || text->empty()) continue;
-    const auto url = parse_description_url(*text);
-    if (!url) return tl::unexpected(url.error());
-    auto xml = url->place == DescriptionUrl::Place::file ? read_description_file(url->path)
-                                                         : read_from_camera(ipv4, *url, reading);
-    if (!xml) return tl::unexpected(xml.error());
-    if (const auto safe = Guard(*xml).check(); !safe) return tl::unexpected(safe.error());
-    return std::optional(std::move(*xml));
+    TODBENCH_TRY(const auto url, parse_description_url(*text));
+    TODBENCH_TRY(auto xml, url.place == DescriptionUrl::Place::file ? read_description_file(url.path)
+                                                                    : read_from_camera(ipv4, url, reading));
+    if (const auto safe = Guard(xml).check(); !safe) return tl::unexpected(safe.error());
+    return std::optional(std::move(xml));
   }
   return std::optional<std::string>();
 }
@@ -186,10 +185,9 @@ Result<std::optional<std::string>> read_safe_description(const UsbNames& names, 
               .on_bytes = [&](std::uint64_t done, std::uint64_t bytes) { progress(done, bytes); }});
   if (!read) return unreadable(read.error());
   if (!*read) return std::optional<std::string>();
-  auto xml = (*read)->zipped ? unzipped((*read)->content) : Result<std::string>((*read)->content);
-  if (!xml) return tl::unexpected(xml.error());
-  if (const auto safe = Guard(*xml).check(); !safe) return tl::unexpected(safe.error());
-  return std::optional(std::move(*xml));
+  TODBENCH_TRY(auto xml, (*read)->zipped ? unzipped((*read)->content) : Result<std::string>((*read)->content));
+  if (const auto safe = Guard(xml).check(); !safe) return tl::unexpected(safe.error());
+  return std::optional(std::move(xml));
 }
 
 Result<void> guard_device(ArvDevice* device, const std::optional<std::string>& expected) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "acquisition/aravis/description_guard.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -148,11 +149,10 @@ bool has_feature(ArvDevice* device, const std::string& name) {
 }
 
 Result<std::string> get_feature(ArvDevice* device, const std::string& name) {
-  const auto kind = find(device, name);
-  if (!kind) return tl::unexpected(kind.error());
+  TODBENCH_TRY(const auto kind, find(device, name));
   GErrorSlot error;
   std::string text;
-  switch (*kind) {
+  switch (kind) {
     case Kind::integer:
       text = to_text<gint64>(arv_device_get_integer_feature_value(device, name.c_str(), error.out()));
       break;
@@ -177,13 +177,12 @@ Result<std::string> get_feature(ArvDevice* device, const std::string& name) {
 }
 
 Result<void> set_feature(ArvDevice* device, const std::string& name, const std::string& value) {
-  const auto kind = find(device, name);
-  if (!kind) return tl::unexpected(kind.error());
-  if (*kind != Kind::command && arv_device_get_feature_access_mode(device, name.c_str()) == ARV_GC_ACCESS_MODE_RO) {
+  TODBENCH_TRY(const auto kind, find(device, name));
+  if (kind != Kind::command && arv_device_get_feature_access_mode(device, name.c_str()) == ARV_GC_ACCESS_MODE_RO) {
     return refused(name, value, "the camera states that it is read-only");
   }
   GErrorSlot error;
-  switch (*kind) {
+  switch (kind) {
     case Kind::integer:
       return set_integer(device, name, value);
     case Kind::floating:
@@ -204,10 +203,9 @@ Result<void> set_feature(ArvDevice* device, const std::string& name, const std::
 }
 
 Result<double> get_number(ArvDevice* device, const std::string& name) {
-  const auto text = get_feature(device, name);
-  if (!text) return tl::unexpected(text.error());
-  const auto number = parsed<double>(*text);
-  if (!number) return fail(ErrorCode::invalid_input, name + " is not a number but '" + *text + "'");
+  TODBENCH_TRY(const auto text, get_feature(device, name));
+  const auto number = parsed<double>(text);
+  if (!number) return fail(ErrorCode::invalid_input, name + " is not a number but '" + text + "'");
   return *number;
 }
 

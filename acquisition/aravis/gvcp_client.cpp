@@ -13,6 +13,7 @@
 #include <cstring>
 #include <vector>
 #include "acquisition/base/descriptor.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -95,10 +96,9 @@ Result<std::uint32_t> gvcp_read_register(const std::string& ipv4, std::uint32_t 
                                          std::chrono::milliseconds patience) {
   Bytes payload;
   append(payload, address, 4);
-  const auto answer = exchange(ipv4, read_register_command, payload, patience);
-  if (!answer) return tl::unexpected(answer.error());
-  if (answer->size() < 4) return fail(ErrorCode::not_found, ipv4 + " answers with too few bytes");
-  return big_endian_32(answer->data());
+  TODBENCH_TRY(const auto answer, exchange(ipv4, read_register_command, payload, patience));
+  if (answer.size() < 4) return fail(ErrorCode::not_found, ipv4 + " answers with too few bytes");
+  return big_endian_32(answer.data());
 }
 
 Result<std::string> gvcp_read_text(const std::string& ipv4, std::uint32_t address, std::uint16_t bytes,
@@ -106,11 +106,10 @@ Result<std::string> gvcp_read_text(const std::string& ipv4, std::uint32_t addres
   Bytes payload;
   append(payload, address, 4);
   append(payload, bytes, 4);
-  const auto answer = exchange(ipv4, read_memory_command, payload, patience);
-  if (!answer) return tl::unexpected(answer.error());
-  if (answer->size() < 4) return fail(ErrorCode::not_found, ipv4 + " answers with too few bytes");
-  const auto end = std::find(answer->begin() + 4, answer->end(), std::uint8_t{0});
-  return std::string(answer->begin() + 4, end);
+  TODBENCH_TRY(const auto answer, exchange(ipv4, read_memory_command, payload, patience));
+  if (answer.size() < 4) return fail(ErrorCode::not_found, ipv4 + " answers with too few bytes");
+  const auto end = std::find(answer.begin() + 4, answer.end(), std::uint8_t{0});
+  return std::string(answer.begin() + 4, end);
 }
 
 Result<std::string> gvcp_read_memory(const std::string& ipv4, std::uint32_t address, std::uint32_t bytes,
@@ -132,12 +131,11 @@ Result<std::string> gvcp_read_memory(const std::string& ipv4, std::uint32_t addr
     Bytes payload;
     append(payload, address + at, 4);
     append(payload, wanted, 4);
-    const auto answer = exchange(ipv4, read_memory_command, payload, block_patience, repeat_block_after);
-    if (!answer) return tl::unexpected(answer.error());
-    if (answer->size() != 4 + wanted || big_endian_32(answer->data()) != address + at) {
+    TODBENCH_TRY(const auto answer, exchange(ipv4, read_memory_command, payload, block_patience, repeat_block_after));
+    if (answer.size() != 4 + wanted || big_endian_32(answer.data()) != address + at) {
       return fail(ErrorCode::not_found, ipv4 + " answers with bytes other than those requested");
     }
-    content.append(answer->begin() + 4, answer->end());
+    content.append(answer.begin() + 4, answer.end());
     if (reading.on_bytes) reading.on_bytes(std::min<std::uint64_t>(content.size(), bytes));
   }
   content.resize(bytes);

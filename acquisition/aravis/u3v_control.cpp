@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -179,23 +181,20 @@ struct ManifestEntry {
 };
 
 Result<ManifestEntry> read_manifest(Channel& camera) {
-  const auto pointers = camera.read(manifest_register, 16);
-  if (!pointers) return tl::unexpected(pointers.error());
-  const std::uint64_t manifest = number(pointers->data(), 8);
-  const auto longest = camera.read(number(pointers->data() + 8, 8) + longest_acknowledge, 4);
-  if (!longest) return tl::unexpected(longest.error());
-  const auto entry = camera.read(manifest + 8, manifest_entry_bytes);
-  if (!entry) return tl::unexpected(entry.error());
-  const auto acknowledge = number(longest->data(), 4);
+  TODBENCH_TRY(const auto pointers, camera.read(manifest_register, 16));
+  const std::uint64_t manifest = number(pointers.data(), 8);
+  TODBENCH_TRY(const auto longest, camera.read(number(pointers.data() + 8, 8) + longest_acknowledge, 4));
+  TODBENCH_TRY(const auto entry, camera.read(manifest + 8, manifest_entry_bytes));
+  const auto acknowledge = number(longest.data(), 4);
   if (acknowledge < header_bytes + manifest_entry_bytes) {
     return fail(ErrorCode::not_found, "the camera states a maximum answer length of " + std::to_string(acknowledge) +
                                           " bytes, which is too short");
   }
   ManifestEntry found;
-  found.address = number(entry->data() + 8, 8);
-  found.bytes = number(entry->data() + 16, 8);
+  found.address = number(entry.data() + 8, 8);
+  found.bytes = number(entry.data() + 16, 8);
   // The client uses five bits for the kind of file.
-  const auto kind = number(entry->data() + 4, 4) >> 10U & 0x1FU;
+  const auto kind = number(entry.data() + 4, 4) >> 10U & 0x1FU;
   if (kind > 1) return fail(ErrorCode::not_found, "the camera's description has an unknown file type");
   found.zipped = kind == 1;
   found.block = static_cast<std::uint16_t>(std::min<std::uint64_t>(acknowledge - header_bytes, most_block_bytes));
@@ -213,9 +212,8 @@ Result<std::string> read_content(Channel& camera, const ManifestEntry& entry, co
                                             std::to_string(reading.patience.count() / 1000) + " s");
     }
     const auto wanted = static_cast<std::uint16_t>(std::min<std::uint64_t>(entry.block, entry.bytes - content.size()));
-    const auto block = camera.read(entry.address + content.size(), wanted);
-    if (!block) return tl::unexpected(block.error());
-    content.append(block->begin(), block->end());
+    TODBENCH_TRY(const auto block, camera.read(entry.address + content.size(), wanted));
+    content.append(block.begin(), block.end());
     if (reading.on_bytes) reading.on_bytes(content.size(), entry.bytes);
   }
   return content;
@@ -229,15 +227,13 @@ Result<std::optional<U3vDescriptionContent>> u3v_read_description(const UsbNames
   const std::unique_ptr<libusb_context, UsbExit> context(raw);
   auto camera = open_channel(raw, names);
   if (!camera) return std::optional<U3vDescriptionContent>();
-  const auto entry = read_manifest(*camera);
-  if (!entry) return tl::unexpected(entry.error());
-  if (entry->bytes == 0 || entry->bytes > reading.most_bytes) {
-    return fail(ErrorCode::not_found, "the camera states a description of " + std::to_string(entry->bytes) +
+  TODBENCH_TRY(const auto entry, read_manifest(*camera));
+  if (entry.bytes == 0 || entry.bytes > reading.most_bytes) {
+    return fail(ErrorCode::not_found, "the camera states a description of " + std::to_string(entry.bytes) +
                                           " bytes, expected 1 ... " + std::to_string(reading.most_bytes));
   }
-  auto content = read_content(*camera, *entry, reading);
-  if (!content) return tl::unexpected(content.error());
-  return U3vDescriptionContent{std::move(*content), entry->zipped};
+  TODBENCH_TRY(auto content, read_content(*camera, entry, reading));
+  return U3vDescriptionContent{std::move(content), entry.zipped};
 }
 
 }  // namespace todbench

@@ -16,6 +16,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "acquisition/base/try.h"
+
 extern char** environ;
 
 namespace todbench {
@@ -117,9 +119,7 @@ Result<ProgramRun> run_program(std::vector<std::string> words, ProgramOutput out
   Descriptor discarded;
   ChildStreams streams;
   if (output != ProgramOutput::shown) {
-    auto made = make_pipe();
-    if (!made) return tl::unexpected(made.error());
-    pipe = std::move(*made);
+    TODBENCH_TRY(pipe, make_pipe());
     if (output == ProgramOutput::kept_but_errors) discarded = null_device();
     streams.output = pipe.write.get();
     streams.error = output == ProgramOutput::kept ? pipe.write.get() : discarded.get();
@@ -129,9 +129,7 @@ Result<ProgramRun> run_program(std::vector<std::string> words, ProgramOutput out
   if (!process) return tl::unexpected(process.error());
   ProgramRun run;
   run.output = output_of(*process, std::move(pipe.read), stop);
-  const auto code = wait_for_program(*process);
-  if (!code) return tl::unexpected(code.error());
-  run.exit_code = *code;
+  TODBENCH_TRY(run.exit_code, wait_for_program(*process));
   return run;
 }
 

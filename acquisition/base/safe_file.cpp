@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "acquisition/base/system_reason.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -87,12 +88,11 @@ Result<int> make_empty_file(const std::filesystem::path& file, mode_t mode) {
     if (device < 0) return refused(file, "cannot be opened", system_reason());
     return device;
   }
-  auto made = make_file_beside(file, mode);
-  if (!made) return tl::unexpected(made.error());
-  if (::rename(made->path.c_str(), file.c_str()) == 0) return made->descriptor;
+  TODBENCH_TRY(auto made, make_file_beside(file, mode));
+  if (::rename(made.path.c_str(), file.c_str()) == 0) return made.descriptor;
   const std::string reason = system_reason();
-  ::unlink(made->path.c_str());
-  ::close(made->descriptor);
+  ::unlink(made.path.c_str());
+  ::close(made.descriptor);
   return refused(file, "cannot be created", reason);
 }
 

@@ -5,6 +5,8 @@
 
 #include <optional>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -73,17 +75,16 @@ Result<Member> find_member(Bytes archive) {
 }  // namespace
 
 Result<std::string> unzip_description(Bytes archive, std::size_t most_bytes) {
-  const auto member = find_member(archive);
-  if (!member) return tl::unexpected(member.error());
-  if (member->unpacked == 0 || member->unpacked > most_bytes) {
-    return fail(ErrorCode::not_found, "the zipped description states " + std::to_string(member->unpacked) +
+  TODBENCH_TRY(const auto member, find_member(archive));
+  if (member.unpacked == 0 || member.unpacked > most_bytes) {
+    return fail(ErrorCode::not_found, "the zipped description states " + std::to_string(member.unpacked) +
                                           " bytes; at most " + std::to_string(most_bytes) + " are accepted");
   }
-  const Bytes packed = archive.subspan(member->data, member->packed);
-  if (member->packed > member->unpacked) return fail(ErrorCode::not_found, "the zipped description is damaged");
+  const Bytes packed = archive.subspan(member.data, member.packed);
+  if (member.packed > member.unpacked) return fail(ErrorCode::not_found, "the zipped description is damaged");
   // The client treats data that is not smaller than its file as stored.
-  if (member->packed == member->unpacked) return std::string(packed.begin(), packed.end());
-  std::string out(member->unpacked, '\0');
+  if (member.packed == member.unpacked) return std::string(packed.begin(), packed.end());
+  std::string out(member.unpacked, '\0');
   z_stream stream{};
   if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) return fail(ErrorCode::internal, "zlib cannot be used");
   stream.next_in = const_cast<Bytef*>(packed.data());

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -173,10 +175,9 @@ Result<std::size_t> picture_bytes(const PixelLayout& layout) {
 }
 
 Result<cv::Mat1w> decode_pixels(std::span<const std::uint8_t> bytes, const PixelLayout& layout) {
-  const auto needed = picture_bytes(layout);
-  if (!needed) return tl::unexpected(needed.error());
-  if (bytes.size() < *needed) {
-    return fail(ErrorCode::invalid_input, described(layout) + " needs " + std::to_string(*needed) + " bytes, found " +
+  TODBENCH_TRY(const auto needed, picture_bytes(layout));
+  if (bytes.size() < needed) {
+    return fail(ErrorCode::invalid_input, described(layout) + " needs " + std::to_string(needed) + " bytes, found " +
                                               std::to_string(bytes.size()));
   }
   cv::Mat1w counts(layout.height, layout.width);
@@ -189,8 +190,7 @@ Result<cv::Mat1w> decode_pixels(std::span<const std::uint8_t> bytes, const Pixel
 }
 
 Result<std::vector<std::uint8_t>> encode_pixels(const cv::Mat1w& counts, const PixelLayout& layout) {
-  const auto needed = picture_bytes(layout);
-  if (!needed) return tl::unexpected(needed.error());
+  TODBENCH_TRY(const auto needed, picture_bytes(layout));
   if (counts.cols != layout.width || counts.rows != layout.height) {
     return fail(ErrorCode::invalid_input, "a picture of " + std::to_string(counts.cols) + " x " +
                                               std::to_string(counts.rows) + " pixels does not match the layout " +
@@ -203,7 +203,7 @@ Result<std::vector<std::uint8_t>> encode_pixels(const cv::Mat1w& counts, const P
                   std::to_string(value) + " counts do not fit into " + std::string(to_string(layout.format)));
     }
   }
-  std::vector<std::uint8_t> bytes(*needed, 0);
+  std::vector<std::uint8_t> bytes(needed, 0);
   const cv::Mat1w whole = counts.isContinuous() ? counts : cv::Mat1w(counts.clone());
   const auto [runs, pixels, stride] = runs_of(layout);
   for (std::size_t run = 0; run < runs; ++run) {

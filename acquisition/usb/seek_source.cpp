@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "acquisition/base/host_clock.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/control_text.h"
 #include "acquisition/core/serial_number.h"
 
@@ -85,8 +86,8 @@ Result<void> SeekSource::initialise() {
 
 Result<SeekFrame> SeekSource::read_frame(std::chrono::steady_clock::time_point latest) {
   const auto deadline = std::min(latest, std::chrono::steady_clock::now() + calibration_frame_patience);
-  const auto requested = connection_.control(seek_frame_request(model_));
-  if (!requested) return tl::unexpected(requested.error());
+  if (const auto requested = connection_.control(seek_frame_request(model_)); !requested)
+    return tl::unexpected(requested.error());
   std::vector<std::uint8_t> bytes;
   const std::size_t wanted = geometry(model_).frame_bytes();
   while (bytes.size() < wanted) {
@@ -94,10 +95,9 @@ Result<SeekFrame> SeekSource::read_frame(std::chrono::steady_clock::time_point l
     if (std::chrono::steady_clock::now() > deadline) {
       return fail(ErrorCode::io, "its first frames did not arrive in time");
     }
-    const auto more = connection_.bulk_in(wanted - bytes.size(), calibration_frame_timeout);
-    if (!more) return tl::unexpected(more.error());
-    if (more->empty()) break;
-    bytes.insert(bytes.end(), more->begin(), more->end());
+    TODBENCH_TRY(const auto more, connection_.bulk_in(wanted - bytes.size(), calibration_frame_timeout));
+    if (more.empty()) break;
+    bytes.insert(bytes.end(), more.begin(), more.end());
   }
   return parse_seek_frame(bytes, model_);
 }
@@ -113,10 +113,9 @@ Result<void> SeekSource::read_calibration_frames(std::chrono::steady_clock::time
   info_.settings["DeadPixels"] = std::to_string(dead_.count());
   if (auto sound = dead_.check(); !sound) return sound;
   for (int k = 0; k < most_calibration_frames && running_; ++k) {
-    const auto frame = read_frame(deadline);
-    if (!frame) return tl::unexpected(frame.error());
-    if (!frame->is(SeekFrameKind::shutter)) continue;
-    shutter_ = frame->picture;
+    TODBENCH_TRY(const auto frame, read_frame(deadline));
+    if (!frame.is(SeekFrameKind::shutter)) continue;
+    shutter_ = frame.picture;
     shutter_time_ns_ = monotonic_ns();
     return {};
   }

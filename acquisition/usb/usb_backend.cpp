@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/serial_number.h"
 #include "acquisition/usb/seek_source.h"
@@ -27,10 +28,9 @@ struct Search {
 };
 
 Result<Search> search(libusb_context* context) {
-  auto cameras = seek_cameras(context);
-  if (!cameras) return tl::unexpected(cameras.error());
+  TODBENCH_TRY(auto cameras, seek_cameras(context));
   Search search;
-  for (auto& camera : *cameras) {
+  for (auto& camera : cameras) {
     auto connection = UsbConnection::open(camera);
     const auto serial = connection ? connection->serial_number() : tl::unexpected(connection.error());
     if (!serial) {
@@ -48,12 +48,10 @@ class UsbBackend final : public CameraBackend {
   [[nodiscard]] std::string scheme() const override { return std::string(camera_scheme::usb); }
 
   [[nodiscard]] Result<std::vector<CameraEntry>> list() override {
-    auto context = usb_context();
-    if (!context) return tl::unexpected(context.error());
-    const auto seen = search(context->get());
-    if (!seen) return tl::unexpected(seen.error());
+    TODBENCH_TRY(auto context, usb_context());
+    TODBENCH_TRY(const auto seen, search(context.get()));
     std::vector<CameraEntry> entries;
-    for (const auto& camera : seen->found) {
+    for (const auto& camera : seen.found) {
       entries.push_back({.id = camera.id,
                          .vendor = "Seek Thermal",
                          .model = std::string(to_string(camera.on_bus.model)),
@@ -62,30 +60,28 @@ class UsbBackend final : public CameraBackend {
                          .address = camera.on_bus.address,
                          .note = placeholder_serial_warning(camera.serial)});
     }
-    if (entries.empty() && !seen->unusable.empty()) return fail(ErrorCode::not_found, seen->unusable.substr(2));
+    if (entries.empty() && !seen.unusable.empty()) return fail(ErrorCode::not_found, seen.unusable.substr(2));
     return entries;
   }
 
   [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id) override {
-    auto context = usb_context();
-    if (!context) return tl::unexpected(context.error());
-    auto seen = search(context->get());
-    if (!seen) return tl::unexpected(seen.error());
+    TODBENCH_TRY(auto context, usb_context());
+    TODBENCH_TRY(auto seen, search(context.get()));
     std::string names;
     const auto namesakes =
-        std::count_if(seen->found.begin(), seen->found.end(), [&id](const Found& camera) { return camera.id == id; });
+        std::count_if(seen.found.begin(), seen.found.end(), [&id](const Found& camera) { return camera.id == id; });
     if (namesakes > 1) {
       return fail(ErrorCode::not_found, std::to_string(namesakes) + " cameras have the id " + id +
                                             ". The program cannot distinguish them: connect only one");
     }
-    for (auto& camera : seen->found) {
+    for (auto& camera : seen.found) {
       if (camera.id != id) {
         names += (names.empty() ? "" : ", ") + camera.id;
         continue;
       }
-      return SeekSource::create(*context, camera.on_bus, camera.id, std::move(camera.connection));
+      return SeekSource::create(context, camera.on_bus, camera.id, std::move(camera.connection));
     }
-    return fail(ErrorCode::not_found, "no such camera; found: " + (names.empty() ? "none" : names) + seen->unusable);
+    return fail(ErrorCode::not_found, "no such camera; found: " + (names.empty() ? "none" : names) + seen.unusable);
   }
 };
 

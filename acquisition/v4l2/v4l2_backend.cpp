@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "acquisition/v4l2/v4l2_backend.h"
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/serial_number.h"
 #include "acquisition/v4l2/v4l2_source.h"
@@ -16,10 +17,9 @@ class V4l2Backend final : public CameraBackend {
   [[nodiscard]] std::string scheme() const override { return std::string(camera_scheme::v4l2); }
 
   [[nodiscard]] Result<std::vector<CameraEntry>> list() override {
-    const auto listing = list_video_nodes();
-    if (!listing) return tl::unexpected(listing.error());
+    TODBENCH_TRY(const auto listing, list_video_nodes());
     std::vector<CameraEntry> cameras;
-    for (const auto& node : listing->nodes) {
+    for (const auto& node : listing.nodes) {
       cameras.push_back({.id = node.id,
                          .vendor = node.vendor,
                          .model = node.model,
@@ -32,15 +32,14 @@ class V4l2Backend final : public CameraBackend {
   }
 
   [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id) override {
-    const auto listing = list_video_nodes();
-    if (!listing) return tl::unexpected(listing.error());
+    TODBENCH_TRY(const auto listing, list_video_nodes());
     std::string seen;
-    for (const auto& node : listing->nodes) {
+    for (const auto& node : listing.nodes) {
       if (node.id == id || camera_id(camera_scheme::v4l2, node.node) == id) return V4l2Source::create(node, options_);
       seen += (seen.empty() ? "" : ", ") + node.id;
     }
     std::string message = "no such camera; found: " + (seen.empty() ? "none" : seen);
-    for (const auto& sentence : listing->unreadable) message += "; " + sentence;
+    for (const auto& sentence : listing.unreadable) message += "; " + sentence;
     return fail(ErrorCode::not_found, message);
   }
 

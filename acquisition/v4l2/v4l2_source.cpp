@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "acquisition/base/host_clock.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/control_text.h"
 #include "acquisition/core/serial_number.h"
 
@@ -61,14 +62,12 @@ V4l2Source::~V4l2Source() {
 
 Result<std::unique_ptr<FrameSource>> V4l2Source::create(const VideoNode& node, const V4l2Options& options) {
   // The watch begins before the node is opened, so that no removal is missed.
-  auto watch = VideoWatch::create();
-  if (!watch) return tl::unexpected(watch.error());
-  auto device = VideoDevice::open(node.node);
-  if (!device) return tl::unexpected(device.error());
+  TODBENCH_TRY(auto watch, VideoWatch::create());
+  TODBENCH_TRY(auto device, VideoDevice::open(node.node));
   Descriptor wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!wake.is_open()) return fail(ErrorCode::io, "the event descriptor cannot be created");
-  auto source = std::unique_ptr<V4l2Source>(
-      new V4l2Source(node, options, std::move(*device), std::move(*watch), std::move(wake)));
+  auto source =
+      std::unique_ptr<V4l2Source>(new V4l2Source(node, options, std::move(device), std::move(watch), std::move(wake)));
   if (const auto set = source->take_layout({.pixel_format = options.pixel_format}); !set)
     return tl::unexpected(set.error());
   source->controls_ = list_controls(source->device_);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/control_text.h"
 #include "acquisition/pixel_formats/pixel_formats.h"
 
@@ -125,13 +126,12 @@ Result<cv::Mat1w> read_rows(std::span<const std::uint8_t> bytes, const VideoLayo
   if (!format)
     return fail(ErrorCode::invalid_input, "the format " + fourcc_text(layout.mode.fourcc) + " contains no counts");
   if (format->format == PixelFormat::yuyv) format = FourccFormat{PixelFormat::mono16, ByteOrder::little_endian};
-  const auto section = section_bytes(bytes, layout.row_bytes, rows);
-  if (!section) return tl::unexpected(section.error());
-  return decode_pixels(*section, {.format = format->format,
-                                  .order = format->order,
-                                  .width = layout.mode.width,
-                                  .height = rows.count,
-                                  .row_bytes = layout.row_bytes});
+  TODBENCH_TRY(const auto section, section_bytes(bytes, layout.row_bytes, rows));
+  return decode_pixels(section, {.format = format->format,
+                                 .order = format->order,
+                                 .width = layout.mode.width,
+                                 .height = rows.count,
+                                 .row_bytes = layout.row_bytes});
 }
 
 }  // namespace
@@ -176,17 +176,16 @@ Result<VideoPicture> read_video_frame(std::span<const std::uint8_t> bytes, const
     return fail(ErrorCode::invalid_input,
                 std::to_string(bytes.size()) + " bytes instead of the " + std::to_string(rows) + " bytes of the rows");
   }
-  auto counts = read_rows(bytes, layout, {layout.picture.y, layout.picture.height + layout.foreign_rows});
-  if (!counts) return tl::unexpected(counts.error());
-  const auto telemetry = read_rows(bytes, layout, {layout.picture.y + layout.picture.height, layout.telemetry_rows});
-  if (!telemetry) return tl::unexpected(telemetry.error());
-  VideoPicture picture{.counts = without_foreign_rows(*counts, layout.foreign_rows), .telemetry = std::nullopt};
+  TODBENCH_TRY(auto counts, read_rows(bytes, layout, {layout.picture.y, layout.picture.height + layout.foreign_rows}));
+  TODBENCH_TRY(const auto telemetry,
+               read_rows(bytes, layout, {layout.picture.y + layout.picture.height, layout.telemetry_rows}));
+  VideoPicture picture{.counts = without_foreign_rows(counts, layout.foreign_rows), .telemetry = std::nullopt};
   // A frame with rows between its halves has no middle to check.
   if (layout.picture.y > 0 && layout.foreign_rows == 0) {
     const auto words = read_rows(bytes, layout, {0, layout.mode.height});
     picture.begins_in_the_middle = words && begins_in_the_middle(*words);
   }
-  if (!telemetry->empty()) picture.telemetry = parse_lepton_telemetry({telemetry->ptr<ushort>(), telemetry->total()});
+  if (!telemetry.empty()) picture.telemetry = parse_lepton_telemetry({telemetry.ptr<ushort>(), telemetry.total()});
   return picture;
 }
 

@@ -60,21 +60,18 @@ void ChainOptions::add_to(CLI::App& command, const std::string& sentence_of_obse
 }
 
 Result<SeeingChain> ChainOptions::load() const {
-  auto spec = load_sensor(sensor);
-  if (!spec) return tl::unexpected(spec.error());
-  if (microscan > 0) spec->microscan = microscan;
-  auto seeing = load_observer_at(observer, display);
-  if (!seeing) return tl::unexpected(seeing.error());
-  const auto level = Accuracy::named(accuracy);
-  if (!level) return tl::unexpected(level.error());
+  TODBENCH_TRY(auto spec, load_sensor(sensor));
+  if (microscan > 0) spec.microscan = microscan;
+  TODBENCH_TRY(auto seeing, load_observer_at(observer, display));
+  TODBENCH_TRY(const auto level, Accuracy::named(accuracy));
   const bool beer = extinction_per_km > 0 && atmosphere == "clear";
   auto air =
-      load_atmosphere(beer ? "beer-lambert" : atmosphere, {.band = {spec->wavelength_min_um, spec->wavelength_max_um},
+      load_atmosphere(beer ? "beer-lambert" : atmosphere, {.band = {spec.wavelength_min_um, spec.wavelength_max_um},
                                                            .haze = haze,
-                                                           .weight_temperature_k = spec->scene_temperature_k,
+                                                           .weight_temperature_k = spec.scene_temperature_k,
                                                            .extinction_per_km = extinction_per_km});
   if (!air) return tl::unexpected(air.error());
-  return SeeingChain{*std::move(spec), *std::move(seeing), *level, *std::move(air)};
+  return SeeingChain{std::move(spec), std::move(seeing), level, *std::move(air)};
 }
 
 }  // namespace todbench

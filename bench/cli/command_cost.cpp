@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/seeded_plan.h"
@@ -57,18 +58,15 @@ Result<CostPlan> plan_of(Console& console, const CostArguments& arguments) {
   if (arguments.plan.empty() && arguments.session.empty())
     return fail(ErrorCode::invalid_input, "cost: PLAN.toml or --session is required");
   if (arguments.session.empty()) {
-    auto plan = read_plan(arguments.plan);
-    if (!plan) return tl::unexpected(plan.error());
-    return CostPlan{*std::move(plan)};
+    TODBENCH_TRY(auto plan, read_plan(arguments.plan));
+    return CostPlan{std::move(plan)};
   }
   if (auto open = require_unsigned(arguments.session); !open) return tl::unexpected(open.error());
   // Check now, before the costs are measured, that they can be written.
   if (auto none = require_no_links(arguments.session); !none) return tl::unexpected(none.error());
-  auto session = opened(console, arguments.session, arguments.opening);
-  if (!session) return tl::unexpected(session.error());
-  auto plan = LoadedPlan::of(std::move(session->plan), std::move(session->parts));
-  if (!plan) return tl::unexpected(plan.error());
-  return CostPlan{*std::move(plan), std::move(session->accepted_changes)};
+  TODBENCH_TRY(auto session, opened(console, arguments.session, arguments.opening));
+  TODBENCH_TRY(auto plan, LoadedPlan::of(std::move(session.plan), std::move(session.parts)));
+  return CostPlan{std::move(plan), std::move(session.accepted_changes)};
 }
 
 /// Writes cost.json, then the report from the present folder, then the manifest. The files may have changed while the
@@ -76,26 +74,22 @@ Result<CostPlan> plan_of(Console& console, const CostArguments& arguments) {
 Result<void> into_session(const CostFrontier& frontier, const std::filesystem::path& folder, const Opening& opening) {
   if (auto open = require_unsigned(folder); !open) return open;
   if (auto own = opening.accept_changed ? require_no_links(folder) : require_no_foreign_file(folder); !own) return own;
-  auto session = open_session(folder, opening);
-  if (!session) return tl::unexpected(session.error());
+  TODBENCH_TRY(auto session, open_session(folder, opening));
   if (auto written = write_json_file(folder / "cost.json", cost_json(frontier)); !written) return written;
-  if (session->accepted_changes.empty()) {
+  if (session.accepted_changes.empty()) {
     if (auto listed = refresh_manifest(folder, {"cost.json"}); !listed) return listed;
-    auto digest = manifest_digest(folder);
-    if (!digest) return tl::unexpected(digest.error());
-    session->manifest_sha256 = *std::move(digest);
+    TODBENCH_TRY(session.manifest_sha256, manifest_digest(folder));
   }
-  session->cost = frontier;
-  if (auto rebuilt = rebuild_report(*session, folder, html_page(folder)); !rebuilt)
+  session.cost = frontier;
+  if (auto rebuilt = rebuild_report(session, folder, html_page(folder)); !rebuilt)
     return tl::unexpected(rebuilt.error());
   return {};
 }
 
 Result<void> write_results(const CostFrontier& frontier, const CostArguments& arguments) {
   if (!arguments.svg.empty()) {
-    const auto document = cost_document(frontier);
-    if (!document) return tl::unexpected(document.error());
-    if (auto written = write_file_atomically(arguments.svg, *document); !written) return written;
+    TODBENCH_TRY(const auto document, cost_document(frontier));
+    if (auto written = write_file_atomically(arguments.svg, document); !written) return written;
   }
   if (arguments.session.empty()) return {};
   return into_session(frontier, arguments.session, arguments.opening);
@@ -104,9 +98,8 @@ Result<void> write_results(const CostFrontier& frontier, const CostArguments& ar
 /// Precision frontier of the plan: frames and graded answers against bench time.
 Result<std::vector<PrecisionChoice>> precision_of(const LoadedPlan& loaded, std::stop_token stop) {
   EffectPlanner planner;
-  const auto inputs = experiment_inputs(loaded, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
-  return precision_frontier(loaded.plan(), *inputs, std::move(stop));
+  TODBENCH_TRY(const auto inputs, experiment_inputs(loaded, planner));
+  return precision_frontier(loaded.plan(), inputs, std::move(stop));
 }
 
 int run_cost(Console& console, const CostArguments& arguments, const Program& program) {

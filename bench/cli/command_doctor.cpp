@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/plan_decisions.h"
 #include "bench/cli/simulation_plan.h"
@@ -32,13 +33,10 @@ Result<PlanLimits> limits_of_plan(const std::string& plan, const std::stop_token
   const auto loaded = simulation_plan({.plan = plan, .seed = {}, .keys = {}}, stop);
   if (!loaded) return tl::unexpected(loaded.error());
   EffectPlanner planner;
-  const auto inputs = experiment_inputs(*loaded, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
-  auto viewing = viewing_of(loaded->plan().target.delta_t_k, *inputs, stop);
-  if (!viewing) return tl::unexpected(viewing.error());
-  auto acuity = acuity_limits(*inputs, loaded->plan().target.delta_t_k, stop);
-  if (!acuity) return tl::unexpected(acuity.error());
-  return PlanLimits{*std::move(acuity), *std::move(viewing), inputs->observer.display};
+  TODBENCH_TRY(const auto inputs, experiment_inputs(*loaded, planner));
+  TODBENCH_TRY(auto viewing, viewing_of(loaded->plan().target.delta_t_k, inputs, stop));
+  TODBENCH_TRY(auto acuity, acuity_limits(inputs, loaded->plan().target.delta_t_k, stop));
+  return PlanLimits{std::move(acuity), std::move(viewing), inputs.observer.display};
 }
 
 /// A warning if a larger picture would gain more acuity than the error of the estimate.

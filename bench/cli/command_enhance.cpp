@@ -87,10 +87,9 @@ Result<void> write_folder(const std::filesystem::path& folder, const LoadedPlan&
   if (auto written = write_file_atomically(folder / "enhancement.json", json); !written) return written;
   for (std::size_t i = 0; i < enhancement.results.size(); ++i) {
     const auto& result = enhancement.results[i];
-    auto trials = TrialsWriter::create(folder / fmt::format("trials-{}.csv", i));
-    if (!trials) return tl::unexpected(trials.error());
+    TODBENCH_TRY(auto trials, TrialsWriter::create(folder / fmt::format("trials-{}.csv", i)));
     for (const auto& trial : result.trials) {
-      if (auto written = trials->append(trial); !written) return written;
+      if (auto written = trials.append(trial); !written) return written;
     }
     std::string log;
     for (const auto& line : result.error_lines) log += one_line(line) + '\n';
@@ -99,9 +98,8 @@ Result<void> write_folder(const std::filesystem::path& folder, const LoadedPlan&
   }
   const cv::Mat1b strip = side_by_side(enhancement);
   if (strip.empty()) return {};
-  const auto png = png_of(strip);
-  if (!png) return tl::unexpected(png.error());
-  return write_file_atomically(folder / "pictures.png", *png);
+  TODBENCH_TRY(const auto png, png_of(strip));
+  return write_file_atomically(folder / "pictures.png", png);
 }
 
 void say_enhancement(Console& console, const Enhancement& enhancement) {
@@ -171,9 +169,8 @@ Result<std::filesystem::path> measured_session(Console& console, const LoadedPla
 /// Effects of the sensor behind the packages. Recorded frames have those of their camera.
 Result<DecidedEffects> simulated_effects(const LoadedPlan& loaded, bool recorded) {
   if (recorded) return DecidedEffects{"the camera", {}, "the frames are those of a camera: no effect is simulated"};
-  const auto inputs = full_inputs(loaded);
-  if (!inputs) return tl::unexpected(inputs.error());
-  return DecidedEffects{loaded.sensor().name, inputs->effects,
+  TODBENCH_TRY(const auto inputs, full_inputs(loaded));
+  return DecidedEffects{loaded.sensor().name, inputs.effects,
                         "every effect that is not neutral is simulated: the criteria of the planner hold for the "
                         "sensor alone, and a package may amplify an effect that is negligible without it"};
 }

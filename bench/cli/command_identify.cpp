@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/chain_options.h"
 #include "bench/cli/effect_decisions.h"
 #include "bench/judgement/verdict.h"
@@ -30,12 +31,10 @@ struct IdentifyArguments {
 
 Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, const Program& program) {
   IdentificationStudyTask task;
-  auto set = load_target_set(a.set);
-  if (!set) return tl::unexpected(set.error());
-  auto chain = a.chain.load();
-  if (!chain) return tl::unexpected(chain.error());
-  task.set = *std::move(set);
-  task.sensor = std::move(chain->sensor);
+  TODBENCH_TRY(auto set, load_target_set(a.set));
+  TODBENCH_TRY(auto chain, a.chain.load());
+  task.set = std::move(set);
+  task.sensor = std::move(chain.sensor);
   if (a.cn2) task.sensor.turbulence_cn2_m_minus_2_3 = 0;  // the turbulence of the paths replaces it
   if (a.cn2 > 0.0) {
     SensorSpec behind = task.sensor;
@@ -43,9 +42,9 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
     behind.turbulence_path_m = a.ranges_m.back();
     if (auto valid = validate(behind); !valid) return fail("--cn2", valid.error());
   }
-  task.observer = std::move(chain->observer);
-  task.air = std::move(chain->air);
-  task.accuracy = chain->accuracy;
+  task.observer = std::move(chain.observer);
+  task.air = std::move(chain.air);
+  task.accuracy = chain.accuracy;
   task.ranges_m = a.ranges_m;
   task.decisions = a.decisions;
   task.knowledge = a.templates == "ideal" ? TemplateKnowledge::ideal : TemplateKnowledge::behind_camera;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/exit_codes.h"
 #include "bench/cli/run_display.h"
@@ -82,17 +83,15 @@ Result<StageMovement> movement_of(Console& console, Program& program, const Inst
                                   const InstrumentTable& table) {
   if (table.kind != InstrumentKind::stage)
     return fail(ErrorCode::invalid_input, "--camera needs a stage, but " + a.file + " describes a black body");
-  const auto read = read_camera_plan(a.plan);
-  if (!read) return tl::unexpected(read.error());
-  Plan plan = read->plan();
+  TODBENCH_TRY(const auto read, read_camera_plan(a.plan));
+  Plan plan = read.plan();
   if (plan.target.kind != TargetKind::scpi)
     return fail(ErrorCode::invalid_input, "--camera needs a plan with [target] kind = \"scpi\"");
   plan.target.stage = a.address;
   plan.target.stage_table = a.file;
-  const auto loaded = LoadedPlan::load(plan);
-  if (!loaded) return tl::unexpected(loaded.error());
+  TODBENCH_TRY(const auto loaded, LoadedPlan::load(plan));
   return check_stage_movement(
-      *loaded, [&](std::string_view sentence) { console.phase(std::string(sentence)); }, program.stop->token());
+      loaded, [&](std::string_view sentence) { console.phase(std::string(sentence)); }, program.stop->token());
 }
 
 int check_one(Console& console, Program& program, const InstrumentArguments& a) {

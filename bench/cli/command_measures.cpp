@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "acquisition/base/try.h"
 #include "acquisition/recording/picture_file.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/verdict.h"
@@ -196,31 +197,28 @@ struct Steps {
 };
 
 Result<Steps> read_steps(const std::string& file) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  const auto table = parse_csv(*text, file);
-  if (!table) return tl::unexpected(table.error());
-  const auto columns = step_columns(*table);
-  if (!columns) return tl::unexpected(columns.error());
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  TODBENCH_TRY(const auto table, parse_csv(text, file));
+  TODBENCH_TRY(const auto columns, step_columns(table));
   Steps steps;
-  steps.unit = columns->unit;
-  steps.unused = columns->unused;
-  for (const CsvRow& row : table->rows) {
+  steps.unit = columns.unit;
+  steps.unused = columns.unused;
+  for (const CsvRow& row : table.rows) {
     TemperatureStep step;
     const auto number = [&](std::size_t column) -> Result<double> {
       const auto value = parse_number(row.fields[column]);
       if (value) return *value;
-      return table->wrong(row.line, "column " + one_line(table->header[column]) + ": expected a number, found '" +
-                                        one_line(row.fields[column]) + "'");
+      return table.wrong(row.line, "column " + one_line(table.header[column]) + ": expected a number, found '" +
+                                       one_line(row.fields[column]) + "'");
     };
-    const auto temperature = number(columns->delta_t_k), signal = number(columns->signal);
+    const auto temperature = number(columns.delta_t_k), signal = number(columns.signal);
     if (!temperature) return tl::unexpected(temperature.error());
     if (!signal) return tl::unexpected(signal.error());
     step.delta_t_k = *temperature, step.signal = *signal;
-    if (columns->signal_u && !row.fields[*columns->signal_u].empty()) {
-      const auto uncertainty = number(*columns->signal_u);
+    if (columns.signal_u && !row.fields[*columns.signal_u].empty()) {
+      const auto uncertainty = number(*columns.signal_u);
       if (!uncertainty) return tl::unexpected(uncertainty.error());
-      if (!(*uncertainty > 0)) return table->wrong(row.line, "the uncertainty of the signal must be above 0");
+      if (!(*uncertainty > 0)) return table.wrong(row.line, "the uncertainty of the signal must be above 0");
       step.signal_u = *uncertainty;
     }
     steps.steps.push_back(step);

@@ -7,6 +7,7 @@
 #include <array>
 #include <memory>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/chain_options.h"
 #include "bench/cli/effect_decisions.h"
 #include "bench/judgement/verdict.h"
@@ -30,16 +31,15 @@ struct MrtdArguments {
 
 Result<MrtdStudyTask> mrtd_task(const MrtdArguments& a, const Program& program) {
   MrtdStudyTask task;
-  auto chain = a.chain.load();
-  if (!chain) return tl::unexpected(chain.error());
-  if (a.range_m == 0 && chain->air.name != "clear")
+  TODBENCH_TRY(auto chain, a.chain.load());
+  if (a.range_m == 0 && chain.air.name != "clear")
     return fail(ErrorCode::invalid_input, "--atmosphere needs the length of the path: add --range-m");
   task.range_m = a.range_m;
-  task.air = std::move(chain->air);
-  task.trial.sensor = std::move(chain->sensor);
+  task.air = std::move(chain.air);
+  task.trial.sensor = std::move(chain.sensor);
   task.trial.plan = full_plan(task.trial.sensor, {}, {});
-  task.trial.observer = std::move(chain->observer);
-  task.trial.accuracy = chain->accuracy;
+  task.trial.observer = std::move(chain.observer);
+  task.trial.accuracy = chain.accuracy;
   for (const BarCriterion known : {BarCriterion::four_or_five, BarCriterion::bars_resolved, BarCriterion::detection}) {
     if (a.criterion == to_string(known)) task.trial.criterion = known;
   }

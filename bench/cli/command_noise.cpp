@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/correction_watch.h"
 #include "acquisition/core/integrity_gate.h"
 #include "bench/cli/commands.h"
@@ -50,10 +51,9 @@ struct Frames {
 Result<cv::Mat1f> picture_of(const Frame& frame, bool in_kelvin) {
   cv::Mat1f picture;
   if (in_kelvin) {
-    auto kelvin = to_kelvin(frame);
-    if (!kelvin) return tl::unexpected(kelvin.error());
+    TODBENCH_TRY(auto kelvin, to_kelvin(frame));
     // Single precision resolves a tenth of a millikelvin in degrees Celsius.
-    cv::Mat1d(*kelvin - 273.15).convertTo(picture, CV_32F);
+    cv::Mat1d(kelvin - 273.15).convertTo(picture, CV_32F);
   } else {
     frame.counts.convertTo(picture, CV_32F);
   }
@@ -117,15 +117,14 @@ cv::Mat1b saturated_pixels(const Frame& frame) {
 
 /// Reads all complete frames that are separate exposures.
 Result<Frames> frames_of(const std::string& id, Console& console) {
-  const auto source = started_recording(console, id);
-  if (!source) return tl::unexpected(source.error());
+  TODBENCH_TRY(const auto source, started_recording(console, id));
   InputGate gate;
   Frames frames;
-  frames.kelvin = (*source)->info().scale.calibrated();
+  frames.kelvin = source->info().scale.calibrated();
   Segments segments;
   std::vector<std::size_t> jumps;
   for (;;) {
-    auto frame = (*source)->next(std::chrono::seconds(1));
+    auto frame = source->next(std::chrono::seconds(1));
     if (!frame && frame.error().code == ErrorCode::disconnected) {
       if (auto sound = gate.verdict(); !sound) return fail(id, sound.error());
       for (const auto& sentence : {gate.note(), gate.cadence()}) {
@@ -141,7 +140,7 @@ Result<Frames> frames_of(const std::string& id, Console& console) {
     auto picture = picture_of(*frame, frames.kelvin);
     if (!picture) return fail(id, picture.error());
     if (frames.pictures.empty() && frames.kelvin)
-      frames.unit_per_count = kelvin_per_count(*frame, (*source)->info().scale);
+      frames.unit_per_count = kelvin_per_count(*frame, source->info().scale);
     if (frames.saturated.empty()) frames.saturated = cv::Mat1d::zeros(frame->counts.size());
     // Frames of different sizes are rejected below.
     if (frames.saturated.size() == frame->counts.size())

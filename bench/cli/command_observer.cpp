@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/command_naked_eye.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/session_argument.h"
@@ -78,18 +79,13 @@ Result<std::string> name_for(const ObserverFitArguments& arguments) {
 
 Result<PeopleFitOptions> options_of(const ObserverFitArguments& arguments, const Program& program) {
   PeopleFitOptions options;
-  const auto name = name_for(arguments);
-  if (!name) return tl::unexpected(name.error());
-  const auto from = find_resource(ResourceKind::observer, arguments.from);
-  if (!from) return tl::unexpected(from.error());
-  const auto spec = parse_observer(*from);
-  if (!spec) return tl::unexpected(spec.error());
-  options.from = *spec;
-  const auto free = free_keys(arguments.free, options.kind());
-  if (!free) return tl::unexpected(free.error());
-  options.from_sha256 = sha256_of(from->text);
-  options.name = *name;
-  options.free = *free;
+  TODBENCH_TRY(const auto name, name_for(arguments));
+  TODBENCH_TRY(const auto from, find_resource(ResourceKind::observer, arguments.from));
+  TODBENCH_TRY(options.from, parse_observer(from));
+  TODBENCH_TRY(const auto free, free_keys(arguments.free, options.kind()));
+  options.from_sha256 = sha256_of(from.text);
+  options.name = name;
+  options.free = free;
   options.persons = arguments.one_person ? PersonsAre::one : PersonsAre::codes;
   options.replicates = arguments.replicates;
   options.draws = arguments.draws + arguments.draws % 2;
@@ -131,30 +127,26 @@ void print_fit(const Console& console, const PeopleFit& fit) {
 }
 
 Result<Json> fitted(Console& console, const ObserverFitArguments& arguments, const Program& program, PeopleFit& out) {
-  auto options = options_of(arguments, program);
-  if (!options) return tl::unexpected(options.error());
+  TODBENCH_TRY(auto options, options_of(arguments, program));
   std::vector<AnsweredSession> sessions;
   std::vector<std::string> accepted;
   for (const std::string& folder : arguments.sessions) {
     if (is_naked_eye_session(folder)) {
       if (arguments.person)
         return fail(ErrorCode::invalid_input, folder + ": a naked-eye session states no person; leave out --person");
-      auto answered = answered_naked_eye(folder);
-      if (!answered) return tl::unexpected(answered.error());
-      sessions.push_back(*std::move(answered));
+      TODBENCH_TRY(auto answered, answered_naked_eye(folder));
+      sessions.push_back(std::move(answered));
       continue;
     }
-    const auto session = opened(console, folder, arguments.opening);
-    if (!session) return tl::unexpected(session.error());
-    for (const std::string& file : session->accepted_changes)
+    TODBENCH_TRY(const auto session, opened(console, folder, arguments.opening));
+    for (const std::string& file : session.accepted_changes)
       accepted.push_back((std::filesystem::path(folder) / file).generic_string());
-    auto answered = answered_sessions(folder, *session, arguments.person);
-    if (!answered) return tl::unexpected(answered.error());
-    std::ranges::move(*answered, std::back_inserter(sessions));
+    TODBENCH_TRY(auto answered, answered_sessions(folder, session, arguments.person));
+    std::ranges::move(answered, std::back_inserter(sessions));
   }
   console.phase("fitting the observer");
-  options->on_progress = [&console](std::size_t done, std::size_t planned) { console.progress(done, planned); };
-  auto fit = fit_people(std::move(sessions), *options, program.stop->token());
+  options.on_progress = [&console](std::size_t done, std::size_t planned) { console.progress(done, planned); };
+  auto fit = fit_people(std::move(sessions), options, program.stop->token());
   console.end_progress();
   if (!fit) return tl::unexpected(fit.error());
   out = *std::move(fit);
@@ -200,14 +192,12 @@ struct SensitivityArguments {
 
 /// Sensitivity of an eye to gratings that fill a square field.
 Result<std::vector<double>> sensitivities(const SensitivityArguments& arguments) {
-  const auto resource = find_resource(ResourceKind::observer, arguments.observer);
-  if (!resource) return tl::unexpected(resource.error());
-  const auto spec = parse_observer(*resource);
-  if (!spec) return tl::unexpected(spec.error());
-  if (!spec->eye)
+  TODBENCH_TRY(const auto resource, find_resource(ResourceKind::observer, arguments.observer));
+  TODBENCH_TRY(const auto spec, parse_observer(resource));
+  if (!spec.eye)
     return fail_at(ErrorCode::invalid_input, arguments.observer,
                    "the observer has no eye, so it has no contrast sensitivity in absolute units");
-  EyeParameters eye = *spec->eye;
+  EyeParameters eye = *spec.eye;
   if (arguments.age_years) eye.age_years = *arguments.age_years;
   if (arguments.field_deg) eye.field_deg2 = *arguments.field_deg * *arguments.field_deg;
   if (auto possible = validate(eye); !possible) return tl::unexpected(possible.error());

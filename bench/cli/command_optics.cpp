@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/picture_files/encoded_picture.h"
 #include "bench/plan/descriptions.h"
@@ -80,9 +81,8 @@ Result<void> write_tiff(const std::string& file, const cv::Mat1f& kelvin) {
   const auto folder = std::filesystem::path(file).parent_path();
   if (std::error_code problem; !folder.empty() && !std::filesystem::is_directory(folder, problem))
     return fail(ErrorCode::invalid_input, "--tiff " + file + ": " + folder.string() + " is not a folder");
-  const auto encoded = tiff_of(kelvin);
-  if (!encoded) return tl::unexpected(encoded.error());
-  return write_file_atomically(file, *encoded);
+  TODBENCH_TRY(const auto encoded, tiff_of(kelvin));
+  return write_file_atomically(file, encoded);
 }
 
 int run_render(Console& console, const RenderArguments& a, std::uint64_t seed) {

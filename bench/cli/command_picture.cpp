@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/chain_options.h"
 #include "bench/cli/effect_decisions.h"
 #include "bench/cli/scene_files.h"
@@ -33,20 +34,18 @@ struct PictureArguments {
 
 Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t seed) {
   ScenePicturesTask task;
-  auto scene = scene_with_pictures(a.scene);
-  if (!scene) return tl::unexpected(scene.error());
-  auto chain = a.chain.load();
-  if (!chain) return tl::unexpected(chain.error());
-  task.scene = *std::move(scene);
-  task.sensor = std::move(chain->sensor);
+  TODBENCH_TRY(auto scene, scene_with_pictures(a.scene));
+  TODBENCH_TRY(auto chain, a.chain.load());
+  task.scene = std::move(scene);
+  task.sensor = std::move(chain.sensor);
   if (a.cn2) {
     task.sensor.turbulence_cn2_m_minus_2_3 = *a.cn2;
     task.sensor.turbulence_path_m = a.range_m;
     if (auto valid = validate(task.sensor); !valid) return fail("--cn2", valid.error());
   }
-  task.observer = std::move(chain->observer);
-  task.air = std::move(chain->air);
-  task.accuracy = chain->accuracy;
+  task.observer = std::move(chain.observer);
+  task.air = std::move(chain.air);
+  task.accuracy = chain.accuracy;
   task.view = {.range_m = a.range_m, .rotation_deg = a.rotation_deg, .centre_pitch = {a.x_pitch, a.y_pitch}};
   if (!a.motion_mrad_s.empty()) task.motion = {.x_mrad_s = a.motion_mrad_s[0], .y_mrad_s = a.motion_mrad_s[1]};
   task.effects.tolerance_percent = a.tolerance_percent;
@@ -179,9 +178,8 @@ Result<void> write_pictures(const std::filesystem::path& folder, const ScenePict
                             const ScenePictures& pictures) {
   std::vector<PagePicture> page;
   for (const auto& stage : pictures.stages) {
-    const auto png = write_one(folder, stage.name, stage.kelvin, pictures, 512);
-    if (!png) return tl::unexpected(png.error());
-    page.push_back({stage.title, stage.note, *png});
+    TODBENCH_TRY(const auto png, write_one(folder, stage.name, stage.kelvin, pictures, 512));
+    page.push_back({stage.title, stage.note, png});
   }
   if (auto frame = write_one(folder, "frame", pictures.frame, pictures, 1); !frame)
     return tl::unexpected(frame.error());

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "acquisition/base/normal.h"
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/range_options.h"
@@ -107,10 +108,9 @@ Result<RangePrediction> predicted(const ThresholdSelection& selection, const Ran
 }
 
 Result<TodAnswer> tod_answer(const Session& session, const ThresholdSelection& selection, const RangeTask& task) {
-  auto prediction = predicted(selection, task);
-  if (!prediction) return tl::unexpected(prediction.error());
-  prediction->notes.insert(prediction->notes.begin(), selection.notes.begin(), selection.notes.end());
-  TodAnswer answer{*std::move(prediction), session.curve->observer, session.curve->sensor, {}};
+  TODBENCH_TRY(auto prediction, predicted(selection, task));
+  prediction.notes.insert(prediction.notes.begin(), selection.notes.begin(), selection.notes.end());
+  TodAnswer answer{std::move(prediction), session.curve->observer, session.curve->sensor, {}};
   if (session.twin) {
     const auto twin = predicted(thresholds_of(*session.twin, task.delta_t_k), task);
     if (twin) answer.twin_r75_m = twin->r75_m;
@@ -135,9 +135,7 @@ Result<Atmosphere> into_task(RangeTask& task, const RangeOptions& options, const
   auto air = options.air(sensor, task.extinction_per_km);
   if (!air) return air;
   if (options.has_table()) task.air = air->air;
-  const auto contrast = options.equivalent_contrast_k(task.delta_t_k, sensor, *air);
-  if (!contrast) return tl::unexpected(contrast.error());
-  task.delta_t_k = *contrast;
+  TODBENCH_TRY(task.delta_t_k, options.equivalent_contrast_k(task.delta_t_k, sensor, *air));
   return air;
 }
 
@@ -162,10 +160,9 @@ struct TurbulentAnswers {
 Result<TurbulentAnswers> through_turbulence(const RangeOptions& options, const RangeTask& task,
                                             const RangeQuestion& question, const RangeSources& sources,
                                             const std::optional<Session>& session, TodAnswer& tod) {
-  const auto still = range_models(options.models, sources, question);
-  if (!still) return tl::unexpected(still.error());
+  TODBENCH_TRY(const auto still, range_models(options.models, sources, question));
   double longest_m = tod.prediction.r75_ci95_m.high.value_or(tod.prediction.r75_m.value_or(0));
-  for (const auto& model : *still) {
+  for (const auto& model : still) {
     for (const auto& range_m : {model.r75_m, model.r50_m, model.r75_ci95_m.high})
       longest_m = std::max(longest_m, range_m.value_or(0));
   }
@@ -174,25 +171,21 @@ Result<TurbulentAnswers> through_turbulence(const RangeOptions& options, const R
   out.decision =
       decide_turbulence(*sources.sensor, options.cn2, question, tod.prediction.r75_m, options.tolerance_percent);
   const bool simulated = out.decision.simulated && !sources.thresholds.empty() && session;
-  const auto behind = TurbulentSources::of(sources, simulated ? std::optional(session->parts.observer) : std::nullopt,
-                                           options.cn2, std::max(2.2 * longest_m, 1.0));
-  if (!behind) return tl::unexpected(behind.error());
+  TODBENCH_TRY(const auto behind,
+               TurbulentSources::of(sources, simulated ? std::optional(session->parts.observer) : std::nullopt,
+                                    options.cn2, std::max(2.2 * longest_m, 1.0)));
   if (simulated) {
     auto notes = std::move(tod.prediction.notes);
-    auto prediction = turbulent_prediction(*behind, sources.thresholds, task);
-    if (!prediction) return tl::unexpected(prediction.error());
-    tod.prediction = *std::move(prediction);
+    TODBENCH_TRY(tod.prediction, turbulent_prediction(behind, sources.thresholds, task));
     tod.prediction.notes = std::move(notes);
     if (tod.twin_r75_m) {
-      const auto twin = turbulent_prediction(*behind, thresholds_of(*session->twin, task.delta_t_k).thresholds, task);
+      const auto twin = turbulent_prediction(behind, thresholds_of(*session->twin, task.delta_t_k).thresholds, task);
       tod.twin_r75_m = twin ? twin->r75_m : std::nullopt;
     }
   }
-  auto models = turbulent_range_models(options.models, *behind, question);
-  if (!models) return tl::unexpected(models.error());
-  out.models = *std::move(models);
+  TODBENCH_TRY(out.models, turbulent_range_models(options.models, behind, question));
   for (const auto& model : out.models) {
-    if (!out.at_r75 && model.r75_m) out.at_r75 = turbulent_path(behind->sensor_at(*model.r75_m));
+    if (!out.at_r75 && model.r75_m) out.at_r75 = turbulent_path(behind.sensor_at(*model.r75_m));
   }
   return out;
 }

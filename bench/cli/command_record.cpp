@@ -10,6 +10,7 @@
 #include <span>
 #include <string_view>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/recording/frame_stream.h"
@@ -42,14 +43,10 @@ class Sink {
   static Result<Sink> create(const std::filesystem::path& file, const std::string& format, const SourceInfo& info) {
     Sink sink;
     if (format == "tiff") {
-      auto tiff = TiffWriter::create(file);
-      if (!tiff) return tl::unexpected(tiff.error());
-      sink.tiff_ = *std::move(tiff);
+      TODBENCH_TRY(sink.tiff_, TiffWriter::create(file));
       return sink;
     }
-    auto stream = FrameStreamWriter::create(file, header_now(info));
-    if (!stream) return tl::unexpected(stream.error());
-    sink.stream_ = *std::move(stream);
+    TODBENCH_TRY(sink.stream_, FrameStreamWriter::create(file, header_now(info)));
     return sink;
   }
   /// A TIFF contains complete frames only: it cannot mark incomplete ones.
@@ -99,9 +96,8 @@ Result<void> apply_settings(FrameSource& camera, const std::vector<std::string>&
       return fail("setting " + setting, set.error());
     written[setting.substr(0, equals)] = setting.substr(equals + 1);
   }
-  const auto warnings = check_written_settings(camera, written);
-  if (!warnings) return tl::unexpected(warnings.error());
-  for (const std::string& warning : *warnings) console.note(warning);
+  TODBENCH_TRY(const auto warnings, check_written_settings(camera, written));
+  for (const std::string& warning : warnings) console.note(warning);
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/scene_files.h"
 #include "bench/judgement/verdict.h"
@@ -70,11 +71,10 @@ Result<std::vector<PagePicture>> write_craft(const std::filesystem::path& folder
                                              const std::vector<CraftPicture>& craft) {
   std::vector<PagePicture> entries;
   for (const auto& picture : craft) {
-    const auto png = png_of(grey_picture(picture.kelvin, picture.grey_low_k, picture.grey_high_k, 480));
-    if (!png) return tl::unexpected(png.error());
-    if (auto done = write_file_atomically(folder / (picture.name + ".png"), *png); !done)
+    TODBENCH_TRY(const auto png, png_of(grey_picture(picture.kelvin, picture.grey_low_k, picture.grey_high_k, 480)));
+    if (auto done = write_file_atomically(folder / (picture.name + ".png"), png); !done)
       return tl::unexpected(done.error());
-    entries.push_back({picture.title, picture.caption, *png});
+    entries.push_back({picture.title, picture.caption, png});
   }
   return entries;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "acquisition/base/process.h"
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/sweep_engines.h"
 #include "bench/judgement/verdict.h"
@@ -165,9 +166,8 @@ int code_of(const Counts& counts, std::stop_token stop) {
 Result<std::optional<IndexRange>> named_range(Console& console, const SweepArguments& a) {
   const std::size_t chunk = std::max<std::size_t>(a.chunk, 1);
   if (!a.range.empty()) {
-    auto range = range_from(a.range);
-    if (!range) return tl::unexpected(range.error());
-    return std::optional(*range);
+    TODBENCH_TRY(auto range, range_from(a.range));
+    return std::optional(range);
   }
   if (a.index) return std::optional(chunk_of(*a.index, chunk));
   if (a.jobs) return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 
 namespace todbench {
@@ -89,9 +90,8 @@ Result<KeyValue> given_value(const KeyOverrides& overrides, std::string_view pat
 
 Result<void> apply(const KeyOverrides& overrides, Plan& plan) {
   for (const auto& [path, words] : overrides.given) {
-    const auto value = given_value(overrides, path);
-    if (!value) return tl::unexpected(value.error());
-    plan_key(path).key->place.set(plan, 0, *value);
+    TODBENCH_TRY(const auto value, given_value(overrides, path));
+    plan_key(path).key->place.set(plan, 0, value);
   }
   plan = with_absolute_references(std::move(plan), "");
   return {};

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/input_gate.h"
 #include "bench/judgement/verdict.h"
@@ -51,16 +52,15 @@ tl::unexpected<Error> corrected(int frame) {
 }
 
 Result<WholeRecording> whole_recording(Console& console, const std::string& id, AcrossCorrections across) {
-  const auto source = started_recording(console, id);
-  if (!source) return tl::unexpected(source.error());
+  TODBENCH_TRY(const auto source, started_recording(console, id));
   InputGate gate;
   WholeRecording whole;
-  whole.kelvin = (*source)->info().scale.calibrated();
+  whole.kelvin = source->info().scale.calibrated();
   NoiseCube cube;
   StatedCorrection stated;
   cv::Mat1w last;
   for (;;) {
-    auto frame = (*source)->next(std::chrono::seconds(1));
+    auto frame = source->next(std::chrono::seconds(1));
     if (!frame && frame.error().code == ErrorCode::disconnected) break;
     if (!frame) return fail(id, frame.error());
     if (!gate.takes(*frame)) {
@@ -78,9 +78,7 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
   }
   if (auto sound = gate.verdict(); !sound) return fail(id, sound.error());
   if (const auto sentence = gate.cadence(); !sentence.empty()) console.note(sentence);
-  const auto table = cube.table();
-  if (!table) return tl::unexpected(table.error());
-  whole.table = *table;
+  TODBENCH_TRY(whole.table, cube.table());
   whole.memory = cube.pixel_memory();
   if (const auto change = cube.abrupt_change(); change && across == AcrossCorrections::refuse)
     return corrected(*change);

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/plan/descriptions.h"
 #include "bench/report/grid_figure.h"
@@ -48,28 +49,25 @@ Result<std::vector<RangeModel>> models_from(const std::string& text) {
 Result<LogLinearCurve> curve_from(const std::string& file, const std::string& column) {
   // Covers cameras from microscopes to telescopes; a threshold is in kelvin or a contrast.
   constexpr NumberRange frequency_range = NumberRange::between(0, 1e5), value_range = NumberRange::between(1e-9, 1e6);
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  const auto table = parse_csv(*text, file);
-  if (!table) return tl::unexpected(table.error());
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  TODBENCH_TRY(const auto table, parse_csv(text, file));
   const auto place = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::find(table->header.begin(), table->header.end(), name) -
-                                    table->header.begin());
+    return static_cast<std::size_t>(std::find(table.header.begin(), table.header.end(), name) - table.header.begin());
   };
   const std::size_t frequency = place("frequency_per_mrad"), value = place(column);
-  if (std::max(frequency, value) >= table->header.size()) {
-    return table->wrong(
-        1, "expected the columns frequency_per_mrad and " + column + ", found " + quoted_list(table->header));
+  if (std::max(frequency, value) >= table.header.size()) {
+    return table.wrong(
+        1, "expected the columns frequency_per_mrad and " + column + ", found " + quoted_list(table.header));
   }
   std::vector<CurvePoint> points;
-  for (const auto& row : table->rows) {
+  for (const auto& row : table.rows) {
     const auto f = parse_number(row.fields[frequency]), y = parse_number(row.fields[value]);
-    if (!f || !y) return table->wrong(row.line, "expected two numbers");
+    if (!f || !y) return table.wrong(row.line, "expected two numbers");
     for (const auto& [number, allowed, name] :
          {std::tuple(*f, frequency_range, std::string("frequency_per_mrad")), std::tuple(*y, value_range, column)}) {
       if (!allowed.contains(number))
-        return table->wrong(row.line, "column " + name + ": expected " + allowed.describe() + ", found " +
-                                          number_text(number) + unit_hint(name, number, allowed));
+        return table.wrong(row.line, "column " + name + ": expected " + allowed.describe() + ", found " +
+                                         number_text(number) + unit_hint(name, number, allowed));
     }
     points.push_back({*f, *y});
   }
@@ -80,9 +78,7 @@ Result<LogLinearCurve> curve_from(const std::string& file, const std::string& co
 
 Result<void> read_curve(const std::string& file, const std::string& column, std::optional<LogLinearCurve>& into) {
   if (file.empty()) return {};
-  auto curve = curve_from(file, column);
-  if (!curve) return tl::unexpected(curve.error());
-  into = *std::move(curve);
+  TODBENCH_TRY(into, curve_from(file, column));
   return {};
 }
 
@@ -239,9 +235,8 @@ bool RangeOptions::has_table() const {
 
 Result<std::optional<SensorSpec>> RangeOptions::sensor_of(const std::optional<Session>& session) const {
   if (!sensor.empty()) {
-    auto loaded = load_sensor(sensor);
-    if (!loaded) return tl::unexpected(loaded.error());
-    return std::optional(*std::move(loaded));
+    TODBENCH_TRY(auto loaded, load_sensor(sensor));
+    return std::optional(std::move(loaded));
   }
   if (!session) return std::nullopt;
   SensorSpec spec = session->parts.sensor;
@@ -263,9 +258,8 @@ Result<SpectralBand> RangeOptions::band_of(const std::optional<SensorSpec>& spec
 }
 
 Result<Atmosphere> RangeOptions::air(const std::optional<SensorSpec>& spec, double extinction_per_km) const {
-  const auto wavelengths = band_of(spec);
-  if (!wavelengths) return tl::unexpected(wavelengths.error());
-  const AtmosphereRequest request{.band = *wavelengths,
+  TODBENCH_TRY(const auto wavelengths, band_of(spec));
+  const AtmosphereRequest request{.band = wavelengths,
                                   .haze = haze,
                                   .weight_temperature_k = spec ? spec->scene_temperature_k : 300,
                                   .extinction_per_km = extinction_per_km};
@@ -288,9 +282,8 @@ Result<double> RangeOptions::equivalent_contrast_k(double delta_t_k, const std::
   // All temperatures are checked, even unused ones, to detect typing errors.
   if (auto valid = validate(scene(background_k ? delta_t_k : 0, found)); !valid) return tl::unexpected(valid.error());
   if (!background_k) return delta_t_k;
-  const auto wavelengths = band_of(spec);
-  if (!wavelengths) return tl::unexpected(wavelengths.error());
-  return todbench::equivalent_contrast_k(*wavelengths, radiance_contrast(*wavelengths, scene(delta_t_k, found)),
+  TODBENCH_TRY(const auto wavelengths, band_of(spec));
+  return todbench::equivalent_contrast_k(wavelengths, radiance_contrast(wavelengths, scene(delta_t_k, found)),
                                          spec ? spec->scene_temperature_k : 300);
 }
 
@@ -342,9 +335,8 @@ std::vector<GridFigure> figures_of(const Json& grids) {
 Result<void> RangeOptions::write(const std::vector<ModelRange>& answers, const RangeQuestion& question,
                                  const std::vector<std::string>& said, const Json& grids) const {
   if (!svg.empty()) {
-    const auto figure = range_svg(answers);
-    if (!figure) return tl::unexpected(figure.error());
-    if (auto written = write_file_atomically(svg, *figure); !written) return written;
+    TODBENCH_TRY(const auto figure, range_svg(answers));
+    if (auto written = write_file_atomically(svg, figure); !written) return written;
   }
   if (page.empty()) return {};
   RangePage words{.target = fmt::format("{:g} m, {:.4g} K", question.size_m, question.delta_t_k),
@@ -376,15 +368,12 @@ Result<Json> RangeOptions::grid_json(const RangeSources& sources, const RangeQue
   if (grid.sizes_m.empty()) return Json();
   RangeGridAxes axes = grid;
   for (double& contrast_k : axes.contrasts_k) {
-    const auto equivalent = equivalent_contrast_k(contrast_k, spec, question.air);
-    if (!equivalent) return tl::unexpected(equivalent.error());
-    contrast_k = *equivalent;
+    TODBENCH_TRY(contrast_k, equivalent_contrast_k(contrast_k, spec, question.air));
   }
-  const auto grids = range_grid(models, sources, question, axes);
-  if (!grids) return tl::unexpected(grids.error());
+  TODBENCH_TRY(const auto grids, range_grid(models, sources, question, axes));
   const std::size_t sizes = axes.sizes_m.size(), contrasts = axes.contrasts_k.size();
   Json by_model = Json::object();
-  for (const auto& found : *grids) {
+  for (const auto& found : grids) {
     const Json flat = nested(found.probability, sizes * contrasts, axes.ranges_m.size());
     Json probability = Json::array();
     for (std::size_t s = 0; s < sizes; ++s) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/scene_files.h"
 
+#include "acquisition/base/try.h"
 #include "acquisition/recording/picture_file.h"
 #include "bench/text/folders.h"
 
@@ -8,9 +9,8 @@ namespace todbench {
 
 Result<FieldScene> scene_with_pictures(std::string_view reference) {
   return load_scene(reference, [](const std::string& path) -> Result<StoredPicture> {
-    auto file = read_picture(path);
-    if (!file) return tl::unexpected(file.error());
-    return StoredPicture{file->picture, file->counts ? StoredPicture::Kind::counts : StoredPicture::Kind::numbers};
+    TODBENCH_TRY(auto file, read_picture(path));
+    return StoredPicture{file.picture, file.counts ? StoredPicture::Kind::counts : StoredPicture::Kind::numbers};
   });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/base/process.h"
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/sweep/schedulers.h"
 #include "bench/sweep/task_plan.h"
@@ -21,17 +22,15 @@ namespace {
 
 Result<std::vector<std::string>> site_options(const std::string& file) {
   if (file.empty()) return std::vector<std::string>{};
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  return site_options_from(*text, file);
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  return site_options_from(text, file);
 }
 
 Result<std::string> text_for(const SweepArguments& a, Scheduler scheduler, std::size_t tasks) {
-  const auto options = site_options(a.options_file);
-  if (!options) return tl::unexpected(options.error());
+  TODBENCH_TRY(const auto options, site_options(a.options_file));
   const JobList jobs{
       .program = a.program, .sweep_file = a.file, .tasks = tasks, .chunk = std::max<std::size_t>(a.chunk, 1)};
-  return job_text(scheduler, jobs, *options);
+  return job_text(scheduler, jobs, options);
 }
 
 /// Warns before submission of an array that most sites reject.

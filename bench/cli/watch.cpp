@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/judgement/verdict_record.h"
 #include "bench/report/curve_lines.h"
@@ -24,19 +25,16 @@ namespace {
 constexpr auto look_period = std::chrono::seconds(1);
 
 Result<Json> read_json(const std::filesystem::path& file) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  Json json = Json::parse(*text, nullptr, false);
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
   return json;
 }
 
 Result<SessionState> state_of(const std::filesystem::path& folder) {
-  const auto json = read_json(folder / "provenance.json");
-  if (!json) return tl::unexpected(json.error());
-  const auto provenance = provenance_from(*json);
-  if (!provenance) return tl::unexpected(provenance.error());
-  return provenance->state;
+  TODBENCH_TRY(const auto json, read_json(folder / "provenance.json"));
+  TODBENCH_TRY(const auto provenance, provenance_from(json));
+  return provenance.state;
 }
 
 std::uintmax_t size_of(const std::filesystem::path& file) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/control_text.h"
 #include "acquisition/recording/recording_backend.h"
@@ -215,14 +216,12 @@ Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, c
                   "a target of kind 'scene' needs a simulated camera 'sim:NAME'. For camera " + plan.camera.id +
                       " set [target] kind to 'scpi', 'prompt' or 'display'");
     }
-    auto spec = load_sensor(*sensor);
-    if (!spec) return tl::unexpected(spec.error());
-    auto accuracy = accuracy_of(plan);
-    if (!accuracy) return tl::unexpected(accuracy.error());
+    TODBENCH_TRY(auto spec, load_sensor(*sensor));
+    TODBENCH_TRY(auto accuracy, accuracy_of(plan));
     // The camera has its own seed: with the seed of the twin, equal noise of both would cancel. The scene may move; at
     // rest the effects of motion are neutral.
     auto model =
-        std::make_shared<const SensorModel>(*spec, full_plan(*spec, {}, {}, any_motion), *accuracy, plan.seed + 1);
+        std::make_shared<const SensorModel>(spec, full_plan(spec, {}, {}, any_motion), accuracy, plan.seed + 1);
     auto bench = simulated_bench(std::move(model), loaded.shown_plates(), plan.target.distance_m, {});
     bench.host = bench_host(hosting);
     return bench;

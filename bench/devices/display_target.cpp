@@ -9,6 +9,7 @@
 #include <mutex>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/module/module_process.h"
 
 namespace todbench {
@@ -61,12 +62,11 @@ class DisplayTarget final : public Target {
                                     [&](const TargetPlate& known) { return known.name == state.plate; });
     if (plate == options_.plates.end())
       return fail(ErrorCode::invalid_input, "the display has no plate '" + state.plate + "'");
-    const auto shown_levels = levels_of_contrast(state.delta_t_k, options_);
-    if (!shown_levels) return tl::unexpected(shown_levels.error());
-    const DisplayLevels ends = *shown_levels;
-    const auto shares = plate_picture(mounted(*plate, state.mounting), state.shift_mm, options_.display, 0, 1);
-    if (!shares) return tl::unexpected(shares.error());
-    const cv::Mat1f levels = drawn_levels(*shares, ends, options_.tone);
+    TODBENCH_TRY(const auto shown_levels, levels_of_contrast(state.delta_t_k, options_));
+    const DisplayLevels ends = shown_levels;
+    TODBENCH_TRY(const auto shares,
+                 plate_picture(mounted(*plate, state.mounting), state.shift_mm, options_.display, 0, 1));
+    const cv::Mat1f levels = drawn_levels(shares, ends, options_.tone);
     const auto shown = show_(levels);
     if (!shown) return fail("the display", shown.error());
     if (auto same = is_shown(levels, *shown); !same) return tl::unexpected(same.error());
@@ -167,15 +167,14 @@ Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options
   for (const double delta_t_k : options.delta_t_k) {
     if (auto can = levels_of_contrast(delta_t_k, options); !can) return tl::unexpected(can.error());
   }
-  auto show = shown_by_program(command);
-  if (!show) return tl::unexpected(show.error());
-  const auto first = (*show)(cv::Mat1f(options.display.size_px, static_cast<float>(options.tone.level_of(0.5))));
+  TODBENCH_TRY(auto show, shown_by_program(command));
+  const auto first = (show)(cv::Mat1f(options.display.size_px, static_cast<float>(options.tone.level_of(0.5))));
   if (!first) {
     // The program never showed a picture: a screen is missing, no device was lost.
     const ErrorCode code = first.error().code;
     return fail("the display", with_code(code == ErrorCode::disconnected ? ErrorCode::not_found : code, first.error()));
   }
-  return display_target(std::move(options), *std::move(show));
+  return display_target(std::move(options), std::move(show));
 }
 
 }  // namespace todbench

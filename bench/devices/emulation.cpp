@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "bench/plan/descriptions.h"
 #include "bench/text/text.h"
@@ -188,9 +189,8 @@ Result<LaboratoryOptions> laboratory_options(const EmulationArguments& arguments
   options.black_body.celsius = arguments.celsius;
   options.plan = full_plan(options.sensor, {}, {}, any_motion);  // the stage may run
   for (const auto& name : arguments.plates) {
-    auto plate = load_plate(name);
-    if (!plate) return tl::unexpected(plate.error());
-    options.plates.push_back(std::move(*plate));
+    TODBENCH_TRY(auto plate, load_plate(name));
+    options.plates.push_back(std::move(plate));
   }
   options.distance_m = arguments.distance_m;
   options.seed = arguments.seed;
@@ -218,9 +218,8 @@ Result<LaboratoryOptions> laboratory_options(const EmulationArguments& arguments
 }
 
 Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments) {
-  auto options = laboratory_options(arguments);
-  if (!options) return tl::unexpected(options.error());
-  return Laboratory::start(*std::move(options));
+  TODBENCH_TRY(auto options, laboratory_options(arguments));
+  return Laboratory::start(std::move(options));
 }
 
 Plan with_laboratory(Plan plan, const Laboratory& laboratory) {

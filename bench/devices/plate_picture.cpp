@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "tod/plate/plate_outlines.h"
 
 namespace todbench {
@@ -84,15 +85,14 @@ Result<PlatePicture> plate_picture(const PlateView& seen, const TargetPlate& pla
   out.seen = seen;
   cv::Point2d moved(0, 0);
   for (int round = 0; round < rounds; ++round) {
-    auto fit = fitted(seen, model, scene, centre);
-    if (!fit) return tl::unexpected(fit.error());
+    TODBENCH_TRY(auto fit, fitted(seen, model, scene, centre));
     // Beyond half a pixel the picture is not a linear function of the position.
-    if (!(cv::norm(fit->moved_px) < 0.5))
+    if (!(cv::norm(fit.moved_px) < 0.5))
       return fail(ErrorCode::invalid_input, "the picture of the sensor model cannot be fitted to that of the camera");
-    moved += fit->moved_px;
-    scene.centre_px += fit->moved_px;
-    out.expected_k = fit->picture;
-    out.contrast_k = fit->contrast_k;
+    moved += fit.moved_px;
+    scene.centre_px += fit.moved_px;
+    out.expected_k = fit.picture;
+    out.contrast_k = fit.contrast_k;
   }
   out.moved_px = cv::norm(moved);
   const auto pixels = static_cast<double>(seen.kelvin.total());

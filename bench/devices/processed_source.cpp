@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/forwarding_source.h"
 #include "acquisition/core/judged_picture.h"
 
@@ -25,15 +26,14 @@ class ProcessedSource final : public ForwardingSource {
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
     auto frame = ForwardingSource::next(timeout);
     if (!frame || frame->status != FrameStatus::complete) return frame;
-    auto answer = processed(*frame);
-    if (!answer) return tl::unexpected(answer.error());
-    if (record_->frame_ms.size() == picture_frame_ + 1) record_->picture = answer->counts.clone();
+    TODBENCH_TRY(auto answer, processed(*frame));
+    if (record_->frame_ms.size() == picture_frame_ + 1) record_->picture = answer.counts.clone();
     if (as_ == ProcessedAs::judged)
-      frame->judged = std::make_shared<const JudgedPicture>(*std::move(answer));
+      frame->judged = std::make_shared<const JudgedPicture>(std::move(answer));
     else {
-      frame->counts = answer->counts;
+      frame->counts = answer.counts;
       // Carries the record of clipped samples.
-      frame->judged = std::make_shared<const JudgedPicture>(*std::move(answer));
+      frame->judged = std::make_shared<const JudgedPicture>(std::move(answer));
     }
     return frame;
   }

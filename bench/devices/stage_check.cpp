@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
 #include "hvs/observer/template_observer.h"
 #include "tod/measurement/measurement.h"
@@ -48,9 +49,8 @@ std::vector<ShiftSeen> places_of(const std::vector<Presentation>& presentations)
 Result<StageMovement> check_stage_movement(const LoadedPlan& loaded, const SayProgress& on_progress,
                                            std::stop_token stop) {
   const Plan& plan = loaded.plan();
-  auto bench = open_bench(loaded, stop, {}, on_progress);
-  if (!bench) return tl::unexpected(bench.error());
-  if (!bench->target->capabilities().sets_shift)
+  TODBENCH_TRY(auto bench, open_bench(loaded, stop, {}, on_progress));
+  if (!bench.target->capabilities().sets_shift)
     return fail(ErrorCode::invalid_input,
                 "the stage of the plan does not move the plate, so there is no movement to check");
   MeasurementOptions options = camera_options(plan, loaded.plates());
@@ -59,8 +59,7 @@ Result<StageMovement> check_stage_movement(const LoadedPlan& loaded, const SayPr
   TemplateObserver observer(loaded.observer(), triangle_alternatives());
   const std::vector<TargetState> states = states_of(plan);
   ListedSchedule schedule(states);
-  const auto run =
-      measure(*bench->camera, *bench->target, observer, schedule, options, *bench->host, {}, std::move(stop));
+  const auto run = measure(*bench.camera, *bench.target, observer, schedule, options, *bench.host, {}, std::move(stop));
   if (!run) return tl::unexpected(run.error());
   if (run->ended_by) return tl::unexpected(*run->ended_by);
   const std::vector<ShiftSeen> places = places_of(run->presentations);

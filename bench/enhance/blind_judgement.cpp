@@ -44,10 +44,9 @@ Result<std::vector<JudgedTrial>> judged_patches(const std::filesystem::path& ses
                                                 const std::filesystem::path& folder, const ExperimentListener& listener,
                                                 std::stop_token stop) {
   std::vector<JudgedTrial> trials;
-  const auto run = judge_again(session, request, {.folder = folder, .existing = ExistingFolder::refuse},
-                               collecting(listener, trials), std::move(stop));
-  if (!run) return tl::unexpected(run.error());
-  if (run->ended_by) return tl::unexpected(*run->ended_by);
+  TODBENCH_TRY(const auto run, judge_again(session, request, {.folder = folder, .existing = ExistingFolder::refuse},
+                                           collecting(listener, trials), std::move(stop)));
+  if (run.ended_by) return tl::unexpected(*run.ended_by);
   return trials;
 }
 

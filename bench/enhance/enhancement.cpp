@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "bench/devices/processed_source.h"
 #include "bench/enhance/decidable.h"
 #include "bench/enhance/stage_scan.h"
@@ -234,8 +235,7 @@ PairedRatio ratio_at(std::span<const Trial> with, std::span<const Trial> without
 
 Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded) {
   const Plan& plan = loaded.plan();
-  auto accuracy = accuracy_of(plan);
-  if (!accuracy) return tl::unexpected(accuracy.error());
+  TODBENCH_TRY(auto accuracy, accuracy_of(plan));
   if (auto possible = check_sensor_module(loaded.sensor(), plan.simulation.motion); !possible)
     return tl::unexpected(possible.error());
   ExperimentInputs inputs;
@@ -245,7 +245,7 @@ Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded) {
   inputs.stated_noise_counts = noise_in_counts(loaded.sensor());
   inputs.effects = full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, inputs.motion);
   inputs.sensor = as_planned(loaded.sensor(), inputs.effects);
-  inputs.accuracy = *accuracy;
+  inputs.accuracy = accuracy;
   return inputs;
 }
 
@@ -336,12 +336,11 @@ Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector
   if (options.dither > 1 && loaded.observer().sensor_noise_factor != 1)
     return fail(ErrorCode::invalid_input,
                 "an observer whose noise is proportional to the sensor noise cannot judge dithered frames");
-  const auto inputs = full_inputs(loaded);
-  if (!inputs) return tl::unexpected(inputs.error());
-  if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
+  TODBENCH_TRY(const auto inputs, full_inputs(loaded));
+  if (auto fits = check_simulated_geometry(plan, inputs); !fits) return tl::unexpected(fits.error());
   const int settle = longest_memory(packages);
   auto enhancement = through_all(plan, packages, options, stop, [&](const auto* package, PackageResult& result) {
-    run_simulated_one(loaded, *inputs, package, settle, options, result, stop);
+    run_simulated_one(loaded, inputs, package, settle, options, result, stop);
   });
   if (!enhancement) return enhancement;
   enhancement->settle_frames = settle;
@@ -358,13 +357,11 @@ Result<Enhancement> compare_packages_recorded(const std::filesystem::path& sessi
   if (auto paired = check_paired_plan(plan); !paired) return tl::unexpected(paired.error());
   if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
   EffectPlanner planner;
-  const auto inputs = experiment_inputs(loaded, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
-  const auto recording = open_recorded_bench(session, nullptr);
-  if (!recording) return tl::unexpected(recording.error());
-  const SourceInfo& info = recording->bench.camera->info();
+  TODBENCH_TRY(const auto inputs, experiment_inputs(loaded, planner));
+  TODBENCH_TRY(const auto recording, open_recorded_bench(session, nullptr));
+  const SourceInfo& info = recording.bench.camera->info();
   auto enhancement = through_all(plan, packages, options, stop, [&](const auto* package, PackageResult& result) {
-    run_recorded_one(session, loaded, *inputs, package, options, result, stop);
+    run_recorded_one(session, loaded, inputs, package, options, result, stop);
   });
   if (!enhancement) return enhancement;
   enhancement->settle_frames = plan.measurement.frames_after_change;
@@ -383,12 +380,12 @@ Result<Enhancement> compare_packages_recorded(const std::filesystem::path& sessi
 }
 
 Result<LoadedPlan> recorded_plan(const std::filesystem::path& session, const Opening& opening) {
-  auto recorded = open_session(session, {.accept_changed = opening.accept_changed, .accept_cut_off = true});
-  if (!recorded) return tl::unexpected(recorded.error());
-  Plan plan = recorded->plan;
+  TODBENCH_TRY(auto recorded,
+               open_session(session, {.accept_changed = opening.accept_changed, .accept_cut_off = true}));
+  Plan plan = recorded.plan;
   plan.measurement.record_frames = false;
   plan.measures = {};
-  return LoadedPlan::of(std::move(plan), recorded->parts);
+  return LoadedPlan::of(std::move(plan), recorded.parts);
 }
 
 }  // namespace todbench

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/strict_toml.h"
@@ -75,19 +76,17 @@ StagePlan read_stage(TomlReader& table, std::vector<ModulePlan>& modules) {
 }  // namespace
 
 Result<EnhancementPackage> read_package(const std::filesystem::path& file) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  auto reader = TomlReader::parse(*text, file.string());
-  if (!reader) return tl::unexpected(reader.error());
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  TODBENCH_TRY(auto reader, TomlReader::parse(text, file.string()));
   EnhancementPackage package;
-  package.name = reader->text("name", file.stem().string());
-  package.description = reader->text("description", "");
-  package.text = *text;
-  package.sha256 = sha256_of(*text);
+  package.name = reader.text("name", file.stem().string());
+  package.description = reader.text("description", "");
+  package.text = text;
+  package.sha256 = sha256_of(text);
   std::vector<ModulePlan> modules;
-  auto tables = reader->sections("stage");
+  auto tables = reader.sections("stage");
   for (TomlReader& table : tables) package.stages.push_back(read_stage(table, modules));
-  if (auto fine = reader->finish(); !fine) return tl::unexpected(fine.error());
+  if (auto fine = reader.finish(); !fine) return tl::unexpected(fine.error());
   if (package.stages.empty()) return fail(ErrorCode::invalid_input, file.string() + ": the package has no [[stage]]");
   // Programs start only after the whole file is checked.
   for (const auto& module : modules) package.provenance.push_back(text_of(module_record(module)));

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "acquisition/base/host_clock.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/forwarding_source.h"
 #include "bench/text/text.h"
 #include "sim_devices/sensor/super_resolution_stage.h"
@@ -106,10 +107,9 @@ class ScanningSource final : public ForwardingSource {
 
   Result<void> drop_frames_in_flight(std::chrono::milliseconds timeout) {
     for (int after = 0; free_running_ && after < scan_.frames_after_move;) {
-      const auto frame = ForwardingSource::next(timeout);
-      if (!frame) return tl::unexpected(frame.error());
+      TODBENCH_TRY(const auto frame, ForwardingSource::next(timeout));
       ++dropped_;
-      if (frame->host_time_ns >= moved_ns_) ++after;
+      if (frame.host_time_ns >= moved_ns_) ++after;
     }
     return {};
   }

@@ -8,6 +8,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/normal.h"
+#include "acquisition/base/try.h"
 #include "bench/forecast/decision_forecast.h"
 #include "bench/judgement/acuity_uncertainty.h"
 #include "bench/plan/quantity.h"
@@ -36,15 +37,11 @@ Result<LimitOutlook> outlook(const LimitsPlan& limits, const FleetRow* row, doub
   out.p_rejected = cdf(normal, (accepted_from - ln_acuity) / u);
   out.passes_95_from_per_mrad = std::exp(accepted_from + quantile(normal, 0.95) * u);
   if (limits.fleet_sd_percent) {
-    const auto risks = global_risks({.mean = ln_acuity, .sd = std::log1p(*limits.fleet_sd_percent / 100)}, {u},
-                                    {.at_least = ln_limit}, {.at_least = accepted_from});
-    if (!risks) return tl::unexpected(risks.error());
-    out.fleet = *risks;
+    TODBENCH_TRY(out.fleet, global_risks({.mean = ln_acuity, .sd = std::log1p(*limits.fleet_sd_percent / 100)}, {u},
+                                         {.at_least = ln_limit}, {.at_least = accepted_from}));
   }
   if (row != nullptr) {
-    const auto earlier = fleet_forecast(prior_of(*row), u, {.at_least = ln_limit}, {.at_least = accepted_from});
-    if (!earlier) return tl::unexpected(earlier.error());
-    out.earlier = *earlier;
+    TODBENCH_TRY(out.earlier, fleet_forecast(prior_of(*row), u, {.at_least = ln_limit}, {.at_least = accepted_from}));
   }
   return out;
 }
@@ -98,17 +95,16 @@ Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanP
   std::vector<LimitForecast> forecasts;
   if (plan.limits.acuity.empty()) return forecasts;
   const TodCurve curve = expected_curve(prediction);
-  const auto budget = curve_uncertainty(plan, curve, {}, std::nullopt);
-  if (!budget) return tl::unexpected(budget.error());
+  TODBENCH_TRY(const auto budget, curve_uncertainty(plan, curve, {}, std::nullopt));
   for (const AcuityLimit& limit : plan.limits.acuity) {
     const TodPoint* point = point_at(curve, limit.delta_t_k);
     if (point == nullptr || !point->fit.threshold || !point->fit.ci95.high) continue;
     const ContrastPrediction* contrast = expected_at(prediction, limit.delta_t_k);
     const auto expected =
-        contrast == nullptr ? std::nullopt : expected_uncertainty(*contrast, *budget ? &**budget : nullptr);
+        contrast == nullptr ? std::nullopt : expected_uncertainty(*contrast, budget ? &*budget : nullptr);
     const double trials = expected ? expected->se * expected->interval_factor / normal_z95
                                    : std::log(*point->fit.ci95.high / *point->fit.threshold) / normal_z95;
-    const PointUncertainty* stated = *budget ? point_at(**budget, limit.delta_t_k) : nullptr;
+    const PointUncertainty* stated = budget ? point_at(*budget, limit.delta_t_k) : nullptr;
     const double u_stated = stated != nullptr ? stated->u_stated : 0;
     const double ln_acuity = -std::log(*point->fit.threshold), ln_limit = std::log(limit.least_acuity_per_mrad);
     const FleetRow* row = row_of_acuity(plan.limits, limit.delta_t_k);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/decision_forecast.h"
 #include "bench/forecast/graded_precision.h"
@@ -26,9 +27,8 @@ Plan with_answers(Plan plan, AnswerKind answers, const std::vector<int>& frames)
 
 /// Computing time of a choice, for the camera if there is one.
 Result<double> computing_s(const Plan& plan, const ExperimentInputs& inputs, std::stop_token stop) {
-  const auto time = predict_time(plan, inputs, std::move(stop));
-  if (!time) return tl::unexpected(time.error());
-  return plan.camera.id.empty() ? time->simulation_s : time->measuring_s;
+  TODBENCH_TRY(const auto time, predict_time(plan, inputs, std::move(stop)));
+  return plan.camera.id.empty() ? time.simulation_s : time.measuring_s;
 }
 
 double bench_s(const Plan& plan, const ExperimentInputs& inputs, const std::vector<ContrastPrediction>& contrasts) {
@@ -87,32 +87,28 @@ Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const 
     frames.push_back(own);
     std::ranges::sort(frames);
   }
-  const auto binary_s = computing_s(with_answers(plan, AnswerKind::binary, {1}), inputs, stop);
-  if (!binary_s) return tl::unexpected(binary_s.error());
-  const auto one_s = computing_s(with_answers(plan, AnswerKind::graded, {1}), inputs, stop);
-  if (!one_s) return tl::unexpected(one_s.error());
-  const auto two_s = computing_s(with_answers(plan, AnswerKind::graded, {2}), inputs, stop);
-  if (!two_s) return tl::unexpected(two_s.error());
-  const double frame_s = std::max(0.0, *two_s - *one_s);
+  TODBENCH_TRY(const auto binary_s, computing_s(with_answers(plan, AnswerKind::binary, {1}), inputs, stop));
+  TODBENCH_TRY(const auto one_s, computing_s(with_answers(plan, AnswerKind::graded, {1}), inputs, stop));
+  TODBENCH_TRY(const auto two_s, computing_s(with_answers(plan, AnswerKind::graded, {2}), inputs, stop));
+  const double frame_s = std::max(0.0, two_s - one_s);
 
   std::vector<PrecisionChoice> choices;
   const auto add = [&](AnswerKind answers, const std::vector<int>& count, double computing) -> Result<void> {
     const Plan other = with_answers(plan, answers, count);
-    auto prediction = predict_plan(as_measured(other), inputs);
-    if (!prediction) return tl::unexpected(prediction.error());
+    TODBENCH_TRY(auto prediction, predict_plan(as_measured(other), inputs));
     PrecisionChoice choice{.answers = answers, .frames = count};
-    choice.bench_s = bench_s(other, inputs, prediction->contrasts);
+    choice.bench_s = bench_s(other, inputs, prediction.contrasts);
     choice.seconds = computing + choice.bench_s;
-    choice.half_width_percent = prediction->figures.predicted_uncertainty_percent;
-    choice.contrasts = std::move(prediction->contrasts);
+    choice.half_width_percent = prediction.figures.predicted_uncertainty_percent;
+    choice.contrasts = std::move(prediction.contrasts);
     choice.planned = planned.kind == answers && (answers == AnswerKind::binary || own == count);
     choices.push_back(std::move(choice));
     return {};
   };
-  if (auto added = add(AnswerKind::binary, {1}, *binary_s); !added) return tl::unexpected(added.error());
+  if (auto added = add(AnswerKind::binary, {1}, binary_s); !added) return tl::unexpected(added.error());
   for (const std::vector<int>& count : frames) {
     const double mean = std::accumulate(count.begin(), count.end(), 0.0) / static_cast<double>(count.size());
-    if (auto added = add(AnswerKind::graded, count, *one_s + (mean - 1) * frame_s); !added)
+    if (auto added = add(AnswerKind::graded, count, one_s + (mean - 1) * frame_s); !added)
       return tl::unexpected(added.error());
   }
   const auto floors = floors_ln(plan, {.figures = {}, .contrasts = choices.front().contrasts, .warnings = {}});

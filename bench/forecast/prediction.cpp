@@ -9,6 +9,7 @@
 #include <ranges>
 
 #include "acquisition/base/normal.h"
+#include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/graded_precision.h"
 #include "bench/forecast/time_prediction.h"
@@ -230,10 +231,10 @@ Result<void> reachable(const Plan& plan, const ExperimentInputs& inputs) {
   double price_s = 0;
   for (const auto& outlook : inputs.outlooks) {
     const double draws = std::min<double>(draws_at(outlook), Accuracy::max_noise_draws);
-    const auto price = measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
-                                               outlook.s75_pitch, draws, accuracy, inputs.motion);
-    if (!price) return tl::unexpected(price.error());
-    price_s += *price;
+    TODBENCH_TRY(const auto price,
+                 measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
+                                         outlook.s75_pitch, draws, accuracy, inputs.motion));
+    price_s += price;
   }
   return fail(ErrorCode::invalid_input,
               "a tolerance of " + number_text(plan.simulation.tolerance_percent) + " % cannot be met at " +
@@ -353,13 +354,12 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
 Result<void> predict_times(const Plan& asked, const ExperimentInputs& inputs, PlanPrediction& prediction,
                            std::stop_token stop) {
   const Plan plan = with_frames(asked, inputs);
-  const auto time = predict_time(plan, inputs, std::move(stop));
-  if (!time) return tl::unexpected(time.error());
-  prediction.figures.predicted_s = time->simulation_s;
+  TODBENCH_TRY(const auto time, predict_time(plan, inputs, std::move(stop)));
+  prediction.figures.predicted_s = time.simulation_s;
   if (plan.camera.id.empty()) return {};
   const auto presentations = expected_presentations(plan, inputs.plates, prediction.contrasts);
   const BenchTime bench = bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations);
-  prediction.figures.predicted_measurement_s = time->measuring_s + bench.total_s();
+  prediction.figures.predicted_measurement_s = time.measuring_s + bench.total_s();
   return {};
 }
 

@@ -214,21 +214,19 @@ Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& in
       return measured_direct_seconds(inputs.sensor, inputs.effects, inputs.observer, outlook.delta_t_k,
                                      outlook.s75_pitch, noise_draws, inputs.accuracy, inputs.motion);
     };
-    const auto seconds = seconds_with(draws);
-    if (!seconds) return tl::unexpected(seconds.error());
-    out.simulation_s += *seconds;
+    TODBENCH_TRY(const auto seconds, seconds_with(draws));
+    out.simulation_s += seconds;
     if (!shaped) continue;
     // Function of the curve, and again for a separate camera: the same draws for every tolerance.
-    const auto table_s = seconds_with(draws_of_twin_shape(expected_error(plan, inputs), inputs.accuracy));
-    if (!table_s) return tl::unexpected(table_s.error());
-    out.simulation_s += sizes_of_shape * *table_s;
-    out.measuring_s += sizes_of_shape * *table_s;
+    TODBENCH_TRY(const auto table_s, seconds_with(draws_of_twin_shape(expected_error(plan, inputs), inputs.accuracy)));
+    out.simulation_s += sizes_of_shape * table_s;
+    out.measuring_s += sizes_of_shape * table_s;
     if (plan.schedule.kind != ScheduleKind::adaptive) continue;
     // Functions of the stopping rule, for camera and twin (stopping_tables()).
-    const auto stopping_s = seconds_with(draws_of_twin_shape(plan.schedule.half_width_percent / 196, inputs.accuracy));
-    if (!stopping_s) return tl::unexpected(stopping_s.error());
-    out.simulation_s += sizes_of_shape * *stopping_s;
-    out.measuring_s += sizes_of_shape * *stopping_s;
+    TODBENCH_TRY(const auto stopping_s,
+                 seconds_with(draws_of_twin_shape(plan.schedule.half_width_percent / 196, inputs.accuracy)));
+    out.simulation_s += sizes_of_shape * stopping_s;
+    out.measuring_s += sizes_of_shape * stopping_s;
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "bench/plan/bench_air.h"
 #include "bench/plan/joined_uncertainty.h"
 #include "tod/psychometric/contrast_slope.h"
@@ -175,9 +176,8 @@ Result<std::optional<CombinedUncertainty>> combined_rows(const std::vector<Budge
   if (std::none_of(rows.begin(), rows.end(),
                    [](const BudgetRow& row) { return row.value * std::abs(row.sensitivity.value_or(1)) > 0; }))
     return std::nullopt;
-  auto found = combined({.quantity = "ln acuity", .unit = "1", .rows = rows}, seed, draws);
-  if (!found) return tl::unexpected(found.error());
-  return *std::move(found);
+  TODBENCH_TRY(auto found, combined({.quantity = "ln acuity", .unit = "1", .rows = rows}, seed, draws));
+  return found;
 }
 
 /// Returns the expanded half-width of ln S75 on a side with the statistical half-width `half`: the GUM value times
@@ -185,9 +185,8 @@ Result<std::optional<CombinedUncertainty>> combined_rows(const std::vector<Budge
 Result<double> expanded_half(double half, std::vector<BudgetRow> rows, const TodPoint& point, double excess) {
   constexpr int no_draws = 0;
   rows.insert(rows.begin(), trials_row(half, point));
-  const auto found = combined_rows(rows, 0, no_draws);
-  if (!found) return tl::unexpected(found.error());
-  return *found ? std::max(half, excess * (*found)->expanded_gum) : half;
+  TODBENCH_TRY(const auto found, combined_rows(rows, 0, no_draws));
+  return found ? std::max(half, excess * found->expanded_gum) : half;
 }
 
 /// Moves a limit without a threshold outwards by the complete stated half-width.
@@ -235,15 +234,14 @@ Result<void> expand(PointUncertainty& out, const TodPoint& point, const std::vec
   std::vector<BudgetRow> all = rows;
   const bool both = threshold && low && high && *threshold > 0;
   if (both) all.insert(all.begin(), trials_row(0.5 * std::log(*high / *low), point));
-  auto found = combined_rows(all, seed, session_budget_draws);
-  if (!found) return tl::unexpected(found.error());
-  if (*found) {
-    out.rows = applied(all, (*found)->shares, stated + (both ? 1 : 0));
+  TODBENCH_TRY(auto found, combined_rows(all, seed, session_budget_draws));
+  if (found) {
+    out.rows = applied(all, found->shares, stated + (both ? 1 : 0));
   } else {
     out.rows = applied(all, std::vector<BudgetShare>(all.size()), stated + (both ? 1 : 0));
   }
-  const double excess = *found ? (*found)->expanded / (*found)->expanded_gum : 1;
-  if (both) out.combined = *std::move(found);
+  const double excess = found ? found->expanded / found->expanded_gum : 1;
+  if (both) out.combined = std::move(found);
   const JoinedUncertainty all_stated = stated_of(out.rows, std::nullopt);
   out.u_stated = all_stated.u();
   out.u_not_twin = stated_of(out.rows, BudgetCommon::twin).u();
@@ -255,9 +253,8 @@ Result<void> expand(PointUncertainty& out, const TodPoint& point, const std::vec
     if (!side || !(*side > 0)) {
       expanded = side;
     } else if (threshold && *threshold > 0) {
-      const auto half = expanded_half(std::abs(std::log(*side / *threshold)), rows, point, excess);
-      if (!half) return tl::unexpected(half.error());
-      expanded = *threshold * std::exp(direction * *half);
+      TODBENCH_TRY(const auto half, expanded_half(std::abs(std::log(*side / *threshold)), rows, point, excess));
+      expanded = *threshold * std::exp(direction * half);
       // Never inside the statistical interval, because of rounding or a threshold outside it.
       expanded = direction < 0 ? std::min(*expanded, *side) : std::max(*expanded, *side);
     } else {

@@ -2,6 +2,7 @@
 // Reader of the file of `todbench budget`.
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/judgement/uncertainty_budget.h"
 #include "bench/plan/plan_keys.h"
 #include "bench/plan/strict_toml.h"
@@ -27,25 +28,23 @@ void read_row(TomlReader& table, const PlanSection& section, std::size_t row, Pl
 }  // namespace
 
 Result<UncertaintyBudget> parse_budget(std::string_view text, const std::string& name) {
-  auto reader = TomlReader::parse(text, name);
-  if (!reader) return tl::unexpected(reader.error());
+  TODBENCH_TRY(auto reader, TomlReader::parse(text, name));
   UncertaintyBudget budget;
-  budget.quantity = reader->text("quantity", "");
-  budget.unit = reader->text("unit", "");
+  budget.quantity = reader.text("quantity", "");
+  budget.unit = reader.text("unit", "");
   const PlanSection& section = row_section();
-  std::vector<TomlReader> tables = rows_in(*reader, section);
+  std::vector<TomlReader> tables = rows_in(reader, section);
   Plan rows;
   section.rows.resize(rows, tables.size());
   for (std::size_t row = 0; row < tables.size(); ++row) read_row(tables[row], section, row, rows);
   budget.rows = std::move(rows.uncertainty.rows);
-  if (auto finished = reader->finish(); !finished) return tl::unexpected(finished.error());
+  if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
   return budget;
 }
 
 Result<UncertaintyBudget> read_budget(const std::filesystem::path& file) {
-  const auto text = read_text_file(file);
-  if (!text) return tl::unexpected(text.error());
-  return parse_budget(*text, file.string());
+  TODBENCH_TRY(const auto text, read_text_file(file));
+  return parse_budget(text, file.string());
 }
 
 }  // namespace todbench

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "bench/judgement/demand_kinds.h"
 
 namespace todbench {
@@ -134,12 +135,11 @@ Result<FleetRisks> fleet_risks(const FleetPrior& prior, const MeasuredValue& mea
   FleetRisks out;
   const SpreadInterval spread = spread_interval(prior);
   for (const double sd : {prior.sd, spread.low, spread.high}) {
-    const auto risks = global_risks({.mean = prior.mean, .sd = std::sqrt(predictive_variance(prior, sd))},
-                                    {measured.u, measured.degrees_of_freedom}, tolerance, acceptance);
-    if (!risks) return tl::unexpected(risks.error());
-    if (sd == prior.sd) out.consumer_risk = risks->consumer_risk, out.producer_risk = risks->producer_risk;
-    out.consumer_risk_most = std::max(out.consumer_risk_most, risks->consumer_risk);
-    out.producer_risk_most = std::max(out.producer_risk_most, risks->producer_risk);
+    TODBENCH_TRY(const auto risks, global_risks({.mean = prior.mean, .sd = std::sqrt(predictive_variance(prior, sd))},
+                                                {measured.u, measured.degrees_of_freedom}, tolerance, acceptance));
+    if (sd == prior.sd) out.consumer_risk = risks.consumer_risk, out.producer_risk = risks.producer_risk;
+    out.consumer_risk_most = std::max(out.consumer_risk_most, risks.consumer_risk);
+    out.producer_risk_most = std::max(out.producer_risk_most, risks.producer_risk);
   }
   out.p_conformity = posterior_share_inside(prior, measured, tolerance);
   return out;

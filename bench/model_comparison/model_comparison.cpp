@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/enhance/decidable.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
@@ -35,16 +36,12 @@ constexpr int transfer_points = 41;
 Result<ComparedModel> described(ComparedModel model, const Resource& resource) {
   model.sha256 = sha256_of(resource.text);
   if (model.kind == ModelKind::observer) {
-    auto observer = parse_observer_with_module(resource);
-    if (!observer) return tl::unexpected(observer.error());
-    model.observer = *std::move(observer);
+    TODBENCH_TRY(model.observer, parse_observer_with_module(resource));
     model.name = model.observer.spec.name;
     if (model.observer.module) model.provenance.push_back(text_of(module_record(*model.observer.module)));
     return model;
   }
-  auto sensor = parse_sensor(resource);
-  if (!sensor) return tl::unexpected(sensor.error());
-  model.sensor = *std::move(sensor);
+  TODBENCH_TRY(model.sensor, parse_sensor(resource));
   model.name = model.sensor.name;
   for (const ModulePlan& module : model.sensor.modules) model.provenance.push_back(text_of(module_record(module)));
   return model;
@@ -197,9 +194,7 @@ class Chain {
 
   Result<void> through(cv::Mat1f& picture) {
     for (const auto& stage : stages_) {
-      auto answer = stage->process(picture);
-      if (!answer) return tl::unexpected(answer.error());
-      picture = *std::move(answer);
+      TODBENCH_TRY(picture, stage->process(picture));
     }
     return {};
   }
@@ -268,9 +263,7 @@ Result<std::vector<double>> moduli_of(const ComparedModel& model, Chain& chain, 
   }
   if (programmed) {
     ModuleSensor sensor(spec, loaded.plan().seed, nullptr);
-    auto measured = module_transfer(sensor, spec, cycles);
-    if (!measured) return tl::unexpected(measured.error());
-    moduli = *std::move(measured);
+    TODBENCH_TRY(moduli, module_transfer(sensor, spec, cycles));
   }
   if (!chain.staged()) return moduli;
   // A stage is linear if the rest of the picture does not affect its edge response.
@@ -366,25 +359,23 @@ Result<ComparedModel> read_compared_model(const std::string& reference) {
   if (!is_file_reference(reference)) {
     const bool observer = has_name(ResourceKind::observer, reference);
     model.kind = observer ? ModelKind::observer : ModelKind::sensor;
-    const auto resource = find_resource(observer ? ResourceKind::observer : ResourceKind::sensor, reference);
-    if (!resource) return tl::unexpected(resource.error());
-    return described(std::move(model), *resource);
+    TODBENCH_TRY(const auto resource,
+                 find_resource(observer ? ResourceKind::observer : ResourceKind::sensor, reference));
+    return described(std::move(model), resource);
   }
-  const auto resource = find_resource(ResourceKind::sensor, reference);
-  if (!resource) return tl::unexpected(resource.error());
-  if (resource->text.find("[[stage]]") != std::string::npos) {
-    auto package = read_package(reference);
-    if (!package) return tl::unexpected(package.error());
+  TODBENCH_TRY(const auto resource, find_resource(ResourceKind::sensor, reference));
+  if (resource.text.find("[[stage]]") != std::string::npos) {
+    TODBENCH_TRY(auto package, read_package(reference));
     model.kind = ModelKind::package;
-    model.name = package->name;
-    model.sha256 = package->sha256;
-    model.provenance = package->provenance;
-    model.package = *std::move(package);
+    model.name = package.name;
+    model.sha256 = package.sha256;
+    model.provenance = package.provenance;
+    model.package = std::move(package);
     return model;
   }
-  const auto states = [&](std::string_view key) { return resource->text.find(key) != std::string::npos; };
+  const auto states = [&](std::string_view key) { return resource.text.find(key) != std::string::npos; };
   if (states("blur_sigma_samples") || states("[eye]")) model.kind = ModelKind::observer;
-  return described(std::move(model), *resource);
+  return described(std::move(model), resource);
 }
 
 Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, ComparedModel b,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/effect_exposure.h"
 #include "sim_devices/sensor/effect_motion.h"
@@ -35,11 +36,10 @@ Result<std::vector<double>> sizes_round_threshold(const SensorSpec& sensor, Temp
   const double contrast_k = std::abs(options.delta_t_k);
   DirectEstimateOptions estimate{
       .motion = {}, .accuracy = Accuracy::draft(), .seed = options.seed, .stop = options.stop};
-  const auto found = direct_estimate(sensor, full_plan(sensor, {}, {}), observer, {contrast_k}, estimate);
-  if (!found) return tl::unexpected(found.error());
+  TODBENCH_TRY(const auto found, direct_estimate(sensor, full_plan(sensor, {}, {}), observer, {contrast_k}, estimate));
   std::vector<double> sizes;
   for (int i = 0; i < count; ++i)
-    sizes.push_back(found->front().s75_pitch * smallest * std::pow(largest / smallest, i / (count - 1.0)));
+    sizes.push_back(found.front().s75_pitch * smallest * std::pow(largest / smallest, i / (count - 1.0)));
   return sizes;
 }
 
@@ -58,9 +58,8 @@ DynamicAcuity dynamic_acuity_at(const SensorSpec& sensor, double speed_mrad_s, d
 Result<DynamicPoint> dynamic_point(SequenceObserver observer, const std::vector<Level>& levels,
                                    const std::vector<Trial>& trials, const std::vector<Trial>& at_rest,
                                    const FitOptions& fit) {
-  auto fitted = fit_psychometric(levels, fit);
-  if (!fitted) return tl::unexpected(fitted.error());
-  DynamicPoint point{.observer = observer, .fit = *std::move(fitted), .ratio = {}, .ratio_ci95 = {}};
+  TODBENCH_TRY(auto fitted, fit_psychometric(levels, fit));
+  DynamicPoint point{.observer = observer, .fit = std::move(fitted), .ratio = {}, .ratio_ci95 = {}};
   if (const auto ratios = paired_ratios(trials, at_rest, fit); !ratios.empty()) {
     point.ratio = ratios.front().ratio;
     point.ratio_ci95 = ratios.front().ci95;
@@ -74,22 +73,18 @@ Result<std::vector<DynamicAcuity>> dynamic_acuity(const SensorSpec& sensor, Temp
   std::erase(options.speeds_mrad_s, 0.0);
   options.speeds_mrad_s.insert(options.speeds_mrad_s.begin(), 0);
   if (options.sizes_pitch.empty()) {
-    auto sizes = sizes_round_threshold(sensor, observer, options);
-    if (!sizes) return tl::unexpected(sizes.error());
-    options.sizes_pitch = *std::move(sizes);
+    TODBENCH_TRY(options.sizes_pitch, sizes_round_threshold(sensor, observer, options));
   }
-  const auto trials = dynamic_trials(sensor, observer, options);
-  if (!trials) return tl::unexpected(trials.error());
+  TODBENCH_TRY(const auto trials, dynamic_trials(sensor, observer, options));
   const FitOptions fit;
   std::vector<DynamicAcuity> found;
-  for (const DynamicTrials& moving : *trials) {
+  for (const DynamicTrials& moving : trials) {
     DynamicAcuity at = dynamic_acuity_at(sensor, moving.speed_mrad_s, moving.speed_px);
     for (const SequenceObserver kind : all_sequence_observers) {
       const auto k = static_cast<std::size_t>(kind);
-      auto point = dynamic_point(kind, moving.levels[k], trials_of(moving.levels[k], options.delta_t_k),
-                                 trials_of(trials->front().levels[k], options.delta_t_k), fit);
-      if (!point) return tl::unexpected(point.error());
-      at.points.push_back(*std::move(point));
+      TODBENCH_TRY(auto point, dynamic_point(kind, moving.levels[k], trials_of(moving.levels[k], options.delta_t_k),
+                                             trials_of(trials.front().levels[k], options.delta_t_k), fit));
+      at.points.push_back(std::move(point));
     }
     found.push_back(std::move(at));
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "bench/judgement/run_findings.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
@@ -59,9 +60,8 @@ Result<DynamicContrast> contrast_of(const MovingMeasurement& measured, const std
       }
       if (speed == 0) at_rest[kind] = trials;
       if (trials.empty()) return fail(ErrorCode::integrity, "no pass could be measured at one of the speeds");
-      auto point = dynamic_point(kind, levels_by_pass(trials), trials, at_rest[kind], fit);
-      if (!point) return tl::unexpected(point.error());
-      at.points.push_back(*std::move(point));
+      TODBENCH_TRY(auto point, dynamic_point(kind, levels_by_pass(trials), trials, at_rest[kind], fit));
+      at.points.push_back(std::move(point));
     }
     out.speeds.push_back(std::move(at));
   }
@@ -77,9 +77,8 @@ Result<MovingBench> opened(const LoadedPlan& loaded, const std::shared_ptr<const
                            std::stop_token stop) {
   const Plan& plan = loaded.plan();
   if (!plan.camera.id.empty()) {
-    auto bench = open_bench(loaded, std::move(stop));
-    if (!bench) return tl::unexpected(bench.error());
-    return MovingBench{*std::move(bench), plan.camera.ifov_mrad};
+    TODBENCH_TRY(auto bench, open_bench(loaded, std::move(stop)));
+    return MovingBench{std::move(bench), plan.camera.ifov_mrad};
   }
   return MovingBench{simulated_bench(model, loaded.plates(), plan.target.distance_m, {}), model->spec().ifov_mrad()};
 }
@@ -125,15 +124,13 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const Dynam
     return fail(ErrorCode::invalid_input,
                 "the psychometric function of the twin is valid only at rest: [fit] estimator must be 'weibull' or "
                 "'automatic'");
-  const auto accuracy = accuracy_of(plan);
-  if (!accuracy) return tl::unexpected(accuracy.error());
+  TODBENCH_TRY(const auto accuracy, accuracy_of(plan));
   const auto model = std::make_shared<const SensorModel>(
-      loaded.sensor(), full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, any_motion), *accuracy,
+      loaded.sensor(), full_plan(loaded.sensor(), plan.simulation.skip, plan.simulation.force, any_motion), accuracy,
       plan.seed);
-  auto moving = opened(loaded, model, stop);
-  if (!moving) return tl::unexpected(moving.error());
-  OpenedBench& bench = moving->bench;
-  MovingMeasurementOptions options{.measurement = measurement_options(plan, loaded.plates(), moving->ifov_mrad),
+  TODBENCH_TRY(auto moving, opened(loaded, model, stop));
+  OpenedBench& bench = moving.bench;
+  MovingMeasurementOptions options{.measurement = measurement_options(plan, loaded.plates(), moving.ifov_mrad),
                                    .mountings = plan.target.mountings,
                                    .delta_t_k = plan.target.delta_t_k,
                                    .speeds_mrad_s = plan.motion.speeds_mrad_s,
@@ -152,9 +149,8 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const Dynam
     options.measurement.max_contrast_error = gross_contrast_deviations(plan);
   }
   if (bench.simulated) options.measurement.frames_after_change = 0;
-  auto response = simulated_responses(*model, plan, loaded.plates(), options.measurement, stop);
-  if (!response) return tl::unexpected(response.error());
-  options.measurement.contrast_response = *std::move(response);
+  TODBENCH_TRY(options.measurement.contrast_response,
+               simulated_responses(*model, plan, loaded.plates(), options.measurement, stop));
   TemplateObserver observer(loaded.observer(), triangle_alternatives());
   DynamicMeasurement out;
   out.camera = bench.camera->info().id;
@@ -173,9 +169,8 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const Dynam
   out.measured = *std::move(measured);
   const FitOptions fit = fit_options(plan);
   for (const double delta_t_k : plan.target.delta_t_k) {
-    auto contrast = contrast_of(out.measured, options.speeds_mrad_s, delta_t_k, loaded.sensor(), fit);
-    if (!contrast) return tl::unexpected(contrast.error());
-    out.contrasts.push_back(*std::move(contrast));
+    TODBENCH_TRY(auto contrast, contrast_of(out.measured, options.speeds_mrad_s, delta_t_k, loaded.sensor(), fit));
+    out.contrasts.push_back(std::move(contrast));
   }
   out.time_constant = time_constant_of(out.measured.passes, loaded.sensor().exposure_ms);
   double squares = 0, moved = 0;

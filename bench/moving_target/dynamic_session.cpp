@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/judgement/run_findings.h"
 #include "bench/moving_target/dynamic_json.h"
 #include "bench/plan/plan_options.h"
@@ -55,12 +56,10 @@ class GrowingFiles {
   [[nodiscard]] static Result<GrowingFiles> open(SessionFolder& folder, bool simulated) {
     auto trials = folder.open_trials(SessionCurve::main);
     if (!trials) return tl::unexpected(trials.error());
-    auto targets = folder.open_targets(SessionCurve::main);
-    if (!targets) return tl::unexpected(targets.error());
-    auto moving = AppendFile::open(folder.path() / "moving-trials.csv", AppendFile::Start::empty);
-    if (!moving) return tl::unexpected(moving.error());
-    if (auto begun = moving->append(header_line(moving_columns)); !begun) return tl::unexpected(begun.error());
-    return GrowingFiles{*std::move(trials), *std::move(targets), *std::move(moving), simulated};
+    TODBENCH_TRY(auto targets, folder.open_targets(SessionCurve::main));
+    TODBENCH_TRY(auto moving, AppendFile::open(folder.path() / "moving-trials.csv", AppendFile::Start::empty));
+    if (auto begun = moving.append(header_line(moving_columns)); !begun) return tl::unexpected(begun.error());
+    return GrowingFiles{*std::move(trials), std::move(targets), std::move(moving), simulated};
   }
 
   [[nodiscard]] Result<void> append(const MovingAnswer& answer) {
@@ -183,12 +182,10 @@ class DynamicRun {
     provenance_.effects = full_plan(loaded_.sensor(), plan.simulation.skip, plan.simulation.force, any_motion);
     if (!plan.camera.id.empty()) provenance_.camera = camera_record(info);
     provenance_.target = plan.camera.id.empty() ? "simulated scene" : bench.target->capabilities().description;
-    auto folder = begin_session(loaded_, options_, provenance_);
-    if (!folder) return tl::unexpected(folder.error());
-    folder_.emplace(*std::move(folder));
-    auto files = GrowingFiles::open(*folder_, bench.simulated);
-    if (!files) return tl::unexpected(files.error());
-    files_.emplace(*std::move(files));
+    TODBENCH_TRY(auto folder, begin_session(loaded_, options_, provenance_));
+    folder_.emplace(std::move(folder));
+    TODBENCH_TRY(auto files, GrowingFiles::open(*folder_, bench.simulated));
+    files_.emplace(std::move(files));
     if (listener_.on_session) listener_.on_session(folder_->path());
     for (const auto& warning : bench.camera->info().warnings) note(*folder_, listener_, warning);
     phase(*folder_, listener_, "measuring with a moving target");

@@ -30,8 +30,7 @@ class ShareOverSize {
 
   Result<Proportion> at(int step) {
     if (const auto known = known_.find(step); known != known_.end()) return known->second;
-    const auto prepared = observer_.prepare(size_at(step), 1);
-    if (!prepared) return tl::unexpected(prepared.error());
+    TODBENCH_TRY(const auto prepared, observer_.prepare(size_at(step), 1));
     const RandomStream numbers =
         RandomStream(task_.seed, "naked-eye.prediction").sub(static_cast<std::uint64_t>(step + 64));
     double sum = 0, squares = 0;
@@ -43,9 +42,9 @@ class ShareOverSize {
           .truth = all_apexes[static_cast<std::size_t>(k) % all_apexes.size()],
           .centroid = {numbers.uniform(2 * number) - 0.5, numbers.uniform(2 * number + 1) - 0.5},
           .number = (std::uint64_t{1} << 32U) + static_cast<std::uint64_t>(step + 64) * 4096 + number};
-      const NakedEyePicture picture = naked_eye_picture(task_, trial, (*prepared)->window_samples());
+      const NakedEyePicture picture = naked_eye_picture(task_, trial, prepared->window_samples());
       const Patch patch{.kelvin = cv::Mat1d(picture.contrast), .phase = trial.centroid, .noise_k = picture.noise};
-      const GradedChoice judged = (*prepared)->judge(patch, contrast_, numbers.sub(number), draws_of_the_eye);
+      const GradedChoice judged = prepared->judge(patch, contrast_, numbers.sub(number), draws_of_the_eye);
       const double right = judged.answers.probability[static_cast<std::size_t>(trial.truth)];
       sum += right;
       squares += right * right;
@@ -114,21 +113,20 @@ Result<NakedEyeContrast> predicted_contrast(const NakedEyeTask& task, const Mode
   const double mrad = mrad_per_sample(*task.model.display);
   ShareOverSize model(task, models.model, contrast, pictures), best(task, models.best, contrast, pictures),
       worst(task, models.worst, contrast, pictures);
-  const auto found = threshold_of(model, 5, stop);
-  if (!found) return tl::unexpected(found.error());
-  if (!*found) {
+  TODBENCH_TRY(const auto found, threshold_of(model, 5, stop));
+  if (!found) {
     return fail(ErrorCode::not_identifiable,
                 fmt::format("at a contrast of {:g} the model has no threshold between {:g} and {:g} displayed samples: "
                             "choose another contrast, zoom or viewing distance",
                             contrast, smallest_samples, largest_samples));
   }
-  const int middle = (*found)->step;
+  const int middle = found->step;
   const auto low = threshold_of(best, middle - 1, stop), high = threshold_of(worst, middle + 1, stop);
   if (!low) return tl::unexpected(low.error());
   if (!high) return tl::unexpected(high.error());
   NakedEyeContrast out{.contrast = contrast,
-                       .s75_mrad = mrad * (*found)->samples,
-                       .s75_se_mrad = mrad * (*found)->se_samples,
+                       .s75_mrad = mrad * found->samples,
+                       .s75_se_mrad = mrad * found->se_samples,
                        .spread_low_mrad = {},
                        .spread_high_mrad = {},
                        .sizes = {}};
@@ -190,9 +188,8 @@ Result<NakedEyePrediction> predict_naked_eye(const NakedEyeTask& task, int pictu
                          .contrasts = {}};
   const ModelRange models = models_of(task);
   for (const double contrast : task.contrasts) {
-    auto predicted = predicted_contrast(task, models, contrast, pictures, stop);
-    if (!predicted) return tl::unexpected(predicted.error());
-    out.contrasts.push_back(*std::move(predicted));
+    TODBENCH_TRY(auto predicted, predicted_contrast(task, models, contrast, pictures, stop));
+    out.contrasts.push_back(std::move(predicted));
   }
   return out;
 }

@@ -80,9 +80,8 @@ Result<TemplateObserverSpec> seen_by(const std::vector<AnsweredSession>& session
 Result<FittedPerson> fitted_person(const std::vector<AnsweredSession>& sessions, std::vector<std::size_t> own,
                                    const PeopleFitOptions& options, std::stop_token stop) {
   PersonQuestion question = question_of(sessions, own);
-  auto seeing = seen_by(sessions, own, options.from);
-  if (!seeing) return tl::unexpected(seeing.error());
-  auto lattice = AnswerLattice::create(*seeing, triangle_alternatives(), std::move(question.patches),
+  TODBENCH_TRY(auto seeing, seen_by(sessions, own, options.from));
+  auto lattice = AnswerLattice::create(seeing, triangle_alternatives(), std::move(question.patches),
                                        {.draws = options.draws, .seed = options.seed});
   const bool first = std::ranges::all_of(own, [&](std::size_t s) { return sessions[s].number == 1; });
   const std::string where = folders_of(sessions, own) + (first ? ": shown_human.csv" : ": shown pictures");
@@ -90,10 +89,9 @@ Result<FittedPerson> fitted_person(const std::vector<AnsweredSession>& sessions,
   const PersonFitOptions how{.start = start_values(options.from), .free = options.free};
   auto fit = fit_person(*lattice, question.answers, how);
   if (!fit) return fail(where, fit.error());
-  auto goodness = goodness_of(*lattice, question.answers, *fit,
-                              {.replicates = options.replicates, .seed = options.seed}, std::move(stop));
-  if (!goodness) return tl::unexpected(goodness.error());
-  return FittedPerson{std::move(own), *std::move(fit), *std::move(goodness), std::move(question.cells)};
+  TODBENCH_TRY(auto goodness, goodness_of(*lattice, question.answers, *fit,
+                                          {.replicates = options.replicates, .seed = options.seed}, std::move(stop)));
+  return FittedPerson{std::move(own), *std::move(fit), std::move(goodness), std::move(question.cells)};
 }
 
 /// Returns a sentence if the answers of one person do not determine a parameter.
@@ -233,10 +231,9 @@ Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const People
   }
   TODBENCH_TRY(auto people, sessions_of_people(out.sessions, options.persons));
   for (auto& own : people) {
-    auto person = fitted_person(out.sessions, std::move(own), options, stop);
-    if (!person) return tl::unexpected(person.error());
-    out.least_p = std::min(out.least_p, person->goodness.p);
-    out.people.push_back(*std::move(person));
+    TODBENCH_TRY(auto person, fitted_person(out.sessions, std::move(own), options, stop));
+    out.least_p = std::min(out.least_p, person.goodness.p);
+    out.people.push_back(std::move(person));
     if (options.on_progress) options.on_progress(out.people.size(), people.size());
   }
   out.accepted = out.least_p > options.least_p / static_cast<double>(out.people.size());

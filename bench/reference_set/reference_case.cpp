@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"
@@ -41,9 +42,8 @@ std::vector<ReferenceCase> reference_cases() {
 }
 
 Result<std::vector<ReferenceTruth>> reference_truths(const std::vector<ReferenceCase>& cases, std::stop_token stop) {
-  const auto spec = load_observer(reference_observer);
-  if (!spec) return tl::unexpected(spec.error());
-  TemplateObserver observer(*spec, triangle_alternatives());
+  TODBENCH_TRY(const auto spec, load_observer(reference_observer));
+  TemplateObserver observer(spec, triangle_alternatives());
   Accuracy accuracy = Accuracy::normal();
   accuracy.standard_error_percent = truth_error_percent;
   std::vector<ReferenceTruth> out;

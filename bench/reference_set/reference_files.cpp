@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "acquisition/base/try.h"
 #include "bench/text/files.h"
 #include "bench/text/json_reader.h"
 #include "bench/text/text.h"
@@ -104,9 +105,8 @@ Result<std::string> set_sums(const std::filesystem::path& folder) {
   std::string text;
   for (const std::string& file : files) {
     if (file == sums_name) continue;
-    auto sum = sha256_of_file(folder / file);
-    if (!sum) return tl::unexpected(sum.error());
-    text += *sum + "  " + file + "\n";
+    TODBENCH_TRY(auto sum, sha256_of_file(folder / file));
+    text += sum + "  " + file + "\n";
   }
   return text;
 }
@@ -115,14 +115,11 @@ Result<std::vector<ReferenceTruth>> read_truths(const std::filesystem::path& fol
   const auto refuse = [&](const std::string& why) {
     return fail(ErrorCode::invalid_input, folder.string() + ": " + why);
   };
-  const auto text = read_text_file(folder / "set.json");
-  if (!text) return tl::unexpected(text.error());
-  const auto listed = read_text_file(folder / sums_name);
-  if (!listed) return tl::unexpected(listed.error());
-  const auto found = set_sums(folder);
-  if (!found) return tl::unexpected(found.error());
-  if (*listed != *found) return refuse("its files differ from those that SHA256SUMS lists");
-  const Json json = Json::parse(*text, nullptr, false);
+  TODBENCH_TRY(const auto text, read_text_file(folder / "set.json"));
+  TODBENCH_TRY(const auto listed, read_text_file(folder / sums_name));
+  TODBENCH_TRY(const auto found, set_sums(folder));
+  if (listed != found) return refuse("its files differ from those that SHA256SUMS lists");
+  const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) return refuse("set.json is not valid JSON");
   const JsonReader reader(json);
   reader.at("schema").expect(reference_set_name);

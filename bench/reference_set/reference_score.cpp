@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/text.h"
 
@@ -58,24 +59,21 @@ Result<ReferenceResult> result_of(const CsvTable& table, const CsvRow& row, cons
 
 Result<std::vector<ReferenceResult>> parse_reference_result(std::string_view text, std::string_view name,
                                                             std::span<const ReferenceTruth> truths) {
-  const auto table = parse_csv(text, name);
-  if (!table) return tl::unexpected(table.error());
-  const auto places = columns_of(*table);
-  if (!places) return tl::unexpected(places.error());
+  TODBENCH_TRY(const auto table, parse_csv(text, name));
+  TODBENCH_TRY(const auto places, columns_of(table));
   std::vector<std::string> known;
   for (const ReferenceTruth& truth : truths) known.push_back(truth.name);
   std::vector<std::optional<ReferenceResult>> found(truths.size());
-  for (const CsvRow& row : table->rows) {
-    auto result = result_of(*table, row, *places);
-    if (!result) return tl::unexpected(result.error());
-    const auto at = std::find(known.begin(), known.end(), result->name);
+  for (const CsvRow& row : table.rows) {
+    TODBENCH_TRY(auto result, result_of(table, row, places));
+    const auto at = std::find(known.begin(), known.end(), result.name);
     if (at == known.end()) {
-      return table->wrong(row.line,
-                          "unknown case '" + one_line(result->name) + "'" + nearest_name_hint(result->name, known));
+      return table.wrong(row.line,
+                         "unknown case '" + one_line(result.name) + "'" + nearest_name_hint(result.name, known));
     }
     auto& slot = found[static_cast<std::size_t>(at - known.begin())];
-    if (slot) return table->wrong(row.line, "case '" + *at + "' occurs twice");
-    slot = *std::move(result);
+    if (slot) return table.wrong(row.line, "case '" + *at + "' occurs twice");
+    slot = std::move(result);
   }
   std::vector<ReferenceResult> out;
   for (std::size_t i = 0; i < found.size(); ++i) {

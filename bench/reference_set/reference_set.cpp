@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/tiff_writer.h"
 #include "bench/plan/descriptions.h"
@@ -30,11 +31,9 @@ class CaseWriter {
     // The time is not recorded: the same seed gives the same bytes.
     header.created_utc = "1970-01-01T00:00:00Z";
     header.annotations = {{"reference_set", std::string(reference_set_name)}, {"case", c.name}};
-    auto stream = FrameStreamWriter::create(folder / (c.name + ".todrec"), header);
-    if (!stream) return tl::unexpected(stream.error());
-    auto tiff = TiffWriter::create(folder / (c.name + ".tif"));
-    if (!tiff) return tl::unexpected(tiff.error());
-    return CaseWriter(*std::move(stream), *std::move(tiff));
+    TODBENCH_TRY(auto stream, FrameStreamWriter::create(folder / (c.name + ".todrec"), header));
+    TODBENCH_TRY(auto tiff, TiffWriter::create(folder / (c.name + ".tif")));
+    return CaseWriter(std::move(stream), std::move(tiff));
   }
 
   Result<void> append(Frame frame, const PlateScene& scene, const SensorSpec& sensor) {
@@ -87,9 +86,8 @@ std::vector<TargetState> presentations(const ReferenceCase& c, int frames, const
 Result<std::vector<TargetPlate>> both_plates() {
   std::vector<TargetPlate> plates;
   for (const auto name : plate_names) {
-    auto plate = load_plate(name);
-    if (!plate) return tl::unexpected(plate.error());
-    plates.push_back(*std::move(plate));
+    TODBENCH_TRY(auto plate, load_plate(name));
+    plates.push_back(std::move(plate));
   }
   return plates;
 }
@@ -103,45 +101,40 @@ Result<void> write_plates_and_observer(const std::filesystem::path& folder) {
   std::vector<std::pair<ResourceKind, std::string_view>> copies{{ResourceKind::observer, reference_observer}};
   for (const auto name : plate_names) copies.emplace_back(ResourceKind::plate, name);
   for (const auto& [kind, name] : copies) {
-    const auto resource = find_resource(kind, name);
-    if (!resource) return tl::unexpected(resource.error());
+    TODBENCH_TRY(const auto resource, find_resource(kind, name));
     const auto file = folder / (kind == ResourceKind::plate ? "plates" : "observers") / (std::string(name) + ".toml");
-    if (auto written = write_file_atomically(file, resource->text); !written) return written;
+    if (auto written = write_file_atomically(file, resource.text); !written) return written;
   }
   return {};
 }
 
 Result<void> write_reference_case(const std::filesystem::path& folder, const ReferenceCase& c, std::uint64_t number,
                                   const ReferenceSetOptions& options, const std::stop_token& stop) {
-  const auto plates = both_plates();
-  if (!plates) return tl::unexpected(plates.error());
+  TODBENCH_TRY(const auto plates, both_plates());
   const RandomStream stream = RandomStream(options.seed, "reference_set").sub(number);
   const auto model =
       std::make_shared<const SensorModel>(c.sensor, full_plan(c.sensor, {}, {}), Accuracy::normal(), stream.stream());
   PlateScene first;
-  first.plate = plates->front();
+  first.plate = plates.front();
   first.distance_m = reference_distance_m;
   first.background_k = reference_background_k;
   const auto scene = std::make_shared<SceneHolder>(first);
   const auto camera = simulated_source(model, scene, c.name);
-  const auto target = scene_target(scene, *plates);
-  auto writer = CaseWriter::create(folder, c, camera->info());
-  if (!writer) return tl::unexpected(writer.error());
+  const auto target = scene_target(scene, plates);
+  TODBENCH_TRY(auto writer, CaseWriter::create(folder, c, camera->info()));
   if (auto started = camera->start(); !started) return started;
   for (const TargetState& state : presentations(c, options.frames, stream.sub(1))) {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     if (auto shown = target->present(state, stop); !shown) return tl::unexpected(shown.error());
-    auto frame = camera->next(std::chrono::milliseconds(0));
-    if (!frame) return tl::unexpected(frame.error());
-    if (auto kept = writer->append(*std::move(frame), *scene->scene(), c.sensor); !kept) return kept;
+    TODBENCH_TRY(auto frame, camera->next(std::chrono::milliseconds(0)));
+    if (auto kept = writer.append(std::move(frame), *scene->scene(), c.sensor); !kept) return kept;
   }
-  return writer->finish(folder, c.name);
+  return writer.finish(folder, c.name);
 }
 
 Result<void> write_reference_set(const std::filesystem::path& folder, const ReferenceSetOptions& options,
                                  std::stop_token stop) {
-  const auto truths = reference_truths(options.cases, stop);
-  if (!truths) return tl::unexpected(truths.error());
+  TODBENCH_TRY(const auto truths, reference_truths(options.cases, stop));
   if (auto made = make_folder(folder); !made) return made;
   if (auto written = write_plates_and_observer(folder); !written) return written;
   if (auto made = make_folder(folder / "sensors"); !made) return made;
@@ -154,12 +147,11 @@ Result<void> write_reference_set(const std::filesystem::path& folder, const Refe
       return fail(options.cases[i].name, written.error());
     if (options.on_progress) options.on_progress(i + 1, options.cases.size());
   }
-  if (auto written = write_file_atomically(folder / "set.json", set_description(options, *truths)); !written)
+  if (auto written = write_file_atomically(folder / "set.json", set_description(options, truths)); !written)
     return written;
   if (auto written = write_file_atomically(folder / "README.md", set_readme(options)); !written) return written;
-  const auto sums = set_sums(folder);
-  if (!sums) return tl::unexpected(sums.error());
-  return write_file_atomically(folder / "SHA256SUMS", *sums);
+  TODBENCH_TRY(const auto sums, set_sums(folder));
+  return write_file_atomically(folder / "SHA256SUMS", sums);
 }
 
 }  // namespace todbench

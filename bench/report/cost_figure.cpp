@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "acquisition/base/try.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/svg.h"
@@ -130,9 +131,8 @@ Plot cost_knob_plot(const CostFrontier& frontier) {
 Result<std::string> cost_document(const CostFrontier& frontier) {
   std::vector<Drawing> drawings;
   for (const Plot& plot : {cost_result_plot(frontier), cost_knob_plot(frontier)}) {
-    auto drawing = drawn(plot);
-    if (!drawing) return tl::unexpected(drawing.error());
-    drawings.push_back(*std::move(drawing));
+    TODBENCH_TRY(auto drawing, drawn(plot));
+    drawings.push_back(std::move(drawing));
   }
   return svg_document(drawings);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "acquisition/base/try.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/svg.h"
@@ -87,9 +88,8 @@ Plot range_plot(std::span<const ModelRange> models) {
 Result<std::string> range_svg(std::span<const ModelRange> models) {
   if (std::all_of(models.begin(), models.end(), [](const auto& model) { return model.curve.empty(); }))
     return fail(ErrorCode::not_identifiable, "no model gives a range, so there is no curve to draw");
-  const auto drawing = drawn(range_plot(models));
-  if (!drawing) return tl::unexpected(drawing.error());
-  return svg_document(std::array{*drawing});
+  TODBENCH_TRY(const auto drawing, drawn(range_plot(models)));
+  return svg_document(std::array{drawing});
 }
 
 Document range_page(std::span<const ModelRange> models, const RangePage& page) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "acquisition/base/host_clock.h"
+#include "acquisition/base/try.h"
 #include "bench/devices/devices.h"
 #include "bench/devices/observed_source.h"
 #include "bench/plan/plan_options.h"
@@ -172,38 +173,35 @@ Alignment look_at_plate(const cv::Mat1d& kelvin, const TargetPlate& mounted_plat
 }
 
 Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std::stop_token stop) {
-  const auto loaded = LoadedPlan::load(plan);
-  if (!loaded) return tl::unexpected(loaded.error());
+  TODBENCH_TRY(const auto loaded, LoadedPlan::load(plan));
   EffectPlanner planner;
-  auto inputs = experiment_inputs(*loaded, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
+  TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(*loaded, stop, {}, listener.on_phase);
-  if (!bench) return tl::unexpected(bench.error());
-  if (listener.on_open) listener.on_open(bench->camera->info());
-  if (listener.on_frame) bench->camera = observed_source(std::move(bench->camera), listener.on_frame);
-  const auto states = constant_stimuli(stimuli_options(plan, inputs->plates, plan.camera.ifov_mrad, Side::measured),
+  TODBENCH_TRY(auto bench, open_bench(loaded, stop, {}, listener.on_phase));
+  if (listener.on_open) listener.on_open(bench.camera->info());
+  if (listener.on_frame) bench.camera = observed_source(std::move(bench.camera), listener.on_frame);
+  const auto states = constant_stimuli(stimuli_options(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured),
                                        RandomStream(plan.seed, "schedule"));
   if (states.empty())
     return fail(ErrorCode::invalid_input, "the plan shows no target: it has no plate, mounting or contrast");
   TargetState state = states.front();
   state.shift_mm = {0, 0};
-  const MeasurementOptions options = camera_options(plan, inputs->plates);
-  auto aligning = prepare(plan, *inputs, options, state);
+  const MeasurementOptions options = camera_options(plan, inputs.plates);
+  auto aligning = prepare(plan, inputs, options, state);
   if (!aligning) return tl::unexpected(aligning.error());
   if (listener.on_phase) listener.on_phase("aligning " + state.plate + " at " + stated(state.delta_t_k) + " K");
 
-  const std::stop_callback wake(stop, [&] { bench->camera->stop(); });
-  if (auto started = bench->camera->start(); !started) return started;
-  auto presented = bench->target->present(state, stop);
+  const std::stop_callback wake(stop, [&] { bench.camera->stop(); });
+  if (auto started = bench.camera->start(); !started) return started;
+  auto presented = bench.target->present(state, stop);
   if (!presented) {
     if (presented.error().code == ErrorCode::interrupted) return {};
     return target_failure("presenting the target", presented.error());
   }
-  FrameTaker taker(*bench->camera, taker_options(options, bench->camera->info()));
+  FrameTaker taker(*bench.camera, taker_options(options, bench.camera->info()));
   taker.scene_changed(monotonic_ns());
   auto ended = look_until_stopped(taker, *aligning, options, listener, stop);
-  bench->camera->stop();
+  bench.camera->stop();
   return ended;
 }
 

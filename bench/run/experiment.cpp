@@ -156,59 +156,54 @@ ExperimentOutcome outcome_of(const OpenSession& open, TodCurve curve, Measuremen
 
 Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,
                                         const ExperimentListener& listener, std::stop_token stop) {
-  const auto loaded = LoadedPlan::load(plan);
-  if (!loaded) return tl::unexpected(loaded.error());
-  return simulate_plan(*loaded, options, listener, std::move(stop));
+  TODBENCH_TRY(const auto loaded, LoadedPlan::load(plan));
+  return simulate_plan(loaded, options, listener, std::move(stop));
 }
 
 Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
                                         const ExperimentListener& listener, std::stop_token stop) {
   EffectPlanner planner;
-  auto inputs = experiment_inputs(loaded, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
-  const auto chosen = loaded.with(with_frames(with_limits_in_ramp(loaded.plan()), *inputs));
-  if (!chosen) return tl::unexpected(chosen.error());
-  const Plan& plan = chosen->plan();
+  TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
+  TODBENCH_TRY(const auto chosen, loaded.with(with_frames(with_limits_in_ramp(loaded.plan()), inputs)));
+  const Plan& plan = chosen.plan();
   Provenance provenance = begin_provenance(plan, Side::simulated);
-  provenance.effects = inputs->effects;
-  provenance.modules = module_records(plan, inputs->sensor, Side::simulated);
+  provenance.effects = inputs.effects;
+  provenance.modules = module_records(plan, inputs.sensor, Side::simulated);
   provenance.target = "simulated scene";
-  if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
-  if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
-  auto folder = opened_session(*chosen, options, provenance, listener);
-  if (!folder) return tl::unexpected(folder.error());
-  const OpenSession open{*folder, listener};
-  for (const auto& warning : inputs->warnings) note(*folder, listener, warning);
-  phase(*folder, listener, "simulating " + inputs->sensor.name);
-  auto run = run_simulated(plan, *inputs, open, SessionCurve::main, {}, options.host, stop);
+  if (auto fits = check_simulated_geometry(plan, inputs); !fits) return tl::unexpected(fits.error());
+  if (auto possible = check_tolerance(plan, inputs); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY(auto folder, opened_session(chosen, options, provenance, listener));
+  const OpenSession open{folder, listener};
+  for (const auto& warning : inputs.warnings) note(folder, listener, warning);
+  phase(folder, listener, "simulating " + inputs.sensor.name);
+  auto run = run_simulated(plan, inputs, open, SessionCurve::main, {}, options.host, stop);
   if (!run) {
     // At contrasts below the threshold the plate may not be found either: report the cause, not the symptom.
-    if (!inputs->identifiable && run.error().code == ErrorCode::calibration)
+    if (!inputs.identifiable && run.error().code == ErrorCode::calibration)
       return abandon(open, plan, provenance,
-                     {ErrorCode::not_identifiable, inputs->warnings.front() + "; " + run.error().message});
+                     {ErrorCode::not_identifiable, inputs.warnings.front() + "; " + run.error().message});
     return abandon(open, plan, provenance, run.error());
   }
   std::optional<CameraMeasures> measures;
   if (!run->result.ended_by) {
-    auto found = simulated_measures(loaded, *inputs, open, stop);
+    auto found = simulated_measures(loaded, inputs, open, stop);
     if (found)
       measures = *std::move(found);
     else
       run->result.ended_by = found.error();
   }
-  run->result.notes.insert(run->result.notes.end(), inputs->warnings.begin(), inputs->warnings.end());
+  run->result.notes.insert(run->result.notes.end(), inputs.warnings.begin(), inputs.warnings.end());
   provenance.run = run_record(run->result, run->wall_s);
   ExperimentOutcome outcome =
-      outcome_of(open, std::move(run->curve), run->result, std::move(measures), *inputs, *provenance.run);
-  add_display(outcome, provenance, plan, *inputs, open, stop);
+      outcome_of(open, std::move(run->curve), run->result, std::move(measures), inputs, *provenance.run);
+  add_display(outcome, provenance, plan, inputs, open, stop);
   return concluded(std::move(outcome), plan, open, provenance);
 }
 
 Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
                                        const ExperimentListener& listener, std::stop_token stop) {
-  const auto loaded = LoadedPlan::load(plan);
-  if (!loaded) return tl::unexpected(loaded.error());
-  return measure_plan(*loaded, options, listener, std::move(stop));
+  TODBENCH_TRY(const auto loaded, LoadedPlan::load(plan));
+  return measure_plan(loaded, options, listener, std::move(stop));
 }
 
 Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
@@ -217,25 +212,22 @@ Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const Experimen
   if (plan.camera.id.empty()) return fail(ErrorCode::invalid_input, "the plan names no camera: [camera] id is missing");
   if (auto valid = check_calibration(plan, today()); !valid) return tl::unexpected(valid.error());
   EffectPlanner planner;
-  auto inputs = experiment_inputs(loaded, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
-  if (auto possible = check_tolerance(plan, *inputs); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
+  if (auto possible = check_tolerance(plan, inputs); !possible) return tl::unexpected(possible.error());
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
-  auto bench = open_bench(loaded, stop, options.host, listener.on_phase, listener.on_wait);
-  if (!bench) return tl::unexpected(bench.error());
+  TODBENCH_TRY(auto bench, open_bench(loaded, stop, options.host, listener.on_phase, listener.on_wait));
   if (options.host.on_opened) {
-    TODBENCH_TRY(std::string note_of_session, options.host.on_opened(*bench));
-    inputs->warnings.push_back(std::move(note_of_session));
+    TODBENCH_TRY(std::string note_of_session, options.host.on_opened(bench));
+    inputs.warnings.push_back(std::move(note_of_session));
   }
-  return measure_on_bench(loaded, *inputs, *std::move(bench), options, listener, std::move(stop));
+  return measure_on_bench(loaded, inputs, std::move(bench), options, listener, std::move(stop));
 }
 
 Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const ExperimentInputs& inputs, OpenedBench bench,
                                            const ExperimentOptions& options, const ExperimentListener& listener,
                                            std::stop_token stop) {
-  const auto chosen = loaded.with(with_frames(with_limits_in_ramp(loaded.plan()), inputs));
-  if (!chosen) return tl::unexpected(chosen.error());
-  const Plan& plan = chosen->plan();
+  TODBENCH_TRY(const auto chosen, loaded.with(with_frames(with_limits_in_ramp(loaded.plan()), inputs)));
+  const Plan& plan = chosen.plan();
   if (listener.on_open) listener.on_open(bench.camera->info());
   if (listener.on_frame) bench.camera = observed_source(std::move(bench.camera), listener.on_frame);
   const SourceInfo info = bench.camera->info();
@@ -246,12 +238,11 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   provenance.camera = camera_record(info);
   provenance.target = bench.target->capabilities().description;
   provenance.origin = options.origin;
-  auto folder = opened_session(*chosen, options, provenance, listener);
-  if (!folder) return tl::unexpected(folder.error());
-  const OpenSession open{*folder, listener};
-  for (const auto& warning : info.warnings) note(*folder, listener, warning);
-  for (const auto& warning : bench.warnings) note(*folder, listener, warning);
-  for (const auto& warning : inputs.warnings) note(*folder, listener, warning);
+  TODBENCH_TRY(auto folder, opened_session(chosen, options, provenance, listener));
+  const OpenSession open{folder, listener};
+  for (const auto& warning : info.warnings) note(folder, listener, warning);
+  for (const auto& warning : bench.warnings) note(folder, listener, warning);
+  for (const auto& warning : inputs.warnings) note(folder, listener, warning);
   auto start = start_run(plan, inputs, bench, options.host.added, open, stop);
   if (!start) return abandon(open, plan, provenance, start.error());
 
@@ -259,18 +250,18 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   auto forecast = bill_forecast(plan, inputs);
   if (forecast && !options.host.added.as_recorded && !has_scheme(plan.camera.id, camera_scheme::file)) {
     if (const std::string remark = resume_remark(plan, forecast->total_s); !remark.empty())
-      note(*folder, listener, remark);
+      note(folder, listener, remark);
   }
 
   const auto begin = Clock::now();
   const std::int64_t begin_ns = monotonic_ns();
-  phase(*folder, listener, "measuring " + info.model + " " + info.serial);
+  phase(folder, listener, "measuring " + info.model + " " + info.serial);
   auto responses = responses_of_camera(plan, inputs, stop);
   if (!responses) return abandon(open, plan, provenance, with_context("measuring", responses.error()));
   std::optional<BackgroundTwinFunctions> functions;
   if (plan.schedule.kind != ScheduleKind::adaptive) functions.emplace(plan, inputs);
   BackgroundMeasures twin_measures(loaded, inputs);
-  CameraSurrogate surrogate(*chosen, inputs, *responses);
+  CameraSurrogate surrogate(chosen, inputs, *responses);
   auto measured = run_measured(plan, inputs, surrogate, bench, open, options.host.added, stop);
   if (!measured) return abandon(open, plan, provenance, with_context("measuring", measured.error()));
   MeasurementResult& result = measured->result;
@@ -278,7 +269,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   result.notes.insert(result.notes.end(), start->notes.begin(), start->notes.end());
   provenance.camera_optics = surrogate.record();
   if (const auto sentence = surrogate.sentence()) {
-    note(*folder, listener, *sentence);
+    note(folder, listener, *sentence);
     result.notes.push_back(*sentence);
   }
   const auto lent = surrogate.lent();
@@ -301,7 +292,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   if (forecast) {
     const auto sentence = forecast_beside_outcome(*forecast, result, fitted.curve, inputs.effects, wall_s, begin_ns);
     if (!sentence.empty()) {
-      note(*folder, listener, sentence);
+      note(folder, listener, sentence);
       result.notes.push_back(sentence);
     }
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/devices/warm_up_gate.h"
 #include "bench/run/grey_results.h"
 #include "bench/run/physical_measures.h"
@@ -35,21 +36,17 @@ Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& input
   options.max_contrast_error = gross_contrast_deviations(plan);
   options.contrast_response = surrogate.responses();
   options.learn_response = [&surrogate](const SetUpPicture& found) { return surrogate.learn(found); };
-  const auto air = stated_air(plan, inputs.sensor);
-  if (!air) return tl::unexpected(air.error());
-  options.air_transmittance = *air;
+  TODBENCH_TRY(options.air_transmittance, stated_air(plan, inputs.sensor));
   options.free_running = !bench.simulated;
   options.frames_after_change += settle_frames(modules);
-  auto functions = stopping_tables(plan, inputs, stop);
-  if (!functions) return tl::unexpected(functions.error());
+  TODBENCH_TRY(auto functions, stopping_tables(plan, inputs, stop));
   const auto schedule = make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured,
-                                      RandomStream(plan.seed, "schedule"), *functions);
+                                      RandomStream(plan.seed, "schedule"), functions);
   const AnswerKind kept = added.as_recorded ? AnswerKind::binary : AnswerKind::graded;
-  auto result = record_trials(open, bench, *observer, *schedule, options, SessionCurve::main, kept, stop);
-  if (!result) return tl::unexpected(result.error());
+  TODBENCH_TRY(auto result, record_trials(open, bench, *observer, *schedule, options, SessionCurve::main, kept, stop));
   options.contrast_response = surrogate.responses();
   options.learn_response = {};
-  return MeasuredRun{*std::move(result), std::move(options), *std::move(functions),
+  return MeasuredRun{std::move(result), std::move(options), std::move(functions),
                      changed_settings(*bench.camera, at_start)};
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/devices/camera_settings.h"
 #include "bench/devices/plate_picture.h"
 #include "bench/plan/collimator.h"
@@ -192,40 +193,40 @@ using MaybeMeasures = Result<std::optional<CameraMeasures>>;
 /// physical_measures() without messages. Precondition: the plan requests some.
 MaybeMeasures measures_of_bench(const Plan& plan, const MeasurementOptions& options, const ExperimentInputs& inputs,
                                 OpenedBench& bench, std::stop_token stop) {
-  auto measures = measure_camera(*bench.camera, *bench.target,
-                                 {.noise = plan.measures.noise,
-                                  .noise_frames = plan.measures.noise_frames,
-                                  .pixels = pixel_options(plan),
-                                  .drift_s = plan.measures.drift ? std::optional(plan.measures.drift_s) : std::nullopt,
-                                  .response = plan.measures.response ? response_options(plan) : std::nullopt,
-                                  .geometry = plan.measures.geometry,
-                                  .transfer = plan.measures.transfer,
-                                  .transfer_steps_k = plan.measures.transfer_steps_k,
-                                  .triangles_k = triangle_contrasts(plan),
-                                  .mtf_plate = inputs.mtf_plate,
-                                  .mtf_delta_t_k = plan.measures.mtf_delta_t_k,
-                                  .mtf_frames = plan.measures.mtf_frames,
-                                  .mtf_frequency_per_pitch = plan.measures.mtf_frequency_per_pitch,
-                                  .ctf_plate = inputs.ctf_plate,
-                                  .ctf_delta_t_k = plan.measures.ctf_delta_t_k,
-                                  .ctf_frames = plan.measures.ctf_frames,
-                                  .ctf_frequency_per_pitch = plan.measures.ctf_frequency_per_pitch,
-                                  .source_plate = inputs.source_plate,
-                                  .source_delta_t_k = plan.measures.source_size_delta_t_k,
-                                  .source_frames = plan.measures.source_size_frames,
-                                  .source_size_px = plan.measures.source_size_px,
-                                  .absolute = absolute_options(plan, inputs),
-                                  .timing_frames = plan.measures.timing ? plan.measures.timing_frames : 0,
-                                  .latency = latency_options(plan, inputs),
-                                  .mrtd = mrtd_options(plan, inputs),
-                                  .gain_control = plan.measures.gain_control ? response_options(plan) : std::nullopt,
-                                  .measurement = options},
-                                 *bench.host, std::move(stop));
-  if (!measures) return tl::unexpected(measures.error());
-  if (measures->geometry) {
-    if (const double u = relative_u_of_distance(plan); u > 0) measures->geometry->distance_relative_u = u;
+  TODBENCH_TRY(auto measures,
+               measure_camera(*bench.camera, *bench.target,
+                              {.noise = plan.measures.noise,
+                               .noise_frames = plan.measures.noise_frames,
+                               .pixels = pixel_options(plan),
+                               .drift_s = plan.measures.drift ? std::optional(plan.measures.drift_s) : std::nullopt,
+                               .response = plan.measures.response ? response_options(plan) : std::nullopt,
+                               .geometry = plan.measures.geometry,
+                               .transfer = plan.measures.transfer,
+                               .transfer_steps_k = plan.measures.transfer_steps_k,
+                               .triangles_k = triangle_contrasts(plan),
+                               .mtf_plate = inputs.mtf_plate,
+                               .mtf_delta_t_k = plan.measures.mtf_delta_t_k,
+                               .mtf_frames = plan.measures.mtf_frames,
+                               .mtf_frequency_per_pitch = plan.measures.mtf_frequency_per_pitch,
+                               .ctf_plate = inputs.ctf_plate,
+                               .ctf_delta_t_k = plan.measures.ctf_delta_t_k,
+                               .ctf_frames = plan.measures.ctf_frames,
+                               .ctf_frequency_per_pitch = plan.measures.ctf_frequency_per_pitch,
+                               .source_plate = inputs.source_plate,
+                               .source_delta_t_k = plan.measures.source_size_delta_t_k,
+                               .source_frames = plan.measures.source_size_frames,
+                               .source_size_px = plan.measures.source_size_px,
+                               .absolute = absolute_options(plan, inputs),
+                               .timing_frames = plan.measures.timing ? plan.measures.timing_frames : 0,
+                               .latency = latency_options(plan, inputs),
+                               .mrtd = mrtd_options(plan, inputs),
+                               .gain_control = plan.measures.gain_control ? response_options(plan) : std::nullopt,
+                               .measurement = options},
+                              *bench.host, std::move(stop)));
+  if (measures.geometry) {
+    if (const double u = relative_u_of_distance(plan); u > 0) measures.geometry->distance_relative_u = u;
   }
-  return *std::move(measures);
+  return measures;
 }
 
 /// Reports progress, waits for `make`, and reports measures that failed. Empty if the plan requests none.
@@ -297,9 +298,7 @@ MaybeMeasures measures_of_sensor(const LoadedPlan& loaded, const ExperimentInput
   plan.measures.drift_s =
       sensor_module(model->spec()) == nullptr ? std::min(plan.measures.drift_s, MeasuresPlan{}.drift_s) : 2;
   MeasurementOptions options = simulated_options(plan, inputs);
-  auto response = simulated_responses(*model, plan, inputs.plates, options, stop);
-  if (!response) return tl::unexpected(response.error());
-  options.contrast_response = *std::move(response);
+  TODBENCH_TRY(options.contrast_response, simulated_responses(*model, plan, inputs.plates, options, stop));
   OpenedBench bench = simulated_bench(model, loaded.shown_plates(), plan.target.distance_m, {}, inputs.motion);
   auto measures = measures_of_bench(plan, options, inputs, bench, std::move(stop));
   if (measures && *measures) compare_with(**measures, *model, inputs);

@@ -20,17 +20,15 @@ namespace todbench {
 Result<ReportData> report_data_of(const Session& session, const std::filesystem::path& folder) {
   auto data = report_data(session, session_name(folder));
   if (!data) return data;
-  auto people = read_people(folder);
-  if (!people) return tl::unexpected(people.error());
-  for (PersonRecord& person : *people) {
+  TODBENCH_TRY(auto people, read_people(folder));
+  for (PersonRecord& person : people) {
     person.record.trials.clear();
     person.record.shown.clear();
   }
-  if (!people->empty()) data->human = people->front().record.curve;
-  data->people = *std::move(people);
-  auto letterhead = kept_letterhead(folder);
-  if (!letterhead) return tl::unexpected(letterhead.error());
-  if (*letterhead) data->letterhead = *std::move(letterhead);
+  if (!people.empty()) data->human = people.front().record.curve;
+  data->people = std::move(people);
+  TODBENCH_TRY(auto letterhead, kept_letterhead(folder));
+  if (letterhead) data->letterhead = std::move(letterhead);
   std::error_code none;
   if (std::filesystem::exists(folder / order_file, none)) {
     TODBENCH_TRY(data->order, load_order(folder / order_file));
@@ -43,42 +41,38 @@ Result<ReportData> rebuild_report(const Session& session, const std::filesystem:
   if (auto open = require_unsigned(folder); !open) return tl::unexpected(open.error());
   const bool vouched_for = session.accepted_changes.empty() && !session.cut_off;
   // Accepting changed files includes added ones; links are never accepted.
-  auto own = vouched_for ? require_no_foreign_file(folder) : require_no_links(folder);
-  if (!own) return tl::unexpected(own.error());
+  if (auto own = vouched_for ? require_no_foreign_file(folder) : require_no_links(folder); !own)
+    return tl::unexpected(own.error());
   auto data = report_data_of(session, folder);
   if (!data) return data;
   if (vouched_for && !session.verdict) {
     if (auto kept = keep_verdict(folder, *data->verdict); !kept) return tl::unexpected(kept.error());
-    auto digest = manifest_digest(folder);
-    if (!digest) return tl::unexpected(digest.error());
-    data->manifest_sha256 = *std::move(digest);
+    TODBENCH_TRY(data->manifest_sha256, manifest_digest(folder));
   }
-  const auto pages = write_pages(*data);
-  if (!pages) return tl::unexpected(pages.error());
+  TODBENCH_TRY(const auto pages, write_pages(*data));
   if (!vouched_for) return data;
-  if (auto refreshed = refresh_manifest(folder, *pages); !refreshed) return tl::unexpected(refreshed.error());
+  if (auto refreshed = refresh_manifest(folder, pages); !refreshed) return tl::unexpected(refreshed.error());
   return data;
 }
 
 Result<ReportData> revise_report(const Session& session, const std::filesystem::path& folder, const std::string& reason,
                                  const std::string& utc, const std::filesystem::path& secret_key,
                                  const std::stop_token& stop) {
-  auto revision = next_revision(folder, reason, utc);
-  if (!revision) return tl::unexpected(revision.error());
+  TODBENCH_TRY(auto revision, next_revision(folder, reason, utc));
   if (auto own = require_no_foreign_file(folder); !own) return tl::unexpected(own.error());
   if (auto key = require_key_of_session(folder, secret_key, stop); !key) return tl::unexpected(key.error());
   auto data = report_data_of(session, folder);
   if (!data) return data;
-  data->revision = *revision;
+  data->revision = revision;
   if (auto made = make_folder(folder / "revisions"); !made) return tl::unexpected(made.error());
   std::vector<std::string> pages;
   for (const auto& [extension, text] :
        {std::pair(std::string("html"), render_report(*data)), std::pair(std::string("csv"), report_csv(*data))}) {
-    pages.push_back(revision_page(*revision, extension));
+    pages.push_back(revision_page(revision, extension));
     if (auto written = write_file_atomically(folder / pages.back(), text); !written)
       return tl::unexpected(written.error());
   }
-  if (auto kept = keep_revision(folder, *revision, pages, secret_key, stop); !kept) return tl::unexpected(kept.error());
+  if (auto kept = keep_revision(folder, revision, pages, secret_key, stop); !kept) return tl::unexpected(kept.error());
   return data;
 }
 

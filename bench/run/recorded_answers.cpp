@@ -110,12 +110,11 @@ Result<std::string> RecordedAnswers::take(const std::string& tag) {
 }
 
 Result<std::int64_t> RecordedAnswers::take_whole(const std::string& tag) {
-  const auto text = take(tag);
-  if (!text) return tl::unexpected(text.error());
+  TODBENCH_TRY(const auto text, take(tag));
   std::int64_t value = 0;
-  const auto [end, problem] = std::from_chars(text->data(), text->data() + text->size(), value);
-  if (problem != std::errc() || end != text->data() + text->size())
-    return refuse("a whole number for '" + tag + "'", "'" + one_line(*text) + "'");
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size())
+    return refuse("a whole number for '" + tag + "'", "'" + one_line(text) + "'");
   return value;
 }
 

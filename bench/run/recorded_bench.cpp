@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/recording_camera.h"
 #include "bench/session/provenance.h"
@@ -159,9 +160,8 @@ Result<std::shared_ptr<FrameStreamWriter>> record_bench(OpenedBench& bench, cons
       {simulated_key, yes_no(bench.simulated)},
       {comes_back_key, yes_no(bench.host->recovers())},
       {frames_while_presenting_key, yes_no(bench.host->frames_while_presenting() == FramesWhilePresenting::take)}};
-  auto writer = FrameStreamWriter::create(file, header);
-  if (!writer) return tl::unexpected(writer.error());
-  const auto stream = std::make_shared<FrameStreamWriter>(*std::move(writer));
+  TODBENCH_TRY(auto writer, FrameStreamWriter::create(file, header));
+  const auto stream = std::make_shared<FrameStreamWriter>(std::move(writer));
   bench.camera = recording_camera(std::move(bench.camera), stream);
   bench.target = std::make_unique<RecordingTarget>(std::move(bench.target), stream);
   bench.host = std::make_unique<RecordingHost>(std::move(bench.host), stream);
@@ -176,15 +176,14 @@ Result<RecordedBench> open_recorded_bench(const std::filesystem::path& session, 
                                               ": this session has no recorded frames. Measure with [measurement] "
                                               "record_frames or --record-frames");
   }
-  auto stream = open_frame_stream(file);
-  if (!stream) return tl::unexpected(stream.error());
-  auto& annotations = stream->header.annotations;
+  TODBENCH_TRY(auto stream, open_frame_stream(file));
+  auto& annotations = stream.header.annotations;
   if (auto known = check_format(file, annotations); !known) return tl::unexpected(known.error());
-  const auto answers = std::make_shared<RecordedAnswers>(file.string(), std::move(stream->readings));
+  const auto answers = std::make_shared<RecordedAnswers>(file.string(), std::move(stream.readings));
   const auto frames =
       annotations[frames_while_presenting_key] == "yes" ? FramesWhilePresenting::repeat : FramesWhilePresenting::leave;
   RecordedBench out{.bench = {}, .answers = answers};
-  out.bench.camera = recorded_source(std::move(stream->recording), Playback::replay);
+  out.bench.camera = recorded_source(std::move(stream.recording), Playback::replay);
   out.bench.target = std::make_unique<ReplayedTarget>(
       answers,
       TargetCapabilities{.description = annotations[target_key], .sets_shift = annotations[sets_shift_key] == "yes"});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "acquisition/base/try.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/trials_csv.h"
@@ -28,27 +29,23 @@ std::vector<Trial> in_columns_of(std::vector<Trial> trials, std::string_view hea
 /// Compares files with different columns by their common columns.
 Result<bool> same_as_far_as_known(const std::filesystem::path& then, std::string_view header,
                                   const std::filesystem::path& now, bool cut_off) {
-  const auto old_trials = read_trials(then);
-  if (!old_trials) return tl::unexpected(old_trials.error());
-  const auto read = read_trials(now);
-  if (!read) return tl::unexpected(read.error());
-  const std::vector<Trial> trials = in_columns_of(*read, header);
-  const auto both = static_cast<std::ptrdiff_t>(std::min(trials.size(), old_trials->size()));
-  return (cut_off || trials.size() == old_trials->size()) &&
-         std::equal(trials.begin(), trials.begin() + both, old_trials->begin());
+  TODBENCH_TRY(const auto old_trials, read_trials(then));
+  TODBENCH_TRY(const auto read, read_trials(now));
+  const std::vector<Trial> trials = in_columns_of(read, header);
+  const auto both = static_cast<std::ptrdiff_t>(std::min(trials.size(), old_trials.size()));
+  return (cut_off || trials.size() == old_trials.size()) &&
+         std::equal(trials.begin(), trials.begin() + both, old_trials.begin());
 }
 
 /// Compares files of trials. Frames and trials of an interrupted session may end at different points: they are compared
 /// up to the earlier end.
 Result<bool> same_trials(const std::filesystem::path& session, const std::filesystem::path& replay, bool cut_off) {
-  const auto then = read_text_file(session / "trials.csv");
-  if (!then) return tl::unexpected(then.error());
-  const auto now = read_text_file(replay / "trials.csv");
-  if (!now) return tl::unexpected(now.error());
+  TODBENCH_TRY(const auto then, read_text_file(session / "trials.csv"));
+  TODBENCH_TRY(const auto now, read_text_file(replay / "trials.csv"));
   const auto header_of = [](const std::string& text) { return std::string_view(text).substr(0, text.find('\n')); };
-  if (header_of(*then) != header_of(*now))
-    return same_as_far_as_known(session / "trials.csv", header_of(*then), replay / "trials.csv", cut_off);
-  return *now == *then || (cut_off && (now->starts_with(*then) || then->starts_with(*now)));
+  if (header_of(then) != header_of(now))
+    return same_as_far_as_known(session / "trials.csv", header_of(then), replay / "trials.csv", cut_off);
+  return now == then || (cut_off && (now.starts_with(then) || then.starts_with(now)));
 }
 
 /// Returns a curve without findings and reasons, which sessions of earlier versions do not have.
@@ -67,9 +64,8 @@ Result<bool> comparable_fits(const std::filesystem::path& session, const TodCurv
   const bool of_set_ups = std::ranges::any_of(
       curve.points, [](const TodPoint& point) { return point.fit.interval == IntervalKind::set_ups; });
   if (!of_set_ups) return true;
-  const auto trials = read_trials(session / "trials.csv");
-  if (!trials) return tl::unexpected(trials.error());
-  return std::ranges::all_of(*trials, [](const Trial& trial) { return trial.centroid.has_value(); });
+  TODBENCH_TRY(const auto trials, read_trials(session / "trials.csv"));
+  return std::ranges::all_of(trials, [](const Trial& trial) { return trial.centroid.has_value(); });
 }
 
 }  // namespace
@@ -86,11 +82,9 @@ JudgedBy judged_by(const LoadedPlan& loaded) {
 Result<RecordedRun> open_recorded_run(const std::filesystem::path& session, const Pause* pause, const Opening& opening,
                                       RunModules modules) {
   // Frames and plan have to be those of the run.
-  auto recorded = open_session(session, opening);
-  if (!recorded) return tl::unexpected(recorded.error());
-  auto recording = open_recorded_bench(session, pause);
-  if (!recording) return tl::unexpected(recording.error());
-  RecordedRun run{session, *std::move(recorded), *std::move(recording), {}, {}};
+  TODBENCH_TRY(auto recorded, open_session(session, opening));
+  TODBENCH_TRY(auto recording, open_recorded_bench(session, pause));
+  RecordedRun run{session, std::move(recorded), std::move(recording), {}, {}};
   run.plan = run.session.plan;
   // The author of a session chooses the programs that would run here.
   if (has_modules(run.plan, run.session.parts.sensor) && modules != RunModules::yes) {
@@ -114,31 +108,26 @@ Result<RecordedRun> open_recorded_run(const std::filesystem::path& session, cons
 Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const ExperimentOptions& options,
                                      const ExperimentListener& listener, std::stop_token stop, const Opening& opening,
                                      RunModules modules) {
-  auto recorded = open_recorded_run(session, options.host.pause,
-                                    {.accept_changed = opening.accept_changed, .accept_cut_off = true}, modules);
-  if (!recorded) return tl::unexpected(recorded.error());
-  const Session& then = recorded->session;
-  const auto loaded = LoadedPlan::of(recorded->plan, then.parts);
-  if (!loaded) return tl::unexpected(loaded.error());
+  TODBENCH_TRY(auto recorded,
+               open_recorded_run(session, options.host.pause,
+                                 {.accept_changed = opening.accept_changed, .accept_cut_off = true}, modules));
+  const Session& then = recorded.session;
+  TODBENCH_TRY(const auto loaded, LoadedPlan::of(recorded.plan, then.parts));
   EffectPlanner planner;
-  auto inputs = experiment_inputs(*loaded, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
-  inputs->warnings.insert(inputs->warnings.end(), recorded->warnings.begin(), recorded->warnings.end());
-  auto run =
-      measure_on_bench(*loaded, *inputs, std::move(recorded->recording.bench), options, listener, std::move(stop));
+  TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
+  inputs.warnings.insert(inputs.warnings.end(), recorded.warnings.begin(), recorded.warnings.end());
+  auto run = measure_on_bench(loaded, inputs, std::move(recorded.recording.bench), options, listener, std::move(stop));
   // A measurement that asked other questions is not a replay.
-  if (auto agreed = recorded->recording.answers->agreed(); !agreed) return tl::unexpected(agreed.error());
+  if (auto agreed = recorded.recording.answers->agreed(); !agreed) return tl::unexpected(agreed.error());
   if (!run) return tl::unexpected(run.error());
 
   const bool cut_off = then.cut_off;
-  auto trials = same_trials(session, run->folder, cut_off);
-  if (!trials) return tl::unexpected(trials.error());
-  ReplayOutcome outcome{.run = *std::move(run), .same_trials = *trials, .same_fits = std::nullopt};
+  TODBENCH_TRY(auto trials, same_trials(session, run->folder, cut_off));
+  ReplayOutcome outcome{.run = *std::move(run), .same_trials = trials, .same_fits = std::nullopt};
   outcome.accepted_changes = then.accepted_changes;
   if (!then.curve) return outcome;
-  const auto comparable = comparable_fits(session, *then.curve);
-  if (!comparable) return tl::unexpected(comparable.error());
-  if (!*comparable) return outcome;
+  TODBENCH_TRY(const auto comparable, comparable_fits(session, *then.curve));
+  if (!comparable) return outcome;
   const auto fits_then = fits_of(*then.curve), fits_now = fits_of(outcome.run.curve);
   if (!fits_then || !fits_now) return tl::unexpected(fits_then ? fits_now.error() : fits_then.error());
   outcome.same_fits = *fits_then == *fits_now;

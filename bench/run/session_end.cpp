@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/judgement/run_findings.h"
 #include "bench/report/report.h"
 #include "bench/report/report_csv.h"
@@ -28,10 +29,9 @@ class Refusals {
 
 /// Report data of all files in the folder except the manifest.
 Result<ReportData> report_of(const SessionFolder& folder, const ManifestEntries& entries) {
-  auto session = read_session(folder.path());
-  if (!session) return tl::unexpected(session.error());
-  session->manifest_sha256 = digest_of(entries);
-  return report_data(*session, session_name(folder.path()));
+  TODBENCH_TRY(auto session, read_session(folder.path()));
+  session.manifest_sha256 = digest_of(entries);
+  return report_data(session, session_name(folder.path()));
 }
 
 /// Writes page and table, and adds each to the manifest if it was written.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/devices/bench_host.h"
 #include "bench/run/fitted_curve.h"
 #include "bench/run/trial_recorder.h"
@@ -71,19 +72,17 @@ Result<SimulatedRun> run_simulated(const Plan& plan, const ExperimentInputs& inp
   const auto begin = Clock::now();
   const std::map<double, double>& shown_delta_t_k = camera.shown_delta_t_k;
   const ModuleLine log_line = module_log(open.folder);
-  auto set_up = simulated_set_up(plan, inputs, shown_delta_t_k, stop,
-                                 {.on_error_line = log_line, .dither = host.added.dither}, camera.responses);
-  if (!set_up) return tl::unexpected(set_up.error());
-  auto result = simulated_trials(plan, inputs, *set_up, open, which, host, log_line, stop);
+  TODBENCH_TRY(auto set_up,
+               simulated_set_up(plan, inputs, shown_delta_t_k, stop,
+                                {.on_error_line = log_line, .dither = host.added.dither}, camera.responses));
+  auto result = simulated_trials(plan, inputs, set_up, open, which, host, log_line, stop);
   if (!result) return fail("simulating", result.error());
   SimulatedRun run{.result = std::move(*result), .curve = {}, .wall_s = 0};
   const FittedTrials to_fit = trials_to_fit(run.result, plan, inputs, stop);
   if (to_fit.failed) run.result.ended_by = to_fit.failed;
-  auto curve = simulated_curve(run.result, to_fit.of(run.result), plan, inputs);
-  if (!curve) return tl::unexpected(curve.error());
-  run.curve = std::move(*curve);
+  TODBENCH_TRY(run.curve, simulated_curve(run.result, to_fit.of(run.result), plan, inputs));
 
-  const TodCurve stopped_by = known_functions(set_up->functions, run.curve);
+  const TodCurve stopped_by = known_functions(set_up.functions, run.curve);
   report_fit(run.result, plan, inputs, open);
   TwinShapesOutcome shaped =
       take_shape(run.curve, to_fit.of(run.result), !run.result.ended_by, plan, inputs, shown_delta_t_k,

@@ -170,9 +170,8 @@ Result<std::unique_ptr<ControlServer>> ControlServer::start(const ControlServerO
   out->token_ = options.token.empty() ? random_token() : options.token;
   out->serving_ = std::make_unique<Serving>(options, out->token_);
   Serving& serving = *out->serving_;
-  const auto port = bind_to(serving.server, options.address);
-  if (!port) return tl::unexpected(port.error());
-  out->url_ = url_of(options.address, *port);
+  TODBENCH_TRY(const auto port, bind_to(serving.server, options.address));
+  out->url_ = url_of(options.address, port);
   serving.server.start_listening();
   return out;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/forwarding_source.h"
 #include "bench/devices/devices.h"
 #include "bench/devices/processed_source.h"
@@ -107,19 +108,15 @@ class BarRun {
     }
     if (auto shown = change(target_); !shown) return tl::unexpected(shown.error());
     if (auto out = move(false); !out) return tl::unexpected(out.error());
-    const auto picture = step_.look(stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    const auto registration = step_.find(*picture, plate_, state_);
-    if (!registration) return tl::unexpected(registration.error());
-    registration_ = *registration;
+    TODBENCH_TRY(const auto picture, step_.look(stop_));
+    TODBENCH_TRY(registration_, step_.find(picture, plate_, state_));
     if (auto seen = step_.contrast(plate_, registration_, state_, presented_, stop_); !seen)
       return tl::unexpected(seen.error());
-    if (measuring_.contrast_unit == ContrastUnit::kelvin) noise_k_ = picture->temporal_noise_k;
-    sizes_ = windows_of(picture->kelvin, plate_, registration_);
+    if (measuring_.contrast_unit == ContrastUnit::kelvin) noise_k_ = picture.temporal_noise_k;
+    sizes_ = windows_of(picture.kelvin, plate_, registration_);
     std::map<double, std::vector<double>> ln_ratios;
     for (int cycle = 0; cycle < options_.cycles; ++cycle) {
-      auto done = one_cycle(ln_ratios);
-      if (!done) return tl::unexpected(done.error());
+      if (auto done = one_cycle(ln_ratios); !done) return tl::unexpected(done.error());
     }
     return concluded(ln_ratios);
   }
@@ -133,14 +130,12 @@ class BarRun {
 
   Result<void> change(Target& what) {
     if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    auto changed = change_target(what, taker_, host_, state_, stop_);
-    if (!changed) return tl::unexpected(changed.error());
-    if (!changed->presented && !changed->given_up) return fail("changing the scene", changed->presented.error());
-    if (!changed->frames) return changed->frames;
-    presented_ = *std::move(changed->presented);
-    const auto there_ns = host_.now_ns(Moment::scene_changed);
-    if (!there_ns) return tl::unexpected(there_ns.error());
-    taker_.scene_changed(*there_ns);
+    TODBENCH_TRY(auto changed, change_target(what, taker_, host_, state_, stop_));
+    if (!changed.presented && !changed.given_up) return fail("changing the scene", changed.presented.error());
+    if (!changed.frames) return changed.frames;
+    presented_ = *std::move(changed.presented);
+    TODBENCH_TRY(const auto there_ns, host_.now_ns(Moment::scene_changed));
+    taker_.scene_changed(there_ns);
     return {};
   }
 
@@ -182,23 +177,21 @@ class BarRun {
     for (const bool with_bar : {false, true}) {
       if (auto moved = move(with_bar); !moved) return moved;
       for (int twice = 0; twice < (with_bar ? 2 : 1); ++twice) {
-        auto picture = average();
-        if (!picture) return tl::unexpected(picture.error());
-        for (const auto& [mm, size] : sizes_) (with_bar ? in : out)[mm] += response_of(size, *picture);
-        if (with_bar) in_ = *std::move(picture);
+        TODBENCH_TRY(auto picture, average());
+        for (const auto& [mm, size] : sizes_) (with_bar ? in : out)[mm] += response_of(size, picture);
+        if (with_bar) in_ = std::move(picture);
       }
     }
     if (auto moved = move(false); !moved) return moved;
-    auto picture = average();
-    if (!picture) return tl::unexpected(picture.error());
+    TODBENCH_TRY(auto picture, average());
     for (const auto& [mm, size] : sizes_) {
-      out[mm] += response_of(size, *picture);
+      out[mm] += response_of(size, picture);
       if (!(in[mm] > 0 && out[mm] > 0))
         return fail(ErrorCode::calibration,
                     fmt::format("triangles of {:g} mm are not visible in {} frames", mm, 2 * options_.frames));
       ln_ratios[mm].push_back(std::log(in[mm] / out[mm]));
     }
-    out_ = *std::move(picture);
+    out_ = std::move(picture);
     return {};
   }
 
@@ -328,11 +321,10 @@ struct SimulatedBar {
 Result<SimulatedBar> simulated_bar(const LoadedPlan& loaded, const EnhancementPackage* package, double bar_k) {
   const Plan& plan = loaded.plan();
   const SensorSpec& sensor = loaded.sensor();
-  const auto accuracy = accuracy_of(plan);
-  if (!accuracy) return tl::unexpected(accuracy.error());
+  TODBENCH_TRY(const auto accuracy, accuracy_of(plan));
   if (auto possible = check_sensor_module(sensor); !possible) return tl::unexpected(possible.error());
   const auto model = std::make_shared<const SensorModel>(
-      sensor, full_plan(sensor, plan.simulation.skip, plan.simulation.force), *accuracy, plan.seed);
+      sensor, full_plan(sensor, plan.simulation.skip, plan.simulation.force), accuracy, plan.seed);
   SimulatedBar out;
   out.bench = simulated_bench(model, loaded.plates(), plan.target.distance_m, {});
   const SourceInfo info = out.bench.camera->info();
@@ -417,15 +409,13 @@ Result<SceneDependence> plan_scene_dependence(const LoadedPlan& loaded, const En
   if (!plan.camera.id.empty()) {
     if (package != nullptr)
       return fail(ErrorCode::invalid_input, "a package can only be used with a simulated sensor, not with a camera");
-    auto bench = open_bench(loaded, stop, host);
-    if (!bench) return tl::unexpected(bench.error());
+    TODBENCH_TRY(auto bench, open_bench(loaded, stop, host));
     MeasurementOptions measuring = camera_options(plan, loaded.plates());
-    measuring.integrity.reject_frozen = measuring.integrity.reject_frozen && !bench->simulated;
-    return measure_scene_dependence(*bench->camera, *bench->target, moved_by_operator(host), state, observer, measuring,
-                                    options, *bench->host, stop);
+    measuring.integrity.reject_frozen = measuring.integrity.reject_frozen && !bench.simulated;
+    return measure_scene_dependence(*bench.camera, *bench.target, moved_by_operator(host), state, observer, measuring,
+                                    options, *bench.host, stop);
   }
-  auto simulated = simulated_bar(loaded, package, bar_k);
-  if (!simulated) return tl::unexpected(simulated.error());
+  TODBENCH_TRY(auto simulated, simulated_bar(loaded, package, bar_k));
   const SensorSpec& sensor = loaded.sensor();
   MeasurementOptions measuring =
       measurement_options(plan, loaded.plates(), sensor.ifov_mrad() / sensor.samples_per_pitch());
@@ -436,9 +426,9 @@ Result<SceneDependence> plan_scene_dependence(const LoadedPlan& loaded, const En
   // Counts are not temperatures behind a gain control.
   if (package != nullptr || !sensor.modules.empty()) measuring.contrast_unit = ContrastUnit::grey_levels;
   SceneDependenceOptions settled = options;
-  settled.settle_frames += simulated->memory;
-  auto found = measure_scene_dependence(*simulated->bench.camera, *simulated->bench.target, simulated->move, state,
-                                        observer, measuring, settled, *simulated->bench.host, stop);
+  settled.settle_frames += simulated.memory;
+  auto found = measure_scene_dependence(*simulated.bench.camera, *simulated.bench.target, simulated.move, state,
+                                        observer, measuring, settled, *simulated.bench.host, stop);
   if (!found) return found;
   found->camera = sensor.name;
   if (package != nullptr) found->package = package->name;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/run/session_end.h"
 #include "bench/session/ending_reserve.h"
 #include "bench/session/json_output.h"
@@ -94,9 +95,8 @@ class BarSession {
     if (!simulated) provenance_.camera = camera_record(info);
     provenance_.target = simulated ? fmt::format("simulated scene, hot bar of {:g} K", task_.bar_k)
                                    : target.capabilities().description + ", hot bar moved by the operator";
-    auto folder = begin_session(loaded_, options_, provenance_);
-    if (!folder) return tl::unexpected(folder.error());
-    folder_.emplace(*std::move(folder));
+    TODBENCH_TRY(auto folder, begin_session(loaded_, options_, provenance_));
+    folder_.emplace(std::move(folder));
     if (listener_.on_session) listener_.on_session(folder_->path());
     for (const auto& warning : info.warnings) note(*folder_, listener_, warning);
     phase(*folder_, listener_, "measuring with a hot bar outside the field of view and inside it");

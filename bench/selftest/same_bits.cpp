@@ -5,6 +5,7 @@
 #include <cmath>
 #include <future>
 
+#include "acquisition/base/try.h"
 #include "bench/reference_set/reference_case.h"
 #include "bench/selftest/selftest_cases.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -65,10 +66,9 @@ Result<void> add_reference_case(SelftestCases& cases, std::stop_token stop) {
   // Of the first case of the set, with its stated standard error.
   constexpr double s75_mrad = 2.0848059071130209, standard_error_mrad = 0.0037587537320949859;
   const std::vector<ReferenceCase> all = reference_cases();
-  const auto truth = reference_truths({all.front()}, std::move(stop));
-  if (!truth) return tl::unexpected(truth.error());
-  cases.push_back({"reference set", "S75 of case-1 [mrad]", truth->front().s75_mrad, s75_mrad, 1e-12 * s75_mrad});
-  cases.push_back({"reference set", "standard error of case-1 [mrad]", truth->front().standard_error_mrad,
+  TODBENCH_TRY(const auto truth, reference_truths({all.front()}, std::move(stop)));
+  cases.push_back({"reference set", "S75 of case-1 [mrad]", truth.front().s75_mrad, s75_mrad, 1e-12 * s75_mrad});
+  cases.push_back({"reference set", "standard error of case-1 [mrad]", truth.front().standard_error_mrad,
                    standard_error_mrad, 1e-12 * s75_mrad});
   return {};
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/serve/guarded_server.h"
 #include "bench/serve/live_page.h"
 
@@ -79,9 +80,8 @@ Result<std::unique_ptr<LiveServer>> LiveServer::start(const ServeAddress& addres
   const std::string token = random_token();
   Serving& serving = *out->serving_;
   serving.route(token);
-  const auto port = bind_to(serving.server, address);
-  if (!port) return tl::unexpected(port.error());
-  out->url_ = url_of(address, *port) + token + "/";
+  TODBENCH_TRY(const auto port, bind_to(serving.server, address));
+  out->url_ = url_of(address, port) + token + "/";
   serving.server.start_listening();
   return out;
 }

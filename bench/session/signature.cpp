@@ -150,10 +150,12 @@ Result<std::string> public_key_of(SigningProgram with, const std::string& secret
     std::error_code problem;
     std::filesystem::remove(out, problem);
   }
-  const auto made = with == SigningProgram::openssl
-                        ? run_well({"openssl", "pkey", "-in", secret_key, "-pubout", "-out", out}, ProgramOutput::kept)
-                        : run_well({"minisign", "-R", "-s", secret_key, "-p", out}, ProgramOutput::shown, stop);
-  if (!made) return tl::unexpected(made.error());
+  if (const auto made =
+          with == SigningProgram::openssl
+              ? run_well({"openssl", "pkey", "-in", secret_key, "-pubout", "-out", out}, ProgramOutput::kept)
+              : run_well({"minisign", "-R", "-s", secret_key, "-p", out}, ProgramOutput::shown, stop);
+      !made)
+    return tl::unexpected(made.error());
   return read_text_file(out);
 }
 

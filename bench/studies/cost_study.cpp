@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "bench/devices/devices.h"
 #include "bench/forecast/prediction.h"
 #include "bench/plan/plan_options.h"
@@ -26,24 +27,21 @@ std::optional<double> standard_error(const PsychometricFit& fit) {
 /// Measures the plan on its simulated sensor from the start, like `simulate`.
 Result<std::vector<ThresholdEstimate>> from_trials(const Plan& plan, const ExperimentInputs& inputs,
                                                    std::stop_token stop) {
-  auto set_up = simulated_set_up(plan, inputs, {}, stop);
-  if (!set_up) return tl::unexpected(set_up.error());
+  TODBENCH_TRY(auto set_up, simulated_set_up(plan, inputs, {}, stop));
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  const auto result = measure(*set_up->bench.camera, *set_up->bench.target, observer, *set_up->schedule,
-                              set_up->options, *set_up->bench.host, MeasurementListener{}, stop);
-  if (!result) return tl::unexpected(result.error());
-  if (result->ended_by) return tl::unexpected(*result->ended_by);
-  auto curve = tod_curve(result->trials, fit_options(plan));
-  if (!curve) return tl::unexpected(curve.error());
+  TODBENCH_TRY(const auto result, measure(*set_up.bench.camera, *set_up.bench.target, observer, *set_up.schedule,
+                                          set_up.options, *set_up.bench.host, MeasurementListener{}, stop));
+  if (result.ended_by) return tl::unexpected(*result.ended_by);
+  TODBENCH_TRY(auto curve, tod_curve(result.trials, fit_options(plan)));
   if (chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape) {
-    auto outcome = fit_twin_shapes(*curve, result->trials, inputs, fit_options(plan),
-                                   direct_options(*curve, inputs, {}, plan.seed, stop));
+    auto outcome = fit_twin_shapes(curve, result.trials, inputs, fit_options(plan),
+                                   direct_options(curve, inputs, {}, plan.seed, stop));
     if (outcome.ended_by) return tl::unexpected(*std::move(outcome.ended_by));
   }
-  fit_right_and_wrong(*curve, result->trials, fit_options(plan));
+  fit_right_and_wrong(curve, result.trials, fit_options(plan));
   std::vector<ThresholdEstimate> found;
   const double ifov_mrad = inputs.sensor.ifov_mrad();
-  for (const TodPoint& point : curve->points) {
+  for (const TodPoint& point : curve.points) {
     if (!point.fit.threshold) continue;
     const auto error = standard_error(point.fit);
     found.push_back({.delta_t_k = point.set_delta_t_k,
@@ -116,26 +114,25 @@ Result<CostFrontier> cost_of_plan(const LoadedPlan& loaded, double budget_s, con
                                   std::stop_token stop) {
   const Plan& plan = loaded.plan();
   EffectPlanner planner;
-  const auto inputs = experiment_inputs(loaded, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
+  TODBENCH_TRY(const auto inputs, experiment_inputs(loaded, planner));
   // Reports in a sentence if the plan cannot be met, before anything is measured.
-  if (const auto prediction = predict_plan(plan, *inputs); !prediction) return tl::unexpected(prediction.error());
-  if (inputs->outlooks.empty()) {
+  if (const auto prediction = predict_plan(plan, inputs); !prediction) return tl::unexpected(prediction.error());
+  if (inputs.outlooks.empty()) {
     CostFrontier nothing;
     nothing.budget_s = budget_s;
-    nothing.notes = inputs->warnings;
+    nothing.notes = inputs.warnings;
     return nothing;
   }
-  if (auto fits = check_simulated_geometry(plan, *inputs); !fits) return tl::unexpected(fits.error());
+  if (auto fits = check_simulated_geometry(plan, inputs); !fits) return tl::unexpected(fits.error());
   const SensorSpec& sensor = loaded.sensor();
-  auto choices = choices_of(plan, sensor, *inputs, planner);
+  auto choices = choices_of(plan, sensor, inputs, planner);
   const CostTask task{.sensor = sensor,
                       .full = full_plan(sensor, {}, {}, plan.simulation.motion),
-                      .observer = inputs->observer,
-                      .motion = inputs->motion,
+                      .observer = inputs.observer,
+                      .motion = inputs.motion,
                       .delta_t_k = plan.target.delta_t_k,
                       .choices = std::move(choices),
-                      .trials = trials_of(plan, *inputs),
+                      .trials = trials_of(plan, inputs),
                       .seed = plan.seed,
                       .budget_s = budget_s};
   return cost_frontier(task, listener, std::move(stop));

@@ -7,6 +7,7 @@
 #include <functional>
 #include <thread>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/session/json_output.h"
 #include "bench/studies/eo_vista_figures.h"
@@ -50,14 +51,13 @@ Result<std::vector<ReproducedThreshold>> simulated(const SensorSpec& sensor, con
                                                    const EoVistaOptions& options) {
   TemplateObserver observer(spec, triangle_alternatives());
   const std::vector<double> contrasts(eo_vista_contrasts_k.begin(), eo_vista_contrasts_k.end());
-  const auto points = direct_estimate(sensor, full_plan(sensor, {}, {}), observer, contrasts,
-                                      {.samples_per_pitch = sensor.microscan,
-                                       .accuracy = options.accuracy,
-                                       .seed = options.seed + static_cast<std::uint64_t>(sensor.microscan),
-                                       .stop = options.stop});
-  if (!points) return tl::unexpected(points.error());
+  TODBENCH_TRY(const auto points, direct_estimate(sensor, full_plan(sensor, {}, {}), observer, contrasts,
+                                                  {.samples_per_pitch = sensor.microscan,
+                                                   .accuracy = options.accuracy,
+                                                   .seed = options.seed + static_cast<std::uint64_t>(sensor.microscan),
+                                                   .stop = options.stop}));
   std::vector<ReproducedThreshold> thresholds;
-  for (const auto& point : *points) {
+  for (const auto& point : points) {
     const double acuity = 1 / (point.s75_pitch * sensor.ifov_mrad());
     const double reach = 1.96 * point.standard_error_pitch / point.s75_pitch;
     thresholds.push_back({sensor.microscan == 1 ? normal : microscan,
@@ -93,24 +93,21 @@ Result<ProportionTable> function_of(const SensorSpec& sensor, TemplateObserver& 
                                .seed = options.seed + 200,
                                .stop = options.stop};
   direct.accuracy.noise_draws = least_twin_shape_draws;
-  const auto curves = proportion_curves(sensor, full_plan(sensor, {}, {}), observer, {contrast_k}, direct);
-  if (!curves) return tl::unexpected(curves.error());
-  return table_of(curves->front(), sensor.ifov_mrad());
+  TODBENCH_TRY(const auto curves, proportion_curves(sensor, full_plan(sensor, {}, {}), observer, {contrast_k}, direct));
+  return table_of(curves.front(), sensor.ifov_mrad());
 }
 
 /// Adds the threshold of the same answers, graded. Without a regular fit it has none.
 Result<void> add_graded(ReproducedThreshold& threshold, const PictureAnswers& answers, const ProportionTable& function,
                         const char* of_sensor) {
-  const auto weibull = fit_graded(answers.graded, {.with_posterior = false});
-  if (!weibull) return tl::unexpected(weibull.error());
-  const auto fit = fit_twin_shape(answers.graded, *weibull, function, {});
-  if (!fit) return tl::unexpected(fit.error());
-  if (!fit->twin_shape) return {};
-  threshold.graded_acuity_per_mrad = acuity_per_mrad(*fit);
-  threshold.graded_ci95 = acuity_interval(fit->ci95);
+  TODBENCH_TRY(const auto weibull, fit_graded(answers.graded, {.with_posterior = false}));
+  TODBENCH_TRY(const auto fit, fit_twin_shape(answers.graded, weibull, function, {}));
+  if (!fit.twin_shape) return {};
+  threshold.graded_acuity_per_mrad = acuity_per_mrad(fit);
+  threshold.graded_ci95 = acuity_interval(fit.ci95);
   threshold.graded_method =
       fmt::format("{} graded answers, function of {}{}, {}", answers.graded.size(), of_sensor,
-                  fit->twin_shape->slope_fitted ? " with a fitted slope" : "", to_string(fit->verdict));
+                  fit.twin_shape->slope_fitted ? " with a fitted slope" : "", to_string(fit.verdict));
   return {};
 }
 
@@ -124,22 +121,21 @@ Result<CameraPart> camera(const SensorSpec& sensor, const std::vector<TemplateOb
     observers.push_back(std::make_unique<TemplateObserver>(spec, triangle_alternatives()));
     borrowed.push_back(observers.back().get());
   }
-  auto record = camera_trials(sensor, borrowed,
-                              {.delta_t_k = contrast_k,
-                               .sizes_pitch = sizes_for(contrast_k),
-                               .presentations = options.presentations,
-                               .frames = options.dsr_frames,
-                               .displacements = displacements,
-                               .accuracy = options.accuracy,
-                               .seed = options.seed + 100,
-                               .stop = options.stop});
-  if (!record) return tl::unexpected(record.error());
+  TODBENCH_TRY(auto record, camera_trials(sensor, borrowed,
+                                          {.delta_t_k = contrast_k,
+                                           .sizes_pitch = sizes_for(contrast_k),
+                                           .presentations = options.presentations,
+                                           .frames = options.dsr_frames,
+                                           .displacements = displacements,
+                                           .accuracy = options.accuracy,
+                                           .seed = options.seed + 100,
+                                           .stop = options.stop}));
   CameraPart part;
   for (std::size_t o = 0; o < specs.size(); ++o) {
     for (const bool resolved : {false, true}) {
       const bool exact = displacements == FrameDisplacements::half_pitches;
       if (exact && !resolved) continue;
-      const PictureAnswers& answers = resolved ? record->observers[o].super_resolved : record->observers[o].still;
+      const PictureAnswers& answers = resolved ? record.observers[o].super_resolved : record.observers[o].still;
       const auto fit = fit_psychometric(answers.levels, {.with_posterior = false});
       if (!fit) return tl::unexpected(fit.error());
       part.thresholds.push_back(
@@ -148,13 +144,12 @@ Result<CameraPart> camera(const SensorSpec& sensor, const std::vector<TemplateOb
            number_text(fit->trials) + " answers, Weibull fit, " + std::string(to_string(fit->verdict))});
       SensorSpec like = sensor;
       like.microscan = resolved ? 2 : 1;
-      const auto function = function_of(like, *observers[o], contrast_k, options);
-      if (!function) return tl::unexpected(function.error());
-      if (auto added = add_graded(part.thresholds.back(), answers, *function, resolved ? microscan : normal); !added)
+      TODBENCH_TRY(const auto function, function_of(like, *observers[o], contrast_k, options));
+      if (auto added = add_graded(part.thresholds.back(), answers, function, resolved ? microscan : normal); !added)
         return tl::unexpected(added.error());
     }
   }
-  part.record = std::move(*record);
+  part.record = std::move(record);
   return part;
 }
 
@@ -227,15 +222,13 @@ std::string joined(const std::vector<CameraPart>& parts, double (*value)(const C
 }  // namespace
 
 Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
-  auto sensor = load_sensor("sc2000");
-  if (!sensor) return tl::unexpected(sensor.error());
+  TODBENCH_TRY(auto sensor, load_sensor("sc2000"));
   std::vector<TemplateObserverSpec> observers;
   for (const char* name : {hvs, human}) {
-    auto spec = load_observer(name);
-    if (!spec) return tl::unexpected(spec.error());
-    observers.push_back(*spec);
+    TODBENCH_TRY(auto spec, load_observer(name));
+    observers.push_back(spec);
   }
-  SensorSpec finer = *sensor;
+  SensorSpec finer = sensor;
   finer.microscan = 2;
   std::vector<CameraPart> parts(eo_vista_contrasts_k.size());
   CameraPart exact;
@@ -244,23 +237,21 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
   // The longest tasks first.
   for (std::size_t i = 0; i < parts.size(); ++i) {
     tasks.emplace_back([&, i]() -> Result<void> {
-      auto part = camera(*sensor, observers, eo_vista_contrasts_k[i], FrameDisplacements::anywhere, options);
-      if (!part) return tl::unexpected(part.error());
-      parts[i] = std::move(*part);
+      TODBENCH_TRY(auto part,
+                   camera(sensor, observers, eo_vista_contrasts_k[i], FrameDisplacements::anywhere, options));
+      parts[i] = std::move(part);
       return {};
     });
   }
   tasks.emplace_back([&]() -> Result<void> {
-    auto part = camera(*sensor, observers, eo_vista_contrasts_k.front(), FrameDisplacements::half_pitches, options);
-    if (!part) return tl::unexpected(part.error());
-    exact = std::move(*part);
+    TODBENCH_TRY(exact,
+                 camera(sensor, observers, eo_vista_contrasts_k.front(), FrameDisplacements::half_pitches, options));
     return {};
   });
   for (std::size_t i = 0; i < found.size(); ++i) {
     tasks.emplace_back([&, i]() -> Result<void> {
-      auto thresholds = simulated(i % 2 == 0 ? *sensor : finer, observers[i / 2], options);
-      if (!thresholds) return tl::unexpected(thresholds.error());
-      found[i] = std::move(*thresholds);
+      TODBENCH_TRY(auto thresholds, simulated(i % 2 == 0 ? sensor : finer, observers[i / 2], options));
+      found[i] = std::move(thresholds);
       return {};
     });
   }
@@ -278,13 +269,11 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
   for (const auto& part : parts)
     reproduction.thresholds.insert(reproduction.thresholds.end(), part.thresholds.begin(), part.thresholds.end());
   reproduction.thresholds.insert(reproduction.thresholds.end(), exact.thresholds.begin(), exact.thresholds.end());
-  auto ranges = ranges_of(reproduction.thresholds);
-  if (!ranges) return tl::unexpected(ranges.error());
-  reproduction.ranges = std::move(ranges->ranges);
-  const auto graded_ranges = ranges_of(by_graded_answers(reproduction.thresholds));
-  if (!graded_ranges) return tl::unexpected(graded_ranges.error());
-  reproduction.figures = eo_vista_figures(reproduction.thresholds, reproduction.ranges, graded_ranges->ranges);
-  reproduction.assumptions = assumptions(options, ranges->size_m);
+  TODBENCH_TRY(auto ranges, ranges_of(reproduction.thresholds));
+  reproduction.ranges = std::move(ranges.ranges);
+  TODBENCH_TRY(const auto graded_ranges, ranges_of(by_graded_answers(reproduction.thresholds)));
+  reproduction.figures = eo_vista_figures(reproduction.thresholds, reproduction.ranges, graded_ranges.ranges);
+  reproduction.assumptions = assumptions(options, ranges.size_m);
   reproduction.settings = {
       {"seed", std::to_string(options.seed)},
       {"noise draws of the direct estimate, per size", std::to_string(options.accuracy.noise_draws)},
@@ -302,7 +291,7 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
       {"distance of samples from the fine grid, rms per axis [pitch], by contrast",
        joined(
            parts, [](const CameraTrialRecord& r) { return r.placement_rms_px; }, 3)},
-      {"size of the craft (square root of area) [m]", fmt::format("{:.3g}", ranges->size_m)}};
+      {"size of the craft (square root of area) [m]", fmt::format("{:.3g}", ranges.size_m)}};
   return reproduction;
 }
 

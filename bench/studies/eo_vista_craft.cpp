@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/scene_descriptions.h"
 
@@ -38,22 +39,20 @@ Result<std::vector<CraftPicture>> eo_vista_craft(Accuracy accuracy, std::uint64_
   if (!scene) return tl::unexpected(scene.error());
   const auto sensor = load_sensor("sc2000");
   if (!sensor) return tl::unexpected(sensor.error());
-  const auto normal = craft_seen(*scene, *sensor, 1, normal_range_m, accuracy, seed);
-  if (!normal) return tl::unexpected(normal.error());
-  const auto finer = craft_seen(*scene, *sensor, 2, microscan_range_m, accuracy, seed);
-  if (!finer) return tl::unexpected(finer.error());
+  TODBENCH_TRY(const auto normal, craft_seen(*scene, *sensor, 1, normal_range_m, accuracy, seed));
+  TODBENCH_TRY(const auto finer, craft_seen(*scene, *sensor, 2, microscan_range_m, accuracy, seed));
   const auto display = [](const ScenePictures& pictures) { return pictures.stages[5].kelvin; };
-  const double low = std::min(normal->grey_low_k, finer->grey_low_k);
+  const double low = std::min(normal.grey_low_k, finer.grey_low_k);
   // Half of the warmest spot; otherwise the hull would be almost black.
-  const double high = 0.5 * std::max(normal->grey_high_k, finer->grey_high_k);
+  const double high = 0.5 * std::max(normal.grey_high_k, finer.grey_high_k);
   const std::string scale =
       fmt::format("Black: {:.2g} K above the water. White: at least {:.2g} K above it.", low, high);
   return std::vector<CraftPicture>{
       {"figure-12-scene", "The craft at the sensor", "craft-01, side view, without a camera. " + scale, 0,
-       normal->stages.front().kelvin, low, high},
-      {"figure-12-sc2000", "SC2000 at 400 m", "As displayed. " + scale, normal_range_m, display(*normal), low, high},
+       normal.stages.front().kelvin, low, high},
+      {"figure-12-sc2000", "SC2000 at 400 m", "As displayed. " + scale, normal_range_m, display(normal), low, high},
       {"figure-12-microscan", "SC2000 with 2 x 2 microscan at 640 m", "As displayed. " + scale, microscan_range_m,
-       display(*finer), low, high}};
+       display(finer), low, high}};
 }
 
 }  // namespace todbench

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "bench/studies/turbulent_ranges.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/sensor_plan.h"
@@ -120,9 +121,8 @@ SensorSpec turbulent_sensor(const IdentificationStudyTask& task, double range_m)
 /// Returns the curve of the study at the paths of the experiment and of its predicted range without turbulence.
 Result<TurbulentSources> behind_turbulence(const IdentificationStudyTask& task, const IdentificationStudy& study,
                                            const RangeTask& question) {
-  const auto still = predict_range(study.tod, question);
-  if (!still) return tl::unexpected(still.error());
-  const double longest_m = std::max(task.ranges_m.back(), 2.2 * still->r75_ci95_m.high.value_or(0));
+  TODBENCH_TRY(const auto still, predict_range(study.tod, question));
+  const double longest_m = std::max(task.ranges_m.back(), 2.2 * still.r75_ci95_m.high.value_or(0));
   return TurbulentSources::of({.thresholds = study.tod, .sensor = task.sensor}, task.observer, task.cn2_m_minus_2_3,
                               longest_m);
 }
@@ -176,13 +176,12 @@ Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task) {
 }
 
 Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task) {
-  const auto experiment = experiment_of(task);
-  if (!experiment) return tl::unexpected(experiment.error());
+  TODBENCH_TRY(const auto experiment, experiment_of(task));
   const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
                             task.sensor.scene_temperature_k};
   IdentificationStudy study;
   double views = 0;
-  for (const auto& target : experiment->targets) {
+  for (const auto& target : experiment.targets) {
     for (const auto& aspect : target.aspects) {
       if (const auto signature = target_signature(aspect, scale)) {
         study.size_m += signature->size_m();
@@ -194,20 +193,14 @@ Result<IdentificationStudy> study_identification(const IdentificationStudyTask& 
   study.size_m /= views;
   study.dt_rss_k /= views;
   study.chance = 1 / static_cast<double>(task.set.targets.size());
-  auto points = identify(*experiment);
-  if (!points) return tl::unexpected(points.error());
-  study.points = *std::move(points);
+  TODBENCH_TRY(study.points, identify(experiment));
   study.r75_m = range_of_75_percent(task, study.points);
-  auto curve = tod_curve_for(task, study.dt_rss_k, experiment->ranges.back().transmittance, study.notes);
-  if (!curve) return tl::unexpected(curve.error());
-  study.tod = *std::move(curve);
+  TODBENCH_TRY(study.tod, tod_curve_for(task, study.dt_rss_k, experiment.ranges.back().transmittance, study.notes));
   if (study.tod.empty()) return study;
   const RangeTask question{.size_m = study.size_m, .delta_t_k = study.dt_rss_k, .m75 = task.m75, .air = task.air.air};
   std::optional<TurbulentSources> turbulent;
   if (task.cn2_m_minus_2_3 > 0) {
-    auto behind = behind_turbulence(task, study, question);
-    if (!behind) return tl::unexpected(behind.error());
-    turbulent = *std::move(behind);
+    TODBENCH_TRY(turbulent, behind_turbulence(task, study, question));
   }
   study.m75 = {
       m_at(task, study, turbulent, study.r75_m.value),

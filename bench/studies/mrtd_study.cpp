@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "acquisition/base/normal.h"
+#include "acquisition/base/try.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 
@@ -103,20 +104,18 @@ Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task) {
   }
   if (!(*tau > 0))
     return fail(ErrorCode::invalid_input, fmt::format("the air transmits no contrast over {:g} m", task.range_m));
-  const auto formula = mrtd_curves(task.trial.sensor, task.formula);
-  if (!formula) return tl::unexpected(formula.error());
+  TODBENCH_TRY(const auto formula, mrtd_curves(task.trial.sensor, task.formula));
   MrtdStudy study;
   study.transmittance = *tau;
   study.nyquist_per_mrad = 0.5 * task.trial.sensor.samples_per_pitch() / task.trial.sensor.ifov_mrad();
   for (const BarAxis axis : task.axes) {
     VirtualMrtdTask trial = task.trial;
     trial.axis = axis;
-    const auto found = virtual_mrtd(trial);
-    if (!found) return tl::unexpected(found.error());
+    TODBENCH_TRY(const auto found, virtual_mrtd(trial));
     auto& curve = study.curves.emplace_back(MrtdAxisCurve{axis, {}});
-    for (const auto& point : *found) {
+    for (const auto& point : found) {
       curve.points.push_back(study_point(before_the_air(point, *tau), trial.criterion,
-                                         axis == BarAxis::horizontal ? formula->horizontal : formula->vertical));
+                                         axis == BarAxis::horizontal ? formula.horizontal : formula.vertical));
       auto& formula_k = curve.points.back().formula_k;
       if (formula_k) *formula_k /= *tau;
     }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "bench/report/tod_figures.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
@@ -106,19 +107,17 @@ void PersonExperiment::shuffle(std::uint64_t seed) {
 }
 
 Result<PersonExperiment> PersonExperiment::of_set(const IdentificationStudyTask& task, int per_target) {
-  const auto experiment = experiment_of(task);
-  if (!experiment) return tl::unexpected(experiment.error());
-  auto frames = IdentificationFrames::of(*experiment);
-  if (!frames) return tl::unexpected(frames.error());
+  TODBENCH_TRY(const auto experiment, experiment_of(task));
+  TODBENCH_TRY(auto frames, IdentificationFrames::of(experiment));
   PersonExperiment out;
   out.task_ = PersonTask::identify;
-  const std::size_t aspects = task.set.azimuths_deg.size(), targets = experiment->targets.size();
+  const std::size_t aspects = task.set.azimuths_deg.size(), targets = experiment.targets.size();
   // People know the targets from their broadest aspect, the one nearest to 90 degrees.
   std::size_t known = 0;
   for (std::size_t a = 1; a < aspects; ++a) {
     if (std::abs(task.set.azimuths_deg[a] - 90) < std::abs(task.set.azimuths_deg[known] - 90)) known = a;
   }
-  for (const auto& target : experiment->targets) {
+  for (const auto& target : experiment.targets) {
     out.alternatives_.push_back(target.name);
     out.icons_.push_back(icon_of(target.aspects[known]));
   }
@@ -128,7 +127,7 @@ Result<PersonExperiment> PersonExperiment::of_set(const IdentificationStudyTask&
     double mean_k = 0;
     for (std::size_t t = 0; t < targets; ++t) {
       for (std::size_t a = 0; a < aspects; ++a)
-        mean_k += frames->contrast_k(r, t, a) / static_cast<double>(targets * aspects);
+        mean_k += frames.contrast_k(r, t, a) / static_cast<double>(targets * aspects);
       for (int k = 0; k < per_target; ++k, ++number) {
         out.trials_.push_back({.condition = r,
                                .truth = t,
@@ -137,7 +136,7 @@ Result<PersonExperiment> PersonExperiment::of_set(const IdentificationStudyTask&
       }
     }
     out.conditions_.push_back({.range_m = task.ranges_m[r],
-                               .transmittance = experiment->ranges[r].transmittance,
+                               .transmittance = experiment.ranges[r].transmittance,
                                .contrast_k = mean_k,
                                .place = r});
     out.grey_.push_back(grey_about(mean_k, task.sensor.netd_k));
@@ -148,7 +147,7 @@ Result<PersonExperiment> PersonExperiment::of_set(const IdentificationStudyTask&
                       {"azimuths_deg", task.set.azimuths_deg},
                       {"cn2_m_minus_2_3", task.cn2_m_minus_2_3},
                       {"seed", task.seed}};
-  out.frames_ = *std::move(frames);
+  out.frames_ = std::move(frames);
   out.shuffle(task.seed);
   return out;
 }
@@ -171,8 +170,7 @@ void PersonExperiment::describe_bars() {
 }
 
 Result<PersonExperiment> PersonExperiment::of_bars(const VirtualMrtdTask& task, int per_contrast) {
-  auto bars = BarFrames::of(task);
-  if (!bars) return tl::unexpected(bars.error());
+  TODBENCH_TRY(auto bars, BarFrames::of(task));
   PersonExperiment out;
   out.task_ = PersonTask::bars;
   out.criterion_ = task.criterion;
@@ -183,8 +181,8 @@ Result<PersonExperiment> PersonExperiment::of_bars(const VirtualMrtdTask& task, 
   const RandomStream choice(task.seed, "person.bars");
   std::uint64_t number = 0;
   for (std::size_t f = 0; f < task.frequencies_per_mrad.size(); ++f) {
-    double contrast_k = first_over_ideal * bars->ideal_k(f);
-    const double noise_k = deviation_of(bars->frame_k(f, BarPattern::uniform, 0, 0, 0));
+    double contrast_k = first_over_ideal * bars.ideal_k(f);
+    const double noise_k = deviation_of(bars.frame_k(f, BarPattern::uniform, 0, 0, 0));
     for (int c = 0; c < contrasts_of_bars; ++c, contrast_k *= step) {
       for (int k = 0; k < per_contrast + empty; ++k, ++number) {
         const std::size_t side = choice.below(2, 3 * number);
@@ -202,7 +200,7 @@ Result<PersonExperiment> PersonExperiment::of_bars(const VirtualMrtdTask& task, 
                       {"axis", task.axis == BarAxis::horizontal ? "horizontal" : "vertical"},
                       {"criterion", std::string(to_string(task.criterion))},
                       {"seed", task.seed}};
-  out.bars_ = *std::move(bars);
+  out.bars_ = std::move(bars);
   out.shuffle(task.seed);
   return out;
 }

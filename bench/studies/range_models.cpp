@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "acquisition/base/normal.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -208,15 +209,14 @@ Interval joined_with_ifov(const Interval& interval, double r75, double ifov_u_pe
 Result<void> predict_tod(Prepared& model, const RangeSources& sources, const RangeQuestion& question) {
   RangeTask task{
       .size_m = question.size_m, .delta_t_k = question.delta_t_k, .m75 = question.m75, .air = question.air.air};
-  const auto predicted = predict_range(sources.thresholds, task);
-  if (!predicted) return tl::unexpected(predicted.error());
-  model.head.r75_m = predicted->r75_m;
-  model.head.reason = predicted->reason;
-  model.head.r75_ci95_m = predicted->r75_ci95_m;
-  model.head.notes = predicted->notes;
-  if (predicted->r75_m) {
+  TODBENCH_TRY(const auto predicted, predict_range(sources.thresholds, task));
+  model.head.r75_m = predicted.r75_m;
+  model.head.reason = predicted.reason;
+  model.head.r75_ci95_m = predicted.r75_ci95_m;
+  model.head.notes = predicted.notes;
+  if (predicted.r75_m) {
     model.head.r75_ci95_m =
-        joined_with_m75(sources.thresholds, task, *predicted->r75_m, predicted->r75_ci95_m, question.m75_u_percent);
+        joined_with_m75(sources.thresholds, task, *predicted.r75_m, predicted.r75_ci95_m, question.m75_u_percent);
   }
   if (auto sentence = observers_differ(question); !sentence.empty()) model.head.notes.push_back(std::move(sentence));
   return {};

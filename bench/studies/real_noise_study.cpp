@@ -11,6 +11,7 @@
 #include <string>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "hvs/observer/share_won.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "tod/plate/test_pattern.h"
@@ -166,9 +167,8 @@ class Ladder {
     auto& slot = sizes_[index];
     if (slot == nullptr) {
       const double size_pitch = std::pow(size_step, index);
-      auto bank = observer_.bank(size_pitch, 1);
-      if (!bank) return tl::unexpected(bank.error());
-      slot = std::make_unique<SizeStudy>(chain_, *bank, size_pitch);
+      TODBENCH_TRY(auto bank, observer_.bank(size_pitch, 1));
+      slot = std::make_unique<SizeStudy>(chain_, bank, size_pitch);
       slot->draw(noise_, options_, static_cast<std::uint64_t>(index - smallest_index));
     }
     if (!slot->drawn())
@@ -180,15 +180,13 @@ class Ladder {
   [[nodiscard]] Result<SizeEstimate> s75(double noise, double internal) {
     std::optional<BlockProportions> above;
     for (int index = 10; index <= largest_index; index += 5) {
-      auto study = size(index);
-      if (!study) return tl::unexpected(study.error());
-      auto p = (*study)->proportions(noise, internal);
+      TODBENCH_TRY(auto study, size(index));
+      auto p = study->proportions(noise, internal);
       if (p.mean() < 0.8) continue;
       above = std::move(p);
       for (int below = index - 1; below >= smallest_index; --below) {
-        auto next = size(below);
-        if (!next) return tl::unexpected(next.error());
-        auto q = (*next)->proportions(noise, internal);
+        TODBENCH_TRY(auto next, size(below));
+        auto q = next->proportions(noise, internal);
         if (q.mean() < 0.75) return crossing(below, q, *above);
         above = std::move(q);
       }
@@ -267,13 +265,11 @@ Result<std::vector<NoiseAcuity>> real_noise_study(const RecordedNoise& noise, co
     // An observer of limited efficiency adds white noise in proportion to the sensor's.
     const double internal =
         std::hypot(spec.internal_noise, q * std::sqrt(spec.sensor_noise_factor * spec.sensor_noise_factor - 1));
-    const auto under_real = real.s75(q, internal);
-    if (!under_real) return tl::unexpected(under_real.error());
-    const auto under_white = white.s75(q, internal);
-    if (!under_white) return tl::unexpected(under_white.error());
-    point.real = *under_real;
-    point.white = *under_white;
-    point.acuity_ratio = under_white->s75_pitch / under_real->s75_pitch;
+    TODBENCH_TRY(const auto under_real, real.s75(q, internal));
+    TODBENCH_TRY(const auto under_white, white.s75(q, internal));
+    point.real = under_real;
+    point.white = under_white;
+    point.acuity_ratio = under_white.s75_pitch / under_real.s75_pitch;
     const double clusters = noise.blocks >= 4 ? noise.blocks : 16;
     const double reach = distribution::quantile(distribution::StudentsT(clusters - 1), 0.975) *
                          std::hypot(point.real.se_ln, point.white.se_ln);
@@ -283,11 +279,10 @@ Result<std::vector<NoiseAcuity>> real_noise_study(const RecordedNoise& noise, co
     if (!real_size) return tl::unexpected(real_size.error());
     if (!white_size) return tl::unexpected(white_size.error());
     point.template_noise_ratio = std::sqrt((*real_size)->template_variance() / (*white_size)->template_variance());
-    const auto predicted = white.s75(q * point.template_noise_ratio, internal);
-    if (!predicted) return tl::unexpected(predicted.error());
-    point.predicted_ratio = under_white->s75_pitch / predicted->s75_pitch;
+    TODBENCH_TRY(const auto predicted, white.s75(q * point.template_noise_ratio, internal));
+    point.predicted_ratio = under_white.s75_pitch / predicted.s75_pitch;
     if (const auto whole = white.s75(q * options.whole_to_successive, internal); whole)
-      point.memory_acuity_ratio = under_white->s75_pitch / whole->s75_pitch;
+      point.memory_acuity_ratio = under_white.s75_pitch / whole->s75_pitch;
     else if (whole.error().code == ErrorCode::interrupted)
       return tl::unexpected(whole.error());
     explain(point, (*real_size)->bank(), noise.components);

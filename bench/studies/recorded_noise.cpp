@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "bench/studies/real_noise_study.h"
 
 namespace todbench {
@@ -130,9 +131,8 @@ Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int bloc
   if (!(noise.temporal_noise > 1e-6 * cv::norm(frames[0], cv::NORM_INF)))
     return fail(ErrorCode::invalid_input, "the recording contains no noise: all frames are the same");
   find_correlations(noise);
-  auto components = mean_components(usable_alone(frames, noise, block_frames), block_frames, noise.blocks);
-  if (!components) return tl::unexpected(components.error());
-  noise.components = of_usable(*components, noise.usable_share);
+  TODBENCH_TRY(auto components, mean_components(usable_alone(frames, noise, block_frames), block_frames, noise.blocks));
+  noise.components = of_usable(components, noise.usable_share);
   return noise;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/atmosphere/radiative_path.h"
 #include "sim_devices/sensor/effect_distortion.h"
 #include "sim_devices/sensor/effect_image_dance.h"
@@ -194,9 +195,9 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   const SceneImager imager(spec, plan, task.accuracy, task.motion);
   std::vector<cv::Point2d> displacements_pitch = model.displacements_px(0);
   for (cv::Point2d& displacement : displacements_pitch) displacement /= spec.samples_per_pitch();
-  const auto signal = danced_signal_k(imager, spec, task, scale, task.view, model.size(), displacements_pitch);
-  if (!signal) return tl::unexpected(signal.error());
-  const cv::Mat1f unit = as_float(*signal, *tau);
+  TODBENCH_TRY(const auto signal,
+               danced_signal_k(imager, spec, task, scale, task.view, model.size(), displacements_pitch));
+  const cv::Mat1f unit = as_float(signal, *tau);
 
   const int field = field_of(task, spec);
   const int n = spec.samples_per_pitch();
@@ -214,10 +215,8 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
     return danced_signal_k(SceneImager(fine, filters, task.accuracy, task.motion), fine, task, scale, fine_view,
                            fine_size, displacements_pitch);
   };
-  const auto behind_optics = filtered_scene(with_decision(plan, Effect::detector, Decision::skip));
-  if (!behind_optics) return tl::unexpected(behind_optics.error());
-  const auto behind_detector = filtered_scene(plan);
-  if (!behind_detector) return tl::unexpected(behind_detector.error());
+  TODBENCH_TRY(const auto behind_optics, filtered_scene(with_decision(plan, Effect::detector, Decision::skip)));
+  TODBENCH_TRY(const auto behind_detector, filtered_scene(plan));
 
   const SensorModel undisplayed(
       task.sensor,
@@ -233,10 +232,10 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   out.stages = {
       {"1-scene", "At the sensor", air_note, as_float(bare_scene(task, fine, scale, fine_view, fine_size), *tau),
        static_cast<double>(fine_per_pitch)},
-      {"2-optics", "Behind the optics", optics_note(plan), as_float(*behind_optics, *tau),
+      {"2-optics", "Behind the optics", optics_note(plan), as_float(behind_optics, *tau),
        static_cast<double>(fine_per_pitch)},
       {"3-detector", "On the detectors", "mean over the sensitive area around each position",
-       as_float(*behind_detector, *tau), static_cast<double>(fine_per_pitch)},
+       as_float(behind_detector, *tau), static_cast<double>(fine_per_pitch)},
       {"4-sampled", "Sampled", fmt::format("{} {} per pitch and axis", n, n == 1 ? "sample" : "samples"),
        unit(samples).clone(), static_cast<double>(n)},
       {"5-noise", "With noise",

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/effect_planner.h"
 #include "sim_devices/sensor/effect_turbulence.h"
 #include "tod/plate/test_pattern.h"
@@ -34,9 +35,8 @@ Result<std::optional<LogLinearCurve>> blurred(const std::optional<LogLinearCurve
     if (!std::isfinite(value)) break;
     points.push_back({point.frequency, value});
   }
-  auto out = LogLinearCurve::of(points, "curve with turbulence");
-  if (!out) return tl::unexpected(out.error());
-  return std::optional(*std::move(out));
+  TODBENCH_TRY(auto out, LogLinearCurve::of(points, "curve with turbulence"));
+  return std::optional(std::move(out));
 }
 
 RangeModel model_named(const std::string& name) {
@@ -52,9 +52,8 @@ Result<std::vector<ModelRangePoint>> probabilities_behind(RangeModel which, cons
   const double step = ranges_m.back() / curve_paths;
   std::vector<std::vector<std::optional<double>>> behind;
   for (int k = 0; k <= curve_paths; ++k) {
-    const auto grid = range_grid(std::array{which}, sources.at(k * step), question, axes);
-    if (!grid) return tl::unexpected(grid.error());
-    behind.push_back(grid->front().probability);
+    TODBENCH_TRY(const auto grid, range_grid(std::array{which}, sources.at(k * step), question, axes));
+    behind.push_back(grid.front().probability);
   }
   std::vector<ModelRangePoint> points;
   for (std::size_t i = 0; i < ranges_m.size(); ++i) {
@@ -209,9 +208,8 @@ namespace {
 /// One model: each of its ranges with the curve behind its own path.
 Result<ModelRange> turbulent_model(RangeModel which, const TurbulentSources& sources, const RangeQuestion& question) {
   const auto behind = [&](double path_m) -> Result<ModelRange> {
-    auto found = range_models(std::array{which}, sources.at(path_m), question);
-    if (!found) return tl::unexpected(found.error());
-    return std::move(found->front());
+    TODBENCH_TRY(auto found, range_models(std::array{which}, sources.at(path_m), question));
+    return std::move(found.front());
   };
   auto still = behind(0);
   if (!still) return still;
@@ -254,20 +252,17 @@ Result<std::vector<ModelRange>> turbulent_range_models(std::span<const RangeMode
   double farthest = 0;
   std::vector<double> ranges_m;
   for (const RangeModel which : asked) {
-    auto model = turbulent_model(which, sources, question);
-    if (!model) return tl::unexpected(model.error());
-    if (model->r75_m && *model->r75_m > farthest) {
-      farthest = *model->r75_m;
+    TODBENCH_TRY(auto model, turbulent_model(which, sources, question));
+    if (model.r75_m && *model.r75_m > farthest) {
+      farthest = *model.r75_m;
       ranges_m.clear();
-      for (const auto& point : model->curve) ranges_m.push_back(point.range_m);
+      for (const auto& point : model.curve) ranges_m.push_back(point.range_m);
     }
-    answers.push_back(*std::move(model));
+    answers.push_back(std::move(model));
   }
   for (auto& model : answers) {
     if (!model.r75_m || ranges_m.empty()) continue;
-    auto curve = probabilities_behind(model_named(model.name), sources, question, ranges_m);
-    if (!curve) return tl::unexpected(curve.error());
-    model.curve = *std::move(curve);
+    TODBENCH_TRY(model.curve, probabilities_behind(model_named(model.name), sources, question, ranges_m));
   }
   return answers;
 }

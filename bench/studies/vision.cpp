@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/studies/people_figures.h"
 #include "hvs/eye/compact_patterns.h"
@@ -259,19 +260,19 @@ ViewedDisplay assumed_display() {
 }
 
 Result<VisionKind> microscan_gains_of_a_person(const TemplateObserverSpec& spec, const VisionOptions& options) {
-  auto sensor = load_sensor("sc2000");
-  if (!sensor) return tl::unexpected(sensor.error());
+  TODBENCH_TRY(auto sensor, load_sensor("sc2000"));
   TemplateObserverSpec viewing = spec;
   viewing.display = assumed_display();
   const std::vector<double> contrasts{16.9, 1.93, 0.23};
   std::array<std::vector<DirectPoint>, 2> found;
   for (const int samples : {1, 2}) {
     TemplateObserver observer(viewing, triangle_alternatives());
-    auto points = direct_estimate(
-        *sensor, full_plan(*sensor, {}, {}), observer, contrasts,
-        {.samples_per_pitch = samples, .accuracy = options.accuracy, .seed = options.seed, .stop = options.stop});
-    if (!points) return tl::unexpected(points.error());
-    found[static_cast<std::size_t>(samples - 1)] = *std::move(points);
+    TODBENCH_TRY(
+        auto points,
+        direct_estimate(
+            sensor, full_plan(sensor, {}, {}), observer, contrasts,
+            {.samples_per_pitch = samples, .accuracy = options.accuracy, .seed = options.seed, .stop = options.stop}));
+    found[static_cast<std::size_t>(samples - 1)] = std::move(points);
   }
   VisionKind kind{.name = "microscan_gain",
                   .title = "Gain of microscan for a person",
@@ -324,9 +325,8 @@ Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer,
     if (options.stop.stop_requested()) return fail(ErrorCode::interrupted, "the comparison was interrupted");
     out.kinds.push_back(kind(eye));
   }
-  auto gains = microscan_gains_of_a_person(observer, options);
-  if (!gains) return tl::unexpected(gains.error());
-  out.kinds.push_back(*std::move(gains));
+  TODBENCH_TRY(auto gains, microscan_gains_of_a_person(observer, options));
+  out.kinds.push_back(std::move(gains));
   return out;
 }
 

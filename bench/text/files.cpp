@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "acquisition/base/safe_file.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 
@@ -49,14 +50,13 @@ std::string hexadecimal(EVP_MD_CTX* context) {
 }  // namespace
 
 Result<void> write_file_atomically(const std::filesystem::path& file, std::string_view content) {
-  const auto part = make_file_beside(file);
-  if (!part) return tl::unexpected(part.error());
-  int problem = write_all(part->descriptor, content);
-  if (problem == 0 && ::fsync(part->descriptor) != 0) problem = errno;
-  if (::close(part->descriptor) != 0 && problem == 0) problem = errno;
-  if (problem == 0 && std::rename(part->path.c_str(), file.c_str()) != 0) problem = errno;
+  TODBENCH_TRY(const auto part, make_file_beside(file));
+  int problem = write_all(part.descriptor, content);
+  if (problem == 0 && ::fsync(part.descriptor) != 0) problem = errno;
+  if (::close(part.descriptor) != 0 && problem == 0) problem = errno;
+  if (problem == 0 && std::rename(part.path.c_str(), file.c_str()) != 0) problem = errno;
   if (problem == 0) return {};
-  ::unlink(part->path.c_str());
+  ::unlink(part.path.c_str());
   return io_error(file, "cannot be written", problem);
 }
 
@@ -72,25 +72,23 @@ std::string sha256_of(std::string_view text) {
 }
 
 Result<std::string> sha256_of_file(const std::filesystem::path& file) {
-  const auto opened = open_to_read(file);
-  if (!opened) return tl::unexpected(opened.error());
+  TODBENCH_TRY(const auto opened, open_to_read(file));
   const DigestContext context = sha256_context();
   std::vector<char> piece(std::size_t{1} << 16U);
   ssize_t taken = 0;
-  while ((taken = ::read(*opened, piece.data(), piece.size())) > 0 || (taken < 0 && errno == EINTR)) {
+  while ((taken = ::read(opened, piece.data(), piece.size())) > 0 || (taken < 0 && errno == EINTR)) {
     if (taken > 0) EVP_DigestUpdate(context.get(), piece.data(), static_cast<std::size_t>(taken));
   }
   const int problem = errno;
-  ::close(*opened);
+  ::close(opened);
   if (taken < 0) return io_error(file, "cannot be read", problem);
   return hexadecimal(context.get());
 }
 
 Result<AppendFile> AppendFile::open(const std::filesystem::path& file, Start start) {
-  const auto descriptor = start == Start::empty ? make_empty_file(file) : open_to_append(file);
-  if (!descriptor) return tl::unexpected(descriptor.error());
-  if (start == Start::empty) ::fcntl(*descriptor, F_SETFL, O_APPEND);
-  return AppendFile(file, *descriptor);
+  TODBENCH_TRY(const auto descriptor, start == Start::empty ? make_empty_file(file) : open_to_append(file));
+  if (start == Start::empty) ::fcntl(descriptor, F_SETFL, O_APPEND);
+  return AppendFile(file, descriptor);
 }
 
 Result<void> AppendFile::append(std::string_view content) {

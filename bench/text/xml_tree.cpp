@@ -103,9 +103,8 @@ class XmlParser {
     for (;;) {
       skip_blanks();
       if (next_is("<!DOCTYPE")) return wrong("a document type declaration is not read: it can define entities");
-      const auto skipped = skip_remark();
-      if (!skipped) return tl::unexpected(skipped.error());
-      if (!*skipped) return {};
+      TODBENCH_TRY(const auto skipped, skip_remark());
+      if (!skipped) return {};
     }
   }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/twin/direct_results.h"
 #include "bench/twin/module_chain.h"
@@ -98,9 +99,9 @@ bool leave_out(LimitingFactor factor, ViewedSensor& viewed) {
 
 Result<double> s75_of(const ViewedSensor& viewed, double delta_t_k) {
   TemplateObserver observer(viewed.observer, triangle_alternatives());
-  const auto points = direct_estimate(viewed.sensor, viewed.effects, observer, {delta_t_k}, viewed.options);
-  if (!points) return tl::unexpected(points.error());
-  return points->front().s75_pitch;
+  TODBENCH_TRY(const auto points,
+               direct_estimate(viewed.sensor, viewed.effects, observer, {delta_t_k}, viewed.options));
+  return points.front().s75_pitch;
 }
 
 }  // namespace
@@ -136,9 +137,7 @@ Result<std::optional<DisplayRecord>> at_display(const TodCurve& curve, const Exp
   ExperimentInputs viewed = inputs;
   DisplayRecord record;
   if (!inputs.observer.eye) {
-    auto person = load_observer_at("hvs-2", plan.display);
-    if (!person) return tl::unexpected(person.error());
-    viewed.observer = *std::move(person);
+    TODBENCH_TRY(viewed.observer, load_observer_at("hvs-2", plan.display));
     const DirectResults direct = direct_results(curve, viewed, {}, plan.seed, stop);
     if (direct.ended_by) return tl::unexpected(*direct.ended_by);
     const double ifov_mrad = inputs.sensor.ifov_mrad();
@@ -152,9 +151,7 @@ Result<std::optional<DisplayRecord>> at_display(const TodCurve& curve, const Exp
   record.observer = viewed.observer.name;
   std::vector<double> contrasts;
   for (const TodPoint& point : curve.points) contrasts.push_back(point.delta_t_k);
-  auto limits = acuity_limits(viewed, contrasts, std::move(stop));
-  if (!limits) return tl::unexpected(limits.error());
-  record.limits = *std::move(limits);
+  TODBENCH_TRY(record.limits, acuity_limits(viewed, contrasts, std::move(stop)));
   return record;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/bench_air.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
@@ -35,12 +36,11 @@ std::string distance_hint(MeasurementOptions options, TemplateObserver& observer
 /// Names a few sizes that do not fit, before anything is computed or moved.
 Result<void> check_geometry(const MeasurementOptions& options, const ExperimentInputs& inputs, cv::Size picture) {
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  auto misfits = find_misfits(options, observer, picture);
-  if (!misfits) return tl::unexpected(misfits.error());
-  if (misfits->empty()) return {};
+  TODBENCH_TRY(auto misfits, find_misfits(options, observer, picture));
+  if (misfits.empty()) return {};
   constexpr std::size_t named = 3;
   const std::string distance = number_text(options.distance_m) + " m";
-  const std::string what = sentences(*misfits, named) + distance_hint(options, observer, picture);
+  const std::string what = sentences(misfits, named) + distance_hint(options, observer, picture);
   return tl::unexpected(Error{ErrorCode::invalid_input,
                               "not measurable at " + distance + " ([target] distance_m): " + what,
                               ErrorKey{"target.distance_m", "not measurable at " + distance + ": " + what}});
@@ -89,8 +89,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
   inputs.observer = loaded.observer();
   inputs.motion = plan.simulation.motion;
   inputs.stated_noise_counts = noise_in_counts(loaded.sensor());
-  auto ifov = check_ifov(plan, loaded.sensor());
-  if (!ifov) return tl::unexpected(ifov.error());
+  TODBENCH_TRY(auto ifov, check_ifov(plan, loaded.sensor()));
   if (has_modules(plan, loaded.sensor())) {
     if (chosen_estimator(plan, loaded.sensor()).estimator == FitEstimator::twin_shape)
       return fail(
@@ -125,11 +124,9 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
     inputs.warnings.push_back(effects.error().message);
   }
   inputs.sensor = as_planned(loaded.sensor(), inputs.effects);
-  auto accuracy = accuracy_of(plan);
-  if (!accuracy) return tl::unexpected(accuracy.error());
-  inputs.accuracy = *accuracy;
+  TODBENCH_TRY(inputs.accuracy, accuracy_of(plan));
   // Behind the warnings of the planner, of which the first is the reason of a run without a threshold.
-  if (!ifov->empty()) inputs.warnings.push_back(*std::move(ifov));
+  if (!ifov.empty()) inputs.warnings.push_back(std::move(ifov));
   return inputs;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
 #include "bench/twin/camera_surrogate.h"
 #include "bench/twin/twin_shapes.h"
@@ -191,26 +192,25 @@ LostContrasts lost_contrasts(std::span<const Presentation> presentations, double
 
 Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run, const ContrastSurface& surface,
                               const Plan& plan) {
-  auto fit = RampFit::of(ramp_answers(run), surface);
-  if (!fit) return tl::unexpected(fit.error());
+  TODBENCH_TRY(auto fit, RampFit::of(ramp_answers(run), surface));
   const RampOptions ramp = ramp_options(plan, {}, 1);
   const double lag = plan.target.max_contrast_lag_s.value_or(0) * relative_rate(run, ramp);
   RampOutcome outcome;
   for (TodPoint& point : curve.points) {
-    take_value(point.fit, interval_at(*fit, surface, point.delta_t_k), surface.ln_threshold(point.delta_t_k));
+    take_value(point.fit, interval_at(fit, surface, point.delta_t_k), surface.ln_threshold(point.delta_t_k));
     const double u = lag * sensitivity_to_lag(surface, point.delta_t_k) / std::numbers::sqrt3;
     join_uncertainty(point.fit, u, std::nullopt);
     point.fit.lag_u = u;
   }
   for (int i = 0; i < continuous_points; ++i) {
     const double delta_t_k = ramp.from_k * std::pow(ramp.to_k / ramp.from_k, i / (continuous_points - 1.0));
-    const RampInterval value = interval_at(*fit, surface, delta_t_k);
+    const RampInterval value = interval_at(fit, surface, delta_t_k);
     PsychometricFit one;
     take_value(one, value, 0);
     join_uncertainty(one, lag * sensitivity_to_lag(surface, delta_t_k) / std::numbers::sqrt3, std::nullopt);
     curve.continuous.push_back({delta_t_k, *one.threshold, one.ci95});
   }
-  add_direction(outcome, *fit);
+  add_direction(outcome, fit);
   const double ln_step = std::log(ramp.from_k / ramp.to_k) / static_cast<double>(ramp_steps(ramp) - 1);
   if (const LostContrasts lost = lost_contrasts(run.presentations, ln_step); lost.lost > 0)
     outcome.notes.push_back(fmt::format(

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "hvs/observer/template_observer.h"
@@ -30,12 +31,11 @@ Result<RatioOfPairs> ratio_at(const TodPoint& point, const ContrastScatter& cont
   if (!point.fit.twin_shape)
     return fail(ErrorCode::invalid_input, "the camera's answers are not fitted with the function of the twin");
   if (trials.empty() || !all_graded(trials)) return fail(ErrorCode::invalid_input, "not all answers are graded");
-  const auto twin = twin_answers(inputs.sensor, inputs.effects, observer, trials, options);
-  if (!twin) return tl::unexpected(twin.error());
+  TODBENCH_TRY(const auto twin, twin_answers(inputs.sensor, inputs.effects, observer, trials, options));
   const std::vector<GradedAnswer> camera = graded_answers(fitted);
   std::vector<PairedAnswer> pairs;
   for (std::size_t i = 0; i < camera.size(); ++i)
-    pairs.push_back({camera[i], (*twin)[i].probability_correct, (*twin)[i].variance});
+    pairs.push_back({camera[i], (twin)[i].probability_correct, (twin)[i].variance});
   const TwinShapeUse& use = *point.fit.twin_shape;
   std::optional<OwnFunctions> own;
   if (by_twin != nullptr) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <future>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/contrast_response.h"
 #include "sim_devices/prediction/module_response.h"
 
@@ -47,9 +48,8 @@ Result<std::map<std::string, double>> simulated_responses(const SensorModel& mod
   for (const auto& plate : plates)
     made.push_back(std::async(by_module ? std::launch::deferred : std::launch::async, of_plate, std::cref(plate)));
   for (std::size_t i = 0; i < plates.size(); ++i) {
-    auto response = made[i].get();
-    if (!response) return tl::unexpected(response.error());
-    out[plates[i].name] = *response;
+    TODBENCH_TRY(auto response, made[i].get());
+    out[plates[i].name] = response;
   }
   return out;
 }

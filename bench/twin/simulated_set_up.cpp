@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
 #include "bench/twin/simulated_responses.h"
 #include "bench/twin/twin_shapes.h"
@@ -15,20 +16,17 @@ Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs
   const auto model = std::make_shared<const SensorModel>(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
   MeasurementOptions options = simulated_options(plan, inputs);
   if (responses.empty()) {
-    auto computed = simulated_responses(*model, plan, inputs.plates, options, stop);
-    if (!computed) return tl::unexpected(computed.error());
-    responses = *std::move(computed);
+    TODBENCH_TRY(responses, simulated_responses(*model, plan, inputs.plates, options, stop));
   }
-  auto functions = stopping_tables(plan, inputs, std::move(stop));
-  if (!functions) return tl::unexpected(functions.error());
+  TODBENCH_TRY(auto functions, stopping_tables(plan, inputs, std::move(stop)));
   options.contrast_response = std::move(responses);
   auto schedule = make_schedule(plan, inputs.plates, inputs.sensor.ifov_mrad(), Side::simulated,
-                                RandomStream(plan.seed, "schedule.simulated"), *functions);
+                                RandomStream(plan.seed, "schedule.simulated"), functions);
   return SimulatedSetUp{.options = std::move(options),
                         .bench = simulated_bench(model, inputs.plates, plan.target.distance_m,
                                                  std::move(shown_delta_t_k), inputs.motion, source),
                         .schedule = std::move(schedule),
-                        .functions = *std::move(functions)};
+                        .functions = std::move(functions)};
 }
 
 }  // namespace todbench

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "tod/adequacy/orientation.h"
@@ -24,9 +25,9 @@ Result<ProportionTable> table_at(const TodPoint& point, const ExperimentInputs& 
   const TodPoint* same = known == nullptr ? nullptr : point_at(*known, point.set_delta_t_k);
   if (same != nullptr && same->fit.twin_shape) return same->fit.twin_shape->table;
   options.accuracy.noise_draws = draws_of_twin_shape(error_of(point.fit), options.accuracy);
-  const auto curves = proportion_curves(inputs.sensor, inputs.effects, observer, {point.delta_t_k}, options);
-  if (!curves) return tl::unexpected(curves.error());
-  return table_of(curves->front(), inputs.sensor.ifov_mrad());
+  TODBENCH_TRY(const auto curves,
+               proportion_curves(inputs.sensor, inputs.effects, observer, {point.delta_t_k}, options));
+  return table_of(curves.front(), inputs.sensor.ifov_mrad());
 }
 
 std::vector<Trial> trials_at(std::span<const Trial> trials, double set_delta_t_k) {
@@ -40,10 +41,9 @@ std::vector<Trial> trials_at(std::span<const Trial> trials, double set_delta_t_k
 Result<bool> give_function(TodPoint& point, std::span<const Trial> trials, const ProportionTable& table,
                            const FitOptions& fit) {
   const std::vector<GradedAnswer> answers = graded_answers(trials_at(trials, point.set_delta_t_k));
-  auto fitted = fit_twin_shape(answers, point.fit, table, fit);
-  if (!fitted) return tl::unexpected(fitted.error());
-  if (!fitted->twin_shape) return false;
-  point.fit = *std::move(fitted);
+  TODBENCH_TRY(auto fitted, fit_twin_shape(answers, point.fit, table, fit));
+  if (!fitted.twin_shape) return false;
+  point.fit = std::move(fitted);
   // The checks of the Weibull function do not apply to this one.
   point.free_lapse_fit.reset();
   point.lapse_warning = false;

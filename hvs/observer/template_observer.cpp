@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "hvs/observer/answer_probabilities.h"
 #include "hvs/observer/eye_noise.h"
 
@@ -243,11 +244,10 @@ Result<std::shared_ptr<const TemplateBank>> TemplateObserver::bank(double size_s
 }
 
 Result<std::shared_ptr<const PreparedObserver>> TemplateObserver::prepare(double size_samples, int samples_per_pitch) {
-  auto found = bank(size_samples, samples_per_pitch);
-  if (!found) return tl::unexpected(found.error());
+  TODBENCH_TRY(auto found, bank(size_samples, samples_per_pitch));
   const std::scoped_lock lock(mutex_);
   auto& slot = prepared_[{size_samples, samples_per_pitch}];
-  if (slot == nullptr) slot = std::make_shared<const PreparedTemplateObserver>(spec_, *found);
+  if (slot == nullptr) slot = std::make_shared<const PreparedTemplateObserver>(spec_, found);
   return slot;
 }
 

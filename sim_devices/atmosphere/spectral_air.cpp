@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -160,12 +162,11 @@ Result<std::vector<Tape7Run>> parse_tape7(std::string_view text) {
     const std::size_t begin = line;
     while (line < lines.size() && !trimmed(lines[line]).starts_with("FREQ")) ++line;
     if (line == lines.size()) break;
-    const auto range_km = range_of(lines, begin, line);
-    if (!range_km) return tl::unexpected(range_km.error());
+    TODBENCH_TRY(const auto range_km, range_of(lines, begin, line));
     ++line;
     // Runs that contain only transmittance have a second line of names.
     if (line < lines.size() && trimmed(lines[line]).starts_with("CM")) ++line;
-    Tape7Run run{.range_km = *range_km, .wavenumber_per_cm = {}, .transmittance = {}};
+    Tape7Run run{.range_km = range_km, .wavenumber_per_cm = {}, .transmittance = {}};
     if (auto read = read_rows(lines, line, run); !read) return tl::unexpected(read.error());
     if (run.wavenumber_per_cm.size() < 2) return wrong(begin, "the run has fewer than two wavenumbers");
     runs.push_back(std::move(run));
@@ -175,12 +176,11 @@ Result<std::vector<Tape7Run>> parse_tape7(std::string_view text) {
 }
 
 Result<double> band_transmittance(const Tape7Run& run, const SpectralBand& band, double temperature_k) {
-  const auto weights = weights_of(run, band, temperature_k);
-  if (!weights) return tl::unexpected(weights.error());
+  TODBENCH_TRY(const auto weights, weights_of(run, band, temperature_k));
   double sum = 0, passed = 0;
-  for (std::size_t i = 0; i < weights->size(); ++i) {
-    sum += (*weights)[i];
-    passed += (*weights)[i] * run.transmittance[i];
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    sum += (weights)[i];
+    passed += (weights)[i] * run.transmittance[i];
   }
   return std::min(1.0, passed / sum);
 }
@@ -194,16 +194,14 @@ Result<Transmittance> air_of_tape7(std::span<const Tape7Run> runs, const Spectra
       const double share = std::pow(1000.0, static_cast<double>(i - steps) / steps);
       for (std::size_t k = 0; k < scaled.transmittance.size(); ++k)
         scaled.transmittance[k] = std::pow(runs.front().transmittance[k], share);
-      const auto tau = band_transmittance(scaled, band, temperature_k);
-      if (!tau) return tl::unexpected(tau.error());
-      rows.push_back({runs.front().range_km * 1000 * share, *tau});
+      TODBENCH_TRY(const auto tau, band_transmittance(scaled, band, temperature_k));
+      rows.push_back({runs.front().range_km * 1000 * share, tau});
     }
     return Transmittance::of_table(rows);
   }
   for (const auto& run : runs) {
-    const auto tau = band_transmittance(run, band, temperature_k);
-    if (!tau) return tl::unexpected(tau.error());
-    rows.push_back({run.range_km * 1000, *tau});
+    TODBENCH_TRY(const auto tau, band_transmittance(run, band, temperature_k));
+    rows.push_back({run.range_km * 1000, tau});
   }
   std::sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.range_m < b.range_m; });
   return Transmittance::of_table(rows);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "sim_devices/atmosphere/mirror_radiance.h"
 #include "sim_devices/sensor/contrast_steps.h"
@@ -71,9 +72,7 @@ struct Laboratory::State {
       cv::Mat1w counts = exposed(scene, first + index, index);
       return options.sent_counts ? options.sent_counts(std::move(counts), scene) : counts;
     };
-    auto connected = options.connect(as_stated(options.sensor, options.stated_scale), expose);
-    if (!connected) return tl::unexpected(connected.error());
-    camera = std::move(*connected);
+    TODBENCH_TRY(camera, options.connect(as_stated(options.sensor, options.stated_scale), expose));
     return {};
   }
 
@@ -144,21 +143,15 @@ Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options)
   state->model = std::make_unique<SensorModel>(o.sensor, o.plan, o.accuracy, o.seed);
 
   if (o.monitor) {
-    auto view = MonitorView::make(*o.monitor, *state->model, o.accuracy, o.distance_m, o.centre_px);
-    if (!view) return tl::unexpected(view.error());
-    state->monitor = *std::move(view);
+    TODBENCH_TRY(state->monitor, MonitorView::make(*o.monitor, *state->model, o.accuracy, o.distance_m, o.centre_px));
   }
 
-  auto black_body = BlackBody::start(o.black_body);
-  if (!black_body) return tl::unexpected(black_body.error());
-  state->black_body = std::move(*black_body);
+  TODBENCH_TRY(state->black_body, BlackBody::start(o.black_body));
 
   o.stage.plates.clear();
   for (const auto& plate : o.plates) o.stage.plates.push_back(plate.name);
   o.stage.camera_clock_s = [s = state.get()] { return s->frame_time_s(s->since_power_up); };
-  auto stage = PlateStage::start(o.stage);
-  if (!stage) return tl::unexpected(stage.error());
-  state->stage = std::move(*stage);
+  TODBENCH_TRY(state->stage, PlateStage::start(o.stage));
 
   if (o.drift.pattern_k_per_min != 0) state->drifting = drift_pattern(state->model->size(), o.seed);
   if (!o.connect) o.connect = connect_gige(o.camera, [s = state.get()] { s->corrected_at = s->since_power_up.load(); });

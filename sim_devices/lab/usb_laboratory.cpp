@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/usb_laboratory.h"
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/core/control_text.h"
 #include "sim_devices/lab/usb/usbfs_host.h"
@@ -30,9 +31,8 @@ class UsbLaboratoryCamera final : public LaboratoryCamera {
 
 Result<std::unique_ptr<LaboratoryCamera>> plugged(std::shared_ptr<MockSystem> system, std::shared_ptr<UsbDevice> device,
                                                   std::string id, std::map<std::string, std::string> settings) {
-  auto port = PluggedUsbDevice::plug(system, std::move(device));
-  if (!port) return tl::unexpected(port.error());
-  return std::make_unique<UsbLaboratoryCamera>(std::move(system), std::move(*port), std::move(id), std::move(settings));
+  TODBENCH_TRY(auto port, PluggedUsbDevice::plug(system, std::move(device)));
+  return std::make_unique<UsbLaboratoryCamera>(std::move(system), std::move(port), std::move(id), std::move(settings));
 }
 
 }  // namespace
@@ -40,9 +40,8 @@ Result<std::unique_ptr<LaboratoryCamera>> plugged(std::shared_ptr<MockSystem> sy
 ConnectCamera connect_u3v(std::shared_ptr<MockSystem> system, U3vCameraConfig config) {
   return [system = std::move(system), config](
              const SensorSpec& sensor, LaboratoryExposure exposure) -> Result<std::unique_ptr<LaboratoryCamera>> {
-    auto camera = U3vCamera::create(as_sensor(config, sensor), std::move(exposure));
-    if (!camera) return tl::unexpected(camera.error());
-    return plugged(system, std::move(*camera), camera_id(camera_scheme::u3v, {config.vendor, config.serial}), {});
+    TODBENCH_TRY(auto camera, U3vCamera::create(as_sensor(config, sensor), std::move(exposure)));
+    return plugged(system, std::move(camera), camera_id(camera_scheme::u3v, {config.vendor, config.serial}), {});
   };
 }
 
@@ -59,9 +58,8 @@ ConnectCamera connect_seek(std::shared_ptr<MockSystem> system, SeekCameraConfig 
                                                     " has another size or more bits");
         }
         config.frame_rate_hz = sensor.frame_rate_hz;
-        auto camera = SeekCamera::create(config, std::move(exposure));
-        if (!camera) return tl::unexpected(camera.error());
-        return plugged(system, std::move(*camera), seek_camera_id(config.model, config.serial),
+        TODBENCH_TRY(auto camera, SeekCamera::create(config, std::move(exposure)));
+        return plugged(system, std::move(camera), seek_camera_id(config.model, config.serial),
                        {{"TemperatureLinearScale", control_text(sensor.kelvin_per_count)},
                         {"TemperatureLinearOffset", control_text(sensor.offset_k)}});
       };

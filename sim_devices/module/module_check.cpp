@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -19,11 +20,10 @@ cv::Mat1f noise(cv::Size size, std::uint64_t index) {
 
 /// Answers of a new process to the pictures, in order.
 Result<std::vector<cv::Mat1f>> answers_to(const ModuleOptions& options, const std::vector<cv::Mat1f>& pictures) {
-  auto module = ModuleProcess::start(options);
-  if (!module) return tl::unexpected(module.error());
+  TODBENCH_TRY(auto module, ModuleProcess::start(options));
   std::vector<cv::Mat1f> answers;
   for (const auto& picture : pictures) {
-    auto answer = module->exchange(picture);
+    auto answer = module.exchange(picture);
     if (!answer)
       return fail(
           fmt::format("picture {} of {}, {} x {}", answers.size() + 1, pictures.size(), picture.cols, picture.rows),
@@ -35,13 +35,12 @@ Result<std::vector<cv::Mat1f>> answers_to(const ModuleOptions& options, const st
 
 /// Median of twenty exchanges with the same picture.
 Result<double> latency_ms(const ModuleOptions& options) {
-  auto module = ModuleProcess::start(options);
-  if (!module) return tl::unexpected(module.error());
+  TODBENCH_TRY(auto module, ModuleProcess::start(options));
   const cv::Mat1f picture = noise({320, 240}, 9);
   std::vector<double> times;
   for (int i = 0; i < 21; ++i) {
     const auto begin = std::chrono::steady_clock::now();
-    if (auto answer = module->exchange(picture); !answer) return tl::unexpected(answer.error());
+    if (auto answer = module.exchange(picture); !answer) return tl::unexpected(answer.error());
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
   std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first includes the start
@@ -50,9 +49,8 @@ Result<double> latency_ms(const ModuleOptions& options) {
 
 /// Answer of a separate process, which has no memory of earlier pictures.
 Result<cv::Mat1f> fresh_answer(const ModuleOptions& options, const cv::Mat1f& picture) {
-  auto answers = answers_to(options, {picture});
-  if (!answers) return tl::unexpected(answers.error());
-  return answers->front();
+  TODBENCH_TRY(auto answers, answers_to(options, {picture}));
+  return answers.front();
 }
 
 double largest(const cv::Mat1f& picture) {
@@ -74,17 +72,14 @@ Result<ModuleReport> check_module(const ModuleOptions& options) {
       return fail(ErrorCode::integrity, "two processes of the module answered the same pictures differently");
     report.shapes.push_back(pictures[i].size());
   }
-  const auto time = latency_ms(options);
-  if (!time) return tl::unexpected(time.error());
-  report.latency_ms = *time;
+  TODBENCH_TRY(report.latency_ms, latency_ms(options));
   const cv::Mat1f a = noise({side, side}, 5), b = noise({side, side}, 6), zero = cv::Mat1f::zeros(side, side);
   cv::Mat1f impulse = zero.clone();
   impulse(side / 2, side / 2) = 1;
   std::vector<cv::Mat1f> answers;
   for (const auto& picture : {zero, a, b, cv::Mat1f(2 * a - 0.5 * b), impulse}) {
-    auto answer = fresh_answer(options, picture);
-    if (!answer) return tl::unexpected(answer.error());
-    answers.push_back(*answer - (answers.empty() ? cv::Mat1f(zero) : answers.front()));
+    TODBENCH_TRY(auto answer, fresh_answer(options, picture));
+    answers.push_back(answer - (answers.empty() ? cv::Mat1f(zero) : answers.front()));
   }
   const double scale = std::max({largest(answers[1]), largest(answers[2]), 1e-12});
   report.linearity_deviation = largest(answers[3] - (2 * answers[1] - 0.5 * answers[2])) / scale;

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -106,9 +108,8 @@ class ModuleObserver final : public Observer {
   [[nodiscard]] const std::string& name() const override { return templates_.name(); }
   [[nodiscard]] Result<std::shared_ptr<const PreparedObserver>> prepare(double size_samples,
                                                                         int samples_per_pitch) override {
-    auto templates = templates_.prepare(size_samples, samples_per_pitch);
-    if (!templates) return tl::unexpected(templates.error());
-    return std::make_shared<const PreparedModuleObserver>(templates_.spec(), *templates, process_, count_, size_samples,
+    TODBENCH_TRY(auto templates, templates_.prepare(size_samples, samples_per_pitch));
+    return std::make_shared<const PreparedModuleObserver>(templates_.spec(), templates, process_, count_, size_samples,
                                                           samples_per_pitch);
   }
   [[nodiscard]] std::optional<Error> failure() const override { return process_->failure(); }

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 
+#include "acquisition/base/try.h"
 #include "hvs/shape/polygon_coverage.h"
 
 namespace todbench {
@@ -58,11 +59,10 @@ Result<std::vector<Choice>> answers_to(const std::vector<Question>& asked, const
   std::vector<Choice> answers;
   for (const Question& question : asked) {
     const auto [size, samples_per_pitch] = asked_sizes.at(question.size);
-    const auto prepared = observer->prepare(size, samples_per_pitch);
-    if (!prepared) return tl::unexpected(prepared.error());
-    answers.push_back((*prepared)->choose(planted(alternatives[static_cast<std::size_t>(question.truth)], size,
-                                                  (*prepared)->window_samples(), question.phase),
-                                          contrast_k, check_noise().sub(question.number)));
+    TODBENCH_TRY(const auto prepared, observer->prepare(size, samples_per_pitch));
+    answers.push_back(prepared->choose(planted(alternatives[static_cast<std::size_t>(question.truth)], size,
+                                               prepared->window_samples(), question.phase),
+                                       contrast_k, check_noise().sub(question.number)));
     if (const auto failure = observer->failure())
       return fail(fmt::format("patch {} of {}, a target of {} samples", answers.size(), asked.size(), size), *failure);
   }
@@ -72,13 +72,12 @@ Result<std::vector<Choice>> answers_to(const std::vector<Question>& asked, const
 Result<double> patch_time_ms(const TemplateObserverSpec& spec, const Alternatives& alternatives,
                              const ModulePlan& module) {
   const auto observer = module_observer(spec, alternatives, module, nullptr);
-  const auto prepared = observer->prepare(5, 1);
-  if (!prepared) return tl::unexpected(prepared.error());
-  const Patch patch = planted(alternatives.front(), 5, (*prepared)->window_samples(), {});
+  TODBENCH_TRY(const auto prepared, observer->prepare(5, 1));
+  const Patch patch = planted(alternatives.front(), 5, prepared->window_samples(), {});
   std::vector<double> times;
   for (int i = 0; i < 21; ++i) {
     const auto begin = std::chrono::steady_clock::now();
-    (void)(*prepared)->choose(patch, contrast_k, check_noise());
+    (void)prepared->choose(patch, contrast_k, check_noise());
     if (const auto failure = observer->failure()) return tl::unexpected(*failure);
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
@@ -102,9 +101,8 @@ Result<ObserverModuleReport> check_observer(const TemplateObserverSpec& spec, co
   }
   TemplateObserver windows(spec, alternatives);
   for (const auto& [size, samples_per_pitch] : asked_sizes) {
-    const auto prepared = windows.prepare(size, samples_per_pitch);
-    if (!prepared) return tl::unexpected(prepared.error());
-    report.sizes.push_back({size, samples_per_pitch, (*prepared)->window_samples()});
+    TODBENCH_TRY(const auto prepared, windows.prepare(size, samples_per_pitch));
+    report.sizes.push_back({size, samples_per_pitch, prepared->window_samples()});
   }
   for (std::size_t i = 0; i < asked.size(); ++i) {
     if ((*first)[i].scores != (*second)[i].scores)
@@ -114,9 +112,7 @@ Result<ObserverModuleReport> check_observer(const TemplateObserverSpec& spec, co
     ++size.asked;
     size.right += (*first)[i].alternative == asked[i].truth ? 1 : 0;
   }
-  const auto time = patch_time_ms(spec, alternatives, module);
-  if (!time) return tl::unexpected(time.error());
-  report.latency_ms = *time;
+  TODBENCH_TRY(report.latency_ms, patch_time_ms(spec, alternatives, module));
   return report;
 }
 

@@ -18,6 +18,7 @@
 
 #include "acquisition/base/process.h"
 #include "acquisition/base/safe_text.h"
+#include "acquisition/base/try.h"
 #include "sim_devices/module/module_filter.h"
 #include "sim_devices/module/npy_message.h"
 
@@ -308,11 +309,10 @@ Result<cv::Mat1f> ModuleProcess::exchange(const cv::Mat1f& picture) {
 }
 
 Result<std::vector<double>> ModuleProcess::ask(const std::string& messages, const std::vector<std::size_t>& shape) {
-  const auto found = answer_to(messages, shape);
-  if (!found) return tl::unexpected(found.error());
-  auto read = read_message(read_, found->count);
+  TODBENCH_TRY(const auto found, answer_to(messages, shape));
+  auto read = read_message(read_, found.count);
   if (!read) return refused(read.error());
-  read_.erase(0, found->bytes);
+  read_.erase(0, found.bytes);
   for (const double value : read->message->values) {
     if (!std::isfinite(value))
       return refused(with_last_words({ErrorCode::integrity, "the module answered with a number that is not finite"}));

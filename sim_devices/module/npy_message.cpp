@@ -13,6 +13,7 @@
 
 #include "acquisition/base/npy_header.h"
 #include "acquisition/base/safe_text.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -131,12 +132,11 @@ cv::Mat1f picture_at(std::string_view stream, const NpyPlace& place) {
 }
 
 Result<MessageRead> read_message(std::string_view stream, std::size_t most_values) {
-  const auto place = find_message(stream, most_values);
-  if (!place) return tl::unexpected(place.error());
-  if (!*place) return MessageRead{};
-  NpyMessage message{(*place)->shape, std::vector<double>((*place)->count)};
-  types[(*place)->type].as_doubles(stream.data() + (*place)->numbers, (*place)->count, message.values.data());
-  return MessageRead{std::move(message), (*place)->bytes};
+  TODBENCH_TRY(const auto place, find_message(stream, most_values));
+  if (!place) return MessageRead{};
+  NpyMessage message{place->shape, std::vector<double>(place->count)};
+  types[place->type].as_doubles(stream.data() + place->numbers, place->count, message.values.data());
+  return MessageRead{std::move(message), place->bytes};
 }
 
 }  // namespace todbench

@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -118,9 +120,8 @@ class ModuleStage final : public ChainStage {
   [[nodiscard]] Result<cv::Mat1f> process(const cv::Mat1f& picture) override {
     if (options_.restart_frames > 0 && answered_ >= options_.restart_frames) process_.reset();
     if (!process_) {
-      auto started = ModuleProcess::start(options_.process);
-      if (!started) return tl::unexpected(started.error());
-      process_.emplace(std::move(*started));
+      TODBENCH_TRY(auto started, ModuleProcess::start(options_.process));
+      process_.emplace(std::move(started));
       answered_ = 0;
     }
     auto answer = process_->exchange(picture);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/trial_plate.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -94,9 +95,8 @@ class Judge {
     judge.draws_ = options.graded_draws;
     for (const int samples : {1, factor}) {
       for (const double size : options.sizes_pitch) {
-        auto prepared = observer.prepare(size * samples, samples);
-        if (!prepared) return tl::unexpected(prepared.error());
-        judge.prepared_[samples == 1 ? 0 : 1].push_back(*prepared);
+        TODBENCH_TRY(auto prepared, observer.prepare(size * samples, samples));
+        judge.prepared_[samples == 1 ? 0 : 1].push_back(prepared);
       }
     }
     return judge;
@@ -166,9 +166,8 @@ Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vec
   const SensorModel model(camera, full_plan(camera, {}, {}), options.accuracy, options.seed);
   std::vector<Judge> judges;
   for (TemplateObserver* observer : observers) {
-    auto judge = Judge::prepare(*observer, options);
-    if (!judge) return tl::unexpected(judge.error());
-    judges.push_back(std::move(*judge));
+    TODBENCH_TRY(auto judge, Judge::prepare(*observer, options));
+    judges.push_back(std::move(judge));
   }
   CameraTrialRecord record;
   record.observers.resize(observers.size());

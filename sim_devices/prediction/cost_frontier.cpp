@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"
 
@@ -140,15 +141,14 @@ class Frontier {
 Estimate Frontier::direct(const SensorPlan& effects, const Accuracy& accuracy) const {
   return [this, &effects, accuracy](std::stop_token stop) -> Result<std::vector<ThresholdEstimate>> {
     TemplateObserver observer(task_.observer, triangle_alternatives());  // new: its banks are part of the cost
-    const auto points = direct_estimate(task_.sensor, effects, observer, delta_t_k_,
-                                        {.samples_per_pitch = 0,
-                                         .motion = task_.motion,
-                                         .accuracy = accuracy,
-                                         .seed = task_.seed,
-                                         .stop = std::move(stop)});
-    if (!points) return tl::unexpected(points.error());
+    TODBENCH_TRY(const auto points, direct_estimate(task_.sensor, effects, observer, delta_t_k_,
+                                                    {.samples_per_pitch = 0,
+                                                     .motion = task_.motion,
+                                                     .accuracy = accuracy,
+                                                     .seed = task_.seed,
+                                                     .stop = std::move(stop)}));
     std::vector<ThresholdEstimate> found;
-    for (const DirectPoint& p : *points) found.push_back({p.delta_t_k, p.s75_pitch, p.standard_error_pitch});
+    for (const DirectPoint& p : points) found.push_back({p.delta_t_k, p.s75_pitch, p.standard_error_pitch});
     return found;
   };
 }
@@ -168,11 +168,10 @@ Result<Timed> Frontier::timed(const Estimate& estimate) const {
   const Deadline deadline(left_s(), stop_);
   const auto start = task_.now();
   const double processor_start_s = processor_s();
-  auto found = estimate(deadline.token());
-  if (!found) return tl::unexpected(found.error());
+  TODBENCH_TRY(auto found, estimate(deadline.token()));
   const double wall_s = seconds_since(start);
   return Timed{
-      .found = std::move(*found), .wall_s = wall_s, .idle_s = std::min(wall_s, processor_s() - processor_start_s)};
+      .found = std::move(found), .wall_s = wall_s, .idle_s = std::min(wall_s, processor_s() - processor_start_s)};
 }
 
 /// Draft estimate at every contrast: finds the contrasts with a threshold, its size, and the speed of the machine.

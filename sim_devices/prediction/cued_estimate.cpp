@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/base/try.h"
 #include "hvs/shape/polygon_spectrum.h"
 #include "sim_devices/sensor/transfer_functions.h"
 #include "tod/plate/test_pattern.h"
@@ -58,9 +59,8 @@ Result<const SizeTrial*> CuedEstimate::trial_at(int index) {
   auto& slot = trials_[index];
   if (slot == nullptr) {
     const double size = std::pow(size_step, index);
-    auto bank = observer_.bank(size * conditions_.samples_per_pitch, conditions_.samples_per_pitch);
-    if (!bank) return tl::unexpected(bank.error());
-    slot = std::make_unique<SizeTrial>(chain_, *bank, size, conditions_, RandomStream(1, "unused"));
+    TODBENCH_TRY(auto bank, observer_.bank(size * conditions_.samples_per_pitch, conditions_.samples_per_pitch));
+    slot = std::make_unique<SizeTrial>(chain_, bank, size, conditions_, RandomStream(1, "unused"));
   }
   return slot.get();
 }
@@ -137,9 +137,8 @@ Result<double> CuedEstimate::weibull_slope(double q) {
   const int below = std::max(middle - 2, smallest_index), above = std::min(middle + 2, largest_index);
   double logits[2];
   for (int i = 0; i < 2; ++i) {
-    const auto trial = trial_at(i == 0 ? below : above);
-    if (!trial) return tl::unexpected(trial.error());
-    logits[i] = logit(proportion(**trial, q));
+    TODBENCH_TRY(const auto trial, trial_at(i == 0 ? below : above));
+    logits[i] = logit(proportion(*trial, q));
   }
   // dlogit/dP at 3/4 is 1/(1/2) + 1/(1/4) = 6.
   const double rise = (logits[1] - logits[0]) / ((above - below) * std::log(size_step)) / 6;

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <optional>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/local_crossing.h"
 #include "sim_devices/prediction/size_trial.h"
 #include "sim_devices/sensor/effect_display.h"
@@ -54,9 +55,8 @@ class SizeLadder {
     auto& slot = sizes_[index];
     if (slot == nullptr) {
       const double size = size_of(index);
-      auto bank = observer_.bank(size * conditions_.samples_per_pitch, conditions_.samples_per_pitch);
-      if (!bank) return tl::unexpected(bank.error());
-      slot = std::make_unique<SizeTrial>(chain_, *bank, size, conditions_,
+      TODBENCH_TRY(auto bank, observer_.bank(size * conditions_.samples_per_pitch, conditions_.samples_per_pitch));
+      slot = std::make_unique<SizeTrial>(chain_, bank, size, conditions_,
                                          stream_.sub(static_cast<std::uint64_t>(index - smallest_index)));
     }
     if (asked.pixels) return slot->pixel_proportion(*asked.pixels, draws);
@@ -81,14 +81,12 @@ Result<int> bracket(SizeLadder& ladder, const AskedContrast& asked) {
                   fmt::format("at a contrast of {:g} K, no size up to {:.0f} pitches reaches 75 % correct answers",
                               asked.delta_t_k, size_of(largest_index)));
     }
-    const auto p = ladder.proportion(index, asked, scout_draws);
-    if (!p) return tl::unexpected(p.error());
-    if (p->mean > 0.8) break;
+    TODBENCH_TRY(const auto p, ladder.proportion(index, asked, scout_draws));
+    if (p.mean > 0.8) break;
   }
   for (--index; index >= smallest_index; --index) {
-    const auto p = ladder.proportion(index, asked, scout_draws);
-    if (!p) return tl::unexpected(p.error());
-    if (p->mean < 0.75) return index;
+    TODBENCH_TRY(const auto p, ladder.proportion(index, asked, scout_draws));
+    if (p.mean < 0.75) return index;
   }
   return fail(ErrorCode::invalid_input,
               "even the smallest target is recognised: there is no threshold above 0.2 pitch");
@@ -110,12 +108,11 @@ Result<Pass> one_pass(SizeLadder& ladder, const AskedContrast& asked, int below,
     std::vector<double> xs;
     std::vector<Proportion> ps;
     for (int k = below - 2; k <= below + 3; ++k) {
-      const auto p = ladder.proportion(k, asked, draws);
-      if (!p) return tl::unexpected(p.error());
+      TODBENCH_TRY(const auto p, ladder.proportion(k, asked, draws));
       xs.push_back((k - below) * std::log(size_step));
-      ps.push_back(*p);
+      ps.push_back(p);
       point.sizes_pitch.push_back(size_of(k));
-      point.proportion_correct.push_back(p->mean);
+      point.proportion_correct.push_back(p.mean);
     }
     const auto found = local_crossing(xs, ps);
     if (!found) break;
@@ -143,23 +140,21 @@ std::string out_of_reach(double contrast, double asked_percent, double needed_dr
 
 Result<DirectPoint> estimate_contrast(SizeLadder& ladder, const AskedContrast& asked_contrast, const Accuracy& accuracy,
                                       const std::function<double(double)>& seconds_at) {
-  const auto bracketed = bracket(ladder, asked_contrast);
-  if (!bracketed) return tl::unexpected(bracketed.error());
-  int below = *bracketed, draws = accuracy.noise_draws;
+  TODBENCH_TRY(const auto bracketed, bracket(ladder, asked_contrast));
+  int below = bracketed, draws = accuracy.noise_draws;
   for (;;) {
-    auto pass = one_pass(ladder, asked_contrast, below, draws);
-    if (!pass) return tl::unexpected(pass.error());
-    const double reached = 100 * pass->point.standard_error_pitch / pass->point.s75_pitch;
+    TODBENCH_TRY(auto pass, one_pass(ladder, asked_contrast, below, draws));
+    const double reached = 100 * pass.point.standard_error_pitch / pass.point.s75_pitch;
     const double asked = accuracy.standard_error_percent;
-    if (!(asked > 0) || reached <= asked) return std::move(pass->point);
+    if (!(asked > 0) || reached <= asked) return std::move(pass.point);
     // The error falls with the square root of the draws. A tenth is added, because it is itself an estimate.
     const double needed = 1.1 * draws * std::pow(reached / asked, 2);
     if (needed > 2 * Accuracy::max_noise_draws || draws == Accuracy::max_noise_draws) {
       const double reachable = 1.05 * reached * std::sqrt(draws / double{Accuracy::max_noise_draws});
       return fail(ErrorCode::invalid_input,
-                  out_of_reach(asked_contrast.delta_t_k, asked, needed, reachable, seconds_at(pass->point.s75_pitch)));
+                  out_of_reach(asked_contrast.delta_t_k, asked, needed, reachable, seconds_at(pass.point.s75_pitch)));
     }
-    below = pass->below;
+    below = pass.below;
     draws = std::min(static_cast<int>(needed) + 1, Accuracy::max_noise_draws);
   }
 }
@@ -245,9 +240,7 @@ Result<AskedContrast> asked_contrast(const SensorSpec& sensor, const SensorPlan&
                       .white = {.sensor = white_k / magnitude, .internal = observer.internal_noise},
                       .pixels = std::nullopt};
   if (needs_pixels(sensor, plan, delta_t_k, options)) {
-    const auto pixels = pixel_contrast(sensor, plan, observer, delta_t_k, options);
-    if (!pixels) return tl::unexpected(pixels.error());
-    asked.pixels = *pixels;
+    TODBENCH_TRY(asked.pixels, pixel_contrast(sensor, plan, observer, delta_t_k, options));
   }
   return asked;
 }
@@ -255,20 +248,17 @@ Result<AskedContrast> asked_contrast(const SensorSpec& sensor, const SensorPlan&
 /// Curve over the sizes between nearly chance and nearly certain.
 Result<ProportionCurve> curve_of(SizeLadder& ladder, const AskedContrast& asked, int draws) {
   constexpr double next_to_chance = 0.26, next_to_certainty = 0.9985;
-  const auto middle = bracket(ladder, asked);
-  if (!middle) return tl::unexpected(middle.error());
+  TODBENCH_TRY(const auto middle, bracket(ladder, asked));
   std::map<int, Proportion> found;
-  for (int index = *middle; index >= smallest_index; --index) {
-    const auto p = ladder.proportion(index, asked, draws);
-    if (!p) return tl::unexpected(p.error());
-    found[index] = *p;
-    if (p->mean < next_to_chance) break;
+  for (int index = middle; index >= smallest_index; --index) {
+    TODBENCH_TRY(const auto p, ladder.proportion(index, asked, draws));
+    found[index] = p;
+    if (p.mean < next_to_chance) break;
   }
-  for (int index = *middle + 1; index <= largest_index; ++index) {
-    const auto p = ladder.proportion(index, asked, draws);
-    if (!p) return tl::unexpected(p.error());
-    found[index] = *p;
-    if (p->mean > next_to_certainty) break;
+  for (int index = middle + 1; index <= largest_index; ++index) {
+    TODBENCH_TRY(const auto p, ladder.proportion(index, asked, draws));
+    found[index] = p;
+    if (p.mean > next_to_certainty) break;
   }
   ProportionCurve curve;
   curve.delta_t_k = asked.delta_t_k;
@@ -294,9 +284,8 @@ Result<std::vector<Found>> for_every_contrast(const SensorSpec& spec, const Sens
   SizeLadder pixel_ladder(chain, observer, std::move(conditions), options);
   std::vector<Found> all;
   for (const double contrast : delta_t_k) {
-    const auto asked = asked_contrast(sensor, plan, observer.spec(), contrast, options);
-    if (!asked) return tl::unexpected(asked.error());
-    Result<Found> found = find(asked->pixels ? pixel_ladder : ladder, *asked, sensor);
+    TODBENCH_TRY(const auto asked, asked_contrast(sensor, plan, observer.spec(), contrast, options));
+    Result<Found> found = find(asked.pixels ? pixel_ladder : ladder, asked, sensor);
     if (!found) return tl::unexpected(found.error());
     all.push_back(*std::move(found));
   }

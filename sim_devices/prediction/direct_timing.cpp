@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/size_trial.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/image_chain.h"
@@ -53,9 +54,8 @@ Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan&
   // Tabulates the transfer function, which would otherwise be timed with the first size.
   (void)chain.image(triangle(s75_pitch, Apex::up));
   const double t0 = thread_seconds();
-  auto bank = observer.bank(s75_pitch * samples_per_pitch, samples_per_pitch);
-  if (!bank) return tl::unexpected(bank.error());
-  SizeTrial trial(chain, *bank, s75_pitch, conditions, RandomStream(1, "direct_timing"));
+  TODBENCH_TRY(auto bank, observer.bank(s75_pitch * samples_per_pitch, samples_per_pitch));
+  SizeTrial trial(chain, bank, s75_pitch, conditions, RandomStream(1, "direct_timing"));
   const auto judge = [&] {
     if (!by_pixels) return trial.proportion(white, std::abs(delta_t_k), timed_draws);
     return trial.pixel_proportion({.scene_k = delta_t_k,

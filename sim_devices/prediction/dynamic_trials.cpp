@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/trial_plate.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_readout.h"
@@ -40,9 +41,7 @@ struct StageScale {
 
 Result<cv::Mat1f> through(const std::vector<std::unique_ptr<ChainStage>>& stages, cv::Mat1f picture) {
   for (const auto& stage : stages) {
-    auto answer = stage->process(picture);
-    if (!answer) return tl::unexpected(answer.error());
-    picture = *std::move(answer);
+    TODBENCH_TRY(picture, stage->process(picture));
   }
   return picture;
 }
@@ -75,20 +74,19 @@ Result<StageScale> stage_scale(const SensorSpec& camera, const TargetPlate& plat
   for (int k = 0; k < lead + frames; ++k) {
     cv::Mat1f picture;
     model.expose(scene, static_cast<std::uint64_t>(first + k)).convertTo(picture, CV_32F);
-    const auto answer = through(stages, picture);
-    if (!answer) return tl::unexpected(answer.error());
+    TODBENCH_TRY(const auto answer, through(stages, picture));
     if (k < lead) continue;
-    const cv::Mat1d before(picture), after(*answer);
+    const cv::Mat1d before(picture), after(answer);
     mean_in_front += before / frames;
     mean_behind += after / frames;
     in_front.add(static_cast<std::uint64_t>(k), before);
     behind.add(static_cast<std::uint64_t>(k), after);
   }
-  const auto shown = effective_contrast(mean_in_front, plate, registration, least_mark_pitch, LevelEstimate::mean);
-  if (!shown) return tl::unexpected(shown.error());
-  const auto judged = effective_contrast(mean_behind, plate, registration, least_mark_pitch, LevelEstimate::mean);
-  if (!judged) return tl::unexpected(judged.error());
-  StageScale out{.gain = judged->value / shown->value};
+  TODBENCH_TRY(const auto shown,
+               effective_contrast(mean_in_front, plate, registration, least_mark_pitch, LevelEstimate::mean));
+  TODBENCH_TRY(const auto judged,
+               effective_contrast(mean_behind, plate, registration, least_mark_pitch, LevelEstimate::mean));
+  StageScale out{.gain = judged.value / shown.value};
   if (!std::isfinite(out.gain) || out.gain == 0)
     return fail(ErrorCode::not_identifiable, "after the processing stages, the large triangles have no contrast");
   if (in_front.variance() > 0) out.noise_ratio = std::sqrt(behind.variance() / in_front.variance());
@@ -117,12 +115,11 @@ Result<MovingPass> exposed_pass(const SensorModel& model, const TargetPlate& pla
     const int frame = k >= 0 ? index * options.frames + k : options.passes * options.frames + index * lead + (k + lead);
     cv::Mat1f picture;
     model.expose(scene, static_cast<std::uint64_t>(frame)).convertTo(picture, CV_32F);
-    const auto answer = through(stages, picture);
-    if (!answer) return tl::unexpected(answer.error());
+    TODBENCH_TRY(const auto answer, through(stages, picture));
     if (k < 0) continue;
     // In units of the judged contrast; an offset that the stages add to every pixel is ignored.
     cv::Mat1f kelvin;
-    answer->convertTo(kelvin, CV_32F, spec.kelvin_per_count / gain, spec.offset_k - scene.background_k);
+    answer.convertTo(kelvin, CV_32F, spec.kelvin_per_count / gain, spec.offset_k - scene.background_k);
     pass.frames.push_back(std::move(kelvin));
   }
   return pass;
@@ -184,13 +181,11 @@ Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, Temp
       fastest / sensor.ifov_mrad() / sensor.frame_rate_hz * (options.frames - 1 + lead_frames(options));
   const TargetPlate plate = trial_plate(options.sizes_pitch, sensor.ifov_mrad());
   const SensorSpec camera = cropped_to(sensor, plate, static_cast<int>(std::ceil(reach_px)));
-  auto judge = SequenceJudge::prepare(observer, options.sizes_pitch);
-  if (!judge) return tl::unexpected(judge.error());
+  TODBENCH_TRY(auto judge, SequenceJudge::prepare(observer, options.sizes_pitch));
   const RandomStream internal(options.seed, "camera_trials.internal");
-  const auto scale = stage_scale(camera, plate, options);
-  if (!scale) return tl::unexpected(scale.error());
+  TODBENCH_TRY(const auto scale, stage_scale(camera, plate, options));
   const double noise_k =
-      std::hypot(camera.netd_k, camera.kelvin_per_count / std::sqrt(12.0)) * scale->noise_ratio / std::abs(scale->gain);
+      std::hypot(camera.netd_k, camera.kelvin_per_count / std::sqrt(12.0)) * scale.noise_ratio / std::abs(scale.gain);
   std::vector<DynamicTrials> found;
   for (const double speed : options.speeds_mrad_s) {
     // The model keeps a chain for each direction of a speed; another speed needs none of them.
@@ -201,9 +196,8 @@ Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, Temp
     trials.speed_px = speed / camera.ifov_mrad() / camera.frame_rate_hz;
     for (int p = 0; p < options.passes; ++p) {
       if (options.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-      const auto pass = exposed_pass(model, plate, options, scale->gain, speed, p);
-      if (!pass) return tl::unexpected(pass.error());
-      add_answers(*judge, *pass, model, noise_k, p, internal.sub(static_cast<std::uint64_t>(p) * 16), trials);
+      TODBENCH_TRY(const auto pass, exposed_pass(model, plate, options, scale.gain, speed, p));
+      add_answers(judge, pass, model, noise_k, p, internal.sub(static_cast<std::uint64_t>(p) * 16), trials);
     }
     found.push_back(std::move(trials));
   }

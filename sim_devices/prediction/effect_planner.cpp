@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/cued_estimate.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_row.h"
@@ -74,28 +75,24 @@ Result<Contrast> contrast_of(CuedEstimate& cued, const SensorSpec& sensor, const
   cued.show(delta_t_k);
   auto size = cued.s75_pitch(std::sqrt(out.noise.white));
   if (!size) return tl::unexpected(size.error());
-  const auto trial = cued.trial(*size);
-  if (!trial) return tl::unexpected(trial.error());
+  TODBENCH_TRY(const auto trial, cued.trial(*size));
   // Of the eye, as white noise: the estimate above knows its covariance, the budget of the effects a variance.
-  const double eye = (*trial)->eye_variance(delta_t_k);
+  const double eye = trial->eye_variance(delta_t_k);
   out.outlook.observer_variance += eye;
   out.noise.white += eye;
   out.noise.total += eye;
   out.outlook.q_eff = std::sqrt(out.noise.white);
-  add_coloured(out.noise, sensor, **trial, delta_t_k);
+  add_coloured(out.noise, sensor, *trial, delta_t_k);
   if (out.noise.total > out.noise.white) {
     size = cued.s75_pitch(std::sqrt(out.noise.total - eye));
     if (!size) return tl::unexpected(size.error());
   }
-  const auto exponent = cued.sensitivity(std::sqrt(out.noise.total - eye));
-  if (!exponent) return tl::unexpected(exponent.error());
-  const auto slope = cued.weibull_slope(std::sqrt(out.noise.total - eye));
-  if (!slope) return tl::unexpected(slope.error());
-  out.outlook.weibull_slope = *slope;
+  TODBENCH_TRY(const auto exponent, cued.sensitivity(std::sqrt(out.noise.total - eye)));
+  TODBENCH_TRY(out.outlook.weibull_slope, cued.weibull_slope(std::sqrt(out.noise.total - eye)));
   out.outlook.s75_pitch = *size;
   // The searching observer loses faster than the one that knows the position: its S75 is up to 1.06 times larger at q =
   // 0.3 and 1.12 at 0.7. A factor of 1.5 and an addition of 0.1 keep the bound above it.
-  out.outlook.noise_exponent = 1.5 * *exponent + 0.1;
+  out.outlook.noise_exponent = 1.5 * exponent + 0.1;
   const auto d = [&](double factor) {
     return std::log(discriminability(sensor, everything, factor * *size, planning_wavelengths));
   };

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/transfer_functions.h"
 #include "tod/range/bars_sampled.h"
@@ -142,15 +143,14 @@ Result<MrtdFormula> mrtd_formula_of(const SensorSpec& spec, const FormulaConditi
 }
 
 Result<AxisCurves> mrtd_curves(const SensorSpec& spec, const FormulaConditions& conditions) {
-  const auto formula = mrtd_formula_of(spec, conditions);
-  if (!formula) return tl::unexpected(formula.error());
+  TODBENCH_TRY(const auto formula, mrtd_formula_of(spec, conditions));
   const AxisMtf mtf(spec);
   std::vector<CurvePoint> horizontal, vertical;
   for (const double f : frequencies_up_to(nyquist_per_mrad(spec), 100)) {
     const double passed = mtf(f * spec.ifov_mrad());
     if (!(passed > 1e-6)) break;
-    horizontal.push_back({f, mrtd_k(*formula, f, passed, BarAxis::horizontal)});
-    vertical.push_back({f, mrtd_k(*formula, f, passed, BarAxis::vertical)});
+    horizontal.push_back({f, mrtd_k(formula, f, passed, BarAxis::horizontal)});
+    vertical.push_back({f, mrtd_k(formula, f, passed, BarAxis::vertical)});
   }
   auto h = LogLinearCurve::of(horizontal, "MRTD"), v = LogLinearCurve::of(vertical, "MRTD");
   if (!h) return tl::unexpected(h.error());
@@ -159,16 +159,15 @@ Result<AxisCurves> mrtd_curves(const SensorSpec& spec, const FormulaConditions& 
 }
 
 Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions) {
-  const auto formula = mrtd_formula_of(spec, conditions);
-  if (!formula) return tl::unexpected(formula.error());
+  TODBENCH_TRY(const auto formula, mrtd_formula_of(spec, conditions));
   const AxisMtf mtf(spec);
   const int n = spec.samples_per_pitch();
   // In samples: the lattice of the modulation has a step of 1.
   const Tabulated per_sample([&](double f) { return mtf(f * n); });
   std::vector<CurvePoint> horizontal, vertical;
   const auto add = [&](double f, double modulation) {
-    horizontal.push_back({f, mtdp_like_k(*formula, f, modulation, BarAxis::horizontal)});
-    vertical.push_back({f, mtdp_like_k(*formula, f, modulation, BarAxis::vertical)});
+    horizontal.push_back({f, mtdp_like_k(formula, f, modulation, BarAxis::horizontal)});
+    vertical.push_back({f, mtdp_like_k(formula, f, modulation, BarAxis::vertical)});
   };
   // Blur does not affect bars of fifty samples.
   const double nyquist = nyquist_per_mrad(spec);
@@ -176,7 +175,7 @@ Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditi
   constexpr int count = 80, phases = 16;
   const auto adds = [&](double f) {
     const BlurredBars bars(
-        f * formula->pitch_mrad, [&](double u) { return per_sample(u); }, per_sample.band());
+        f * formula.pitch_mrad, [&](double u) { return per_sample(u); }, per_sample.band());
     const BarModulation left = bar_modulation(bars, phases);
     if (left.best < 0.01 || left.bars_separated_at_best < 2) return false;
     add(f, left.best);
@@ -206,14 +205,13 @@ Result<LogLinearCurve> system_ctf(const SensorSpec& spec, const FormulaCondition
   // A sensor without temporal noise still has a threshold, from eye and transfer function.
   SensorSpec noisy = spec;
   noisy.netd_k = std::max(spec.netd_k, 1e-12);
-  const auto formula = mrtd_formula_of(noisy, conditions);
-  if (!formula) return tl::unexpected(formula.error());
+  TODBENCH_TRY(const auto formula, mrtd_formula_of(noisy, conditions));
   const AxisMtf mtf(spec);
   std::vector<CurvePoint> points;
   for (const double f : frequencies_up_to(nyquist_per_mrad(spec), 200)) {
     if (!(mtf(f * spec.ifov_mrad()) > 1e-9)) break;
-    const double h = axis_ctf(spec, mtf, *formula, conditions, f, BarAxis::horizontal);
-    const double v = axis_ctf(spec, mtf, *formula, conditions, f, BarAxis::vertical);
+    const double h = axis_ctf(spec, mtf, formula, conditions, f, BarAxis::horizontal);
+    const double v = axis_ctf(spec, mtf, formula, conditions, f, BarAxis::vertical);
     const double mean = std::sqrt(h) * std::sqrt(v);
     if (!std::isfinite(mean)) break;
     points.push_back({f, mean});

@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 
+#include "acquisition/base/try.h"
 #include "hvs/observer/identification_bank.h"
 #include "hvs/observer/open_parameters.h"
 #include "hvs/observer/viewing_filter.h"
@@ -283,12 +284,11 @@ SensorSpec sensor_at(const IdentificationTask& task, double range_m) {
 }
 
 Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
-  const auto targets = seen_targets(task);
-  if (!targets) return tl::unexpected(targets.error());
+  TODBENCH_TRY(const auto targets, seen_targets(task));
   const SensorSpec spec = as_planned(task.sensor, task.plan);
   const int n = spec.samples_per_pitch();
   double views = 0, edges = 0, reach_m = 0;
-  for (const auto& target : *targets) {
+  for (const auto& target : targets) {
     for (const auto& aspect : target) {
       ++views;
       edges += static_cast<double>(aspect.edges_m.size());
@@ -388,11 +388,10 @@ struct IdentificationFrames::Range {
 };
 
 Result<IdentificationFrames> IdentificationFrames::of(const IdentificationTask& task) {
-  const auto targets = seen_targets(task);
-  if (!targets) return tl::unexpected(targets.error());
+  TODBENCH_TRY(const auto targets, seen_targets(task));
   IdentificationFrames frames;
-  for (const auto& range : task.ranges) frames.ranges_.push_back(std::make_shared<const Range>(task, *targets, range));
-  for (const auto& target : *targets) {
+  for (const auto& range : task.ranges) frames.ranges_.push_back(std::make_shared<const Range>(task, targets, range));
+  for (const auto& target : targets) {
     auto& own = frames.contrasts_k_.emplace_back();
     for (const auto& aspect : target) own.push_back(aspect.dt_rss_k);
   }

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -17,11 +19,10 @@ Result<cv::Mat1d> settled_mean(ModuleSensor& sensor, const cv::Mat1f& scene_k, i
   cv::Mat1d sum;
   for (int i = 0; i < settle_frames + averaged_frames; ++i) {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    const auto picture = sensor.picture(scene_k, static_cast<std::uint64_t>(i));
-    if (!picture) return tl::unexpected(picture.error());
+    TODBENCH_TRY(const auto picture, sensor.picture(scene_k, static_cast<std::uint64_t>(i)));
     if (i < settle_frames) continue;
     cv::Mat1d now;
-    picture->convertTo(now, CV_64F, 1.0 / averaged_frames);
+    picture.convertTo(now, CV_64F, 1.0 / averaged_frames);
     if (sum.empty())
       sum = now;
     else
@@ -39,8 +40,7 @@ Result<double> module_response(const SensorSpec& spec, std::uint64_t seed, const
   PlateScene scene;
   scene.distance_m = options.distance_m;
   scene.background_k = spec.scene_temperature_k;
-  const auto empty = settled_mean(sensor, scene_picture_k(scene, spec), settle_frames, stop);
-  if (!empty) return tl::unexpected(empty.error());
+  TODBENCH_TRY(const auto empty, settled_mean(sensor, scene_picture_k(scene, spec), settle_frames, stop));
   scene.delta_t_k = options.delta_t_k;
   double sum = 0;
   int count = 0;
@@ -49,9 +49,8 @@ Result<double> module_response(const SensorSpec& spec, std::uint64_t seed, const
     for (const double phase : {0.0, 0.5}) {
       scene.plate = mounted(plate, mounting);
       scene.centre_px = {phase, -phase};
-      const auto picture = settled_mean(sensor, scene_picture_k(scene, spec), settle_frames, stop);
-      if (!picture) return tl::unexpected(picture.error());
-      const cv::Mat1d signal = (*picture - *empty) / options.delta_t_k;
+      TODBENCH_TRY(const auto picture, settled_mean(sensor, scene_picture_k(scene, spec), settle_frames, stop));
+      const cv::Mat1d signal = (picture - empty) / options.delta_t_k;
       const auto found = register_plate(signal, scene.plate, options.registration);
       if (!found) return fail("simulating the contrast of plate " + plate.name, found.error());
       const auto contrast = effective_contrast(signal, scene.plate, *found, options.min_reference_px, options.level);
@@ -68,16 +67,14 @@ Result<std::vector<double>> module_transfer(ModuleSensor& sensor, const SensorSp
   constexpr int fine = scene_samples_per_pitch;
   const int settle_frames = sensor_module(spec)->settle_frames, middle = spec.width / 2;
   const cv::Size size(spec.width * fine, spec.height * fine);
-  const auto empty = settled_mean(sensor, cv::Mat1f(size, 0.0F), settle_frames, {});
-  if (!empty) return tl::unexpected(empty.error());
+  TODBENCH_TRY(const auto empty, settled_mean(sensor, cv::Mat1f(size, 0.0F), settle_frames, {}));
   // Indexed by the distance of the edge left of a pitch's first sample, in scene samples, from -fine middle - fine + 1.
   std::vector<double> response(static_cast<std::size_t>(size.width));
   for (int shift = 0; shift < fine; ++shift) {
     cv::Mat1f edge(size, 0.0F);
     edge.colRange(middle * fine + shift, size.width) = 1.0F;
-    const auto seen = settled_mean(sensor, edge, settle_frames, {});
-    if (!seen) return tl::unexpected(seen.error());
-    const cv::Mat1d added = *seen - *empty;
+    TODBENCH_TRY(const auto seen, settled_mean(sensor, edge, settle_frames, {}));
+    const cv::Mat1d added = seen - empty;
     for (int column = 0; column < spec.width; ++column)
       response[static_cast<std::size_t>(column * fine + fine - 1 - shift)] = cv::mean(added.col(column))[0];
   }

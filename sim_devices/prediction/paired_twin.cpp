@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "sim_devices/sensor/effect_display.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
@@ -86,10 +87,9 @@ class PairedTwin {
       if (!(trial.size_mrad > 0) || !std::isfinite(trial.delta_t_k) || trial.delta_t_k == 0)
         return fail(ErrorCode::invalid_input, "a trial without size or contrast cannot be shown to the twin");
       const int n = sensor_.samples_per_pitch();
-      auto prepared = observer_.prepare(trial.size_mrad / sensor_.ifov_mrad() * n, n);
-      if (!prepared) return tl::unexpected(prepared.error());
-      sides.push_back((*prepared)->window_samples());
-      observers.push_back(*std::move(prepared));
+      TODBENCH_TRY(auto prepared, observer_.prepare(trial.size_mrad / sensor_.ifov_mrad() * n, n));
+      sides.push_back(prepared->window_samples());
+      observers.push_back(std::move(prepared));
     }
     const Tiles tiles = laid_out(sides, margin_, sensor_.samples_per_pitch());
     const SetUpKey set_up{shown.front().plate, shown.front().mounting};
@@ -211,9 +211,8 @@ Result<std::vector<TwinAnswer>> twin_answers(const SensorSpec& sensor, const Sen
   for (std::size_t first = 0; first < trials.size();) {
     std::size_t end = first + 1;
     while (end < trials.size() && trials[end].presentation == trials[first].presentation) ++end;
-    auto answers = twin.answers(trials.subspan(first, end - first));
-    if (!answers) return tl::unexpected(answers.error());
-    out.insert(out.end(), answers->begin(), answers->end());
+    TODBENCH_TRY(auto answers, twin.answers(trials.subspan(first, end - first)));
+    out.insert(out.end(), answers.begin(), answers.end());
     first = end;
   }
   return out;

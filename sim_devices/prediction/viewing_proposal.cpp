@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"
 
@@ -47,18 +48,16 @@ Result<ViewingProposal> propose_viewing(const SensorSpec& sensor, const SensorPl
     return std::log(found->front().s75_pitch);
   };
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    const auto found = ln_s75(side_m / covered(viewing_angles_arcmin[i]));
-    if (!found) return tl::unexpected(found.error());
-    logs[i] = *found;
+    TODBENCH_TRY(const auto found, ln_s75(side_m / covered(viewing_angles_arcmin[i])));
+    logs[i] = found;
   }
   // Two angles, because one draft estimate scatters by about the limit itself.
   const double best = (logs[logs.size() - 1] + logs[logs.size() - 2]) / 2;
   const double limit = best + std::log1p(viewing_cost_percent / 100);
   ViewingProposal out;
   out.stated_arcmin = arcmin_per_sample(stated);
-  const auto own = ln_s75(stated.viewing_distance_m);
-  if (!own) return tl::unexpected(own.error());
-  out.stated_cost_percent = 100 * std::expm1(*own - best);
+  TODBENCH_TRY(const auto own, ln_s75(stated.viewing_distance_m));
+  out.stated_cost_percent = 100 * std::expm1(own - best);
   double high = viewing_angles_arcmin[viewing_angles_arcmin.size() - 2], low = viewing_angles_arcmin.front();
   while (high / low > 1.001) {
     const double middle = std::sqrt(low * high);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "hvs/observer/identification_bank.h"
 #include "hvs/observer/open_parameters.h"
 #include "hvs/observer/seen_picture.h"
@@ -81,9 +82,8 @@ class BarTrial {
     std::vector<AlternativeAspects> alternatives;
     for (const BarPattern pattern : {BarPattern::four_bars, BarPattern::five_bars})
       alternatives.push_back({trial.edges(pattern)});
-    auto bank = IdentificationBank::build(task.observer, alternatives, spec.samples_per_pitch());
-    if (!bank) return tl::unexpected(bank.error());
-    trial.bank_.emplace(*std::move(bank));
+    TODBENCH_TRY(auto bank, IdentificationBank::build(task.observer, alternatives, spec.samples_per_pitch()));
+    trial.bank_.emplace(std::move(bank));
     if (task.observer.eye && task.criterion == BarCriterion::bars_resolved)
       trial.picture_.emplace(task.observer, trial.bank_->window_samples());
     for (std::size_t phase = 0; phase < bar_phases; ++phase) {
@@ -348,9 +348,8 @@ Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task) 
   std::vector<VirtualMrtdPoint> points;
   for (const double frequency : task.frequencies_per_mrad) {
     points.push_back(point_before_trials(task, spec, frequency));
-    auto trial = BarTrial::create(task, spec, imager, frequency);
-    if (!trial) return tl::unexpected(trial.error());
-    if (auto measured = trial->measure(points.back()); !measured) return tl::unexpected(measured.error());
+    TODBENCH_TRY(auto trial, BarTrial::create(task, spec, imager, frequency));
+    if (auto measured = trial.measure(points.back()); !measured) return tl::unexpected(measured.error());
   }
   return points;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "acquisition/base/try.h"
 #include "hvs/shape/painted_shapes.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/scene_image.h"
@@ -101,11 +102,10 @@ Result<cv::Mat1w> ModuleSensor::expose(const PlateScene& scene, std::uint64_t in
   if (auto possible = check_sensor_module(spec_, scene.motion); !possible) return tl::unexpected(possible.error());
   if (!last_ || last_->first.delta_t_k != scene.delta_t_k || !same_geometry(last_->first, scene))
     last_.emplace(scene, scene_picture_k(scene, spec_));
-  const auto kelvin = picture(last_->second, index);
-  if (!kelvin) return tl::unexpected(kelvin.error());
+  TODBENCH_TRY(const auto kelvin, picture(last_->second, index));
   const Quantiser quantiser(spec_, scene.background_k);
-  cv::Mat1w counts(kelvin->size());
-  std::transform(kelvin->begin(), kelvin->end(), counts.begin(), [&](float value) { return quantiser.count(value); });
+  cv::Mat1w counts(kelvin.size());
+  std::transform(kelvin.begin(), kelvin.end(), counts.begin(), [&](float value) { return quantiser.count(value); });
   return counts;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -58,11 +59,10 @@ Result<void> look_at_numbers(const SensorSpec& spec, SensorModuleReport& report)
   const cv::Mat1f a = random_scene(size, 5), b = random_scene(size, 6);
   std::vector<cv::Mat1f> added;
   for (const cv::Mat1f& scene : {zero, one, a, b, cv::Mat1f(2 * a - 0.5 * b)}) {
-    auto frames = frames_of(spec, {scene, zero});
-    if (!frames) return tl::unexpected(frames.error());
+    TODBENCH_TRY(auto frames, frames_of(spec, {scene, zero}));
     if (added.empty())
-      report.noise_k = cv::norm((*frames)[1] - (*frames)[0]) / std::sqrt(2 * static_cast<double>(size.area()));
-    added.push_back(added.empty() ? (*frames)[0] : cv::Mat1f((*frames)[0] - added.front()));
+      report.noise_k = cv::norm((frames)[1] - (frames)[0]) / std::sqrt(2 * static_cast<double>(size.area()));
+    added.push_back(added.empty() ? (frames)[0] : cv::Mat1f((frames)[0] - added.front()));
   }
   report.response = cv::mean(added[1])[0];
   const auto largest = [](const cv::Mat1f& picture) { return cv::norm(picture, cv::NORM_INF); };
@@ -89,9 +89,7 @@ Result<SensorModuleReport> check_sensor(const SensorSpec& spec) {
     }
     report.shapes.push_back(size);
   }
-  const auto time = frame_time_ms(sized(spec, {320, 240}));
-  if (!time) return tl::unexpected(time.error());
-  report.latency_ms = *time;
+  TODBENCH_TRY(report.latency_ms, frame_time_ms(sized(spec, {320, 240})));
   if (auto looked = look_at_numbers(sized(spec, {64, 48}), report); !looked) return tl::unexpected(looked.error());
   return report;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "acquisition/base/host_clock.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "sim_devices/sensor/moving_scene.h"
 #include "sim_devices/sensor/super_resolution_stage.h"
@@ -52,9 +53,7 @@ class SimulatedSource final : public FrameSource {
     PlateScene scene = scene_->scene_at(time_s, model_->spec());
     if (dither_ > 1) scene.centre_px += dither_px(dither_, index_);
     if (module_) {
-      auto counts = module_->expose(scene, index_);
-      if (!counts) return tl::unexpected(counts.error());
-      frame.counts = *std::move(counts);
+      TODBENCH_TRY(frame.counts, module_->expose(scene, index_));
     } else {
       frame.counts = model_->expose(scene, index_);
     }

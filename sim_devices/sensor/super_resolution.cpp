@@ -10,6 +10,8 @@
 #include <optional>
 #include <string>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -249,9 +251,8 @@ Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames, const 
 }
 
 Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames) {
-  auto shifts = frame_shifts(frames);
-  if (!shifts) return tl::unexpected(shifts.error());
-  return super_resolve(frames, *shifts);
+  TODBENCH_TRY(auto shifts, frame_shifts(frames));
+  return super_resolve(frames, shifts);
 }
 
 }  // namespace todbench

@@ -142,12 +142,13 @@ Result<BarsJudge> BarsJudge::create(const MrtdOptions& options, const Registrati
       judge.reasons_.push_back(crowded);
       continue;
     }
-    auto added = judge.add_place(square, other,
-                                 {.name = four.name,
-                                  .axis = lies_across_x(four) ? EdgeAxis::x : EdgeAxis::y,
-                                  .frequency_per_pitch = bars_per_pitch(four, where)},
-                                 alternatives);
-    if (!added) return tl::unexpected(added.error());
+    if (auto added = judge.add_place(square, other,
+                                     {.name = four.name,
+                                      .axis = lies_across_x(four) ? EdgeAxis::x : EdgeAxis::y,
+                                      .frequency_per_pitch = bars_per_pitch(four, where)},
+                                     alternatives);
+        !added)
+      return tl::unexpected(added.error());
   }
   for (const PlateRectangle& spot : spots_of(plate)) {
     const AlternativeAspects shape{edges_of({spot}, spot.position_mm, where)};
@@ -164,9 +165,10 @@ Result<BarsJudge> BarsJudge::create(const MrtdOptions& options, const Registrati
     PlateRectangle nothing = spot;
     nothing.position_mm = *empty;
     const double side_mm = std::sqrt(spot.size_mm.width * spot.size_mm.height);
-    auto added = judge.add_place(
-        spot, nothing, {.name = spot.name, .size_px = side_mm * where.scale_at(spot.position_mm)}, alternatives);
-    if (!added) return tl::unexpected(added.error());
+    if (auto added = judge.add_place(
+            spot, nothing, {.name = spot.name, .size_px = side_mm * where.scale_at(spot.position_mm)}, alternatives);
+        !added)
+      return tl::unexpected(added.error());
   }
   if (judge.places_.empty()) {
     return fail(ErrorCode::invalid_input, "no bars of plate '" + plate.name + "' can be judged" +

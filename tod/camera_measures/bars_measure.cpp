@@ -11,6 +11,7 @@
 
 #include "acquisition/base/normal.h"
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "hvs/shape/polygon_coverage.h"
 #include "tod/camera_measures/bars_profile.h"
 #include "tod/camera_measures/edge_measure.h"
@@ -144,21 +145,20 @@ struct LargeAreas {
 /// Takes the place of the middle within the group from the mapping, with the shift of the earlier groups on this axis.
 Result<BarsCtf> group_ctf(const cv::Mat1d& picture, const PlateBars& group, const GroupFrame& frame,
                           const LargeAreas& areas, double& offset_pitch, const RandomStream& random) {
-  const auto samples = samples_of(picture, group, frame);
-  if (!samples) return tl::unexpected(samples.error());
-  const auto fit = BarsFit::of(samples->places, samples->width, offset_pitch, knot_step);
-  const auto coarse_fit = BarsFit::of(samples->places, samples->width, offset_pitch, coarser_step);
+  TODBENCH_TRY(const auto samples, samples_of(picture, group, frame));
+  const auto fit = BarsFit::of(samples.places, samples.width, offset_pitch, knot_step);
+  const auto coarse_fit = BarsFit::of(samples.places, samples.width, offset_pitch, coarser_step);
   if (!fit || !coarse_fit) return fail(ErrorCode::invalid_input, "its image has too few pixels");
   const double sign = areas.contrast < 0 ? -1 : 1, contrast = std::abs(areas.contrast);
-  const BarsProfile profile = fit->profile(samples->values);
-  const double middle = middle_of(profile, samples->width, sign, offset_pitch);
-  const BarModulation found = modulation_of(profile, middle, samples->width, sign);
-  const BarModulation coarser = modulation_of(coarse_fit->profile(samples->values), middle, samples->width, sign);
+  const BarsProfile profile = fit->profile(samples.values);
+  const double middle = middle_of(profile, samples.width, sign, offset_pitch);
+  const BarModulation found = modulation_of(profile, middle, samples.width, sign);
+  const BarModulation coarser = modulation_of(coarse_fit->profile(samples.values), middle, samples.width, sign);
   std::vector<double> smooth;
   double squares = 0;
-  for (std::size_t i = 0; i < samples->places.size(); ++i) {
-    smooth.push_back(profile.value(samples->places[i]));
-    squares += std::pow(samples->values[i] - smooth.back(), 2);
+  for (std::size_t i = 0; i < samples.places.size(); ++i) {
+    smooth.push_back(profile.value(samples.places[i]));
+    squares += std::pow(samples.values[i] - smooth.back(), 2);
   }
   const double noise = std::sqrt(squares / fit->degrees_of_freedom());
 
@@ -167,7 +167,7 @@ Result<BarsCtf> group_ctf(const cv::Mat1d& picture, const PlateBars& group, cons
   std::uint64_t draw = 0;
   for (int k = 0; k < repetitions; ++k) {
     for (std::size_t i = 0; i < again.size(); ++i) again[i] = smooth[i] + noise * random.normal(draw++);
-    const BarModulation one = modulation_of(fit->profile(again), middle, samples->width, sign);
+    const BarModulation one = modulation_of(fit->profile(again), middle, samples.width, sign);
     best.add(one.best), mean.add(one.mean), worst.add(one.worst);
   }
   offset_pitch = middle;
@@ -177,9 +177,9 @@ Result<BarsCtf> group_ctf(const cv::Mat1d& picture, const PlateBars& group, cons
   out.axis = std::abs(n.x) >= std::abs(n.y) ? EdgeAxis::x : EdgeAxis::y;
   const double along = out.axis == EdgeAxis::x ? n.x : n.y, across = out.axis == EdgeAxis::x ? n.y : n.x;
   out.angle_deg = std::atan(across / along) * 180 / std::numbers::pi;
-  out.frequency_per_pitch = 1 / (2 * samples->width);
+  out.frequency_per_pitch = 1 / (2 * samples.width);
   out.middle_px = frame.middle + n * middle;
-  out.pixels = static_cast<int>(samples->places.size());
+  out.pixels = static_cast<int>(samples.places.size());
   out.noise_over_contrast = noise / contrast;
   out.best = best.around(found.best, coarser.best, contrast, areas.relative_u95);
   out.mean = mean.around(found.mean, coarser.mean, contrast, areas.relative_u95);
@@ -286,19 +286,18 @@ Result<LargeAreas> large_areas(const cv::Mat1d& picture, const TargetPlate& plat
   constexpr std::size_t least_pixels = 9;
   if (within.size() < least_pixels || outside.size() < least_pixels)
     return fail(ErrorCode::calibration, "the squares of plate '" + plate.name + "' are too small in the picture");
-  const auto edges = plate_edges(picture, plate, where.moved(moved_px));
-  if (!edges) return tl::unexpected(edges.error());
-  const auto slope = slope_of_mtf(*edges);
+  TODBENCH_TRY(const auto edges, plate_edges(picture, plate, where.moved(moved_px)));
+  const auto slope = slope_of_mtf(edges);
   if (!slope)
     return fail(ErrorCode::calibration,
-                edges->reasons.empty() ? "no edge of the squares could be measured" : edges->reasons.front());
+                edges.reasons.empty() ? "no edge of the squares could be measured" : edges.reasons.front());
   LargeAreas areas;
   areas.far_spread = *slope * far_exchange(covered, within, outside);
   constexpr double largest_spread = 0.1;
   areas.far_spread = std::min(areas.far_spread, largest_spread);
   areas.contrast = (mean_at(seen, within) - mean_at(seen, outside)) / (1 - areas.far_spread);
   double noise = 0;
-  for (const EdgeMtf& edge : edges->edges) noise = std::max(noise, edge.noise_over_step);
+  for (const EdgeMtf& edge : edges.edges) noise = std::max(noise, edge.noise_over_step);
   const auto fewest = static_cast<double>(std::min(within.size(), outside.size()));
   // A halo of 5 % changes the contrast by 0.7 (4 pixels) to 1.2 (10 pixels) times the correction.
   areas.relative_u95 = std::hypot(areas.far_spread, normal_z95 * noise * std::sqrt(2 / fewest));
@@ -316,17 +315,15 @@ Result<PlateBarsCtf> plate_bars_ctf(const cv::Mat1d& picture, const TargetPlate&
   std::vector<Polygon> outlines;
   for (const PlateRectangle& cut_out : straight_cut_outs(mounted_plate))
     outlines.push_back(moved_outline(outline_mm(cut_out), where, {0, 0}));
-  const auto moved = plate_offset(picture, outlines, mounted_plate.name);
-  if (!moved) return tl::unexpected(moved.error());
+  TODBENCH_TRY(const auto moved, plate_offset(picture, outlines, mounted_plate.name));
   for (Polygon& outline : outlines)
-    for (cv::Point2d& p : outline) p += *moved;
-  const auto areas = large_areas(picture, mounted_plate, where, *moved, outlines);
-  if (!areas) return tl::unexpected(areas.error());
+    for (cv::Point2d& p : outline) p += moved;
+  TODBENCH_TRY(const auto areas, large_areas(picture, mounted_plate, where, moved, outlines));
   PlateBarsCtf out;
-  out.contrast_k = areas->contrast;
-  out.far_spread = areas->far_spread;
+  out.contrast_k = areas.contrast;
+  out.far_spread = areas.far_spread;
   std::vector<std::pair<GroupFrame, const PlateBars*>> groups;
-  for (const PlateBars& group : mounted_plate.bars) groups.emplace_back(frame_of(group, where, *moved), &group);
+  for (const PlateBars& group : mounted_plate.bars) groups.emplace_back(frame_of(group, where, moved), &group);
   const auto upright = [](const GroupFrame& frame) { return std::abs(frame.normal.x) >= std::abs(frame.normal.y); };
   // Wide bars first: they locate narrow ones to a fraction of a bar.
   std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
@@ -336,7 +333,7 @@ Result<PlateBarsCtf> plate_bars_ctf(const cv::Mat1d& picture, const TargetPlate&
   double offsets[] = {0, 0};
   const RandomStream random(seed, "bars");
   for (const auto& [frame, group] : groups) {
-    auto ctf = group_ctf(picture, *group, frame, *areas, offsets[upright(frame) ? 0 : 1],
+    auto ctf = group_ctf(picture, *group, frame, areas, offsets[upright(frame) ? 0 : 1],
                          random.sub(static_cast<std::uint64_t>(out.groups.size())));
     if (ctf)
       out.groups.push_back(*std::move(ctf));

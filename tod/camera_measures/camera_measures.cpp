@@ -137,16 +137,14 @@ class Run {
     const double largest = largest_contrast_k(options_.transfer_steps_k);
     if (largest == 0)
       return fail(ErrorCode::invalid_input, "the plate cannot be located, because all contrasts of the steps are 0 K");
-    const auto shown = show(largest);
-    if (!shown) return tl::unexpected(shown.error());
-    auto picture = taker_.average(options_.measurement.registration_frames, stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    auto found = register_plate(picture->kelvin, plate(), registration());
+    TODBENCH_TRY(const auto shown, show(largest));
+    TODBENCH_TRY(auto picture, taker_.average(options_.measurement.registration_frames, stop_));
+    auto found = register_plate(picture.kelvin, plate(), registration());
     if (!found) return fail("finding the plate", found.error());
     where_ = *found;
-    learn_response(picture->kelvin, shown->state.delta_t_k);
-    keep_view(measures, *picture, largest);
-    if (options_.geometry) tell_geometry(measures, *picture, largest);
+    learn_response(picture.kelvin, shown.state.delta_t_k);
+    keep_view(measures, picture, largest);
+    if (options_.geometry) tell_geometry(measures, picture, largest);
     located_ = true;
     return {};
   }
@@ -196,23 +194,19 @@ class Run {
     const auto response = options_.measurement.contrast_response.find(plate().name);
     const double divisor = response == options_.measurement.contrast_response.end() ? 1 : response->second;
     for (const double set_k : options_.transfer_steps_k) {
-      const auto shown = show(set_k);
-      if (!shown) return tl::unexpected(shown.error());
-      auto picture = taker_.average(options_.measurement.contrast_frames, stop_);
-      if (!picture) return tl::unexpected(picture.error());
-      const auto seen = effective_contrast(picture->kelvin, plate(), where_, options_.measurement.min_reference_px);
-      if (!seen) return tl::unexpected(seen.error());
-      if (options_.pixels) step_pictures_.push_back({shown->state.delta_t_k, picture->kelvin.clone()});
-      transfer.steps.push_back({set_k, shown->state.delta_t_k, seen->value / divisor, seen->standard_error / divisor});
+      TODBENCH_TRY(const auto shown, show(set_k));
+      TODBENCH_TRY(auto picture, taker_.average(options_.measurement.contrast_frames, stop_));
+      TODBENCH_TRY(const auto seen,
+                   effective_contrast(picture.kelvin, plate(), where_, options_.measurement.min_reference_px));
+      if (options_.pixels) step_pictures_.push_back({shown.state.delta_t_k, picture.kelvin.clone()});
+      transfer.steps.push_back({set_k, shown.state.delta_t_k, seen.value / divisor, seen.standard_error / divisor});
     }
     std::vector<TemperatureStep> steps;
     const bool known = std::all_of(transfer.steps.begin(), transfer.steps.end(),
                                    [](const TransferStep& step) { return step.seen_u_k > 0; });
     for (const TransferStep& step : transfer.steps)
       steps.push_back({step.said_delta_t_k, step.seen_delta_t_k, known ? std::optional(step.seen_u_k) : std::nullopt});
-    auto line = signal_transfer(steps);
-    if (!line) return tl::unexpected(line.error());
-    transfer.line = *std::move(line);
+    TODBENCH_TRY(transfer.line, signal_transfer(steps));
     measures.transfer = std::move(transfer);
     return {};
   }
@@ -221,9 +215,8 @@ class Run {
   Result<TriangleStrip> triangles_at(double contrast_k) {
     constexpr int shown_triangles = 6;
     if (auto shown = show(contrast_k); !shown) return tl::unexpected(shown.error());
-    const auto picture = taker_.average(options_.measurement.contrast_frames, stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    TriangleStrip strip = smallest_triangles(picture->kelvin, plate(), where_, shown_triangles);
+    TODBENCH_TRY(const auto picture, taker_.average(options_.measurement.contrast_frames, stop_));
+    TriangleStrip strip = smallest_triangles(picture.kelvin, plate(), where_, shown_triangles);
     strip.set_delta_t_k = contrast_k, strip.frames = options_.measurement.contrast_frames;
     return strip;
   }
@@ -243,20 +236,17 @@ class Run {
   /// Sides that could not be measured add reasons.
   Result<void> measure_mtf(CameraMeasures& measures) {
     const TargetPlate& edge_plate = *options_.mtf_plate;
-    const auto shown = show(edge_plate.name, options_.mtf_delta_t_k);
-    if (!shown) return tl::unexpected(shown.error());
-    const auto picture = taker_.average(options_.mtf_frames, stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    auto found = plate_edges(picture->kelvin, edge_plate, where_);
-    if (!found) return tl::unexpected(found.error());
+    TODBENCH_TRY(const auto shown, show(edge_plate.name, options_.mtf_delta_t_k));
+    TODBENCH_TRY(const auto picture, taker_.average(options_.mtf_frames, stop_));
+    TODBENCH_TRY(auto found, plate_edges(picture.kelvin, edge_plate, where_));
     MtfMeasure mtf;
     mtf.plate = edge_plate.name;
     mtf.frames = options_.mtf_frames;
-    mtf.set_delta_t_k = options_.mtf_delta_t_k, mtf.said_delta_t_k = shown->state.delta_t_k;
+    mtf.set_delta_t_k = options_.mtf_delta_t_k, mtf.said_delta_t_k = shown.state.delta_t_k;
     mtf.pitch_mrad = options_.measurement.ifov_mrad;
     mtf.frequency_per_pitch = options_.mtf_frequency_per_pitch;
-    mtf.edges = std::move(found->edges);
-    measures.reasons.insert(measures.reasons.end(), found->reasons.begin(), found->reasons.end());
+    mtf.edges = std::move(found.edges);
+    measures.reasons.insert(measures.reasons.end(), found.reasons.begin(), found.reasons.end());
     if (mtf.edges.empty()) return fail(ErrorCode::calibration, "no edge of the plate could be measured");
     measures.mtf = std::move(mtf);
     return {};
@@ -265,21 +255,18 @@ class Run {
   /// Groups that could not be measured add reasons.
   Result<void> measure_ctf(CameraMeasures& measures) {
     const TargetPlate& bars_plate = *options_.ctf_plate;
-    const auto shown = show(bars_plate.name, options_.ctf_delta_t_k);
-    if (!shown) return tl::unexpected(shown.error());
-    const auto picture = taker_.average(options_.ctf_frames, stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    auto found = plate_bars_ctf(picture->kelvin, bars_plate, where_);
-    if (!found) return tl::unexpected(found.error());
-    measures.reasons.insert(measures.reasons.end(), found->reasons.begin(), found->reasons.end());
-    if (found->groups.empty()) return fail(ErrorCode::calibration, "no group of bars could be measured");
+    TODBENCH_TRY(const auto shown, show(bars_plate.name, options_.ctf_delta_t_k));
+    TODBENCH_TRY(const auto picture, taker_.average(options_.ctf_frames, stop_));
+    TODBENCH_TRY(auto found, plate_bars_ctf(picture.kelvin, bars_plate, where_));
+    measures.reasons.insert(measures.reasons.end(), found.reasons.begin(), found.reasons.end());
+    if (found.groups.empty()) return fail(ErrorCode::calibration, "no group of bars could be measured");
     CtfMeasure ctf;
     ctf.plate = bars_plate.name;
     ctf.frames = options_.ctf_frames;
-    ctf.set_delta_t_k = options_.ctf_delta_t_k, ctf.said_delta_t_k = shown->state.delta_t_k;
+    ctf.set_delta_t_k = options_.ctf_delta_t_k, ctf.said_delta_t_k = shown.state.delta_t_k;
     ctf.pitch_mrad = options_.measurement.ifov_mrad;
     ctf.frequency_per_pitch = options_.ctf_frequency_per_pitch;
-    ctf.bars = *std::move(found);
+    ctf.bars = std::move(found);
     measures.ctf = std::move(ctf);
     return {};
   }
@@ -472,39 +459,32 @@ class Run {
       if (corrected.error().code == ErrorCode::invalid_input) return false;
       return tl::unexpected(corrected.error());
     }
-    const auto corrected_ns = host_.now_ns(Moment::corrected);
-    if (!corrected_ns) return tl::unexpected(corrected_ns.error());
-    taker_.corrected(*corrected_ns);
+    TODBENCH_TRY(const auto corrected_ns, host_.now_ns(Moment::corrected));
+    taker_.corrected(corrected_ns);
     return true;
   }
 
   Result<void> follow_drift(CameraMeasures& measures) {
-    const auto where = field();
-    if (!where) return tl::unexpected(where.error());
+    TODBENCH_TRY(const auto where, field());
     if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
     const bool simulated = !options_.measurement.free_running;
-    const auto commanded = simulated ? Result<bool>(false) : correct();
-    if (!commanded) return tl::unexpected(commanded.error());
-    auto drift = measure_drift(taker_, *where,
-                               {.drift_s = *options_.drift_s,
-                                .frame_rate_hz = source_.info().frame_rate_hz,
-                                .commanded = *commanded,
-                                .simulated = simulated},
-                               stop_);
-    if (!drift) return tl::unexpected(drift.error());
-    measures.drift = *std::move(drift);
+    TODBENCH_TRY(const auto commanded, simulated ? Result<bool>(false) : correct());
+    TODBENCH_TRY(measures.drift, measure_drift(taker_, where,
+                                               {.drift_s = *options_.drift_s,
+                                                .frame_rate_hz = source_.info().frame_rate_hz,
+                                                .commanded = commanded,
+                                                .simulated = simulated},
+                                               stop_));
     return {};
   }
 
   Result<void> time_response(CameraMeasures& measures) {
-    const auto where = field();
-    if (!where) return tl::unexpected(where.error());
+    TODBENCH_TRY(const auto where, field());
     ResponseOptions response = *options_.response;
     response.plate = plate().name;
     response.contrast_frames = options_.measurement.contrast_frames;
-    auto timed = measure_response(taker_, target_, host_, *where, response, source_.info().frame_rate_hz, stop_);
-    if (!timed) return tl::unexpected(timed.error());
-    measures.response = *std::move(timed);
+    TODBENCH_TRY(measures.response,
+                 measure_response(taker_, target_, host_, where, response, source_.info().frame_rate_hz, stop_));
     return {};
   }
 

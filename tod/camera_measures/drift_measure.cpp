@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -128,9 +130,8 @@ Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, con
   double last_s = first_s;
   const double began_s = host_s(*frame);
   for (;;) {
-    const auto kelvin = window_kelvin(*frame, field);
-    if (!kelvin) return tl::unexpected(kelvin.error());
-    groups.add(last_s, *frame, *kelvin);
+    TODBENCH_TRY(const auto kelvin, window_kelvin(*frame, field));
+    groups.add(last_s, *frame, kelvin);
     frame = taker.next(stop);
     if (!frame) return tl::unexpected(frame.error());
     const double since_s = since_correction_s(*frame);
@@ -148,14 +149,13 @@ Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, con
             "the fit of the drift needs at least {2} groups of frames, but the {1:.1f} s after a correction gave {0}",
             means.size(), last_s, least_drift_groups));
   }
-  auto law = drift_law(means);
-  if (!law) return tl::unexpected(law.error());
+  TODBENCH_TRY(auto law, drift_law(means));
   measure.groups = static_cast<int>(means.size());
   measure.frames_each = std::min_element(means.begin(), means.end(), [](const DriftGroup& a, const DriftGroup& b) {
                           return a.frames < b.frames;
                         })->frames;
   measure.first_s = means.front().time_s, measure.last_s = means.back().time_s;
-  measure.law = *std::move(law);
+  measure.law = std::move(law);
   return measure;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/camera_measures/plate_offset.h"
 #include "tod/camera_measures/plate_tails.h"
 #include "tod/measures/mtf50.h"
@@ -159,24 +160,23 @@ Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& moun
     return fail(ErrorCode::invalid_input, "the picture contains a value that is not finite");
   std::vector<Polygon> outlines;
   for (const PlateRectangle& rectangle : mounted_plate.rectangles) outlines.push_back(in_picture(rectangle, where));
-  const auto moved = plate_offset(picture, outlines, mounted_plate.name);
-  if (!moved) return tl::unexpected(moved.error());
+  TODBENCH_TRY(const auto moved, plate_offset(picture, outlines, mounted_plate.name));
   PlateEdges out;
-  out.moved_px = *moved;
+  out.moved_px = moved;
   for (Polygon& outline : outlines)
-    for (cv::Point2d& corner : outline) corner += *moved;
+    for (cv::Point2d& corner : outline) corner += moved;
   std::vector<cv::Rect2d> bars;
   std::vector<Polygon> cut_outs = outlines;
   for (const PlateRectangle& bar : straight_cut_outs(mounted_plate)) {
     // Bars come after the rectangles.
     Polygon outline = in_picture(bar, where);
-    for (cv::Point2d& corner : outline) corner += *moved;
+    for (cv::Point2d& corner : outline) corner += moved;
     bars.push_back(box_of(outline));
     if (bars.size() > outlines.size()) cut_outs.push_back(std::move(outline));
   }
   bars.erase(bars.begin(), bars.begin() + static_cast<std::ptrdiff_t>(outlines.size()));
   const double w = mounted_plate.width_mm / 2, h = mounted_plate.height_mm / 2;
-  const cv::Point2d top_left = where.pixel({-w, -h}) + *moved, bottom_right = where.pixel({w, h}) + *moved;
+  const cv::Point2d top_left = where.pixel({-w, -h}) + moved, bottom_right = where.pixel({w, h}) + moved;
   Surroundings around{cv::Rect2d(top_left, bottom_right), {}};
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < outlines.size(); ++i) order.push_back(i);

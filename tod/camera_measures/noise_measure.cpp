@@ -63,15 +63,14 @@ Result<std::optional<Series>> take_series(FrameTaker& taker, const NoiseOptions&
   Series series;
   double last_s = -1;
   for (int k = 0; k < options.frames; ++k) {
-    const auto frame = taker.next(stop);
-    if (!frame) return tl::unexpected(frame.error());
-    const double since_s = taker.since_nuc_s(*frame);
+    TODBENCH_TRY(const auto frame, taker.next(stop));
+    const double since_s = taker.since_nuc_s(frame);
     if (k > 0 && since_s >= 0 && (last_s < 0 || since_s < last_s)) return std::nullopt;
     last_s = since_s;
-    if (auto added = add_frame(series, *frame, options); !added) return tl::unexpected(added.error());
+    if (auto added = add_frame(series, frame, options); !added) return tl::unexpected(added.error());
     NoiseMeasure& noise = series.out.noise;
-    if (k == 0) noise.first_frame = frame->sequence;
-    noise.last_frame = frame->sequence;
+    if (k == 0) noise.first_frame = frame.sequence;
+    noise.last_frame = frame.sequence;
     if (since_s >= 0) noise.since_correction_s = since_s;
   }
   return series;
@@ -106,9 +105,7 @@ Result<NoiseSeries> measure_series_noise(FrameTaker& taker, const RadiometricSca
                                          const std::stop_token& stop) {
   std::optional<Series> series;
   for (int attempt = 0; attempt < attempts && !series; ++attempt) {
-    auto taken = take_series(taker, options, stop);
-    if (!taken) return tl::unexpected(taken.error());
-    series = *std::move(taken);
+    TODBENCH_TRY(series, take_series(taker, options, stop));
   }
   if (!series)
     return fail(

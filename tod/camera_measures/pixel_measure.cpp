@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "acquisition/base/median.h"
+#include "acquisition/base/try.h"
 #include "tod/measures/shading.h"
 #include "tod/plate/plate_outlines.h"
 
@@ -62,9 +63,8 @@ Result<PixelMeasure> measure_pixels(std::span<const cv::Mat1f> frames, cv::Size 
   cv::Mat1d robust;
   smooth.convertTo(robust, CV_64F);
   scene.shading = shading_of(robust).surface;
-  auto defects = pixel_defects(frames, scene, options.rules);
-  if (!defects) return tl::unexpected(defects.error());
-  PixelMeasure measure{.frame = frame, .field = field, .defects = *std::move(defects), .zones = {}};
+  TODBENCH_TRY(auto defects, pixel_defects(frames, scene, options.rules));
+  PixelMeasure measure{.frame = frame, .field = field, .defects = std::move(defects), .zones = {}};
   std::vector<ZoneArea> zones{{.name = "whole"}};
   zones.insert(zones.end(), options.zones.begin(), options.zones.end());
   for (const ZoneArea& zone : zones)

@@ -13,6 +13,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/median.h"
+#include "acquisition/base/try.h"
 #include "tod/plate/plate_outlines.h"
 #include "tod/registration/shift_fit.h"
 
@@ -260,10 +261,9 @@ Result<PlateGeometry> plate_geometry(const cv::Mat1d& picture, const TargetPlate
   // The second time with outlines bent by the lens.
   for (int round = 0;; ++round) {
     std::vector<LocatedTriangle> located = locate_triangles(picture, mounted_plate, where, lens, p);
-    const auto fit = fitted_lens(located, lens, p, mounted_plate);
-    if (!fit) return tl::unexpected(fit.error());
-    if (round == 1) return described(located, lens, *fit, mounted_plate);
-    p = fit->parameters;
+    TODBENCH_TRY(const auto fit, fitted_lens(located, lens, p, mounted_plate));
+    if (round == 1) return described(located, lens, fit, mounted_plate);
+    p = fit.parameters;
   }
 }
 

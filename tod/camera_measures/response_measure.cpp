@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/base/median.h"
+#include "acquisition/base/try.h"
 #include "tod/presentation/target_failure.h"
 
 namespace todbench {
@@ -97,18 +98,16 @@ class ResponseRun {
     std::vector<StepSeries> series;
     for (int i = 0; i < options_.steps; ++i) {
       const bool rising = i % 2 == 0;
-      auto step = one_step(rising ? options_.delta_t_k : 0, stepping);
-      if (!step) return tl::unexpected(step.error());
-      step->rising = rising;
+      TODBENCH_TRY(auto step, one_step(rising ? options_.delta_t_k : 0, stepping));
+      step.rising = rising;
       if (corrected_)
         ++measure.dropped;
       else
-        series.push_back(*std::move(step));
+        series.push_back(std::move(step));
     }
     measure.frame_s = frame_s(series);
-    auto response = step_response(series, {.frame_s = measure.frame_s, .settling_s = measure.settling_s});
-    if (!response) return tl::unexpected(response.error());
-    measure.response = *std::move(response);
+    TODBENCH_TRY(measure.response,
+                 step_response(series, {.frame_s = measure.frame_s, .settling_s = measure.settling_s}));
     return measure;
   }
 
@@ -120,30 +119,26 @@ class ResponseRun {
   Result<cv::Mat1d> mean_at(double delta_t_k) {
     auto shown = present(at(delta_t_k), [](const Frame&) { return Result<void>(); });
     if (!shown) return tl::unexpected(shown.error());
-    const auto there_ns = host_.now_ns(Moment::scene_changed);
-    if (!there_ns) return tl::unexpected(there_ns.error());
-    taker_.scene_changed(*there_ns);
+    TODBENCH_TRY(const auto there_ns, host_.now_ns(Moment::scene_changed));
+    taker_.scene_changed(there_ns);
     // A gain that is controlled settles as long as it is followed after a step.
     for (int k = 0; options_.signal == StepSignal::surround && k < options_.frames; ++k) {
       if (auto frame = taker_.next_of_moving_scene(stop_); !frame) return tl::unexpected(frame.error());
     }
-    auto picture = taker_.average(options_.contrast_frames, stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    return picture->kelvin(field_).clone();
+    TODBENCH_TRY(auto picture, taker_.average(options_.contrast_frames, stop_));
+    return picture.kelvin(field_).clone();
   }
 
   Result<void> learn_pixels(ResponseMeasure& measure) {
-    const auto bright = mean_at(options_.delta_t_k);
-    if (!bright) return tl::unexpected(bright.error());
-    const auto dark = mean_at(0);
-    if (!dark) return tl::unexpected(dark.error());
-    const cv::Mat1d change = *bright - *dark;
-    auto weights = options_.signal == StepSignal::surround ? surround_weights(change) : signal_weights(change);
-    if (!weights) return tl::unexpected(weights.error());
+    TODBENCH_TRY(const auto bright, mean_at(options_.delta_t_k));
+    TODBENCH_TRY(const auto dark, mean_at(0));
+    const cv::Mat1d change = bright - dark;
+    TODBENCH_TRY(auto weights,
+                 options_.signal == StepSignal::surround ? surround_weights(change) : signal_weights(change));
     // With a negative polarity, a step up of the contrast is a step down in the picture.
-    weights_ = weights->weight * (change.dot(weights->weight) < 0 ? -1.0 : 1.0);
-    measure.bright_pixels = weights->bright;
-    measure.change = change.dot(weights->weight);
+    weights_ = weights.weight * (change.dot(weights.weight) < 0 ? -1.0 : 1.0);
+    measure.bright_pixels = weights.bright;
+    measure.change = change.dot(weights.weight);
     return {};
   }
 
@@ -180,22 +175,20 @@ class ResponseRun {
   }
 
   Result<void> add(StepSeries& step, const Frame& frame) {
-    const auto kelvin = window_kelvin(frame, field_);
-    if (!kelvin) return tl::unexpected(kelvin.error());
+    TODBENCH_TRY(const auto kelvin, window_kelvin(frame, field_));
     const double since_s = taker_.since_nuc_s(frame);
     if (!step.time_s.empty() && since_s >= 0 && (last_since_s_ < 0 || since_s < last_since_s_ - told_delay_s))
       corrected_ = true;
     last_since_s_ = since_s;
     step.time_s.push_back(camera_s(frame, frame_rate_hz_));
-    step.signal.push_back(kelvin->dot(weights_));
+    step.signal.push_back(kelvin.dot(weights_));
     return {};
   }
 
   Result<void> take(StepSeries& step, int frames) {
     for (int k = 0; k < frames; ++k) {
-      const auto frame = taker_.next_of_moving_scene(stop_);
-      if (!frame) return tl::unexpected(frame.error());
-      if (auto added = add(step, *frame); !added) return added;
+      TODBENCH_TRY(const auto frame, taker_.next_of_moving_scene(stop_));
+      if (auto added = add(step, frame); !added) return added;
     }
     return {};
   }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "tod/camera_measures/plate_offset.h"
 #include "tod/camera_measures/plate_tails.h"
 
@@ -226,10 +227,9 @@ Result<SourceSize> source_size(const SourcePictures& pictures, const TargetPlate
     return fail(ErrorCode::invalid_input, "plate '" + mounted_plate.name +
                                               "' has no rectangles: the size-of-source "
                                               "effect needs square apertures");
-  const auto moved = plate_offset(signal, outlines, mounted_plate.name);
-  if (!moved) return tl::unexpected(moved.error());
+  TODBENCH_TRY(const auto moved, plate_offset(signal, outlines, mounted_plate.name));
   for (Polygon& outline : outlines)
-    for (cv::Point2d& corner : outline) corner += *moved;
+    for (cv::Point2d& corner : outline) corner += moved;
   std::vector<Place> places = places_of(mounted_plate, outlines);
   const auto last_aperture = std::ranges::find_if(places, &Place::spot) - places.begin();
   if (last_aperture < 2)
@@ -252,7 +252,7 @@ Result<SourceSize> source_size(const SourcePictures& pictures, const TargetPlate
   std::size_t which = 0;
   while (mounted_plate.rectangles[which].name != reference.name) ++which;
   const double w = mounted_plate.width_mm / 2, h = mounted_plate.height_mm / 2;
-  const cv::Rect2d on_plate(where.pixel({-w, -h}) + *moved, where.pixel({w, h}) + *moved);
+  const cv::Rect2d on_plate(where.pixel({-w, -h}) + moved, where.pixel({w, h}) + moved);
   const auto tails = plate_tails(signal, outlines, which, on_plate, {.most_halo = 0.5});
   const double level_k = cv::mean(signal(window(reference)))[0];
   const double pixel_noise_k = noise_of_window(change, 1);

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/measures/shading.h"
 
 namespace todbench {
@@ -82,10 +83,9 @@ class WarmUpTaker {
   /// Discards frames until `until_s` after the first one.
   Result<void> wait(double until_s) {
     while (last_s_ < until_s) {
-      const auto frame = taker_.next(stop_);
-      if (!frame) return tl::unexpected(frame.error());
-      (void)seconds_of(*frame);
-      corrected_between_ = note_correction(*frame) || corrected_between_;
+      TODBENCH_TRY(const auto frame, taker_.next(stop_));
+      (void)seconds_of(frame);
+      corrected_between_ = note_correction(frame) || corrected_between_;
     }
     return {};
   }
@@ -140,10 +140,9 @@ Result<WarmUp> measure_warm_up(FrameTaker& taker, const WarmUpOptions& options,
   std::vector<DriftGroup> drift;
   WarmUpTaker groups(taker, options, stop);
   for (int k = 0; k < warm_up_groups && groups.last_s() < options.duration_s; ++k) {
-    auto group = groups.take(drift.emplace_back());
-    if (!group) return tl::unexpected(group.error());
-    if (temperature) group->camera_temperature_c = temperature();
-    out.groups.push_back(*group);
+    TODBENCH_TRY(auto group, groups.take(drift.emplace_back()));
+    if (temperature) group.camera_temperature_c = temperature();
+    out.groups.push_back(group);
     if (auto waited = groups.wait((k + 1) * options.duration_s / warm_up_groups); !waited)
       return tl::unexpected(waited.error());
   }

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "tod/psychometric/contrast_slope.h"
 #include "tod/psychometric/threshold_pair.h"
 
@@ -134,9 +135,8 @@ Result<double> difference_probability(const TodPoint& a, const TodPoint& b, cons
   }
   FitOptions fit = options.fit;
   fit.graded = is_quasi(a.fit.interval) || is_quasi(b.fit.interval);
-  const auto test = test_thresholds(a.levels, b.levels, SlopeModel::separate, options.margin_percent, fit);
-  if (!test) return tl::unexpected(test.error());
-  return std::min(1.0, 2 * distribution::tail_above(std::sqrt(test->lr / spread.inflation), spread.degrees_of_freedom));
+  TODBENCH_TRY(const auto test, test_thresholds(a.levels, b.levels, SlopeModel::separate, options.margin_percent, fit));
+  return std::min(1.0, 2 * distribution::tail_above(std::sqrt(test.lr / spread.inflation), spread.degrees_of_freedom));
 }
 
 Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, const ContrastScatter& contrast,
@@ -158,9 +158,7 @@ Result<ComparisonPoint> compare_points(const TodPoint& a, const TodPoint& b, con
   point.ratio_ci95 = ratio_interval(*ta, a.fit.ci95, *tb, b.fit.ci95, of_contrast(0.025));
   point.ratio_ci90 = ratio_interval(*ta, a.fit.ci90, *tb, b.fit.ci90, of_contrast(0.05));
   const DifferenceSpread spread = spread_of(a.fit, b.fit, contrast);
-  auto p_difference = difference_probability(a, b, spread, options);
-  if (!p_difference) return tl::unexpected(p_difference.error());
-  point.p_difference = *p_difference;
+  TODBENCH_TRY(point.p_difference, difference_probability(a, b, spread, options));
   point.p_equivalence =
       equivalence_probability(*tb - *ta, point.ratio_ci90, options.margin_percent, spread.degrees_of_freedom);
   point.withheld = point.withheld || other_functions(a, b);

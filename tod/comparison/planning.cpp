@@ -8,6 +8,7 @@
 #include <string>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "tod/psychometric/psychometric_model.h"
 
 namespace todbench {
@@ -50,14 +51,13 @@ Result<ExpectedFit> expected_fit(std::span<const PlannedLevel> design, const Fit
   }
   FitOptions plain = options;
   plain.with_posterior = false;
-  auto fit = fit_psychometric(levels, plain);
-  if (!fit) return tl::unexpected(fit.error());
-  if (!fit->threshold || !fit->se_ln_threshold || !(*fit->se_ln_threshold > 0) ||
-      fit->verdict == FitVerdict::flat_or_decreasing || fit->verdict == FitVerdict::underdetermined) {
+  TODBENCH_TRY(auto fit, fit_psychometric(levels, plain));
+  if (!fit.threshold || !fit.se_ln_threshold || !(*fit.se_ln_threshold > 0) ||
+      fit.verdict == FitVerdict::flat_or_decreasing || fit.verdict == FitVerdict::underdetermined) {
     return fail(ErrorCode::invalid_input,
-                "no threshold can be expected from these sizes (" + std::string(to_string(fit->verdict)) + ")");
+                "no threshold can be expected from these sizes (" + std::string(to_string(fit.verdict)) + ")");
   }
-  return ExpectedFit{*fit->threshold, fit->slope.value_or(max_slope), trials, *fit->se_ln_threshold * std::sqrt(many)};
+  return ExpectedFit{*fit.threshold, fit.slope.value_or(max_slope), trials, *fit.se_ln_threshold * std::sqrt(many)};
 }
 
 std::vector<PlannedLevel> design_at(std::span<const Level> totals, PsychometricForm form, double threshold,

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/instruments/instrument_device.h"
 
 namespace todbench {
@@ -65,11 +66,9 @@ void talk_to_black_body(Talk& talk, BlackBodyDevice& device, InstrumentCommands 
   const BlackBodyWords& words = device.table().black_body;
   const auto sent = [](const NumberQuestion& question) { return joined(question.queries, "; "); };
   talk.step(device, "limits", sent(words.limits), [&]() -> Result<std::string> {
-    const auto ends = device.limits(stop);
-    if (!ends) return tl::unexpected(ends.error());
-    if (!((*ends)[0] < (*ends)[1]))
-      return fail(ErrorCode::disconnected, "the lower limit is not below the upper limit");
-    return fmt::format("{:.3f} to {:.3f} K", (*ends)[0], (*ends)[1]);
+    TODBENCH_TRY(const auto ends, device.limits(stop));
+    if (!((ends)[0] < (ends)[1])) return fail(ErrorCode::disconnected, "the lower limit is not below the upper limit");
+    return fmt::format("{:.3f} to {:.3f} K", (ends)[0], (ends)[1]);
   });
   std::optional<double> there_k;
   talk.step(device, "set-point", sent(words.set_point), [&]() -> Result<std::string> {
@@ -111,9 +110,8 @@ void talk_to_stage(Talk& talk, StageDevice& device, InstrumentCommands commands,
   std::optional<Mounting> mounting;
   std::optional<cv::Point2d> place;
   talk.step(device, "plates", words.catalogue, [&]() -> Result<std::string> {
-    const auto names = device.plate_names(stop);
-    if (!names) return tl::unexpected(names.error());
-    return joined(*names, ", ");
+    TODBENCH_TRY(const auto names, device.plate_names(stop));
+    return joined(names, ", ");
   });
   for (const auto& [name, query] :
        {std::pair("requested plate", &words.plate.set_point), std::pair("actual plate", &words.plate.measured)}) {
@@ -126,26 +124,23 @@ void talk_to_stage(Talk& talk, StageDevice& device, InstrumentCommands commands,
   for (const auto& [name, query] : {std::pair("requested mounting", &words.mounting.set_point),
                                     std::pair("actual mounting", &words.mounting.measured)}) {
     talk.step(device, name, *query, [&, text = *query]() -> Result<std::string> {
-      const auto found = device.mounting(text, stop);
-      if (!found) return tl::unexpected(found.error());
-      mounting = *found;
-      return std::string(to_string(*found));
+      TODBENCH_TRY(const auto found, device.mounting(text, stop));
+      mounting = found;
+      return std::string(to_string(found));
     });
   }
   if (words.position) {
     const auto sent = [](const NumberQuestion& question) { return joined(question.queries, "; "); };
     talk.step(device, "travel", sent(words.position->limits), [&]() -> Result<std::string> {
-      const auto ends = device.travel(stop);
-      if (!ends) return tl::unexpected(ends.error());
-      return fmt::format("{:.3f} to {:.3f} mm, {:.3f} to {:.3f} mm", (*ends)[0], (*ends)[1], (*ends)[2], (*ends)[3]);
+      TODBENCH_TRY(const auto ends, device.travel(stop));
+      return fmt::format("{:.3f} to {:.3f} mm, {:.3f} to {:.3f} mm", (ends)[0], (ends)[1], (ends)[2], (ends)[3]);
     });
     for (const auto& [name, question] : {std::pair("requested position", &words.position->set_point),
                                          std::pair("measured position", &words.position->measured)}) {
       talk.step(device, name, sent(*question), [&, asked = *question]() -> Result<std::string> {
-        const auto found = device.position(asked, stop);
-        if (!found) return tl::unexpected(found.error());
-        place = *found;
-        return fmt::format("{:.3f}, {:.3f} mm", found->x, found->y);
+        TODBENCH_TRY(const auto found, device.position(asked, stop));
+        place = found;
+        return fmt::format("{:.3f}, {:.3f} mm", found.x, found.y);
       });
     }
   }

@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -99,9 +101,8 @@ Result<bool> InstrumentDevice::is_settled(const std::stop_token& stop) {
   const SettledRule& rule = table_.settled;
   if (rule.query.empty()) return true;
   if (!rule.bit) {
-    auto answer = ask(rule.query, stop);
-    if (!answer) return tl::unexpected(answer.error());
-    return std::find(rule.answers.begin(), rule.answers.end(), *answer) != rule.answers.end();
+    TODBENCH_TRY(auto answer, ask(rule.query, stop));
+    return std::find(rule.answers.begin(), rule.answers.end(), answer) != rule.answers.end();
   }
   auto condition = numbers({{rule.query}, ""}, 1, stop);
   if (!condition) return tl::unexpected(condition.error());
@@ -114,16 +115,14 @@ Result<bool> InstrumentDevice::is_settled(const std::stop_token& stop) {
 }
 
 Result<double> BlackBodyDevice::difference(const NumberQuestion& question, const std::stop_token& stop) {
-  auto value = numbers(question, 1, stop);
-  if (!value) return tl::unexpected(value.error());
-  return in_ours(value->front(), words().unit);
+  TODBENCH_TRY(auto value, numbers(question, 1, stop));
+  return in_ours(value.front(), words().unit);
 }
 
 Result<std::array<double, 2>> BlackBodyDevice::limits(const std::stop_token& stop) {
   if (!words().limits.asks()) return words().limits_k;
-  auto ends = numbers(words().limits, 2, stop);
-  if (!ends) return tl::unexpected(ends.error());
-  return std::array{in_ours((*ends)[0], words().unit), in_ours((*ends)[1], words().unit)};
+  TODBENCH_TRY(auto ends, numbers(words().limits, 2, stop));
+  return std::array{in_ours((ends)[0], words().unit), in_ours((ends)[1], words().unit)};
 }
 
 Result<double> BlackBodyDevice::set_point(const std::stop_token& stop) {
@@ -136,9 +135,8 @@ std::string BlackBodyDevice::set_command(double delta_t_k) const {
 
 Result<void> BlackBodyDevice::command(double delta_t_k, const std::stop_token& stop) {
   if (words().set_point.asks()) {
-    auto now_k = set_point(stop);
-    if (!now_k) return tl::unexpected(now_k.error());
-    if (std::abs(*now_k - delta_t_k) <= same_temperature_k) return {};
+    TODBENCH_TRY(auto now_k, set_point(stop));
+    if (std::abs(now_k - delta_t_k) <= same_temperature_k) return {};
   }
   return send(set_command(delta_t_k), stop);
 }
@@ -146,32 +144,29 @@ Result<void> BlackBodyDevice::command(double delta_t_k, const std::stop_token& s
 Result<std::array<double, 2>> BlackBodyDevice::absolute_limits(const std::stop_token& stop) {
   const AbsoluteWords& absolute = *words().absolute;
   if (!absolute.limits.asks()) return absolute.limits_k;
-  const auto ends = numbers(absolute.limits, 2, stop);
-  if (!ends) return tl::unexpected(ends.error());
-  return std::array{in_ours((*ends)[0], words().absolute_unit), in_ours((*ends)[1], words().absolute_unit)};
+  TODBENCH_TRY(const auto ends, numbers(absolute.limits, 2, stop));
+  return std::array{in_ours((ends)[0], words().absolute_unit), in_ours((ends)[1], words().absolute_unit)};
 }
 
 Result<void> BlackBodyDevice::command_absolute(double temperature_k, const std::stop_token& stop) {
   const AbsoluteWords& absolute = *words().absolute;
   if (absolute.set_point.asks()) {
-    const auto now = numbers(absolute.set_point, 1, stop);
-    if (!now) return tl::unexpected(now.error());
-    if (std::abs(in_ours(now->front(), words().absolute_unit) - temperature_k) <= same_temperature_k) return {};
+    TODBENCH_TRY(const auto now, numbers(absolute.set_point, 1, stop));
+    if (std::abs(in_ours(now.front(), words().absolute_unit) - temperature_k) <= same_temperature_k) return {};
   }
   return send(command_of(absolute.set, {sent_number(temperature_k, words().absolute_unit, absolute.decimals)}), stop);
 }
 
 Result<double> BlackBodyDevice::radiator(double coldest_k, const std::stop_token& stop) {
-  const auto value = numbers(words().radiator, 1, stop);
-  if (!value) return tl::unexpected(value.error());
-  const double kelvin = in_ours(value->front(), words().absolute_unit);
+  TODBENCH_TRY(const auto value, numbers(words().radiator, 1, stop));
+  const double kelvin = in_ours(value.front(), words().absolute_unit);
   // A black body is never colder than half of its coldest set-point: 17 read where 290 K are possible are 17 degrees.
   if (kelvin > 0.5 * coldest_k && kelvin <= hottest_k) return kelvin;
   return fail(ErrorCode::invalid_input,
               name() + fmt::format(": {} answered {:g}, which is {:.2f} K by its table, but its set-points begin at "
                                    "{:g} K: does it answer in degrees Celsius? State unit = \"degC\" in [temperatures] "
                                    "of the table",
-                                   words().radiator.queries.front(), value->front(), kelvin, coldest_k));
+                                   words().radiator.queries.front(), value.front(), kelvin, coldest_k));
 }
 
 Result<double> BlackBodyDevice::measured(const std::stop_token& stop) {
@@ -179,9 +174,8 @@ Result<double> BlackBodyDevice::measured(const std::stop_token& stop) {
 }
 
 Result<double> BlackBodyDevice::temperature(const NumberQuestion& question, const std::stop_token& stop) {
-  auto value = numbers(question, 1, stop);
-  if (!value) return tl::unexpected(value.error());
-  const double kelvin = in_ours(value->front(), words().absolute_unit);
+  TODBENCH_TRY(auto value, numbers(question, 1, stop));
+  const double kelvin = in_ours(value.front(), words().absolute_unit);
   if (kelvin > 0 && kelvin <= hottest_k) return kelvin;
   return fail(ErrorCode::disconnected, name() + ": " + question.queries.front() + " answered " +
                                            fmt::format("{:.3f}", kelvin) + " K, which is not a possible temperature");
@@ -189,15 +183,12 @@ Result<double> BlackBodyDevice::temperature(const NumberQuestion& question, cons
 
 Result<BlackBodyReading> BlackBodyDevice::read(const std::stop_token& stop) {
   BlackBodyReading reading;
-  auto delta_t_k = measured(stop);
-  if (!delta_t_k) return tl::unexpected(delta_t_k.error());
-  reading.delta_t_k = *delta_t_k;
+  TODBENCH_TRY(reading.delta_t_k, measured(stop));
   for (const auto& [question, value] :
        {std::pair(&words().plate, &reading.plate_k), std::pair(&words().radiator, &reading.radiator_k)}) {
     if (!question->asks()) continue;
-    auto kelvin = temperature(*question, stop);
-    if (!kelvin) return tl::unexpected(kelvin.error());
-    *value = *kelvin;
+    TODBENCH_TRY(auto kelvin, temperature(*question, stop));
+    *value = kelvin;
   }
   return reading;
 }
@@ -214,10 +205,9 @@ Result<std::vector<double>> StageDevice::travel(const std::stop_token& stop) {
 Result<std::array<double, 2>> StageDevice::run_speeds(const std::stop_token& stop) {
   const StageRun& run = *words().run;
   if (!run.limits.asks()) return run.limits_mm_s;
-  const auto ends = numbers(run.limits, 2, stop);
-  if (!ends) return tl::unexpected(ends.error());
+  TODBENCH_TRY(const auto ends, numbers(run.limits, 2, stop));
   const InstrumentUnit& unit = words().position->unit;
-  return std::array{(*ends)[0] * unit.scale, (*ends)[1] * unit.scale};
+  return std::array{(ends)[0] * unit.scale, (ends)[1] * unit.scale};
 }
 
 Result<PlateRun> StageDevice::run_along_x(double to_mm, double speed_mm_s, const std::stop_token& stop) {
@@ -227,13 +217,12 @@ Result<PlateRun> StageDevice::run_along_x(double to_mm, double speed_mm_s, const
   const std::string text =
       command_of(words().run->set, {sent_number(to_mm, unit, decimals), sent_number(speed_mm_s, per_second, decimals)});
   if (auto done = send(text, stop); !done) return tl::unexpected(done.error());
-  const auto said = numbers(words().run->measured, 4, stop);
-  if (!said) return tl::unexpected(said.error());
+  TODBENCH_TRY(const auto said, numbers(words().run->measured, 4, stop));
   constexpr double not_a_number = 9e37;  // SCPI-99 volume 1, 7.2.1.5: 9.91E37
-  PlateRun run{.from_mm = in_ours((*said)[0], unit),
-               .to_mm = in_ours((*said)[1], unit),
-               .speed_mm_s = in_ours((*said)[2], per_second)};
-  if ((*said)[3] < not_a_number) run.start_s = (*said)[3];
+  PlateRun run{.from_mm = in_ours((said)[0], unit),
+               .to_mm = in_ours((said)[1], unit),
+               .speed_mm_s = in_ours((said)[2], per_second)};
+  if ((said)[3] < not_a_number) run.start_s = (said)[3];
   // This form also rejects NaN.
   if (!(run.speed_mm_s > 0) || run.from_mm == run.to_mm)
     return fail(ErrorCode::disconnected, name() + ": reports no run after " + text);
@@ -242,23 +231,19 @@ Result<PlateRun> StageDevice::run_along_x(double to_mm, double speed_mm_s, const
 
 Result<std::vector<std::string>> StageDevice::plate_names(const std::stop_token& stop) {
   if (words().catalogue.empty()) return words().plates;
-  auto answer = ask(words().catalogue, stop);
-  if (!answer) return tl::unexpected(answer.error());
-  return scpi_fields(*answer);
+  TODBENCH_TRY(auto answer, ask(words().catalogue, stop));
+  return scpi_fields(answer);
 }
 
 Result<StageLimits> StageDevice::limits(const std::stop_token& stop) {
   StageLimits limits;
   if (words().position) {
-    auto ends = travel(stop);
-    if (!ends) return tl::unexpected(ends.error());
-    const auto& t = *ends;
+    TODBENCH_TRY(auto ends, travel(stop));
+    const auto& t = ends;
     limits.min_mm = {t[0], t[2]};
     limits.max_mm = {t[1], t[3]};
   }
-  auto names = plate_names(stop);
-  if (!names) return tl::unexpected(names.error());
-  limits.plates = std::move(*names);
+  TODBENCH_TRY(limits.plates, plate_names(stop));
   return limits;
 }
 
@@ -298,28 +283,25 @@ Result<std::string> StageDevice::plate(const std::string& query, const std::stop
 }
 
 Result<Mounting> StageDevice::mounting(const std::string& query, const std::stop_token& stop) {
-  auto answer = ask(query, stop);
-  if (!answer) return tl::unexpected(answer.error());
+  TODBENCH_TRY(auto answer, ask(query, stop));
   for (std::size_t i = 0; i < all_mountings.size(); ++i) {
-    if (!answer->empty() && words().mounting_words[i] == *answer) return all_mountings[i];
+    if (!answer.empty() && words().mounting_words[i] == answer) return all_mountings[i];
   }
   return fail(ErrorCode::disconnected, name() + ": " + query + " answered an unknown mounting");
 }
 
 Result<cv::Point2d> StageDevice::position(const NumberQuestion& question, const std::stop_token& stop) {
-  auto place = numbers(question, 2, stop);
-  if (!place) return tl::unexpected(place.error());
+  TODBENCH_TRY(auto place, numbers(question, 2, stop));
   const InstrumentUnit& unit = words().position->unit;
-  return cv::Point2d(in_ours((*place)[0], unit), in_ours((*place)[1], unit));
+  return cv::Point2d(in_ours((place)[0], unit), in_ours((place)[1], unit));
 }
 
 Result<void> StageDevice::command_plate(const TargetState& state, const std::stop_token& stop) {
   const StageChoice& choice = words().plate;
   if (choice.set.empty()) return {};
   if (!choice.set_point.empty()) {
-    auto asked = plate(choice.set_point, stop);
-    if (!asked) return tl::unexpected(asked.error());
-    if (*asked == state.plate) return {};
+    TODBENCH_TRY(auto asked, plate(choice.set_point, stop));
+    if (asked == state.plate) return {};
   }
   return send(plate_command(state.plate), stop);
 }
@@ -328,9 +310,8 @@ Result<void> StageDevice::command_mounting(const TargetState& state, const std::
   const StageChoice& choice = words().mounting;
   if (choice.set.empty()) return {};
   if (!choice.set_point.empty()) {
-    auto answer = ask(choice.set_point, stop);
-    if (!answer) return tl::unexpected(answer.error());
-    if (*answer == words().mounting_words[place_of(state.mounting)]) return {};
+    TODBENCH_TRY(auto answer, ask(choice.set_point, stop));
+    if (answer == words().mounting_words[place_of(state.mounting)]) return {};
   }
   return send(mounting_command(state.mounting), stop);
 }
@@ -338,9 +319,8 @@ Result<void> StageDevice::command_mounting(const TargetState& state, const std::
 Result<void> StageDevice::command_position(const TargetState& state, const std::stop_token& stop) {
   if (!words().position) return {};
   if (words().position->set_point.asks()) {
-    auto asked = position(words().position->set_point, stop);
-    if (!asked) return tl::unexpected(asked.error());
-    const cv::Point2d miss = *asked - state.shift_mm;
+    TODBENCH_TRY(auto asked, position(words().position->set_point, stop));
+    const cv::Point2d miss = asked - state.shift_mm;
     if (std::abs(miss.x) <= same_position_mm && std::abs(miss.y) <= same_position_mm) return {};
   }
   for (const auto& text : position_commands(state.shift_mm)) {
@@ -358,19 +338,13 @@ Result<void> StageDevice::command(const TargetState& state, const std::stop_toke
 Result<TargetState> StageDevice::read(const TargetState& asked, const std::stop_token& stop) {
   TargetState reached = asked;
   if (!words().plate.measured.empty()) {
-    auto found = plate(words().plate.measured, stop);
-    if (!found) return tl::unexpected(found.error());
-    reached.plate = std::move(*found);
+    TODBENCH_TRY(reached.plate, plate(words().plate.measured, stop));
   }
   if (!words().mounting.measured.empty()) {
-    auto found = mounting(words().mounting.measured, stop);
-    if (!found) return tl::unexpected(found.error());
-    reached.mounting = *found;
+    TODBENCH_TRY(reached.mounting, mounting(words().mounting.measured, stop));
   }
   if (words().position) {
-    auto found = position(words().position->measured, stop);
-    if (!found) return tl::unexpected(found.error());
-    reached.shift_mm = *found;
+    TODBENCH_TRY(reached.shift_mm, position(words().position->measured, stop));
   }
   return reached;
 }

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -105,12 +107,10 @@ Result<std::string> RpcClient::call(std::uint32_t program, std::uint32_t version
   if (auto sent = send_all(socket_.get(), rpc_record(message.data() + std::string(arguments)), deadline, stop); !sent)
     return tl::unexpected(sent.error());
   for (;;) {
-    auto record = take_rpc_record(received_);
-    if (!record) return tl::unexpected(record.error());
-    if (*record) return results_of(**record, id);
-    auto some = receive_some(socket_.get(), deadline, stop);
-    if (!some) return tl::unexpected(some.error());
-    received_ += *some;
+    TODBENCH_TRY(auto record, take_rpc_record(received_));
+    if (record) return results_of(*record, id);
+    TODBENCH_TRY(auto some, receive_some(socket_.get(), deadline, stop));
+    received_ += some;
   }
 }
 

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/instruments/open_line.h"
 
 namespace todbench {
@@ -94,9 +95,8 @@ ScpiClient::ScpiClient(std::unique_ptr<InstrumentLine> line, ScpiClientOptions o
 
 Result<ScpiClient> ScpiClient::connect(const std::string& endpoint, const ScpiClientOptions& options,
                                        const std::stop_token& stop, const InstrumentSpeech& speech) {
-  const auto address = instrument_address(endpoint, speech.port);
-  if (!address) return tl::unexpected(address.error());
-  auto line = open_line(*address, speech.serial, Clock::now() + options.connect_timeout, stop);
+  TODBENCH_TRY(const auto address, instrument_address(endpoint, speech.port));
+  auto line = open_line(address, speech.serial, Clock::now() + options.connect_timeout, stop);
   if (!line) {
     Error error = line.error();
     if (error.code != ErrorCode::interrupted) error.code = ErrorCode::not_found;
@@ -126,21 +126,20 @@ bool ScpiClient::reports_with_command() const {
 }
 
 Result<void> ScpiClient::identify(const std::stop_token& stop) {
-  const auto deadline = begin(stop);
-  if (!deadline) return tl::unexpected(deadline.error());
+  TODBENCH_TRY(const auto deadline, begin(stop));
   // Removes errors that earlier connections left in the queue.
   const std::string clear = speech_.clear.empty() ? "" : speech_.clear + speech_.ending;
   const std::string ask = speech_.identity_query.empty() ? "" : speech_.identity_query + speech_.ending;
   if (clear.empty() && ask.empty()) return {};
   if (line_->one_at_a_time() && !clear.empty()) {
-    if (auto sent = send(clear, *deadline, stop); !sent) return sent;
+    if (auto sent = send(clear, deadline, stop); !sent) return sent;
     if (ask.empty()) return {};
-    if (auto sent = send(ask, *deadline, stop); !sent) return sent;
-  } else if (auto sent = send(clear + ask, *deadline, stop); !sent) {
+    if (auto sent = send(ask, deadline, stop); !sent) return sent;
+  } else if (auto sent = send(clear + ask, deadline, stop); !sent) {
     return sent;
   }
   if (ask.empty()) return {};
-  auto line = receive_line(*deadline, stop);
+  auto line = receive_line(deadline, stop);
   if (!line) return give_up(with_context(speech_.identity_query, line.error()));
   last_exchange_ = Clock::now();
   const auto wrong = [&](const std::string& expected) {
@@ -160,14 +159,13 @@ Result<void> ScpiClient::identify(const std::stop_token& stop) {
 }
 
 Result<void> ScpiClient::command(std::string_view text, const std::stop_token& stop) {
-  const auto deadline = begin(stop);
-  if (!deadline) return tl::unexpected(deadline.error());
+  TODBENCH_TRY(const auto deadline, begin(stop));
   // Two lines in one packet: after a syntax error the rest of the same line would be discarded (IEEE 488.2).
   const bool together = reports_with_command();
   const std::string report_ask = together ? speech_.error_query + speech_.ending : "";
-  if (auto sent = send(std::string(text) + speech_.ending + report_ask, *deadline, stop); !sent) return sent;
+  if (auto sent = send(std::string(text) + speech_.ending + report_ask, deadline, stop); !sent) return sent;
   if (!speech_.acknowledgement.empty()) {
-    auto answer = receive_line(*deadline, stop);
+    auto answer = receive_line(deadline, stop);
     if (!answer) return give_up(with_context(text, answer.error()));
     if (*answer != speech_.acknowledgement) return fail(ErrorCode::invalid_input, refusal(text, *answer));
   }
@@ -175,7 +173,7 @@ Result<void> ScpiClient::command(std::string_view text, const std::stop_token& s
     last_exchange_ = Clock::now();
     return ask_for_errors(text, stop);
   }
-  auto report = receive_line(*deadline, stop);
+  auto report = receive_line(deadline, stop);
   if (!report) return give_up(with_context(text, report.error()));
   return check_report(text, *report);
 }
@@ -185,25 +183,23 @@ Result<std::string> ScpiClient::query(std::string_view text, const std::stop_tok
 }
 
 Result<std::string> ScpiClient::query_with_report(std::string_view text, const std::stop_token& stop) {
-  const auto deadline = begin(stop);
-  if (!deadline) return tl::unexpected(deadline.error());
+  TODBENCH_TRY(const auto deadline, begin(stop));
   const std::string both = std::string(text) + speech_.ending + speech_.error_query + speech_.ending;
-  if (auto sent = send(both, *deadline, stop); !sent) return tl::unexpected(sent.error());
-  auto answer = receive_line(*deadline, stop);
+  if (auto sent = send(both, deadline, stop); !sent) return tl::unexpected(sent.error());
+  auto answer = receive_line(deadline, stop);
   if (!answer) return give_up(with_context(text, answer.error()));
   // A refused query has no answer of its own: the first line already is the error report.
   if (error_report(*answer)) return fail(ErrorCode::invalid_input, refusal(text, *answer));
-  auto report = receive_line(*deadline, stop);
+  auto report = receive_line(deadline, stop);
   if (!report) return give_up(with_context(text, report.error()));
   if (auto checked = check_report(text, *report); !checked) return tl::unexpected(checked.error());
   return answer;
 }
 
 Result<std::string> ScpiClient::query_before_report(std::string_view text, const std::stop_token& stop) {
-  const auto deadline = begin(stop);
-  if (!deadline) return tl::unexpected(deadline.error());
-  if (auto sent = send(std::string(text) + speech_.ending, *deadline, stop); !sent) return tl::unexpected(sent.error());
-  auto answer = receive_line(*deadline, stop);
+  TODBENCH_TRY(const auto deadline, begin(stop));
+  if (auto sent = send(std::string(text) + speech_.ending, deadline, stop); !sent) return tl::unexpected(sent.error());
+  auto answer = receive_line(deadline, stop);
   last_exchange_ = Clock::now();
   if (!answer) {
     // An instrument that refuses a query does not answer it, but may report the error when queried.
@@ -220,10 +216,9 @@ Result<std::string> ScpiClient::query_before_report(std::string_view text, const
 
 Result<void> ScpiClient::ask_for_errors(std::string_view text, const std::stop_token& stop) {
   if (speech_.error_query.empty()) return {};
-  const auto deadline = begin(stop);
-  if (!deadline) return tl::unexpected(deadline.error());
-  if (auto sent = send(speech_.error_query + speech_.ending, *deadline, stop); !sent) return sent;
-  auto report = receive_line(*deadline, stop);
+  TODBENCH_TRY(const auto deadline, begin(stop));
+  if (auto sent = send(speech_.error_query + speech_.ending, deadline, stop); !sent) return sent;
+  auto report = receive_line(deadline, stop);
   if (!report) return give_up(with_context(text, report.error()));
   return check_report(text, *report);
 }
@@ -244,11 +239,10 @@ Result<void> ScpiClient::check_report(std::string_view text, const std::string& 
 
 Result<std::vector<double>> ScpiClient::query_form(std::string_view text, std::string_view form,
                                                    const std::stop_token& stop) {
-  auto answer = query(text, stop);
-  if (!answer) return tl::unexpected(answer.error());
-  auto numbers = numbers_in(*answer, form);
+  TODBENCH_TRY(auto answer, query(text, stop));
+  auto numbers = numbers_in(answer, form);
   if (!numbers)
-    return give_up({ErrorCode::disconnected, std::string(text) + ": the instrument answered " + printable(*answer) +
+    return give_up({ErrorCode::disconnected, std::string(text) + ": the instrument answered " + printable(answer) +
                                                  ", expected '" + std::string(form) + "' with a number for each {}"});
   return *numbers;
 }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "tod/instruments/instrument_device.h"
 #include "tod/presentation/absolute_target.h"
 
@@ -104,13 +105,11 @@ Result<void> ScpiTarget::open(const std::stop_token& stop) {
     if (auto possible = check_within_limits(state); !possible) return possible;
   }
   if (options_.temperatures_k.empty()) return {};
-  const auto absolute = temperatures_k(stop);
-  if (!absolute) return tl::unexpected(absolute.error());
+  TODBENCH_TRY(const auto absolute, temperatures_k(stop));
   for (const double temperature : options_.temperatures_k) {
-    if (!(temperature >= (*absolute)[0] && temperature <= (*absolute)[1]))
+    if (!(temperature >= (absolute)[0] && temperature <= (absolute)[1]))
       return fail(ErrorCode::invalid_input, black_body_.name() + ": " + decimal(temperature, 3) + " K is outside " +
-                                                decimal((*absolute)[0], 3) + " to " + decimal((*absolute)[1], 3) +
-                                                " K");
+                                                decimal((absolute)[0], 3) + " to " + decimal((absolute)[1], 3) + " K");
   }
   return {};
 }
@@ -141,21 +140,17 @@ Result<void> ScpiTarget::check_within_limits(const TargetState& state) const {
 Result<ScpiTarget::Reading> ScpiTarget::read(const TargetState& asked, const std::stop_token& stop) {
   Reading reading;
   // Settled first, values after it: a value read before the flag could be older than the flag.
-  auto stage_settled = stage_.is_settled(stop);
-  if (!stage_settled) return tl::unexpected(stage_settled.error());
-  auto black_body_settled = black_body_.is_settled(stop);
-  if (!black_body_settled) return tl::unexpected(black_body_settled.error());
-  reading.stage_settled = *stage_settled;
-  reading.black_body_settled = *black_body_settled;
+  TODBENCH_TRY(auto stage_settled, stage_.is_settled(stop));
+  TODBENCH_TRY(auto black_body_settled, black_body_.is_settled(stop));
+  reading.stage_settled = stage_settled;
+  reading.black_body_settled = black_body_settled;
 
-  auto place = stage_.read(asked, stop);
-  if (!place) return tl::unexpected(place.error());
-  auto temperatures = black_body_.read(stop);
-  if (!temperatures) return tl::unexpected(temperatures.error());
-  reading.target.state = std::move(*place);
-  reading.target.state.delta_t_k = temperatures->delta_t_k;
-  reading.target.plate_temperature_k = temperatures->plate_k;
-  reading.target.black_body_temperature_k = temperatures->radiator_k;
+  TODBENCH_TRY(auto place, stage_.read(asked, stop));
+  TODBENCH_TRY(auto temperatures, black_body_.read(stop));
+  reading.target.state = std::move(place);
+  reading.target.state.delta_t_k = temperatures.delta_t_k;
+  reading.target.plate_temperature_k = temperatures.plate_k;
+  reading.target.black_body_temperature_k = temperatures.radiator_k;
   return reading;
 }
 
@@ -221,14 +216,13 @@ Result<PresentedTarget> ScpiTarget::poll_until_reached(const TargetState& asked,
   std::mutex mutex;
   std::condition_variable_any wake;
   for (;;) {
-    auto reading = read(asked, stop);
-    if (!reading) return tl::unexpected(reading.error());
+    TODBENCH_TRY(auto reading, read(asked, stop));
     const auto waited = options_.now() - start;
-    const auto black_body = black_body_lacks(*reading, asked);
-    const auto stage = stage_lacks(*reading, asked);
+    const auto black_body = black_body_lacks(reading, asked);
+    const auto stage = stage_lacks(reading, asked);
     if (!black_body && !stage) {
-      reading->target.settling_s = std::chrono::duration<double>(waited).count();
-      return reading->target;
+      reading.target.settling_s = std::chrono::duration<double>(waited).count();
+      return reading.target;
     }
     if (waited >= options_.settle_timeout) {
       const std::string after = " after " + decimal(std::chrono::duration<double>(waited).count(), 1) + " s";
@@ -239,7 +233,7 @@ Result<PresentedTarget> ScpiTarget::poll_until_reached(const TargetState& asked,
       reported = options_.now();
       wait_reported_ = true;
       options_.on_wait(TargetWait{.asked = asked,
-                                  .reached = reading->target.state,
+                                  .reached = reading.target.state,
                                   .contrast_there = !black_body,
                                   .plate_there = !stage,
                                   .waited_s = std::chrono::duration<double>(waited).count(),
@@ -280,12 +274,11 @@ Result<PresentedTarget> ScpiTarget::present_temperature(const TargetState& state
   flat.delta_t_k = 0;
   if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the target was set");
   if (auto done = check_within_limits(flat); !done) return tl::unexpected(done.error());
-  const auto limits = temperatures_k(stop);
-  if (!limits) return tl::unexpected(limits.error());
+  TODBENCH_TRY(const auto limits, temperatures_k(stop));
   // This form also rejects NaN.
-  if (!(temperature_k >= (*limits)[0] && temperature_k <= (*limits)[1]))
+  if (!(temperature_k >= (limits)[0] && temperature_k <= (limits)[1]))
     return fail(ErrorCode::invalid_input, black_body_.name() + ": " + decimal(temperature_k, 3) + " K is outside " +
-                                              decimal((*limits)[0], 3) + " to " + decimal((*limits)[1], 3) + " K");
+                                              decimal((limits)[0], 3) + " to " + decimal((limits)[1], 3) + " K");
   if (auto done = stage_.ensure_connected(stop); !done) return tl::unexpected(done.error());
   if (auto done = black_body_.command_absolute(temperature_k, stop); !done) return tl::unexpected(done.error());
   if (auto done = stage_.command(flat, stop); !done) return tl::unexpected(done.error());
@@ -299,11 +292,10 @@ Result<PlateRun> ScpiTarget::run_along_x(double to_mm, double speed_mm_s, std::s
     return fail(ErrorCode::invalid_input, stage_.name() + ": a run to " + decimal(to_mm, 3) + " mm is outside " +
                                               decimal(travel_.min_mm.x, 3) + " to " + decimal(travel_.max_mm.x, 3) +
                                               " mm");
-  const auto speeds = stage_.run_speeds(stop);
-  if (!speeds) return tl::unexpected(speeds.error());
-  if (!(speed_mm_s >= (*speeds)[0] && speed_mm_s <= (*speeds)[1]))
+  TODBENCH_TRY(const auto speeds, stage_.run_speeds(stop));
+  if (!(speed_mm_s >= (speeds)[0] && speed_mm_s <= (speeds)[1]))
     return fail(ErrorCode::invalid_input, stage_.name() + ": " + decimal(speed_mm_s, 3) + " mm/s is outside " +
-                                              decimal((*speeds)[0], 3) + " to " + decimal((*speeds)[1], 3) + " mm/s");
+                                              decimal((speeds)[0], 3) + " to " + decimal((speeds)[1], 3) + " mm/s");
   return stage_.run_along_x(to_mm, speed_mm_s, stop);
 }
 

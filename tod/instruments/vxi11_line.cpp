@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/instruments/onc_rpc.h"
 
 namespace todbench {
@@ -59,9 +60,8 @@ class Vxi11Line final : public InstrumentLine {
     XdrWriter arguments;
     for (const std::uint32_t value : {1U, 0U, 0U}) arguments.number(value);  // client, no lock, no wait for one
     arguments.bytes(device);
-    auto results = call(vxi11::create_link, arguments, deadline, stop);
-    if (!results) return tl::unexpected(results.error());
-    XdrReader reader(*results);
+    TODBENCH_TRY(auto results, call(vxi11::create_link, arguments, deadline, stop));
+    XdrReader reader(results);
     const auto error = reader.number(), id = reader.number(), abort_port = reader.number(), most = reader.number();
     if (!error || *error != 0) return device_error(error);
     if (!id || !abort_port || !most || *most == 0) return device_error(std::nullopt);
@@ -80,9 +80,8 @@ class Vxi11Line final : public InstrumentLine {
       arguments.number(0);
       arguments.number(part.size() == bytes.size() ? vxi11::end_flag : 0);
       arguments.bytes(part);
-      auto results = call(vxi11::device_write, arguments, deadline + grace, stop);
-      if (!results) return tl::unexpected(results.error());
-      XdrReader reader(*results);
+      TODBENCH_TRY(auto results, call(vxi11::device_write, arguments, deadline + grace, stop));
+      XdrReader reader(results);
       const auto error = reader.number(), taken = reader.number();
       if (!error || *error != 0) return device_error(error);
       if (!taken || *taken == 0 || *taken > part.size()) return device_error(std::nullopt);
@@ -96,9 +95,8 @@ class Vxi11Line final : public InstrumentLine {
       XdrWriter arguments;
       for (const std::uint32_t value : {link_, most_read, milliseconds_until(deadline), 0U, 0U, 0U})
         arguments.number(value);
-      auto results = call(vxi11::device_read, arguments, deadline + grace, stop);
-      if (!results) return tl::unexpected(results.error());
-      XdrReader reader(*results);
+      TODBENCH_TRY(auto results, call(vxi11::device_read, arguments, deadline + grace, stop));
+      XdrReader reader(results);
       const auto error = reader.number(), reason = reader.number();
       auto data = reader.bytes();
       if (!error || *error != 0) return device_error(error);
@@ -145,13 +143,10 @@ Result<std::unique_ptr<InstrumentLine>> open_vxi11_line(const InstrumentAddress&
                                                         const std::stop_token& stop, std::uint16_t port_mapper_port) {
   std::uint16_t port = address.port;
   if (port == 0) {
-    const auto found = port_of_core(address.host, port_mapper_port, deadline, stop);
-    if (!found) return tl::unexpected(found.error());
-    port = *found;
+    TODBENCH_TRY(port, port_of_core(address.host, port_mapper_port, deadline, stop));
   }
-  auto socket = connect_tcp(address.host, port, deadline, stop);
-  if (!socket) return tl::unexpected(socket.error());
-  auto line = std::make_unique<Vxi11Line>(RpcClient(std::move(*socket)));
+  TODBENCH_TRY(auto socket, connect_tcp(address.host, port, deadline, stop));
+  auto line = std::make_unique<Vxi11Line>(RpcClient(std::move(socket)));
   if (auto linked = line->link(address.device, deadline, stop); !linked)
     return fail("opening a VXI-11 link to " + address.device, linked.error());
   return line;

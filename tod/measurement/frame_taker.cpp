@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/measures/temporal_noise.h"
 
 namespace todbench {
@@ -234,9 +235,8 @@ Result<Frame> FrameTaker::next_of_moving_scene(std::stop_token stop) {
   while (true) {
     auto frame = from_source(stop);
     if (!frame) return frame;
-    const auto accepted = accept(*frame, Scene::moving);
-    if (!accepted) return tl::unexpected(accepted.error());
-    if (!*accepted) continue;
+    TODBENCH_TRY(const auto accepted, accept(*frame, Scene::moving));
+    if (!accepted) continue;
     ++used_;
     return frame;
   }
@@ -246,9 +246,8 @@ Result<Frame> FrameTaker::next(std::stop_token stop) {
   while (true) {
     auto frame = from_source(stop);
     if (!frame) return frame;
-    const auto accepted = accept(*frame, Scene::still);
-    if (!accepted) return tl::unexpected(accepted.error());
-    if (!*accepted || frame->host_time_ns < valid_from_ns_) continue;
+    TODBENCH_TRY(const auto accepted, accept(*frame, Scene::still));
+    if (!accepted || frame->host_time_ns < valid_from_ns_) continue;
     if (to_discard_ > 0) {
       --to_discard_;
       continue;
@@ -259,8 +258,7 @@ Result<Frame> FrameTaker::next(std::stop_token stop) {
 }
 
 Result<void> FrameTaker::discard(std::stop_token stop) {
-  auto frame = next(std::move(stop));
-  if (!frame) return tl::unexpected(frame.error());
+  if (auto frame = next(std::move(stop)); !frame) return tl::unexpected(frame.error());
   --used_;
   return {};
 }
@@ -269,21 +267,19 @@ Result<AveragedPicture> FrameTaker::average(int count, std::stop_token stop, con
   AveragedPicture out;
   FrameDifferences differences(count);
   for (int i = 0; i < count; ++i) {
-    auto frame = next(stop);
-    if (!frame) return tl::unexpected(frame.error());
-    auto kelvin = to_kelvin(*frame);
-    if (!kelvin) return tl::unexpected(kelvin.error());
+    TODBENCH_TRY(auto frame, next(stop));
+    TODBENCH_TRY(auto kelvin, to_kelvin(frame));
     if (out.kelvin.empty()) {
-      out.kelvin = cv::Mat1d::zeros(kelvin->size());
-      out.lowest = frame->counts.clone();
-      out.highest = frame->counts.clone();
-      out.significant_bits = frame->significant_bits;
+      out.kelvin = cv::Mat1d::zeros(kelvin.size());
+      out.lowest = frame.counts.clone();
+      out.highest = frame.counts.clone();
+      out.significant_bits = frame.significant_bits;
     }
-    out.kelvin += *kelvin;
-    out.lowest = cv::min(out.lowest, frame->counts);
-    out.highest = cv::max(out.highest, frame->counts);
-    differences.add(*frame, *kelvin);
-    if (each) each(*frame, *kelvin);
+    out.kelvin += kelvin;
+    out.lowest = cv::min(out.lowest, frame.counts);
+    out.highest = cv::max(out.highest, frame.counts);
+    differences.add(frame, kelvin);
+    if (each) each(frame, kelvin);
   }
   out.kelvin /= count;
   if (count > 1) out.temporal_noise_k = differences.noise();

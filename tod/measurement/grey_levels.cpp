@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 
@@ -73,23 +74,23 @@ double GreyContrast::half_width() const {
 
 Result<GreyContrast> grey_contrast(const cv::Mat1d& levels, const TargetPlate& mounted_plate,
                                    const Registration& registration, double min_size_px, const GreySteps& steps) {
-  const auto seen = effective_contrast(levels, mounted_plate, registration, min_size_px, LevelEstimate::mean);
-  if (!seen) return tl::unexpected(seen.error());
-  if (seen->triangles < 2)
+  TODBENCH_TRY(const auto seen,
+               effective_contrast(levels, mounted_plate, registration, min_size_px, LevelEstimate::mean));
+  if (seen.triangles < 2)
     return fail(
         ErrorCode::calibration,
         "plate \"" + mounted_plate.name +
             "\" has only one triangle that is large enough: the uncertainty of its grey levels needs at least two");
-  const double scatter = seen->standard_error * seen->standard_error;
+  const double scatter = seen.standard_error * seen.standard_error;
   // Inside and surround are rounded independently.
   const double rounding = 2 * steps.step_levels * steps.step_levels * steps.rounding_variance_steps();
   const double variance = scatter + rounding;
-  GreyContrast out{.levels = seen->value,
+  GreyContrast out{.levels = seen.value,
                    .standard_uncertainty = std::sqrt(variance),
                    .degrees_of_freedom = 1e6,
-                   .triangles = seen->triangles};
+                   .triangles = seen.triangles};
   if (scatter > 0)
-    out.degrees_of_freedom = std::min(1e6, variance * variance / (scatter * scatter) * (seen->triangles - 1));
+    out.degrees_of_freedom = std::min(1e6, variance * variance / (scatter * scatter) * (seen.triangles - 1));
   return out;
 }
 

@@ -9,6 +9,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/mean.h"
+#include "acquisition/base/try.h"
 #include "acquisition/core/judged_picture.h"
 
 namespace todbench {
@@ -92,9 +93,8 @@ Frame at_pixels(const Frame& frame) {
 
 Result<EffectiveContrast> levels_of(const Frame& frame, const TargetPlate& plate, const Registration& registration,
                                     double min_size_px) {
-  const auto kelvin = to_kelvin(frame);
-  if (!kelvin) return tl::unexpected(kelvin.error());
-  return effective_contrast(*kelvin, plate, registration, min_size_px, LevelEstimate::mean);
+  TODBENCH_TRY(const auto kelvin, to_kelvin(frame));
+  return effective_contrast(kelvin, plate, registration, min_size_px, LevelEstimate::mean);
 }
 
 }  // namespace

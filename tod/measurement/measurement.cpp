@@ -8,6 +8,7 @@
 #include <span>
 #include <tuple>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/judged_picture.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/place_watch.h"
@@ -93,17 +94,15 @@ class Run {
 
   Result<void> correct_when_due() {
     if (options_.nuc_interval_s <= 0) return {};
-    const auto now_ns = host_.now_ns(Moment::correction_due);
-    if (!now_ns) return tl::unexpected(now_ns.error());
-    if (last_nuc_ns_ && static_cast<double>(*now_ns - *last_nuc_ns_) * 1e-9 < options_.nuc_interval_s) return {};
-    last_nuc_ns_ = *now_ns;
+    TODBENCH_TRY(const auto now_ns, host_.now_ns(Moment::correction_due));
+    if (last_nuc_ns_ && static_cast<double>(now_ns - *last_nuc_ns_) * 1e-9 < options_.nuc_interval_s) return {};
+    last_nuc_ns_ = now_ns;
     if (auto corrected = taker_.correct_nonuniformity(); !corrected) {
       if (corrected.error().code != ErrorCode::invalid_input) return corrected;
       return rely_on_what_the_camera_tells(corrected.error());
     }
-    const auto corrected_ns = host_.now_ns(Moment::corrected);
-    if (!corrected_ns) return tl::unexpected(corrected_ns.error());
-    taker_.corrected(*corrected_ns);
+    TODBENCH_TRY(const auto corrected_ns, host_.now_ns(Moment::corrected));
+    taker_.corrected(corrected_ns);
     return {};
   }
 
@@ -139,10 +138,9 @@ class Run {
     last_nuc_ns_.reset();
     const std::int64_t presentation = presentation_;
     if (auto shown = show(state); !shown) return shown;
-    const auto back_ns = host_.now_ns(Moment::camera_back);
-    if (!back_ns) return tl::unexpected(back_ns.error());
+    TODBENCH_TRY(const auto back_ns, host_.now_ns(Moment::camera_back));
     Interruption interruption{.presentation = presentation,
-                              .away_s = static_cast<double>(*back_ns - lost_ns) * 1e-9,
+                              .away_s = static_cast<double>(back_ns - lost_ns) * 1e-9,
                               .moved_px = before ? cv::norm(base_.pixel({0, 0}) - *before) : 0,
                               .reason = why.message};
     note(fmt::format("the camera is back after {:.1f} s; the plate is {:.2f} pixels from its earlier place",
@@ -155,9 +153,8 @@ class Run {
   /// Waits during a pause and keeps taking frames, because a free-running camera would lose them.
   Result<void> wait_while_paused() {
     while (!stop_.stop_requested()) {
-      const auto rests = host_.rests(stop_);
-      if (!rests) return tl::unexpected(rests.error());
-      if (!*rests) break;
+      TODBENCH_TRY(const auto rests, host_.rests(stop_));
+      if (!rests) break;
       if (!options_.free_running) continue;
       if (auto passed = taker_.discard(stop_); !passed) return passed;
     }
@@ -166,12 +163,11 @@ class Run {
 
   /// Changes the target; its report is in `presented_`.
   Result<void> present(const TargetState& state) {
-    auto change = change_target(target_, taker_, host_, state, stop_);
-    if (!change) return tl::unexpected(change.error());
-    target_failed_ = !change->presented && !change->given_up;
-    if (target_failed_) return target_failure("presenting the target", change->presented.error());
-    if (!change->frames) return change->frames;
-    presented_ = *std::move(change->presented);
+    TODBENCH_TRY(auto change, change_target(target_, taker_, host_, state, stop_));
+    target_failed_ = !change.presented && !change.given_up;
+    if (target_failed_) return target_failure("presenting the target", change.presented.error());
+    if (!change.frames) return change.frames;
+    presented_ = *std::move(change.presented);
     return {};
   }
 
@@ -223,15 +219,14 @@ class Run {
   Result<void> show(PreparedPlate& prepared, const TargetState& state) {
     PreparedPlate* const plate = &prepared;
     if (auto presented = present(state); !presented) return presented;
-    const auto there_ns = host_.now_ns(Moment::scene_changed);
-    if (!there_ns) return tl::unexpected(there_ns.error());
-    taker_.scene_changed(*there_ns);
+    TODBENCH_TRY(const auto there_ns, host_.now_ns(Moment::scene_changed));
+    taker_.scene_changed(there_ns);
     const TargetPlate mounted_plate = mounted(plate->plate, state.mounting);
     plate_seen_ = {};
     const auto asked = look_at(*plate, mounted_plate, state);
     const auto exposed = asked ? expose(*plate, mounted_plate, *asked, state) : tl::unexpected(asked.error());
     // The instrument's report is recorded even if the camera's frames could not be used.
-    keep_presentation(state, *there_ns, asked.has_value());
+    keep_presentation(state, there_ns, asked.has_value());
     if (!exposed) return tl::unexpected(exposed.error());
     if (auto answered = answer(*plate, mounted_plate, *exposed, state); !answered) return answered;
     ++presentation_;
@@ -292,24 +287,21 @@ class Run {
     if (!places_.looks() && !own_contrast) return exposed;
     const int most = own_contrast ? frames_at(state) : std::min(frames_at(state), most_frames_looked_at);
     for (int k = 0; k < most; ++k) {
-      auto frame = taker_.next(stop_);
-      if (!frame) return tl::unexpected(frame.error());
-      exposed.frames.push_back(*std::move(frame));
+      TODBENCH_TRY(auto frame, taker_.next(stop_));
+      exposed.frames.push_back(std::move(frame));
     }
     if (own_contrast) {
-      auto seen = step_.own_contrast(exposed.frames, mounted_plate, exposed.registration, state, seen_);
-      if (!seen) return tl::unexpected(seen.error());
-      seen_ = *std::move(seen);
+      TODBENCH_TRY(seen_, step_.own_contrast(exposed.frames, mounted_plate, exposed.registration, state, seen_));
       add_own_contrast(state);
     }
     if (!places_.looks()) return exposed;
     const double unit_per_k = options_.contrast_unit == ContrastUnit::kelvin ? 1 : seen_.levels_per_k;
-    const auto seen = places_.look(
-        exposed.frames, mounted_plate, base_, asked,
-        {.contrast = seen_.contrast_k * unit_per_k, .noise = seen_.noise_k * std::abs(unit_per_k)}, presentation_);
-    if (!seen) return tl::unexpected(seen.error());
-    plate_seen_ = *seen;
-    exposed.registration = asked.moved(seen->used_off_px);
+    TODBENCH_TRY(const auto seen, places_.look(exposed.frames, mounted_plate, base_, asked,
+                                               {.contrast = seen_.contrast_k * unit_per_k,
+                                                .noise = seen_.noise_k * std::abs(unit_per_k)},
+                                               presentation_));
+    plate_seen_ = seen;
+    exposed.registration = asked.moved(seen.used_off_px);
     return exposed;
   }
 
@@ -335,9 +327,8 @@ class Run {
     }
     const Registration registration = target_.capabilities().sets_shift ? base_.shifted(state.shift_mm) : base_;
     if (new_contrast) {
-      auto measured = step_.contrast(mounted_plate, registration.moved(places_.off_px()), state, presented_, stop_);
-      if (!measured) return tl::unexpected(measured.error());
-      seen_ = *std::move(measured);
+      TODBENCH_TRY(seen_,
+                   step_.contrast(mounted_plate, registration.moved(places_.off_px()), state, presented_, stop_));
       if (seen_.judged)
         result_.judged_contrasts.push_back({.plate = state.plate,
                                             .mounting = state.mounting,
@@ -378,23 +369,21 @@ class Run {
   Result<void> locate(PreparedPlate& plate, const TargetPlate& mounted_plate, const TargetState& state) {
     if (auto in_place = places_.finish(); !in_place) return in_place;
     places_.set_up_located();
-    const auto picture = step_.look(stop_);
-    if (!picture) return tl::unexpected(picture.error());
+    TODBENCH_TRY(const auto picture, step_.look(stop_));
     const cv::Point2d shift_mm = target_.capabilities().sets_shift ? state.shift_mm : cv::Point2d(0, 0);
     const auto known = registered_.find({state.plate, state.mounting});
     if (known != registered_.end()) {
-      auto moved = measure_shift(picture->kelvin, mounted_plate, known->second.shifted(shift_mm), options_.registration,
+      auto moved = measure_shift(picture.kelvin, mounted_plate, known->second.shifted(shift_mm), options_.registration,
                                  search_px);
       if (!moved)
         return fail("finding plate " + state.plate + " mounted " + std::string(to_string(state.mounting)) + " again",
                     moved.error());
       base_ = known->second.moved(*moved);
     } else {
-      const auto registration = step_.find(*picture, mounted_plate, state);
-      if (!registration) return tl::unexpected(registration.error());
-      result_.set_ups.push_back({state.plate, state.mounting, *registration});
+      TODBENCH_TRY(const auto registration, step_.find(picture, mounted_plate, state));
+      result_.set_ups.push_back({state.plate, state.mounting, registration});
       if (listener_.on_set_up) listener_.on_set_up(result_.set_ups.back());
-      base_ = registration->shifted(-shift_mm);
+      base_ = registration.shifted(-shift_mm);
     }
     registered_[{state.plate, state.mounting}] = base_;
     if (scale_px_per_mm_ == 0) scale_px_per_mm_ = base_.scale_px_per_mm;
@@ -409,9 +398,8 @@ class Run {
 
   /// Locates a plate that was moved by hand.
   Result<void> follow(const TargetPlate& mounted_plate) {
-    auto picture = taker_.average(options_.contrast_frames, stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    auto moved = measure_shift(picture->kelvin, mounted_plate, base_, options_.registration, search_px);
+    TODBENCH_TRY(auto picture, taker_.average(options_.contrast_frames, stop_));
+    auto moved = measure_shift(picture.kelvin, mounted_plate, base_, options_.registration, search_px);
     if (!moved) return fail("following the plate", moved.error());
     base_ = base_.moved(*moved);
     return {};
@@ -428,29 +416,27 @@ class Run {
     const int frames = frames_at(state);
     for (int k = 0; k < frames; ++k) {
       const auto at = static_cast<std::size_t>(k);
-      auto taken = at < exposed.frames.size() ? exposed.frames[at] : taker_.next(stop_);
-      if (!taken) return tl::unexpected(taken.error());
-      if (taken->judged != nullptr && taken->judged->none) return tl::unexpected(*taken->judged->none);
-      if (judged_samples_per_pixel(*taken) != options_.judged_samples_per_pixel)
+      TODBENCH_TRY(auto taken, at < exposed.frames.size() ? exposed.frames[at] : taker_.next(stop_));
+      if (taken.judged != nullptr && taken.judged->none) return tl::unexpected(*taken.judged->none);
+      if (judged_samples_per_pixel(taken) != options_.judged_samples_per_pixel)
         return fail(ErrorCode::internal,
                     "the frames have another number of samples per pixel than the options of the run state");
-      const Frame frame = as_judged(*taken);
-      const auto unit_per_k = of_a_kelvin(*taken, mounted_plate, registration, state);
-      if (!unit_per_k) return tl::unexpected(unit_per_k.error());
+      const Frame frame = as_judged(taken);
+      TODBENCH_TRY(const auto unit_per_k, of_a_kelvin(taken, mounted_plate, registration, state));
       for (std::size_t i = 0; i < count; ++i) {
         const PlateTriangle& t = mounted_plate.triangles[i];
         const cv::Point2d place = registration.pixel(t.position_mm);
         const int side = plate.observers[i]->window_samples();
-        const auto window = patch_window(judged_place(*taken, place), side);
+        const auto window = patch_window(judged_place(taken, place), side);
         if ((window.pixels & cv::Rect({0, 0}, frame.counts.size())) != window.pixels)
           return fail(ErrorCode::calibration, "the plate is too close to the edge of the picture: " + t.name);
         auto kelvin = window_kelvin(frame, window.pixels);
         if (!kelvin) return tl::unexpected(kelvin.error());
-        if (*unit_per_k != 1) *kelvin /= *unit_per_k;
+        if (unit_per_k != 1) *kelvin /= unit_per_k;
         Patch patch{.kelvin = *std::move(kelvin), .phase = window.phase, .noise_k = seen_.noise_k};
         const GradedChoice judged = judge(*plate.observers[i], patch, i, k);
-        const int saturated = std::max(step_.saturated_samples(*taken, window.pixels),
-                                       step_.saturated_pixels(*taken, patch_window(place, in_pixels(side)).pixels));
+        const int saturated = std::max(step_.saturated_samples(taken, window.pixels),
+                                       step_.saturated_pixels(taken, patch_window(place, in_pixels(side)).pixels));
         probabilities[i] += judged.answers.probability[static_cast<std::size_t>(t.apex)];
         if (k == 0) {
           Trial trial = first_answer(t, state, frame, judged.choice, window.phase);
@@ -485,10 +471,9 @@ class Run {
   Result<double> of_a_kelvin(const Frame& frame, const TargetPlate& mounted_plate, const Registration& registration,
                              const TargetState& state) {
     if (options_.contrast_unit == ContrastUnit::kelvin) return step_.gain_of(frame, mounted_plate, registration, seen_);
-    auto grey = step_.grey_frame(as_judged(frame), mounted_plate, registration, state, seen_);
-    if (!grey) return tl::unexpected(grey.error());
-    grey->presentation = presentation_;
-    result_.grey_frames.push_back(*std::move(grey));
+    TODBENCH_TRY(auto grey, step_.grey_frame(as_judged(frame), mounted_plate, registration, state, seen_));
+    grey.presentation = presentation_;
+    result_.grey_frames.push_back(std::move(grey));
     return result_.grey_frames.back().levels_per_k;
   }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/place_watch.h"
 #include "tod/measurement/set_up_step.h"
@@ -149,16 +150,13 @@ class MovingRun {
 
   Result<void> present(const MovingSetUp& set_up, double delta_t_k, cv::Point2d shift_mm) {
     if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    auto change = change_target(target_, taker_, host_, at(set_up, delta_t_k, shift_mm), stop_);
-    if (!change) return tl::unexpected(change.error());
-    if (!change->presented && !change->given_up)
-      return target_failure("presenting the target", change->presented.error());
-    if (!change->frames) return change->frames;
-    presented_ = *std::move(change->presented);
-    const auto there_ns = host_.now_ns(Moment::scene_changed);
-    if (!there_ns) return tl::unexpected(there_ns.error());
-    there_ns_ = *there_ns;
-    taker_.scene_changed(*there_ns);
+    TODBENCH_TRY(auto change, change_target(target_, taker_, host_, at(set_up, delta_t_k, shift_mm), stop_));
+    if (!change.presented && !change.given_up) return target_failure("presenting the target", change.presented.error());
+    if (!change.frames) return change.frames;
+    presented_ = *std::move(change.presented);
+    TODBENCH_TRY(const auto there_ns, host_.now_ns(Moment::scene_changed));
+    there_ns_ = there_ns;
+    taker_.scene_changed(there_ns);
     return {};
   }
 
@@ -166,12 +164,10 @@ class MovingRun {
     if (auto in_place = places_.finish(); !in_place) return in_place;
     places_.set_up_located();
     if (auto shown = present(set_up, delta_t_k, {0, 0}); !shown) return shown;
-    const auto picture = step_.look(stop_);
-    if (!picture) return tl::unexpected(picture.error());
-    const auto registration = step_.find(*picture, set_up.plate, at(set_up, delta_t_k, {0, 0}));
-    if (!registration) return tl::unexpected(registration.error());
-    set_up.base = *registration;
-    result_.set_ups.push_back({set_up.name, set_up.mounting, *registration});
+    TODBENCH_TRY(const auto picture, step_.look(stop_));
+    TODBENCH_TRY(const auto registration, step_.find(picture, set_up.plate, at(set_up, delta_t_k, {0, 0})));
+    set_up.base = registration;
+    result_.set_ups.push_back({set_up.name, set_up.mounting, registration});
     return {};
   }
 
@@ -196,9 +192,7 @@ class MovingRun {
     if (auto shown = present(set_up, delta_t_k, {0, 0}); !shown) return shown;
     const TargetState state = at(set_up, delta_t_k, {0, 0});
     if (const auto deviation = step_.read_back_deviation(state, presented_)) note(*deviation);
-    const auto contrast = step_.contrast(set_up.plate, set_up.base, state, presented_, stop_);
-    if (!contrast) return tl::unexpected(contrast.error());
-    seen_ = *contrast;
+    TODBENCH_TRY(seen_, step_.contrast(set_up.plate, set_up.base, state, presented_, stop_));
     result_.presentations.push_back({.presentation = pairs_,
                                      .set = state,
                                      .said = presented_,
@@ -256,22 +250,19 @@ class MovingRun {
   Result<std::vector<LocatedFrame>> frames_at_rest(const MovingSetUp& set_up, const Registration& begin, int pair) {
     std::vector<Frame> taken;
     for (int k = 0; k < options_.frames; ++k) {
-      auto frame = taker_.next(stop_);
-      if (!frame) return tl::unexpected(frame.error());
-      taken.push_back(*std::move(frame));
+      TODBENCH_TRY(auto frame, taker_.next(stop_));
+      taken.push_back(std::move(frame));
     }
     cv::Point2d off_px(0, 0);
     if (places_.looks()) {
-      const auto seen = places_.look(taken, set_up.plate, set_up.base, begin,
-                                     {.contrast = seen_.contrast_k, .noise = seen_.noise_k}, pair);
-      if (!seen) return tl::unexpected(seen.error());
-      off_px = seen->used_off_px;
+      TODBENCH_TRY(const auto seen, places_.look(taken, set_up.plate, set_up.base, begin,
+                                                 {.contrast = seen_.contrast_k, .noise = seen_.noise_k}, pair));
+      off_px = seen.used_off_px;
     }
     std::vector<LocatedFrame> frames;
     for (const Frame& frame : taken) {
-      auto kelvin = to_kelvin(frame);
-      if (!kelvin) return tl::unexpected(kelvin.error());
-      frames.push_back({frame.sequence, 0, *std::move(kelvin), off_px});
+      TODBENCH_TRY(auto kelvin, to_kelvin(frame));
+      frames.push_back({frame.sequence, 0, std::move(kelvin), off_px});
     }
     return frames;
   }
@@ -283,8 +274,7 @@ class MovingRun {
     const auto run = target_.moving()->run_along_x(to_mm, speed_mm_s, stop_);
     if (!run) return target_failure("moving the target", run.error());
     // All frames are taken before any is examined, because the camera does not wait.
-    auto taken = taken_of_run(*run);
-    if (!taken) return tl::unexpected(taken.error());
+    TODBENCH_TRY(auto taken, taken_of_run(*run));
     const cv::Point2d px_s =
         run->direction() * run->speed_mm_s * (set_up.base.pixel({1, 0}) - set_up.base.pixel({0, 0}));
     pass.said_px_s = std::hypot(px_s.x, px_s.y);
@@ -292,8 +282,8 @@ class MovingRun {
     const cv::Point2d along = px_s / pass.said_px_s;
     std::vector<LocatedFrame> chosen;
     cv::Point2d expected(0, 0);
-    for (std::size_t i = 0; i < taken->size() && std::ssize(chosen) < options_.frames; ++i) {
-      LocatedFrame& frame = (*taken)[i];
+    for (std::size_t i = 0; i < taken.size() && std::ssize(chosen) < options_.frames; ++i) {
+      LocatedFrame& frame = (taken)[i];
       const auto found =
           measure_shift(frame.kelvin, set_up.plate, begin.moved(expected), at_rest().registration, found_within + step);
       if (!found) {
@@ -302,7 +292,7 @@ class MovingRun {
       }
       frame.moved_px = expected + *found;
       expected =
-          frame.moved_px + (i + 1 < taken->size() ? px_s * ((*taken)[i + 1].time_s - frame.time_s) : cv::Point2d());
+          frame.moved_px + (i + 1 < taken.size() ? px_s * ((taken)[i + 1].time_s - frame.time_s) : cv::Point2d());
       const double gone = frame.moved_px.dot(along);
       if (gone > whole) expected = px_s * run->duration_s();  // at its end
       if (gone < step * options_.lead_frames || gone > whole - step) continue;
@@ -333,13 +323,11 @@ class MovingRun {
     std::vector<LocatedFrame> taken;
     const int enough = options_.lead_frames + options_.frames + spare_frames;
     for (int k = 0; k < 10 * enough; ++k) {
-      const auto frame = taker_.next_of_moving_scene(stop_);
-      if (!frame) return tl::unexpected(frame.error());
-      auto kelvin = to_kelvin(*frame);
-      if (!kelvin) return tl::unexpected(kelvin.error());
-      const double time_s = frame->device_time_ns != 0 ? static_cast<double>(frame->device_time_ns) * 1e-9
-                                                       : static_cast<double>(frame->sequence) / result_.frame_rate_hz;
-      taken.push_back({frame->sequence, time_s, *std::move(kelvin), {}});
+      TODBENCH_TRY(const auto frame, taker_.next_of_moving_scene(stop_));
+      TODBENCH_TRY(auto kelvin, to_kelvin(frame));
+      const double time_s = frame.device_time_ns != 0 ? static_cast<double>(frame.device_time_ns) * 1e-9
+                                                      : static_cast<double>(frame.sequence) / result_.frame_rate_hz;
+      taken.push_back({frame.sequence, time_s, std::move(kelvin), {}});
       if (run.start_s ? time_s >= *run.start_s + run.duration_s() : k + 1 >= enough + spare_frames) break;
     }
     return taken;

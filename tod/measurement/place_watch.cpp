@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/registration/shift_fit.h"
 
@@ -30,9 +31,8 @@ Result<cv::Mat1d> mean_in(std::span<const Frame> frames, const std::vector<cv::R
     if (inside.area() == 0) continue;
     cv::Mat1d sum = cv::Mat1d::zeros(inside.size());
     for (const Frame& frame : frames) {
-      const auto kelvin = window_kelvin(frame, inside);
-      if (!kelvin) return tl::unexpected(kelvin.error());
-      sum += *kelvin;
+      TODBENCH_TRY(const auto kelvin, window_kelvin(frame, inside));
+      sum += kelvin;
     }
     sum /= static_cast<double>(frames.size());
     sum.copyTo(mean(inside));
@@ -61,9 +61,8 @@ Result<std::optional<Found>> find(std::span<const Frame> frames, const TargetPla
     if (outlines.empty()) return std::optional<Found>();
     std::vector<cv::Rect> windows;
     for (const Polygon& outline : outlines) windows.push_back(place_window(outline));
-    const auto picture = mean_in(frames, windows);
-    if (!picture) return tl::unexpected(picture.error());
-    const auto fit = fit_place(*picture, outlines, asked.blur_px, at.pixel({0, 0}));
+    TODBENCH_TRY(const auto picture, mean_in(frames, windows));
+    const auto fit = fit_place(picture, outlines, asked.blur_px, at.pixel({0, 0}));
     if (!fit || fit->amplitude * contrast <= 0 || std::abs(fit->amplitude) < visible * fit->amplitude_error) break;
     found = Found{*fit, off + fit->shift};
     const double length = cv::norm(fit->shift);

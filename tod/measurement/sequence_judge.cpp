@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "hvs/observer/eye_noise.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/registration/patch_windows.h"
@@ -39,11 +40,9 @@ Result<SequenceJudge> SequenceJudge::prepare(TemplateObserver& observer, std::sp
   judge.wide_reach_ = judge.reach_ + half_a_sample;
   if (auto valid = validate(wider); !valid) return tl::unexpected(valid.error());
   for (const double size : sizes) {
-    auto prepared = observer.prepare(size, 1);
-    if (!prepared) return tl::unexpected(prepared.error());
-    auto bank = TemplateBank::build(wider, triangle_alternatives(), size, 1);
-    if (!bank) return tl::unexpected(bank.error());
-    judge.sizes_.push_back({*prepared, std::make_shared<const TemplateBank>(*std::move(bank))});
+    TODBENCH_TRY(auto prepared, observer.prepare(size, 1));
+    TODBENCH_TRY(auto bank, TemplateBank::build(wider, triangle_alternatives(), size, 1));
+    judge.sizes_.push_back({prepared, std::make_shared<const TemplateBank>(std::move(bank))});
   }
   return judge;
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/judged_picture.h"
 #include "tod/measurement/geometry.h"
 
@@ -82,10 +83,9 @@ Result<void> check_before_measuring(const MeasurementOptions& options, Observer&
                 "camera " + camera.id + " has no temperature scale: contrasts in kelvin cannot be measured");
   }
   if (auto references = check_grey_references(options); !references) return references;
-  const auto misfits = find_misfits(options, observer, {camera.width, camera.height});
-  if (!misfits) return tl::unexpected(misfits.error());
-  if (!misfits->empty())
-    return fail(ErrorCode::invalid_input, "not measurable at this distance: " + sentences(*misfits, misfits->size()));
+  TODBENCH_TRY(const auto misfits, find_misfits(options, observer, {camera.width, camera.height}));
+  if (!misfits.empty())
+    return fail(ErrorCode::invalid_input, "not measurable at this distance: " + sentences(misfits, misfits.size()));
   return {};
 }
 

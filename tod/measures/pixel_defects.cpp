@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "acquisition/base/median.h"
+#include "acquisition/base/try.h"
 #include "tod/measures/medians.h"
 #include "tod/measures/pixel_blinking.h"
 #include "tod/measures/pixel_noise.h"
@@ -153,12 +154,11 @@ Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const Pixe
   const double noise_counts = scene.unit_per_count ? noise / *scene.unit_per_count : 0;
   if (scene.unit_per_count && noise_counts < least_measurable_noise_counts)
     return fail(ErrorCode::invalid_input, "the scale is too coarse to show the noise of a pixel");
-  const auto common = bad_pixels({.offset = out.mean_frame, .noise_sd = out.noise_sd}, rules.bad);
-  if (!common) return tl::unexpected(common.error());
+  TODBENCH_TRY(const auto common, bad_pixels({.offset = out.mean_frame, .noise_sd = out.noise_sd}, rules.bad));
   for (cv::Mat1b& map : out.found) map = cv::Mat1b::zeros(size);
   const auto map = [&](PixelDefect kind) -> cv::Mat1b& { return out.found[static_cast<std::size_t>(kind)]; };
-  map(PixelDefect::offset) = common->offset;
-  map(PixelDefect::noisy) = common->noisy;
+  map(PixelDefect::offset) = common.offset;
+  map(PixelDefect::noisy) = common.noisy;
   const cv::Mat1b constant = constant_pixels(frames);
   if (!scene.unit_per_count || expected_constant(noise_counts, out.frames, static_cast<double>(size.area())) < 0.01)
     map(PixelDefect::stuck) = constant;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/measures/edge_clipping.h"
 #include "tod/measures/edge_line.h"
 #include "tod/measures/edge_transfer.h"
@@ -453,46 +454,44 @@ std::string_view to_string(EdgeAxis axis) {
 }
 
 Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOptions& options) {
-  auto in = upright(picture, options);
-  if (!in) return tl::unexpected(in.error());
-  auto found = settled(*in);
+  TODBENCH_TRY(auto in, upright(picture, options));
+  auto found = settled(in);
   if (!found) return tl::unexpected(found.error());
   if (const auto side = clipped_side(found->samples, found->levels))
     return fail(ErrorCode::invalid_input, fmt::format("the {} side of the edge is clipped", *side));
-  const cv::Mat1d seen = in->picture.clone();
+  const cv::Mat1d seen = in.picture.clone();
   double shading = 0;
   constexpr int rounds = 3;  // the line moves a little when its surroundings become flat
   for (int round = 0; round < rounds; ++round) {
-    const double removed = remove_shading(in->picture, *found, found->profile);
+    const double removed = remove_shading(in.picture, *found, found->profile);
     if (removed == 0) break;
     shading = std::max(shading, removed);
-    found = settled(*in);
+    found = settled(in);
     if (!found) return tl::unexpected(found.error());
   }
   found->shading = shading;
   if (auto checked = check_profile(*found); !checked) return tl::unexpected(checked.error());
   SlantedEdge edge;
-  edge.axis = in->axis;
+  edge.axis = in.axis;
   edge.angle_deg = -std::atan(found->line.slope) / degree;
   edge.edge_at_pitch = found->line.middle;
   edge.curvature_pitch = std::abs(found->trend.sag);
   edge.step = found->levels.bright - found->levels.dark;
   edge.noise_over_step = found->residual_sd / edge.step;
   edge.shading_percent = 100 * found->shading;
-  edge.rows = in->picture.rows;
+  edge.rows = in.picture.rows;
   const EdgeWindow window = window_for(*found, edge.rows);
   edge.window_pitch = 2 * window.flat;
   constexpr int frequencies = 100;
   for (int k = 0; k <= frequencies; ++k) edge.frequency_per_pitch.push_back(k / static_cast<double>(frequencies));
-  const auto tails = options.plate ? plate_tails(*in, *found, *options.plate) : own_tails(*in, *found, seen, options);
+  const auto tails = options.plate ? plate_tails(in, *found, *options.plate) : own_tails(in, *found, seen, options);
   if (!tails) return fail(ErrorCode::invalid_input, "the edge has too few pixels beyond its profile");
   // Shading is an unknown of the tails: use the original picture.
   const std::vector<EdgeSample> samples = samples_near(seen, found->line, found->reach);
-  const auto displacement = line_displacement(*found);
-  if (!displacement) return tl::unexpected(displacement.error());
-  edge.displacement_pitch = std::sqrt(*displacement);
+  TODBENCH_TRY(const auto displacement, line_displacement(*found));
+  edge.displacement_pitch = std::sqrt(displacement);
   EdgeTransfer transfer = edge_transfer(grouped(samples, found->profile.grid, edge.rows), window,
-                                        edge.frequency_per_pitch, *tails, rounding_of(*found), *displacement);
+                                        edge.frequency_per_pitch, *tails, rounding_of(*found), displacement);
   if (transfer.mtf.empty()) return fail(ErrorCode::invalid_input, "the picture has too few lines for its edge");
   edge.low_known = std::move(transfer.low_known);
   edge.widest_halo_pitch = tails->fit.bounds().widest_pitch;

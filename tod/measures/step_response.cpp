@@ -12,6 +12,7 @@
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/mean.h"
 #include "acquisition/base/median.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -269,19 +270,17 @@ Result<StepResponse> step_response(std::span<const StepSeries> steps, const Step
   const double noise = noise_before(steps);
   std::vector<FittedStep> fitted;
   for (const StepSeries& step : steps) {
-    auto part = fitted_part(step, noise, options);
-    if (!part) return tl::unexpected(part.error());
-    fitted.push_back(*std::move(part));
+    TODBENCH_TRY(auto part, fitted_part(step, noise, options));
+    fitted.push_back(std::move(part));
   }
-  const auto both = time_constant_of(fitted, options);
-  if (!both) return tl::unexpected(both.error());
-  StepResponse response{.both = *both, .points = {}};
+  TODBENCH_TRY(const auto both, time_constant_of(fitted, options));
+  StepResponse response{.both = both, .points = {}};
   tell_points(response, fitted);
   if (options.settling_s > 0 && !(response.largest_left > least_left))
     return tl::unexpected(not_told(fmt::format(
         "the settling time of the target, {:.3g} ms, hides the response: only {:.2g} of a step remains after it",
         1e3 * options.settling_s, std::max(0.0, response.largest_left))));
-  response.p_first_order = p_of_first_order(fitted, both->value_s);
+  response.p_first_order = p_of_first_order(fitted, both.value_s);
   if (response.p_first_order < first_order_level)
     return tl::unexpected(
         not_told("the response is not of first order: the camera filters its frames, or the target settles more slowly "

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -350,11 +351,10 @@ Result<ThreeDNoise> three_d_noise(std::span<const cv::Mat1f> frames) {
   for (const cv::Mat1f& frame : frames) {
     if (auto added = cube.add(frame); !added) return tl::unexpected(added.error());
   }
-  const auto table = cube.table();
-  if (!table) return tl::unexpected(table.error());
+  TODBENCH_TRY(const auto table, cube.table());
   const auto root = [&](NoiseComponent component) {
     double variance = 0;
-    for (const auto& [of, factor] : terms_of(*table, component)) variance += factor * table->mean_squares[of];
+    for (const auto& [of, factor] : terms_of(table, component)) variance += factor * table.mean_squares[of];
     return std::sqrt(std::max(0.0, variance));
   };
   return ThreeDNoise{

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "tod/observer_fit/person_likelihood.h"
 
 namespace todbench {
@@ -177,9 +178,8 @@ Result<Goodness> goodness_of(AnswerLattice& lattice, std::span<const PersonAnswe
   for (int b = 0; b < options.replicates; ++b) {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     const auto drawn = answers_of_model(answers, shares, stream.sub(static_cast<std::uint64_t>(b)));
-    const auto refit = fit_person(lattice, drawn, again);
-    if (!refit) return tl::unexpected(refit.error());
-    replicates.push_back(statistics_of(hold(drawn, shares_of(lattice, drawn, refit->values))));
+    TODBENCH_TRY(const auto refit, fit_person(lattice, drawn, again));
+    replicates.push_back(statistics_of(hold(drawn, shares_of(lattice, drawn, refit.values))));
   }
   Goodness out;
   out.replicates = options.replicates;

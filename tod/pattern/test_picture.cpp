@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "hvs/shape/polygon_coverage.h"
 
 namespace todbench {
@@ -143,17 +144,13 @@ Polygon right_of_edge(double angle_deg, cv::Size size) {
 }
 
 Result<void> draw(const TodPicture& kind, const PictureRequest& request, TestPicture& picture) {
-  auto plate = plate_of(kind, request.size);
-  if (!plate) return tl::unexpected(plate.error());
-  picture.plate = *std::move(plate);
+  TODBENCH_TRY(picture.plate, plate_of(kind, request.size));
   for (const auto& triangle : picture.plate.triangles) add_polygon(picture.levels, outline_px(triangle, request.size));
   return {};
 }
 
 Result<void> draw(const MrtdPicture& kind, const PictureRequest& request, TestPicture& picture) {
-  auto groups = groups_of(kind, request.size);
-  if (!groups) return tl::unexpected(groups.error());
-  picture.bars = *std::move(groups);
+  TODBENCH_TRY(picture.bars, groups_of(kind, request.size));
   for (const auto& group : picture.bars) {
     for (const auto& bar : outlines_px(group)) add_polygon(picture.levels, bar);
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -71,10 +73,9 @@ std::vector<double> contrasts_of_surface(const ContrastNoise& noise, double stro
 Result<ContrastSurface> ContrastSurface::of(std::span<const TableAtContrast> tables, const ContrastNoise& noise) {
   auto nodes = std::make_shared<std::vector<Node>>();
   for (const TableAtContrast& one : tables) {
-    auto shape = TwinShape::of(one.table);
-    if (!shape) return tl::unexpected(shape.error());
-    nodes->push_back({contrast_bend(noise, one.delta_t_k), shape->ln_threshold(), threshold_error(one.table, *shape),
-                      *std::move(shape)});
+    TODBENCH_TRY(auto shape, TwinShape::of(one.table));
+    nodes->push_back({contrast_bend(noise, one.delta_t_k), shape.ln_threshold(), threshold_error(one.table, shape),
+                      std::move(shape)});
   }
   std::ranges::sort(*nodes, {}, &Node::u);
   const auto same = std::ranges::adjacent_find(*nodes, [](const Node& a, const Node& b) { return !(a.u < b.u); });

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/psychometric/picture_places.h"
 #include "tod/psychometric/psychometric_clusters.h"
 
@@ -64,9 +65,8 @@ struct Candidate {
 };
 
 Result<Candidate> candidate(std::vector<Level> levels, const FitOptions& options) {
-  auto fit = fit_psychometric(levels, options);
-  if (!fit) return tl::unexpected(fit.error());
-  return Candidate{std::move(levels), *fit};
+  TODBENCH_TRY(auto fit, fit_psychometric(levels, options));
+  return Candidate{std::move(levels), fit};
 }
 
 // The clustering that widens the intervals more. A single cluster has no variance, so it is chosen only if both have
@@ -117,9 +117,8 @@ class Fitter {
       point.levels = count<std::int64_t>(trials_, presentation_of);
       return {};
     }
-    auto chosen = widest(trials_, options);
-    if (!chosen) return tl::unexpected(chosen.error());
-    point.levels = std::move(chosen->levels);
+    TODBENCH_TRY(auto chosen, widest(trials_, options));
+    point.levels = std::move(chosen.levels);
     return {};
   }
 
@@ -141,19 +140,16 @@ Result<TodPoint> tod_point(double set_delta_t_k, const TrialGroup& trials, const
   point.saturated_share = static_cast<double>(saturated) / static_cast<double>(trials.size());
   const Fitter fitter(trials);
   if (auto chosen = fitter.choose_levels(point, options); !chosen) return tl::unexpected(chosen.error());
-  auto fit = fitter.fit(point, options);
-  if (!fit) return tl::unexpected(fit.error());
-  point.fit = *fit;
+  TODBENCH_TRY(point.fit, fitter.fit(point, options));
   if (!options.fixed_lapse) return point;
   FitOptions free = options;
   free.fixed_lapse.reset();
   free.with_posterior = false;
-  auto free_fit = fitter.fit(point, free);
-  if (!free_fit) return tl::unexpected(free_fit.error());
-  point.free_lapse_fit = *free_fit;
-  if (point.fit.log_likelihood && free_fit->log_likelihood) {
+  TODBENCH_TRY(auto free_fit, fitter.fit(point, free));
+  point.free_lapse_fit = free_fit;
+  if (point.fit.log_likelihood && free_fit.log_likelihood) {
     const double scale = is_quasi(point.fit.interval) ? point.fit.variance_inflation : 1;
-    point.lapse_warning = 2 * (*free_fit->log_likelihood - *point.fit.log_likelihood) > scale * boundary_drop;
+    point.lapse_warning = 2 * (*free_fit.log_likelihood - *point.fit.log_likelihood) > scale * boundary_drop;
   }
   return point;
 }

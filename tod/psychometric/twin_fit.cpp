@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "tod/psychometric/clustered_variance.h"
 #include "tod/psychometric/psychometric_model.h"
 #include "tod/psychometric/twin_mean.h"
@@ -273,49 +274,47 @@ bool has_regular_maximum(const PsychometricFit& fit) {
 
 Result<PsychometricFit> fit_twin_shape(std::span<const GradedAnswer> answers, const PsychometricFit& weibull,
                                        const ProportionTable& table, const FitOptions& options) {
-  const auto shape = TwinShape::of(table);
-  if (!shape) return tl::unexpected(shape.error());
+  TODBENCH_TRY(const auto shape, TwinShape::of(table));
   const double lapse = options.fixed_lapse.value_or(0);
   if (!(lapse >= 0 && lapse <= max_free_lapse))
     return fail(ErrorCode::invalid_input, "the lapse rate must be from 0 to 0.1");
-  if (lapse > 0 && lapse > largest_twin_lapse(*shape))
+  if (lapse > 0 && lapse > largest_twin_lapse(shape))
     return fail(ErrorCode::invalid_input,
                 "function of the twin: with this lapse rate, 75 % correct lies outside the sizes of its table");
   if (!has_regular_maximum(weibull)) return weibull;
   const std::vector<PooledAnswers> rows = pooled(answers);
-  TwinMaximum at{.place = {std::log(*weibull.threshold) - shape->ln_threshold(), 0, 0, lapse}, .searched = {twin_size}};
+  TwinMaximum at{.place = {std::log(*weibull.threshold) - shape.ln_threshold(), 0, 0, lapse}, .searched = {twin_size}};
   if (options.fixed_lapse)
-    at.place = climb_from(*shape, at.place, at.searched, rows);
+    at.place = climb_from(shape, at.place, at.searched, rows);
   else
-    at = with_free_lapse(*shape, at.place, at.searched, rows);
+    at = with_free_lapse(shape, at.place, at.searched, rows);
   TwinShapeUse use;
   use.table = table;
-  auto next = further(*shape, at, twin_slope, answers, rows);
+  auto next = further(shape, at, twin_slope, answers, rows);
   if (next && std::abs(next->t) > next->limit) {
     use.slope_fitted = true;
-    at = options.fixed_lapse ? next->at : with_free_lapse(*shape, next->at.place, {twin_size, twin_slope}, rows);
-    next = further(*shape, at, twin_bend, answers, rows);
+    at = options.fixed_lapse ? next->at : with_free_lapse(shape, next->at.place, {twin_size, twin_slope}, rows);
+    next = further(shape, at, twin_bend, answers, rows);
   }
   if (next) {
     use.departure = next->t;
     use.departure_limit = next->limit;
     use.departure_shift = next->at.place[twin_size] - at.place[twin_size];
   }
-  return fit_at(*shape, at, std::move(use), answers, rows, weibull, options.form);
+  return fit_at(shape, at, std::move(use), answers, rows, weibull, options.form);
 }
 
 Result<PsychometricFit> twin_fit_with_free_lapse(std::span<const GradedAnswer> answers, const PsychometricFit& fit,
                                                  PsychometricForm form) {
   if (!fit.twin_shape) return fail(ErrorCode::invalid_input, "function of the twin: the fit used another function");
-  const auto shape = TwinShape::of(fit.twin_shape->table);
-  if (!shape) return tl::unexpected(shape.error());
+  TODBENCH_TRY(const auto shape, TwinShape::of(fit.twin_shape->table));
   const std::vector<PooledAnswers> rows = pooled(answers);
   Searched searched{twin_size};
   if (fit.twin_shape->slope_fitted) searched.push_back(twin_slope);
-  const TwinMaximum at = with_free_lapse(*shape, twin_place(*fit.twin_shape, 0), searched, rows);
+  const TwinMaximum at = with_free_lapse(shape, twin_place(*fit.twin_shape, 0), searched, rows);
   TwinShapeUse use = *fit.twin_shape;
   use.departure = use.departure_limit = use.departure_shift = 0;
-  return fit_at(*shape, at, std::move(use), answers, rows, fit, form);
+  return fit_at(shape, at, std::move(use), answers, rows, fit, form);
 }
 
 double twin_lapse_gain(const PsychometricFit& fit, const PsychometricFit& free_fit) {
@@ -327,23 +326,22 @@ double twin_lapse_gain(const PsychometricFit& fit, const PsychometricFit& free_f
 
 Result<ShapeEstimate> twin_shape_estimate(std::span<const GradedAnswer> answers, const ProportionTable& table,
                                           bool with_slope) {
-  const auto shape = TwinShape::of(table);
-  if (!shape) return tl::unexpected(shape.error());
+  TODBENCH_TRY(const auto shape, TwinShape::of(table));
   const std::vector<PooledAnswers> rows = pooled(answers);
   Searched searched{twin_size};
-  TwinPlace place = climb_from(*shape, TwinPlace{}, searched, rows);
+  TwinPlace place = climb_from(shape, TwinPlace{}, searched, rows);
   if (with_slope) {
     searched.push_back(twin_slope);
-    place = climb_from(*shape, place, searched, rows);
+    place = climb_from(shape, place, searched, rows);
   }
-  const Eigen::MatrixXd information = expansion_at(*shape, place, searched, rows).information;
+  const Eigen::MatrixXd information = expansion_at(shape, place, searched, rows).information;
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (factor.info() != Eigen::Success || !(information(0, 0) > 0))
     return fail(ErrorCode::invalid_input, "function of the twin: the answers do not determine the threshold");
   const Eigen::VectorXd inverse = factor.solve(Eigen::VectorXd::Unit(static_cast<Eigen::Index>(searched.size()), 0));
   ShapeEstimate out{
-      .ln_threshold = shape->ln_threshold() + place[twin_size], .direction = {}, .weight = {}, .influence = {}};
-  const TwinMean means(*shape, place);
+      .ln_threshold = shape.ln_threshold() + place[twin_size], .direction = {}, .weight = {}, .influence = {}};
+  const TwinMean means(shape, place);
   for (const GradedAnswer& answer : answers) {
     if (!(answer.size > 0)) {
       for (auto* column : {&out.direction, &out.weight, &out.influence}) column->push_back(0);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/base/try.h"
 #include "tod/psychometric/psychometric_model.h"
 #include "tod/psychometric/twin_mean.h"
 
@@ -112,12 +113,11 @@ struct TwinShape::Curve {
 };
 
 Result<TwinShape> TwinShape::of(const ProportionTable& table) {
-  const auto nodes = nodes_of(table);
-  if (!nodes) return tl::unexpected(nodes.error());
+  TODBENCH_TRY(const auto nodes, nodes_of(table));
   std::vector<double> xs, ys;
-  for (std::size_t k = 0; k < nodes->size(); ++k) {
-    xs.push_back((*nodes)[k].x);
-    ys.push_back(smoothed(*nodes, k));
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    xs.push_back((nodes)[k].x);
+    ys.push_back(smoothed(nodes, k));
   }
   ys = made_rising(ys);
   const double at_75 = transformed(0.75);

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/run/recorded_bench.h"
 
 namespace todbench {
@@ -85,10 +86,9 @@ void CameraDesk::serve(FrameSource& camera) {
 }
 
 Result<void> CameraDesk::record(const std::filesystem::path& file, const SourceInfo& info) {
-  auto stream = FrameStreamWriter::create(file, header_now(info));
-  if (!stream) return tl::unexpected(stream.error());
+  TODBENCH_TRY(auto stream, FrameStreamWriter::create(file, header_now(info)));
   const std::lock_guard lock(mutex_);
-  stream_ = *std::move(stream);
+  stream_ = std::move(stream);
   return {};
 }
 
@@ -112,9 +112,8 @@ Result<std::optional<std::uint64_t>> CameraDesk::end_recording() {
     ended = std::exchange(stream_, std::nullopt);
   }
   if (!ended) return std::nullopt;
-  auto frames = ended->verified_frames();
-  if (!frames) return tl::unexpected(frames.error());
-  return *frames;
+  TODBENCH_TRY(auto frames, ended->verified_frames());
+  return frames;
 }
 
 }  // namespace todbench

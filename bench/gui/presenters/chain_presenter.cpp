@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/atmospheres.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/scene_descriptions.h"
@@ -35,13 +36,11 @@ struct Setting {
 
 Result<Setting> setting_of(const ChainSettings& options) {
   Setting s;
-  auto sensor = load_sensor(options.sensor);
-  if (!sensor) return tl::unexpected(sensor.error());
-  auto observer = load_observer(options.observer);
-  if (!observer) return tl::unexpected(observer.error());
+  TODBENCH_TRY(auto sensor, load_sensor(options.sensor));
+  TODBENCH_TRY(auto observer, load_observer(options.observer));
   if (!(options.size_pitch > 0)) return fail(ErrorCode::invalid_input, "the size of the triangle must be above 0");
-  s.sensor = *sensor;
-  s.observer = *observer;
+  s.sensor = sensor;
+  s.observer = observer;
   s.effects = full_plan(s.sensor, options.skip, {});
   s.side_pitch = 2 * static_cast<int>(std::ceil(options.size_pitch + 3));
   s.sensor.width = s.sensor.height = s.side_pitch;
@@ -140,33 +139,30 @@ Result<std::vector<StagePicture>> scene_chain(const ChainSettings& options) {
     return fail(ErrorCode::invalid_input, path + ": this page shows no scenes with pictures; use 'todbench picture'");
   });
   if (!scene) return tl::unexpected(scene.error());
-  auto sensor = load_sensor(options.sensor);
-  if (!sensor) return tl::unexpected(sensor.error());
-  auto observer = load_observer(options.observer);
-  if (!observer) return tl::unexpected(observer.error());
-  auto air = load_atmosphere(options.atmosphere, {.band = {sensor->wavelength_min_um, sensor->wavelength_max_um},
-                                                  .weight_temperature_k = sensor->scene_temperature_k});
+  TODBENCH_TRY(auto sensor, load_sensor(options.sensor));
+  TODBENCH_TRY(auto observer, load_observer(options.observer));
+  auto air = load_atmosphere(options.atmosphere, {.band = {sensor.wavelength_min_um, sensor.wavelength_max_um},
+                                                  .weight_temperature_k = sensor.scene_temperature_k});
   if (!air) return tl::unexpected(air.error());
   task.scene = *std::move(scene);
-  task.sensor = *std::move(sensor);
-  task.observer = *std::move(observer);
+  task.sensor = std::move(sensor);
+  task.observer = std::move(observer);
   task.air = *std::move(air);
   task.view.range_m = options.range_m;
   task.accuracy = Accuracy::draft();
   task.effects.skip = options.skip;
   task.seed = options.seed;
-  const auto seen = scene_pictures(task);
-  if (!seen) return tl::unexpected(seen.error());
+  TODBENCH_TRY(const auto seen, scene_pictures(task));
   constexpr std::array shown{Stage::scene, Stage::optics,  Stage::detector, Stage::samples,
                              Stage::noise, Stage::display, Stage::observer};
   std::vector<StagePicture> out;
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const SceneStage& stage = seen->stages[i];
+    const SceneStage& stage = seen.stages[i];
     StagePicture picture{.stage = shown[i],
                          .kelvin = {},
                          .pixels_per_pitch = stage.pixels_per_pitch,
                          .note = QString::fromStdString(stage.note),
-                         .grey_k = std::pair(seen->grey_low_k, seen->grey_high_k)};
+                         .grey_k = std::pair(seen.grey_low_k, seen.grey_high_k)};
     stage.kelvin.convertTo(picture.kelvin, CV_64F);
     if (shown[i] == Stage::display) {
       StagePicture counts = picture;
@@ -211,9 +207,8 @@ QString name_of(Stage stage) {
 
 Result<std::vector<StagePicture>> chain_pictures(const ChainSettings& options) {
   if (!options.scene.empty()) return scene_chain(options);
-  auto setting = setting_of(options);
-  if (!setting) return tl::unexpected(setting.error());
-  const Setting& s = *setting;
+  TODBENCH_TRY(auto setting, setting_of(options));
+  const Setting& s = setting;
   const double per_pitch = s.sensor.microscan;
   const SensorPlan& plan = s.effects;
   cv::Mat1d samples;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/device_plan.h"
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "bench/plan/descriptions.h"
 
@@ -50,9 +51,8 @@ void replace_laboratory(Plan& plan, const Plan& from, const Plan& to) {
 }
 
 Result<double> sensor_ifov_mrad(const std::string& name) {
-  auto sensor = load_sensor(name);
-  if (!sensor) return tl::unexpected(sensor.error());
-  return sensor->ifov_mrad() / sensor->microscan;
+  TODBENCH_TRY(auto sensor, load_sensor(name));
+  return sensor.ifov_mrad() / sensor.microscan;
 }
 
 }  // namespace
@@ -91,11 +91,10 @@ Plan plan_for_laboratory(Plan plan) {
 }
 
 Result<Plan> plan_for_sensor(Plan plan, const std::string& name) {
-  auto ifov_mrad = sensor_ifov_mrad(name);
-  if (!ifov_mrad) return tl::unexpected(ifov_mrad.error());
+  TODBENCH_TRY(auto ifov_mrad, sensor_ifov_mrad(name));
   for (const Plan& from : {demonstration(), example("acceptance")}) replace_words(plan, from, Plan{});
   plan.camera.id = camera_id(camera_scheme::sim, name);
-  plan.camera.ifov_mrad = *ifov_mrad;
+  plan.camera.ifov_mrad = ifov_mrad;
   plan.target.kind = TargetKind::scene;
   plan.target.black_body.clear();
   plan.target.stage.clear();

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "acquisition/recording/tiff_writer.h"
 #include "bench/devices/devices.h"
@@ -38,11 +39,10 @@ Result<void> show_first_state(const Plan& plan, const std::vector<TargetPlate>& 
 /// Shows the first state of a target that is not part of the camera, while the camera already runs.
 void show_target(const Plan& plan, const std::function<void(const std::string&)>& note, const std::stop_token& stop) {
   const auto shown = [&]() -> Result<void> {
-    const auto loaded = LoadedPlan::load(plan);
-    if (!loaded) return tl::unexpected(loaded.error());
-    const auto target = open_target(*loaded, stop);
+    TODBENCH_TRY(const auto loaded, LoadedPlan::load(plan));
+    const auto target = open_target(loaded, stop);
     if (!target) return target_failure("opening the target", target.error());
-    return show_first_state(plan, loaded->plates(), **target, stop);
+    return show_first_state(plan, loaded.plates(), **target, stop);
   }();
   if (!shown && shown.error().code != ErrorCode::interrupted)
     note("The picture shows the scene without its target: " + shown.error().message);
@@ -51,18 +51,16 @@ void show_target(const Plan& plan, const std::function<void(const std::string&)>
 /// Opens the camera: alone, or with its scene if that is part of it.
 Result<OpenedBench> open_for_looking(const Plan& plan, const std::stop_token& stop) {
   if (plan.target.kind == TargetKind::scene) {
-    const auto loaded = LoadedPlan::load(plan);
-    if (!loaded) return tl::unexpected(loaded.error());
-    auto bench = open_bench(*loaded, stop);
+    TODBENCH_TRY(const auto loaded, LoadedPlan::load(plan));
+    auto bench = open_bench(loaded, stop);
     if (!bench) return bench;
-    if (auto shown = show_first_state(plan, loaded->plates(), *bench->target, stop); !shown)
+    if (auto shown = show_first_state(plan, loaded.plates(), *bench->target, stop); !shown)
       return tl::unexpected(shown.error());
     return bench;
   }
-  auto camera = camera_registry(stop).open(plan.camera.id);
-  if (!camera) return tl::unexpected(camera.error());
+  TODBENCH_TRY(auto camera, camera_registry(stop).open(plan.camera.id));
   OpenedBench bench;
-  bench.camera = std::move(*camera);
+  bench.camera = std::move(camera);
   return bench;
 }
 
@@ -74,9 +72,8 @@ struct LookListener {
 
 Result<void> look(const Plan& plan, LiveFeed& feed, CameraDesk& desk, const LookListener& listener,
                   const std::stop_token& stop) {
-  auto bench = open_for_looking(plan, stop);
-  if (!bench) return tl::unexpected(bench.error());
-  FrameSource& camera = *bench->camera;
+  TODBENCH_TRY(auto bench, open_for_looking(plan, stop));
+  FrameSource& camera = *bench.camera;
   feed.open(camera.info());
   for (const auto& [feature, value] : plan.camera.settings) {
     if (auto set = camera.set(feature, value); !set)
@@ -110,7 +107,7 @@ Result<void> look(const Plan& plan, LiveFeed& feed, CameraDesk& desk, const Look
     if (auto kept = desk.append(*frame); !kept) listener.note("The recording ended: " + kept.error().message);
     desk.serve(camera);
     // These are as fast as requested; frames beyond the display rate are useless.
-    if (bench->simulated || recorded) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (bench.simulated || recorded) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   camera.stop();
   return {};
@@ -197,10 +194,9 @@ void LookPresenter::correct() {
 Result<std::filesystem::path> LookPresenter::snapshot() {
   if (!latest_) return fail(ErrorCode::invalid_input, "there is no picture yet");
   const std::filesystem::path file = new_file(bench_.sessions_folder(), "snapshot", ".tif");
-  auto tiff = TiffWriter::create(file);
-  if (!tiff) return tl::unexpected(tiff.error());
-  if (auto written = tiff->append(latest_->frame.counts); !written) return tl::unexpected(written.error());
-  if (auto pages = tiff->verified_pages(); !pages) return tl::unexpected(pages.error());
+  TODBENCH_TRY(auto tiff, TiffWriter::create(file));
+  if (auto written = tiff.append(latest_->frame.counts); !written) return tl::unexpected(written.error());
+  if (auto pages = tiff.verified_pages(); !pages) return tl::unexpected(pages.error());
   return file;
 }
 

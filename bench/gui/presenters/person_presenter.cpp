@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/plan/atmospheres.h"
 #include "bench/plan/descriptions.h"
@@ -42,11 +43,10 @@ QImage icon_image(const cv::Mat1d& icon) {
 }
 
 Result<PersonExperiment> person_experiment(const PersonQuestion& question) {
-  auto sensor = load_sensor(question.sensor);
-  if (!sensor) return tl::unexpected(sensor.error());
+  TODBENCH_TRY(auto sensor, load_sensor(question.sensor));
   if (question.task == PersonTask::bars) {
     VirtualMrtdTask task;
-    task.sensor = *std::move(sensor);
+    task.sensor = std::move(sensor);
     task.plan = full_plan(task.sensor, {}, {});
     task.accuracy = Accuracy::normal();
     task.axis = question.axis;
@@ -56,15 +56,14 @@ Result<PersonExperiment> person_experiment(const PersonQuestion& question) {
     for (const double share : question.of_nyquist) task.frequencies_per_mrad.push_back(share * nyquist);
     return PersonExperiment::of_bars(task, question.each);
   }
-  auto set = load_target_set(question.set);
-  if (!set) return tl::unexpected(set.error());
-  auto air = load_atmosphere(question.atmosphere, {.band = {sensor->wavelength_min_um, sensor->wavelength_max_um},
-                                                   .weight_temperature_k = sensor->scene_temperature_k});
+  TODBENCH_TRY(auto set, load_target_set(question.set));
+  auto air = load_atmosphere(question.atmosphere, {.band = {sensor.wavelength_min_um, sensor.wavelength_max_um},
+                                                   .weight_temperature_k = sensor.scene_temperature_k});
   if (!air) return tl::unexpected(air.error());
   IdentificationStudyTask task;
-  task.set = *std::move(set);
+  task.set = std::move(set);
   task.air = *std::move(air);
-  task.sensor = *std::move(sensor);
+  task.sensor = std::move(sensor);
   task.accuracy = Accuracy::normal();
   task.ranges_m = question.ranges_m;
   task.seed = question.seed;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/text/files.h"
 #include "bench/twin/experiment_inputs.h"
 
@@ -52,9 +53,7 @@ Result<LookAhead> looked_ahead(const LoadedPlan& loaded, std::optional<std::vect
     out.misfit = sentence(inputs.error());
   }
   if (!out.expected) {
-    auto found = expected_thresholds(loaded, stop);
-    if (!found) return tl::unexpected(found.error());
-    out.expected = std::move(*found);
+    TODBENCH_TRY(out.expected, expected_thresholds(loaded, stop));
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/graded_precision.h"
 #include "bench/plan/plan_options.h"
@@ -79,14 +80,13 @@ Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner, 
   const Plan& plan = loaded.plan();
   PlanForecast out;
   out.plan = plan;
-  auto inputs = experiment_inputs(loaded, planner);
-  if (!inputs) return tl::unexpected(inputs.error());
-  out.frames = with_frames(plan, *inputs).schedule.frames_per_presentation;
-  auto prediction = predict_plan(plan, *inputs);
+  TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
+  out.frames = with_frames(plan, inputs).schedule.frames_per_presentation;
+  auto prediction = predict_plan(plan, inputs);
   // Effects are planned even if the simulation cannot meet the tolerance.
-  out.warnings = prediction ? prediction->warnings : inputs->warnings;
+  out.warnings = prediction ? prediction->warnings : inputs.warnings;
   if (prediction) {
-    if (auto timed = predict_times(plan, *inputs, *prediction, stop);
+    if (auto timed = predict_times(plan, inputs, *prediction, stop);
         !timed && timed.error().code == ErrorCode::interrupted)
       return tl::unexpected(timed.error());
     out.twin = std::move(prediction->contrasts);
@@ -94,21 +94,19 @@ Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner, 
   } else {
     out.problem = prediction.error().message;
   }
-  out.effects = inputs->effects;
+  out.effects = inputs.effects;
   if (out.problem.empty() && plan.simulation.phases == plan.target.phases) {
     out.camera = out.twin;
-    out.by_frames = half_widths_by_frames(plan, *inputs);
+    out.by_frames = half_widths_by_frames(plan, inputs);
     return out;
   }
   Plan camera = plan;
   camera.simulation.phases = plan.target.phases;
   // Limits of the simulation do not apply to the camera.
   camera.simulation.accuracy = "draft";
-  auto accuracy = accuracy_of(camera);
-  if (!accuracy) return tl::unexpected(accuracy.error());
-  inputs->accuracy = *accuracy;
-  if (auto seen = predict_plan(camera, *inputs)) out.camera = std::move(seen->contrasts);
-  out.by_frames = half_widths_by_frames(camera, *inputs);
+  TODBENCH_TRY(inputs.accuracy, accuracy_of(camera));
+  if (auto seen = predict_plan(camera, inputs)) out.camera = std::move(seen->contrasts);
+  out.by_frames = half_widths_by_frames(camera, inputs);
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/gui/presenters/pdf_report.h"
 #include "bench/judgement/verdict_record.h"
 #include "bench/plan/strict_toml.h"
@@ -55,24 +56,22 @@ QString verdict_of(const std::filesystem::path& folder) {
 }
 
 Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
-  const auto text = read_text_file(folder / "provenance.json");
-  if (!text) return tl::unexpected(text.error());
-  const Json json = Json::parse(*text, nullptr, false);
+  TODBENCH_TRY(const auto text, read_text_file(folder / "provenance.json"));
+  const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded())
     return fail(ErrorCode::invalid_input, folder.string() + ": provenance.json is not valid JSON");
-  auto provenance = provenance_from(json);
-  if (!provenance) return tl::unexpected(provenance.error());
+  TODBENCH_TRY(auto provenance, provenance_from(json));
   SessionEntry entry;
   entry.folder = folder;
   entry.name = short_name(QString::fromStdString(session_name(folder)));
-  entry.when = QString::fromStdString(provenance->started_utc).replace('T', ' ').remove('Z');
-  const bool cut_off = provenance->state == SessionState::running;
+  entry.when = QString::fromStdString(provenance.started_utc).replace('T', ' ').remove('Z');
+  const bool cut_off = provenance.state == SessionState::running;
   entry.state =
-      cut_off || shown_files_listed(folder) ? QString::fromUtf8(to_string(provenance->state).data()) : "changed";
+      cut_off || shown_files_listed(folder) ? QString::fromUtf8(to_string(provenance.state).data()) : "changed";
   entry.unit = unit_of(folder);
-  if (provenance->camera) {
-    if (entry.unit.isEmpty()) entry.unit = QString::fromStdString(provenance->camera->model);
-    entry.serial = QString::fromStdString(provenance->camera->serial);
+  if (provenance.camera) {
+    if (entry.unit.isEmpty()) entry.unit = QString::fromStdString(provenance.camera->model);
+    entry.serial = QString::fromStdString(provenance.camera->serial);
   } else {
     entry.unit = "simulation";
   }
@@ -108,9 +107,7 @@ Result<Exported> export_reports(const OpenedSession& opened, const std::optional
     return pages;
   };
   if (order) {
-    auto ordered = with_order(opened.folder, *order, std::move(write_both));
-    if (!ordered) return tl::unexpected(ordered.error());
-    write_both = *std::move(ordered);
+    TODBENCH_TRY(write_both, with_order(opened.folder, *order, std::move(write_both)));
   }
   if (auto rebuilt = rebuild_report(opened.session, opened.folder, write_both); !rebuilt)
     return tl::unexpected(rebuilt.error());
@@ -119,16 +116,13 @@ Result<Exported> export_reports(const OpenedSession& opened, const std::optional
 }
 
 Result<OpenedSession> read_opened_session(const std::filesystem::path& folder) {
-  auto session = open_session(folder, {.accept_changed = false, .accept_cut_off = true});
-  if (!session) return tl::unexpected(session.error());
-  auto data = report_data_of(*session, folder);
-  if (!data) return tl::unexpected(data.error());
-  auto human = read_human(folder);
-  if (!human) return tl::unexpected(human.error());
+  TODBENCH_TRY(auto session, open_session(folder, {.accept_changed = false, .accept_cut_off = true}));
+  TODBENCH_TRY(auto data, report_data_of(session, folder));
+  TODBENCH_TRY(auto human, read_human(folder));
   std::error_code none;
   const bool recorded = std::filesystem::exists(recorded_frames(folder), none);
   return OpenedSession{
-      folder,  QString::fromStdString(session_name(folder)), *std::move(session), *std::move(data), *std::move(human),
+      folder,  QString::fromStdString(session_name(folder)), std::move(session), std::move(data), std::move(human),
       recorded};
 }
 
@@ -189,9 +183,8 @@ void SessionPresenter::open_and_export(const std::filesystem::path& folder) {
   // The jobs run in the order of the requests: this one reads what the first one has checked.
   in_background<Exported>(
       [folder]() -> Result<Exported> {
-        const auto opened = read_opened_session(folder);
-        if (!opened) return tl::unexpected(opened.error());
-        return todbench::export_reports(*opened);
+        TODBENCH_TRY(const auto opened, read_opened_session(folder));
+        return todbench::export_reports(opened);
       },
       [this](const Result<Exported>& files) {
         if (files) emit exported(files->html, files->pdf);
@@ -213,9 +206,8 @@ void SessionPresenter::compare(const std::filesystem::path& other) {
   }
   in_background<ComparedSessions>(
       [name = current_->name, a = current_->session, other]() -> Result<ComparedSessions> {
-        const auto b = open_session(other, {});
-        if (!b) return tl::unexpected(b.error());
-        auto compared = compare_sessions(a, *b, std::nullopt);
+        TODBENCH_TRY(const auto b, open_session(other, {}));
+        auto compared = compare_sessions(a, b, std::nullopt);
         if (!compared) return fail(other.string(), compared.error());
         return ComparedSessions{name, QString::fromStdString(session_name(other)), std::move(compared->a),
                                 std::move(compared->b), std::move(compared->comparison)};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "bench/devices/devices.h"
 #include "bench/gui/presenters/device_plan.h"
@@ -115,9 +116,7 @@ Result<void> Workbench::select_device(const QString& id) {
   if (id == emulated_laboratory) {
     plan = plan_for_laboratory(plan_);
   } else if (const auto name = camera_name(id.toStdString(), camera_scheme::sim)) {
-    auto simulated = plan_for_sensor(plan_, *name);
-    if (!simulated) return tl::unexpected(simulated.error());
-    plan = *std::move(simulated);
+    TODBENCH_TRY(plan, plan_for_sensor(plan_, *name));
   } else {
     plan = plan_for_camera(plan_, id.toStdString());
   }
