@@ -18,9 +18,10 @@
 namespace todbench {
 namespace {
 
-constexpr int own_draws = 4;            ///< of the observer's own noise, for each frame and interval
-constexpr std::size_t own_pool = 256;   ///< pictures of the observer's own noise, for each place
-constexpr double blur_margin_px = 1.5;  ///< distance of a window from other cut-outs
+constexpr std::size_t own_draws = 4;          ///< of the observer's own noise, for each frame and interval
+constexpr std::size_t most_frame_parts = 16;  ///< of the jackknife over the frames
+constexpr std::size_t own_pool = 256;         ///< pictures of the observer's own noise, for each place
+constexpr double blur_margin_px = 1.5;        ///< distance of a window from other cut-outs
 
 /// A cut-out in the picture, round the middle of its target.
 Polygon in_picture(const PlateRectangle& cut_out, cv::Point2d middle_mm, const Registration& where) {
@@ -83,6 +84,13 @@ std::optional<cv::Point2d> empty_place(const TargetPlate& plate, const Registrat
   return std::nullopt;
 }
 
+double squares_about_mean(const std::vector<double>& values) {
+  double mean = 0, squares = 0;
+  for (const double one : values) mean += one / static_cast<double>(values.size());
+  for (const double one : values) squares += (one - mean) * (one - mean);
+  return squares;
+}
+
 }  // namespace
 
 /// Thresholds of one place from some of its set-ups.
@@ -90,6 +98,8 @@ struct BarsJudge::Thresholds {
   std::vector<double> contrast_k, positive_share, negative_share;
   std::optional<double> positive_k, negative_k, half_k, best_k;
   double best_phase = 0;
+  /// Variance of ln half_k over sets of set-ups that have other phases.
+  double phase_variance = 0;
 };
 
 Result<void> BarsJudge::add_place(const PlateRectangle& target, const PlateRectangle& other, Place place,
@@ -206,7 +216,7 @@ void BarsJudge::add(const cv::Mat1d& kelvin, const ShownBars& shown) {
     Scores& to = shown.said_k > 0 ? place.positive : place.negative;
     for (std::size_t which = 0; which < 2; ++which) {
       auto& row = (which == 0 ? to.target : to.other)[shown.level][set_up];
-      for (int k = 0; k < own_draws; ++k) {
+      for (std::size_t k = 0; k < own_draws; ++k) {
         float largest[2];
         place.bank->largest_of_each(nothing, scores[which], static_cast<float>(1 / contrast),
                                     place.own_noise[pick.below(own_pool, draws_++)],
@@ -217,7 +227,28 @@ void BarsJudge::add(const cv::Mat1d& kelvin, const ShownBars& shown) {
   }
 }
 
-BarsJudge::Thresholds BarsJudge::thresholds(const Place& place, int left_out) const {
+/// Variance of ln of a threshold by jackknife; empty if one of the thresholds does not exist.
+std::optional<double> BarsJudge::jackknife_variance(const std::vector<Thresholds>& left_out,
+                                                    std::optional<double> Thresholds::*of) {
+  std::vector<double> logs;
+  for (const Thresholds& one : left_out) {
+    if (!(one.*of) || !(*(one.*of) > 0)) return std::nullopt;
+    logs.push_back(std::log(*(one.*of)));
+  }
+  const auto n = static_cast<double>(logs.size());
+  return squares_about_mean(logs) * (n - 1) / n;
+}
+
+std::vector<float> BarsJudge::LeftOut::rest(const std::vector<float>& row, std::size_t draws) const {
+  const std::size_t frames = (draws + own_draws - 1) / own_draws, parts = std::min(most_frame_parts, frames);
+  std::vector<float> some;
+  for (std::size_t d = 0; d < draws; ++d) {
+    if (d / own_draws * parts / frames != frame_part) some.push_back(row[d]);
+  }
+  return some;
+}
+
+BarsJudge::Thresholds BarsJudge::thresholds(const Place& place, const LeftOut& left_out) const {
   Thresholds out;
   std::vector<std::size_t> levels;
   for (std::size_t i = 0; i < options_.contrasts_k.size(); ++i) {
@@ -231,8 +262,7 @@ BarsJudge::Thresholds BarsJudge::thresholds(const Place& place, int left_out) co
     std::size_t draws = all.front().size();
     for (const auto& row : all) draws = std::min(draws, row.size());
     for (std::size_t s = 0; s < all.size(); ++s) {
-      if (static_cast<int>(s) != left_out)
-        some.emplace_back(all[s].begin(), all[s].begin() + static_cast<std::ptrdiff_t>(draws));
+      if (s != left_out.set_up) some.push_back(left_out.rest(all[s], draws));
     }
     return some;
   };
@@ -254,30 +284,42 @@ BarsJudge::Thresholds BarsJudge::thresholds(const Place& place, int left_out) co
   if (!out.positive_k || !out.negative_k) return out;
   out.half_k = 0.5 * (*out.positive_k + *out.negative_k);
   if (place.size_px > 0) return out;
+  find_best_phase(place, left_out, levels, out);
+  return out;
+}
+
+void BarsJudge::find_best_phase(const Place& place, const LeftOut& left_out, const std::vector<std::size_t>& levels,
+                                Thresholds& out) {
   // Every set-up has one phase; contrasts without the offset of the target.
   const double offset = 0.5 * (*out.positive_k - *out.negative_k);
   std::vector<ContrastShare> points;
   for (std::size_t s = 0; s < place.phase.size(); ++s) {
-    if (static_cast<int>(s) == left_out) continue;
+    if (s == left_out.set_up) continue;
     for (std::size_t i = 0; i < levels.size(); ++i) {
       for (const auto& [scores, sign] : {std::pair(&place.positive, 1.0), std::pair(&place.negative, -1.0)}) {
         const double contrast_k = out.contrast_k[i] - sign * offset;
         const auto& target = scores->target[levels[i]][s];
         const auto& other = scores->other[levels[i]][s];
         if (target.size() < 2 || target.size() != other.size() || !(contrast_k > 0)) continue;
-        points.push_back({contrast_k, share_of_pairs({target}, {other}).mean, place.phase[s]});
+        const std::size_t draws = target.size();
+        points.push_back({contrast_k,
+                          share_of_pairs({left_out.rest(target, draws)}, {left_out.rest(other, draws)}).mean,
+                          place.phase[s]});
       }
     }
   }
   if (const auto fitted = fit_contrast(points, *out.half_k, PhaseFit::swing)) {
     out.best_phase = fitted->best_phase();
     out.best_k = fitted->level_k * std::exp(fitted->ln_ratio_at(out.best_phase));
+    std::vector<double> ln_ratios;
+    for (const double phase : place.phase) ln_ratios.push_back(fitted->ln_ratio_at(phase));
+    const auto n = static_cast<double>(ln_ratios.size());
+    out.phase_variance = squares_about_mean(ln_ratios) / (n * (n - 1));
   }
-  return out;
 }
 
 MrtdPoint BarsJudge::point(const Place& place) const {
-  const Thresholds all = thresholds(place, -1);
+  const Thresholds all = thresholds(place, {});
   MrtdPoint out{.place = place.name,
                 .axis = place.axis,
                 .frequency_per_pitch = place.frequency_per_pitch,
@@ -300,23 +342,25 @@ MrtdPoint BarsJudge::point(const Place& place) const {
     return out;
   }
   out.threshold_k = all.half_k;
-  out.best_phase_k = all.best_k, out.best_phase = all.best_phase;
-  const auto interval = [&](double value, std::optional<double> Thresholds::*of) -> Interval {
-    std::vector<double> logs;
-    for (int s = 0; s < options_.set_ups; ++s) {
-      const auto one = thresholds(place, s).*of;
-      if (one && *one > 0) logs.push_back(std::log(*one));
-    }
-    const auto n = static_cast<double>(options_.set_ups);
-    if (static_cast<double>(logs.size()) < n) return {};
-    double mean = 0, squares = 0;
-    for (const double one : logs) mean += one / n;
-    for (const double one : logs) squares += (one - mean) * (one - mean);
-    const double reach = quantile(distribution::StudentsT(n - 1), 0.975) * std::sqrt((n - 1) / n * squares);
+  out.best_phase_k = all.best_k, out.best_phase = std::abs(all.best_phase);
+  std::vector<Thresholds> by_set_up, by_frames;
+  for (int s = 0; s < options_.set_ups; ++s)
+    by_set_up.push_back(thresholds(place, {.set_up = static_cast<std::size_t>(s)}));
+  const auto interval = [&](double value, double variance) -> Interval {
+    const double reach = quantile(distribution::StudentsT(options_.set_ups - 1.0), 0.975) * std::sqrt(variance);
     return {value * std::exp(-reach), value * std::exp(reach)};
   };
-  out.ci95 = interval(*all.half_k, &Thresholds::half_k);
-  if (all.best_k) out.best_phase_ci95 = interval(*all.best_k, &Thresholds::best_k);
+  const auto set_up_variance = jackknife_variance(by_set_up, &Thresholds::half_k);
+  if (set_up_variance) out.ci95 = interval(*all.half_k, *set_up_variance);
+  if (!all.best_k || !set_up_variance) return out;
+  // Set-ups differ by noise, phase and fixed pattern. The function contains the phase; noise is known from the frames.
+  const std::size_t parts = std::min(most_frame_parts, static_cast<std::size_t>(options_.frames));
+  for (std::size_t part = 0; part < parts; ++part) by_frames.push_back(thresholds(place, {.frame_part = part}));
+  const auto noise = jackknife_variance(by_frames, &Thresholds::half_k);
+  const auto best_noise = jackknife_variance(by_frames, &Thresholds::best_k);
+  if (!noise || !best_noise) return out;
+  const double pattern = std::max(0.0, *set_up_variance - *noise - all.phase_variance);
+  out.best_phase_ci95 = interval(*all.best_k, *best_noise + pattern);
   return out;
 }
 

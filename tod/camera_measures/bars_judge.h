@@ -47,11 +47,22 @@ class BarsJudge {
     bool left_out = false;
   };
   struct Thresholds;
+  /// A set-up, or a part of the frames of every set-up; by default neither.
+  struct LeftOut {
+    static constexpr std::size_t none = -1;
+    std::size_t set_up = none, frame_part = none;
+    /// The first `draws` of a row without the part.
+    [[nodiscard]] std::vector<float> rest(const std::vector<float>& row, std::size_t draws) const;
+  };
 
   explicit BarsJudge(const MrtdOptions& options) : options_(options) {}
   Result<void> add_place(const PlateRectangle& target, const PlateRectangle& other, Place place,
                          const std::vector<AlternativeAspects>& alternatives);
-  [[nodiscard]] Thresholds thresholds(const Place& place, int left_out) const;
+  [[nodiscard]] Thresholds thresholds(const Place& place, const LeftOut& left_out) const;
+  static void find_best_phase(const Place& place, const LeftOut& left_out, const std::vector<std::size_t>& levels,
+                              Thresholds& out);
+  static std::optional<double> jackknife_variance(const std::vector<Thresholds>& left_out,
+                                                  std::optional<double> Thresholds::*of);
   [[nodiscard]] MrtdPoint point(const Place& place) const;
 
   MrtdOptions options_;

@@ -50,7 +50,8 @@ struct MrtdPoint {
   std::string reason{};                  ///< of a missing threshold; empty if there is one
   std::optional<double> best_phase_k{};  ///< threshold at the sampling phase that answers best; empty: not found
   Interval best_phase_ci95{};
-  double best_phase = 0;  ///< distance of the middle of the bars from a border of pixels, 0 to 0.5 pixels
+  /// Distance of the middle of the bars from a border of pixels, 0 to 0.5 pixels, where the plate was located.
+  double best_phase = 0;
   /// Shares of correct decisions by contrast, over all set-ups.
   std::vector<double> positive_share{}, negative_share{};
 };

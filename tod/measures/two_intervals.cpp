@@ -22,13 +22,9 @@ double normal_below(double z) {
 constexpr std::size_t most_parameters = 4;
 constexpr double least_energy = 0.02;  // of the mean: a threshold seven times the level
 
-double energy_of(const ContrastFunction& function, double phase) {
-  const double angle = 2 * std::numbers::pi * phase;
-  return 1 + function.swing[0] * std::cos(angle) + function.swing[1] * std::cos(2 * angle);
-}
-
 double energy_at(const ContrastFunction& function, double phase) {
-  return std::max(energy_of(function, phase), least_energy);
+  const double angle = 2 * std::numbers::pi * phase;
+  return std::max(1 + function.swing[0] * std::cos(angle) + function.swing[1] * std::sin(angle), least_energy);
 }
 
 /// Share by a function, and its derivatives by ln level, exponent and swings.
@@ -43,15 +39,14 @@ FittedShare fitted_share(const ContrastFunction& of, const ContrastShare& at) {
   const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
   const double by_u = density * z * of.exponent, angle = 2 * std::numbers::pi * at.phase;
   const double by_energy = 0.5 * by_u / energy_at(of, at.phase);
-  return {normal_below(z), {-by_u, density * z * u, by_energy * std::cos(angle), by_energy * std::cos(2 * angle)}};
+  return {normal_below(z), {-by_u, density * z * u, by_energy * std::cos(angle), by_energy * std::sin(angle)}};
 }
 
 /// Reduces the swing until the energy is positive at every phase.
 void keep_positive(ContrastFunction& function) {
-  double lowest = 1;
-  for (int i = 0; i <= 32; ++i) lowest = std::min(lowest, energy_of(function, i / 64.0));
-  if (lowest >= least_energy) return;
-  for (double& swing : function.swing) swing *= (1 - least_energy) / (1 - lowest);
+  const double most = std::hypot(function.swing[0], function.swing[1]);
+  if (most <= 1 - least_energy) return;
+  for (double& swing : function.swing) swing *= (1 - least_energy) / most;
 }
 
 }  // namespace
@@ -109,11 +104,7 @@ double ContrastFunction::ln_ratio_at(double phase) const {
 }
 
 double ContrastFunction::best_phase() const {
-  double best = 0;
-  for (int i = 1; i <= 32; ++i) {
-    if (ln_ratio_at(i / 64.0) < ln_ratio_at(best)) best = i / 64.0;
-  }
-  return best;
+  return std::atan2(swing[1], swing[0]) / (2 * std::numbers::pi);
 }
 
 std::optional<ContrastFunction> fit_contrast(std::span<const ContrastShare> shares, double near_k, PhaseFit phases) {

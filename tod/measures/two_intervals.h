@@ -32,9 +32,10 @@ struct PassedContrast {
 [[nodiscard]] PassedContrast passed_contrast(std::span<const double> contrasts_k, std::span<const ShareOfPairs> shares);
 
 /// Psychometric function of contrast, Phi(z75 (c / threshold)^exponent): the distance between sensitivity and contrast
-/// grows as a power (Foley and Legge 1981). Sampling changes the energy of a symmetric pattern with its phase p, by the
+/// grows as a power (Foley and Legge 1981). Sampling changes the energy of a pattern with its phase p, by the
 /// interference of its spectrum with the repeats at whole cycles per sample. The threshold falls with the root of the
-/// energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] cos(4 pi p)).
+/// energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi p)). The sine lets the phases be those
+/// of a pattern whose place is known but for a part of a sample.
 struct ContrastFunction {
   double level_k = 0;             ///< threshold of the mean energy over the phases
   double exponent = 1;            ///< between 0.3 and 8
@@ -42,7 +43,7 @@ struct ContrastFunction {
 
   /// ln threshold at a phase minus ln level.
   [[nodiscard]] double ln_ratio_at(double phase) const;
-  /// Phase of the lowest threshold, in 0 to 0.5 in steps of 1/64.
+  /// Phase of the lowest threshold, in -0.5 to 0.5.
   [[nodiscard]] double best_phase() const;
 };
 

@@ -52,7 +52,7 @@ TEST(FitContrast, FindsTheFunctionThatMadeTheShares) {
   for (const double phase : {-0.4, -0.2, 0.0, 0.1, 0.3}) {
     for (const double contrast : {0.01, 0.02, 0.04, 0.08, 0.16}) {
       const double angle = 2 * std::numbers::pi * phase;
-      const double threshold = 0.035 / std::sqrt(1 - 0.7 * std::cos(angle) + 0.15 * std::cos(2 * angle));
+      const double threshold = 0.035 / std::sqrt(1 - 0.6 * std::cos(angle) + 0.3 * std::sin(angle));
       shares.push_back({contrast, below_normal(z75 * std::pow(contrast / threshold, 1.7)), phase});
     }
   }
@@ -62,11 +62,11 @@ TEST(FitContrast, FindsTheFunctionThatMadeTheShares) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->level_k, 0.035, 1e-6);
   EXPECT_NEAR(found->exponent, 1.7, 1e-4);
-  EXPECT_NEAR(found->swing[0], -0.7, 1e-4);
-  EXPECT_NEAR(found->swing[1], 0.15, 1e-4);
-  // The energy 1 - 0.7 cos a + 0.15 cos 2a is largest at a = pi: 1.85.
-  EXPECT_EQ(found->best_phase(), 0.5);
-  EXPECT_NEAR(found->ln_ratio_at(0.5), -0.5 * std::log(1.85), 1e-4);
+  EXPECT_NEAR(found->swing[0], -0.6, 1e-4);
+  EXPECT_NEAR(found->swing[1], 0.3, 1e-4);
+  // The energy 1 - 0.6 cos a + 0.3 sin a is largest where tan a = -1/2: 1 + sqrt(0.45).
+  EXPECT_NEAR(found->best_phase(), std::atan2(0.3, -0.6) / (2 * std::numbers::pi), 1e-4);
+  EXPECT_NEAR(found->ln_ratio_at(found->best_phase()), -0.5 * std::log(1 + std::sqrt(0.45)), 1e-4);
 }
 
 TEST(FitContrast, FindsNoThresholdWhereNoneIs) {
