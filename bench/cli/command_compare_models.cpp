@@ -44,10 +44,8 @@ void add_acuity(Json& point, const std::string& side, const PackageResult& resul
     if (!same_contrast(found.set_delta_t_k, set_delta_t_k)) continue;
     point["acuity_" + side + "_per_mrad"] = json_number(identified_acuity_per_mrad(found));
     point["acuity_" + side + "_ci95_per_mrad"] = json_interval(acuity_interval(found.fit.ci95));
-    if (const auto& spread = found.s75_spread_mrad) {
-      point["acuity_" + side + "_spread_per_mrad"] =
-          json_interval(acuity_interval(Interval{spread->first, spread->second}));
-    }
+    if (const auto spread = acuity_spread_per_mrad(found.s75_spread_mrad))
+      point["acuity_" + side + "_spread_per_mrad"] = json_interval(*spread);
     point["adequacy_" + side] = adequacy_json(found.adequacy);
     const auto judged = judged_point(result, set_delta_t_k);
     point["judged_gain_" + side] = judged ? json_number(judged->gain) : Json();
@@ -111,12 +109,12 @@ void say_models(Console& console, const ModelComparison& comparison) {
   console.table({"set contrast (K)", "A (1/mrad)", "B (1/mrad)", "B / A", "95 %", "different"}, rows);
   for (const auto& [side, result] : {std::pair('A', &comparison.result_a), std::pair('B', &comparison.result_b)}) {
     for (const TodPoint& point : result->curve.points) {
-      if (!point.s75_spread_mrad) continue;
-      const Interval spread{point.s75_spread_mrad->first, point.s75_spread_mrad->second};
+      const auto spread = acuity_spread_per_mrad(point.s75_spread_mrad);
+      if (!spread) continue;
       console.text(
           fmt::format("{}: {:g} K: {} 1/mrad over the open parameters of the observer (a range of the model, "
                       "not a confidence interval)",
-                      side, point.set_delta_t_k, range(acuity_interval(spread), 3)));
+                      side, point.set_delta_t_k, range(*spread, 3)));
     }
   }
   if (comparison.parts_at_per_mrad)

@@ -46,10 +46,11 @@ Section acuity_comparison(const ModelComparison& comparison) {
   List spreads;
   for (const auto& [side, result] : {std::pair("A", &comparison.result_a), std::pair("B", &comparison.result_b)}) {
     for (const TodPoint& point : result->curve.points) {
-      if (!point.s75_spread_mrad) continue;
-      const Interval acuity = acuity_interval({point.s75_spread_mrad->first, point.s75_spread_mrad->second});
-      spreads.items.push_back(plain(std::string(side) + " at " + stated(point.set_delta_t_k) + " K: " +
-                                    significant(*acuity.low, 3) + " to " + significant(*acuity.high, 3) + " per mrad"));
+      const auto acuity = acuity_spread_per_mrad(point.s75_spread_mrad);
+      if (!acuity) continue;
+      spreads.items.push_back(plain(std::string(side) + " at " + stated(point.set_delta_t_k) +
+                                    " K: " + significant(*acuity->low, 3) + " to " + significant(*acuity->high, 3) +
+                                    " per mrad"));
     }
   }
   if (!spreads.items.empty()) {

@@ -13,23 +13,28 @@ namespace {
 
 /// Adds the spread over the open parameters. A contrast without a threshold at an end has no spread and a note.
 void add_spread(const ExperimentInputs& inputs, DirectEstimateOptions options, DirectResults& results) {
-  const auto range = open_parameter_range(inputs.observer);
-  if (!range) return;
   options.accuracy.standard_error_percent = 0;  // the spread is ten times wider than the error of the usual draws
-  TemplateObserver best(range->best, triangle_alternatives()), worst(range->worst, triangle_alternatives());
-  for (const auto& [contrast, point] : results.points) {
-    const auto low = direct_estimate(inputs.sensor, inputs.effects, best, {contrast}, options);
-    const auto high = direct_estimate(inputs.sensor, inputs.effects, worst, {contrast}, options);
-    if (low && high) {
-      results.spread_pitch[contrast] = {low->front().s75_pitch, high->front().s75_pitch};
-      continue;
-    }
-    const Error& error = low ? high.error() : low.error();
-    if (error.code == ErrorCode::interrupted) {
-      results.ended_by = error;
-      return;
-    }
-    results.notes.push_back("no spread over the observer's open parameters: " + error.message);
+  const auto ends =
+      at_open_ends(inputs.observer, [&](const TemplateObserverSpec& spec) -> Result<std::map<double, double>> {
+        TemplateObserver observer(spec, triangle_alternatives());
+        std::map<double, double> sizes_pitch;
+        for (const auto& [contrast, point] : results.points) {
+          const auto found = direct_estimate(inputs.sensor, inputs.effects, observer, {contrast}, options);
+          if (found) {
+            sizes_pitch[contrast] = found->front().s75_pitch;
+          } else if (found.error().code == ErrorCode::interrupted) {
+            return tl::unexpected(found.error());
+          } else {
+            results.notes.push_back("no spread over the observer's open parameters: " + found.error().message);
+          }
+        }
+        return sizes_pitch;
+      });
+  if (!ends) results.ended_by = ends.error();
+  if (!ends || !*ends) return;
+  for (const auto& [contrast, best] : (**ends)[0]) {
+    const auto worst = (**ends)[1].find(contrast);
+    if (worst != (**ends)[1].end()) results.spread_pitch[contrast] = *spread_of({best, worst->second});
   }
 }
 

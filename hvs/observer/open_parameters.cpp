@@ -22,4 +22,14 @@ std::optional<OpenParameterRange> open_parameter_range(const TemplateObserverSpe
   return range;
 }
 
+std::optional<std::pair<double, double>> spread_of(std::initializer_list<std::optional<double>> values) {
+  std::optional<std::pair<double, double>> spread;
+  for (const std::optional<double>& value : values) {
+    if (!value) return std::nullopt;
+    if (!spread) spread.emplace(*value, *value);
+    spread = std::pair(std::min(spread->first, *value), std::max(spread->second, *value));
+  }
+  return spread;
+}
+
 }  // namespace todbench

@@ -2,8 +2,13 @@
 // Range of the parameters of an observer with an eye that public data do not determine.
 #pragma once
 
+#include <array>
+#include <initializer_list>
 #include <optional>
+#include <type_traits>
+#include <utility>
 
+#include "acquisition/base/result.h"
 #include "hvs/observer/template_observer.h"
 
 namespace todbench {
@@ -17,5 +22,25 @@ struct OpenParameterRange {
 
 /// Empty for an observer without an eye.
 [[nodiscard]] std::optional<OpenParameterRange> open_parameter_range(const TemplateObserverSpec& spec);
+
+/// Results of `find`, which returns a Result, for the best and then the worst observer of the range; empty without an
+/// eye. Errors: those of `find`.
+template <typename Find>
+[[nodiscard]] auto at_open_ends(const TemplateObserverSpec& spec, const Find& find) -> Result<
+    std::optional<std::array<typename std::invoke_result_t<const Find&, const TemplateObserverSpec&>::value_type, 2>>> {
+  using Found = typename std::invoke_result_t<const Find&, const TemplateObserverSpec&>::value_type;
+  const auto range = open_parameter_range(spec);
+  if (!range) return std::optional<std::array<Found, 2>>();
+  auto best = find(range->best);
+  if (!best) return tl::unexpected(best.error());
+  auto worst = find(range->worst);
+  if (!worst) return tl::unexpected(worst.error());
+  return std::optional(std::array<Found, 2>{*std::move(best), *std::move(worst)});
+}
+
+/// Spread of a quantity: the smallest and the largest of its values at both ends and, if it is not monotone in the
+/// parameters, of the observer itself. Empty if one is missing. It is no confidence interval: no probability belongs to
+/// it.
+[[nodiscard]] std::optional<std::pair<double, double>> spread_of(std::initializer_list<std::optional<double>> values);
 
 }  // namespace todbench

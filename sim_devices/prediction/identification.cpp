@@ -153,18 +153,15 @@ class RangeTrial {
                               .answers = std::vector(targets.size(), std::vector<int>(targets.size(), 0)),
                               .by_draw = std::vector<double>(draws, 0.0)};
     if (auto answered = answer(targets, task_.observer, point); !answered) return tl::unexpected(answered.error());
-    const auto range = open_parameter_range(task_.observer);
-    if (!range) return point;
-    std::array<double, 2> ends{};
-    for (std::size_t k = 0; k < 2; ++k) {
+    const auto ends = at_open_ends(task_.observer, [&](const TemplateObserverSpec& seeing) -> Result<double> {
       IdentificationPoint end = point;
       for (auto& row : end.answers) std::ranges::fill(row, 0);
       std::ranges::fill(end.by_draw, 0.0);
-      if (auto answered = answer(targets, k == 0 ? range->worst : range->best, end); !answered)
-        return tl::unexpected(answered.error());
-      ends[k] = end.proportion();
-    }
-    point.spread = std::pair(ends[0], ends[1]);
+      if (auto answered = answer(targets, seeing, end); !answered) return tl::unexpected(answered.error());
+      return end.proportion();
+    });
+    if (!ends) return tl::unexpected(ends.error());
+    if (*ends) point.spread = spread_of({(**ends)[0], (**ends)[1]});
     return point;
   }
 

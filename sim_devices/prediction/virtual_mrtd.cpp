@@ -102,17 +102,17 @@ class BarTrial {
     }
     find_thresholds(point);
     if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    const auto range = open_parameter_range(task_.observer);
-    if (!range || !point.threshold_k) return {};
-    std::array<std::optional<double>, 2> ends;
-    for (std::size_t k = 0; k < 2; ++k) {
-      seeing_ = k == 0 ? range->best : range->worst;
-      VirtualMrtdPoint end = point;
-      find_thresholds(end);
-      ends[k] = end.threshold_k;
-    }
-    if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    if (ends[0] && ends[1]) point.spread_k = std::minmax(*ends[0], *ends[1]);
+    if (!point.threshold_k) return {};
+    const auto ends =
+        at_open_ends(task_.observer, [&](const TemplateObserverSpec& end) -> Result<std::optional<double>> {
+          seeing_ = end;
+          VirtualMrtdPoint found = point;
+          find_thresholds(found);
+          if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+          return found.threshold_k;
+        });
+    if (!ends) return tl::unexpected(ends.error());
+    if (*ends) point.spread_k = spread_of({(**ends)[0], (**ends)[1]});
     return {};
   }
 

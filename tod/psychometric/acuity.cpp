@@ -22,4 +22,9 @@ Interval acuity_interval(const Interval& s75_mrad) {
   return {reciprocal(s75_mrad.high), reciprocal(s75_mrad.low)};
 }
 
+std::optional<Interval> acuity_spread_per_mrad(const std::optional<std::pair<double, double>>& s75_spread_mrad) {
+  if (!s75_spread_mrad) return std::nullopt;
+  return acuity_interval({s75_spread_mrad->first, s75_spread_mrad->second});
+}
+
 }  // namespace todbench

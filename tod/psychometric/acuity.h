@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "tod/psychometric/psychometric_fit.h"
 
@@ -12,5 +13,9 @@ namespace todbench {
 [[nodiscard]] std::optional<double> acuity_per_mrad(const PsychometricFit& fit);
 /// The interval of 1 / S75 with exchanged sides. A lower limit of 0 gives an open side.
 [[nodiscard]] Interval acuity_interval(const Interval& s75_mrad);
+/// The ends of 1 / S75, in 1/mrad, for a spread of S75 over the open parameters of an observer with an eye; empty
+/// without one. No confidence interval.
+[[nodiscard]] std::optional<Interval> acuity_spread_per_mrad(
+    const std::optional<std::pair<double, double>>& s75_spread_mrad);
 
 }  // namespace todbench
