@@ -37,7 +37,9 @@ struct DynamicArguments {
   EffectDecisionOptions decisions;
 };
 
-void add_rows(std::vector<TableRow>& rows, const std::vector<DynamicAcuity>& found, const TableRow& first) {
+/// `with_spread`: adds acuity and ratio over the open parameters of an observer with an eye.
+void add_rows(std::vector<TableRow>& rows, const std::vector<DynamicAcuity>& found, const TableRow& first,
+              bool with_spread) {
   for (const DynamicAcuity& at : found) {
     for (const DynamicPoint& point : at.points) {
       TableRow row = first;
@@ -49,17 +51,29 @@ void add_rows(std::vector<TableRow>& rows, const std::vector<DynamicAcuity>& fou
                            fixed(point.ratio, 3),
                            range(point.ratio_ci95, 3)};
       row.insert(row.end(), cells.begin(), cells.end());
+      if (with_spread) {
+        const auto acuity = acuity_spread_per_mrad(point.s75_spread_mrad);
+        row.push_back(acuity ? range(*acuity, 3) : "-");
+        row.push_back(point.ratio_spread ? range({point.ratio_spread->first, point.ratio_spread->second}, 3) : "-");
+      }
       rows.push_back(std::move(row));
     }
   }
+}
+
+/// Header of the table after the columns of `first`.
+TableRow header_after(TableRow first, bool with_spread) {
+  for (const char* name :
+       {"speed (mrad/s)", "px/frame", "observer", "acuity (1/mrad)", "95 %", "ratio to rest", "95 %"})
+    first.emplace_back(name);
+  if (with_spread) first.emplace_back("acuity, open parameters"), first.emplace_back("ratio, open parameters");
+  return first;
 }
 
 int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program& program) {
   const auto loaded = with_seed(read_plan(a.plan), program.common);
   if (!loaded) return report_error(console, loaded.error());
   const Plan& plan = loaded->plan();
-  if (loaded->observer().eye)
-    console.note("spread over the open parameters of observer " + loaded->observer().name + " not computed");
   console.phase("measuring a moving target");
   const auto said = [&](const MovingPassRecord& pass) {
     if (!pass.dropped.empty() && !console.json()) console.text(fmt::format("pass {}: {}", pass.pass, pass.dropped));
@@ -81,10 +95,10 @@ int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program&
     console.object(json);
   }
   std::vector<TableRow> rows;
-  for (const DynamicContrast& at : found->contrasts) add_rows(rows, at.speeds, {fmt::format("{:g}", at.set_delta_t_k)});
-  console.table({"set contrast (K)", "speed (mrad/s)", "px/frame", "observer", "acuity (1/mrad)", "95 %",
-                 "ratio to rest", "95 %"},
-                rows);
+  const bool with_spread = loaded->observer().eye.has_value();
+  for (const DynamicContrast& at : found->contrasts)
+    add_rows(rows, at.speeds, {fmt::format("{:g}", at.set_delta_t_k)}, with_spread);
+  console.table(header_after({"set contrast (K)"}, with_spread), rows);
   console.text(fmt::format("the large triangles deviate from the motion reported by the stage by {:.3f} px (rms)",
                            found->residual_px));
   if (const auto& tau = found->time_constant)
@@ -98,7 +112,7 @@ int run_dynamic_plan(Console& console, const DynamicArguments& a, const Program&
   return exit_code(outcome.verdict.decision);
 }
 
-Json dynamic_json(const std::vector<DynamicAcuity>& found, const SensorSpec& sensor, const DynamicArguments& a,
+Json dynamic_json(const DynamicAcuities& found, const SensorSpec& sensor, const DynamicArguments& a,
                   std::uint64_t seed) {
   return {{"sensor", sensor.name},
           {"observer", a.observer},
@@ -113,9 +127,9 @@ Json dynamic_json(const std::vector<DynamicAcuity>& found, const SensorSpec& sen
           {"package", a.package.empty() ? Json() : Json(a.package)},
           {"lag", a.package.empty() ? "removed" : "removed for time constant and exposure, not for the package"},
           {"internal_noise", "per decision"},
-          {"s75_spread", a.display.empty() ? Json() : Json("not computed")},
           {"seed", seed},
-          {"speeds", speeds_json(found)}};
+          {"speeds", speeds_json(found.speeds)},
+          {"notes", found.notes}};
 }
 
 /// Effects of the sensor with the plate at rest and at the highest speed. Without a tolerance every effect that is not
@@ -202,9 +216,9 @@ int run_dynamic(Console& console, const DynamicArguments& a, const Program& prog
     console.object(json);
   }
   std::vector<TableRow> rows;
-  add_rows(rows, *found, {});
-  if (spec->eye) console.note("spread over the open parameters of observer " + spec->name + " not computed");
-  console.table({"speed (mrad/s)", "px/frame", "observer", "acuity (1/mrad)", "95 %", "ratio to rest", "95 %"}, rows);
+  add_rows(rows, found->speeds, {}, spec->eye.has_value());
+  console.table(header_after({}, spec->eye.has_value()), rows);
+  for (const std::string& sentence : found->notes) console.note(sentence);
   print_effects(console, *effects, a.decisions);
   return 0;
 }

@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "acquisition/base/try.h"
 #include "bench/cli/chain_options.h"
@@ -55,8 +58,19 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
   return task;
 }
 
+/// Adds a range over the open parameters of an observer with an eye, which is no confidence interval.
+void add_spread(Json& json, const char* key, const std::optional<std::pair<double, double>>& spread) {
+  if (spread) json[key] = {json_number(spread->first), json_number(spread->second)};
+}
+
+std::string spread_text(const std::optional<std::pair<double, double>>& spread, int digits) {
+  return spread ? fixed(spread->first, digits) + " to " + fixed(spread->second, digits) : std::string("-");
+}
+
 Json criterion_json_of(const SetCriterion& criterion) {
-  return {{"value", json_number(criterion.value)}, {"ci95", json_interval(criterion.ci95)}};
+  Json json{{"value", json_number(criterion.value)}, {"ci95", json_interval(criterion.ci95)}};
+  add_spread(json, "spread", criterion.spread);
+  return json;
 }
 
 /// Wilson's interval for the number of independent answers that gives the scatter of the draws; if all draws agree, for
@@ -91,15 +105,16 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
              {"ci95", json_interval(interval_of(point))},
              {"draws", point.by_draw.size()},
              {"confusion", point.answers}};
-    // Of an observer with an eye, over its open parameters; no confidence interval.
-    if (point.spread)
-      row["proportion_correct_spread"] = {json_number(point.spread->first), json_number(point.spread->second)};
+    add_spread(row, "proportion_correct_spread", point.spread);
     ranges.push_back(std::move(row));
   }
-  for (const auto& t : study.tod) {
-    tod.push_back({{"delta_t_k", json_number(t.delta_t_k)},
-                   {"s75_mrad", json_number(t.s75_mrad)},
-                   {"s75_ci95_mrad", json_interval(t.s75_ci95_mrad)}});
+  for (std::size_t i = 0; i < study.tod.size(); ++i) {
+    const TodThreshold& t = study.tod[i];
+    Json row{{"delta_t_k", json_number(t.delta_t_k)},
+             {"s75_mrad", json_number(t.s75_mrad)},
+             {"s75_ci95_mrad", json_interval(t.s75_ci95_mrad)}};
+    if (i < study.tod_spread_mrad.size()) add_spread(row, "s75_spread_mrad", study.tod_spread_mrad[i]);
+    tod.push_back(std::move(row));
   }
   Json predicted;
   if (study.predicted) {
@@ -107,31 +122,34 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
                  {"r75_m", json_number(study.predicted->r75_m)},
                  {"r75_ci95_m", json_interval(study.predicted->r75_ci95_m)},
                  {"reason", study.predicted->reason.empty() ? Json() : Json(study.predicted->reason)}};
+    add_spread(predicted, "r75_spread_m", study.predicted_spread_m);
   }
   const bool both = study.predicted && study.predicted->r75_m && study.r75_m.value;
-  return {{"set", task.set.name},
-          {"sensor", task.sensor.name},
-          {"samples_per_pitch", task.sensor.samples_per_pitch()},
-          {"observer", task.observer.name},
-          {"templates", task.knowledge == TemplateKnowledge::ideal ? "ideal" : "camera"},
-          {"cues", task.cues == TargetCues::shape ? "shape" : "all"},
-          {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}}},
-          {"turbulence", turbulence},
-          {"planned", effort_json(effort)},
-          {"targets", names},
-          {"azimuths_deg", task.set.azimuths_deg},
-          {"chance", study.chance},
-          {"size_m", json_number(study.size_m)},
-          {"dt_rss_k", json_number(study.dt_rss_k)},
-          {"ranges", ranges},
-          {"r75_m", json_number(study.r75_m.value)},
-          {"r75_ci95_m", json_interval(study.r75_m.ci95)},
-          {"m75", criterion_json_of(study.m75)},
-          {"v50", criterion_json_of(study.v50)},
-          {"tod", tod},
-          {"predicted", predicted},
-          {"measured_over_predicted", both ? Json(*study.r75_m.value / *study.predicted->r75_m) : Json()},
-          {"notes", study.notes}};
+  Json json{{"set", task.set.name},
+            {"sensor", task.sensor.name},
+            {"samples_per_pitch", task.sensor.samples_per_pitch()},
+            {"observer", task.observer.name},
+            {"templates", task.knowledge == TemplateKnowledge::ideal ? "ideal" : "camera"},
+            {"cues", task.cues == TargetCues::shape ? "shape" : "all"},
+            {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}}},
+            {"turbulence", turbulence},
+            {"planned", effort_json(effort)},
+            {"targets", names},
+            {"azimuths_deg", task.set.azimuths_deg},
+            {"chance", study.chance},
+            {"size_m", json_number(study.size_m)},
+            {"dt_rss_k", json_number(study.dt_rss_k)},
+            {"ranges", ranges},
+            {"r75_m", json_number(study.r75_m.value)},
+            {"r75_ci95_m", json_interval(study.r75_m.ci95)},
+            {"m75", criterion_json_of(study.m75)},
+            {"v50", criterion_json_of(study.v50)},
+            {"tod", tod},
+            {"predicted", predicted},
+            {"measured_over_predicted", both ? Json(*study.r75_m.value / *study.predicted->r75_m) : Json()},
+            {"notes", study.notes}};
+  add_spread(json, "r75_spread_m", study.r75_m.spread);
+  return json;
 }
 
 void print_identification(Console& console, const IdentificationStudyTask& task, const IdentificationStudy& study) {
@@ -144,18 +162,23 @@ void print_identification(Console& console, const IdentificationStudyTask& task,
   for (const auto& point : study.points) {
     rows.push_back({fixed(point.range_m, 0), fixed(point.transmittance, 3), fixed(point.proportion(), 3),
                     range(interval_of(point), 3)});
-    if (point.spread) rows.back().push_back(fixed(point.spread->first, 3) + " to " + fixed(point.spread->second, 3));
+    if (task.observer.eye) rows.back().push_back(spread_text(point.spread, 3));
   }
   console.table(header, rows);
-  if (task.observer.eye) console.text("the range, M75 and V50 state no spread: spread not computed");
   console.text("");
   console.text("75 % correct at " + fixed(study.r75_m.value, 1) + " m, 95 %: " + range(study.r75_m.ci95, 1) + " m");
   console.text("criteria of the set: M75 " + fixed(study.m75.value, 2) + " (" + range(study.m75.ci95, 2) + "), V50 " +
                fixed(study.v50.value, 2) + " (" + range(study.v50.ci95, 2) + ")");
+  if (task.observer.eye) {
+    console.text("over the open parameters of observer " + task.observer.name +
+                 " (no confidence interval): " + spread_text(study.r75_m.spread, 1) + " m, M75 " +
+                 spread_text(study.m75.spread, 2) + ", V50 " + spread_text(study.v50.spread, 2));
+  }
   if (study.predicted) {
-    console.text(fmt::format("range predicted by the TOD curve with M75 {:g}: ", task.m75) +
-                 fixed(study.predicted->r75_m, 1) + " m" +
-                 (study.predicted->reason.empty() ? "" : "; " + study.predicted->reason));
+    console.text(
+        fmt::format("range predicted by the TOD curve with M75 {:g}: ", task.m75) + fixed(study.predicted->r75_m, 1) +
+        " m" + (study.predicted->reason.empty() ? "" : "; " + study.predicted->reason) +
+        (task.observer.eye ? "; over the open parameters " + spread_text(study.predicted_spread_m, 1) + " m" : ""));
   }
 }
 

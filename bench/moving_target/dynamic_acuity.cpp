@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "acquisition/base/try.h"
+#include "hvs/observer/open_parameters.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/effect_exposure.h"
 #include "sim_devices/sensor/effect_motion.h"
+#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {
@@ -43,6 +45,28 @@ Result<std::vector<double>> sizes_round_threshold(const SensorSpec& sensor, Temp
   return sizes;
 }
 
+/// Without the ends of the open parameters.
+Result<std::vector<DynamicAcuity>> acuities_of(const SensorSpec& sensor, TemplateObserver& observer,
+                                               DynamicTrialOptions options) {
+  if (options.sizes_pitch.empty()) {
+    TODBENCH_TRY(options.sizes_pitch, sizes_round_threshold(sensor, observer, options));
+  }
+  TODBENCH_TRY(const auto trials, dynamic_trials(sensor, observer, options));
+  const FitOptions fit;
+  std::vector<DynamicAcuity> found;
+  for (const DynamicTrials& moving : trials) {
+    DynamicAcuity at = dynamic_acuity_at(sensor, moving.speed_mrad_s, moving.speed_px);
+    for (const SequenceObserver kind : all_sequence_observers) {
+      const auto k = static_cast<std::size_t>(kind);
+      TODBENCH_TRY(auto point, dynamic_point(kind, moving.levels[k], trials_of(moving.levels[k], options.delta_t_k),
+                                             trials_of(trials.front().levels[k], options.delta_t_k), fit));
+      at.points.push_back(std::move(point));
+    }
+    found.push_back(std::move(at));
+  }
+  return found;
+}
+
 }  // namespace
 
 DynamicAcuity dynamic_acuity_at(const SensorSpec& sensor, double speed_mrad_s, double speed_px) {
@@ -67,28 +91,36 @@ Result<DynamicPoint> dynamic_point(SequenceObserver observer, const std::vector<
   return point;
 }
 
-Result<std::vector<DynamicAcuity>> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,
-                                                  DynamicTrialOptions options) {
+void add_spreads(const std::array<std::vector<DynamicAcuity>, 2>& ends, std::vector<DynamicAcuity>& found) {
+  const auto s75 = [](const DynamicPoint& point) { return point.fit.usable() ? point.fit.threshold : std::nullopt; };
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t k = 0; k < found[i].points.size(); ++k) {
+      DynamicPoint& point = found[i].points[k];
+      const DynamicPoint &best = ends[0][i].points[k], &worst = ends[1][i].points[k];
+      if (s75(point)) point.s75_spread_mrad = spread_of({s75(best), s75(worst)});
+      point.ratio_spread = spread_of({point.ratio, best.ratio, worst.ratio});
+    }
+  }
+}
+
+Result<DynamicAcuities> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,
+                                       DynamicTrialOptions options) {
   if (!(std::abs(options.delta_t_k) > 0)) return fail(ErrorCode::invalid_input, "a contrast of 0 K has no threshold");
   std::erase(options.speeds_mrad_s, 0.0);
   options.speeds_mrad_s.insert(options.speeds_mrad_s.begin(), 0);
-  if (options.sizes_pitch.empty()) {
-    TODBENCH_TRY(options.sizes_pitch, sizes_round_threshold(sensor, observer, options));
+  TODBENCH_TRY(auto found, acuities_of(sensor, observer, options));
+  DynamicAcuities out{std::move(found), {}};
+  const auto ends = at_open_ends(observer.spec(), [&](const TemplateObserverSpec& spec) {
+    TemplateObserver end(spec, triangle_alternatives());
+    return acuities_of(sensor, end, options);
+  });
+  if (!ends && ends.error().code == ErrorCode::interrupted) return tl::unexpected(ends.error());
+  if (!ends) {
+    out.notes.push_back("no spread over the observer's open parameters: " + ends.error().message);
+  } else if (*ends) {
+    add_spreads(**ends, out.speeds);
   }
-  TODBENCH_TRY(const auto trials, dynamic_trials(sensor, observer, options));
-  const FitOptions fit;
-  std::vector<DynamicAcuity> found;
-  for (const DynamicTrials& moving : trials) {
-    DynamicAcuity at = dynamic_acuity_at(sensor, moving.speed_mrad_s, moving.speed_px);
-    for (const SequenceObserver kind : all_sequence_observers) {
-      const auto k = static_cast<std::size_t>(kind);
-      TODBENCH_TRY(auto point, dynamic_point(kind, moving.levels[k], trials_of(moving.levels[k], options.delta_t_k),
-                                             trials_of(trials.front().levels[k], options.delta_t_k), fit));
-      at.points.push_back(std::move(point));
-    }
-    found.push_back(std::move(at));
-  }
-  return found;
+  return out;
 }
 
 }  // namespace todbench

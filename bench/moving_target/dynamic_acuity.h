@@ -4,6 +4,8 @@
 
 #include <array>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/enhance/enhancement.h"
@@ -19,6 +21,9 @@ struct DynamicPoint {
   /// missing. 1 for the target at rest.
   std::optional<double> ratio;
   Interval ratio_ci95;
+  /// S75 and ratio over the open parameters of an observer with an eye (open_parameters.h); empty without an eye, or if
+  /// the observer or an end has none. No confidence intervals.
+  std::optional<std::pair<double, double>> s75_spread_mrad{}, ratio_spread{};
 };
 struct DynamicAcuity {
   double speed_mrad_s = 0, speed_px = 0;  ///< pixels per frame
@@ -35,9 +40,19 @@ struct DynamicAcuity {
                                                  const std::vector<Trial>& trials, const std::vector<Trial>& at_rest,
                                                  const FitOptions& fit);
 
+/// Adds the spreads between both ends of the open parameters to the points of an observer: best and worst, with the
+/// same speeds and kinds.
+void add_spreads(const std::array<std::vector<DynamicAcuity>, 2>& ends, std::vector<DynamicAcuity>& found);
+
+struct DynamicAcuities {
+  std::vector<DynamicAcuity> speeds;
+  std::vector<std::string> notes;  ///< reasons of missing spreads
+};
+
 /// Calls dynamic_trials() with its options; adds the speed 0 in front if it is missing. Without sizes: eleven from 0.5
-/// to 2.5 times the threshold of the target at rest, from a direct estimate.
-[[nodiscard]] Result<std::vector<DynamicAcuity>> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,
-                                                                DynamicTrialOptions options);
+/// to 2.5 times the threshold of the target at rest, from a direct estimate. An observer with an eye is followed by
+/// those at both ends of its open parameters, each with its own sizes.
+[[nodiscard]] Result<DynamicAcuities> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,
+                                                     DynamicTrialOptions options);
 
 }  // namespace todbench

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/moving_target/dynamic_json.h"
 
+#include <utility>
+
 #include "tod/psychometric/acuity.h"
 
 namespace todbench {
@@ -34,13 +36,18 @@ Json speeds_json(const std::vector<DynamicAcuity>& found) {
   for (const DynamicAcuity& at : found) {
     Json points = Json::array();
     for (const DynamicPoint& point : at.points) {
-      points.push_back({{"observer", to_string(point.observer)},
-                        {"verdict", to_string(point.fit.verdict)},
-                        {"s75_mrad", json_number(point.fit.threshold)},
-                        {"s75_ci95_mrad", json_interval(point.fit.ci95)},
-                        {"acuity_per_mrad", json_number(acuity_per_mrad(point.fit))},
-                        {"ratio_to_static", json_number(point.ratio)},
-                        {"ratio_to_static_ci95", json_interval(point.ratio_ci95)}});
+      Json row{{"observer", to_string(point.observer)},
+               {"verdict", to_string(point.fit.verdict)},
+               {"s75_mrad", json_number(point.fit.threshold)},
+               {"s75_ci95_mrad", json_interval(point.fit.ci95)},
+               {"acuity_per_mrad", json_number(acuity_per_mrad(point.fit))},
+               {"ratio_to_static", json_number(point.ratio)},
+               {"ratio_to_static_ci95", json_interval(point.ratio_ci95)}};
+      for (const auto& [key, spread] : {std::pair("s75_spread_mrad", &point.s75_spread_mrad),
+                                        std::pair("ratio_to_static_spread", &point.ratio_spread)}) {
+        if (*spread) row[key] = {json_number((*spread)->first), json_number((*spread)->second)};
+      }
+      points.push_back(std::move(row));
     }
     speeds.push_back({{"speed_mrad_s", at.speed_mrad_s},
                       {"speed_px_per_frame", at.speed_px},

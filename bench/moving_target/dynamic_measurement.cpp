@@ -40,6 +40,29 @@ std::vector<Level> levels_by_pass(const std::vector<Trial>& trials) {
   return levels;
 }
 
+/// Acuities at one contrast, by speed.
+Result<std::vector<DynamicAcuity>> speeds_of(const std::vector<MovingAnswer>& answers, double frame_rate_hz,
+                                             const std::vector<double>& speeds, double set_delta_t_k,
+                                             const SensorSpec& sensor, const FitOptions& fit) {
+  std::vector<DynamicAcuity> out;
+  std::map<SequenceObserver, std::vector<Trial>> at_rest;
+  for (const double speed : speeds) {
+    DynamicAcuity at = dynamic_acuity_at(sensor, speed, speed / sensor.ifov_mrad() / frame_rate_hz);
+    for (const SequenceObserver kind : all_sequence_observers) {
+      std::vector<Trial> trials;
+      for (const MovingAnswer& answer : answers) {
+        if (asked_at(speed, answer, kind, set_delta_t_k)) trials.push_back(answer.trial);
+      }
+      if (speed == 0) at_rest[kind] = trials;
+      if (trials.empty()) return fail(ErrorCode::integrity, "no pass could be measured at one of the speeds");
+      TODBENCH_TRY(auto point, dynamic_point(kind, levels_by_pass(trials), trials, at_rest[kind], fit));
+      at.points.push_back(std::move(point));
+    }
+    out.push_back(std::move(at));
+  }
+  return out;
+}
+
 Result<DynamicContrast> contrast_of(const MovingMeasurement& measured, const std::vector<double>& speeds,
                                     double set_delta_t_k, const SensorSpec& sensor, const FitOptions& fit) {
   DynamicContrast out{.set_delta_t_k = set_delta_t_k, .delta_t_k = 0, .speeds = {}};
@@ -50,21 +73,15 @@ Result<DynamicContrast> contrast_of(const MovingMeasurement& measured, const std
     passes += 1;
   }
   out.delta_t_k /= std::max(1.0, passes);
-  std::map<SequenceObserver, std::vector<Trial>> at_rest;
-  for (const double speed : speeds) {
-    DynamicAcuity at = dynamic_acuity_at(sensor, speed, speed / sensor.ifov_mrad() / measured.frame_rate_hz);
-    for (const SequenceObserver kind : all_sequence_observers) {
-      std::vector<Trial> trials;
-      for (const MovingAnswer& answer : measured.answers) {
-        if (asked_at(speed, answer, kind, set_delta_t_k)) trials.push_back(answer.trial);
-      }
-      if (speed == 0) at_rest[kind] = trials;
-      if (trials.empty()) return fail(ErrorCode::integrity, "no pass could be measured at one of the speeds");
-      TODBENCH_TRY(auto point, dynamic_point(kind, levels_by_pass(trials), trials, at_rest[kind], fit));
-      at.points.push_back(std::move(point));
-    }
-    out.speeds.push_back(std::move(at));
-  }
+  const auto of = [&](const std::vector<MovingAnswer>& answers) {
+    return speeds_of(answers, measured.frame_rate_hz, speeds, set_delta_t_k, sensor, fit);
+  };
+  TODBENCH_TRY(out.speeds, of(measured.answers));
+  if (measured.answers_at_ends.front().empty()) return out;
+  auto best = of(measured.answers_at_ends[0]), worst = of(measured.answers_at_ends[1]);
+  if (!best) return tl::unexpected(best.error());
+  if (!worst) return tl::unexpected(worst.error());
+  add_spreads({*std::move(best), *std::move(worst)}, out.speeds);
   return out;
 }
 

@@ -93,6 +93,16 @@ std::string in_text(const Interval& interval) {
   return in_text(interval.low) + " to " + in_text(interval.high);
 }
 
+/// S75 at rest over the open parameters of the observer, for the points of the curve.
+void add_spreads(const DynamicMeasurement& found, TodCurve& curve) {
+  for (TodPoint& point : curve.points) {
+    for (const DynamicContrast& contrast : found.contrasts) {
+      if (contrast.set_delta_t_k == point.set_delta_t_k)
+        point.s75_spread_mrad = contrast.speeds.front().points.front().s75_spread_mrad;
+    }
+  }
+}
+
 /// Notes about the motion, for the report.
 std::vector<std::string> sentences(const DynamicMeasurement& found) {
   std::vector<std::string> out{
@@ -106,6 +116,8 @@ std::vector<std::string> sentences(const DynamicMeasurement& found) {
                                   contrast.set_delta_t_k, at.speed_mrad_s, at.speed_px, to_string(point.observer),
                                   in_text(acuity_per_mrad(point.fit)), in_text(acuity_interval(point.fit.ci95)),
                                   ratio));
+        if (const auto acuity = acuity_spread_per_mrad(point.s75_spread_mrad))
+          out.back() += "; " + in_text(*acuity) + " over the open parameters of the observer (no confidence interval)";
       }
     }
   }
@@ -146,6 +158,7 @@ class DynamicRun {
           AnswerKind::binary, 1,
           plan.schedule.answers == AnswersChoice::automatic ? AnswersReason::moving_target : AnswersReason::plan};
     }
+    add_spreads(*found, *curve);
     examine(*curve, fit_options(plan));
     std::vector<std::string> said = sentences(*found);
     if (!plan.camera.id.empty()) {

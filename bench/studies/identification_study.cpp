@@ -8,6 +8,7 @@
 
 #include "acquisition/base/try.h"
 #include "bench/studies/turbulent_ranges.h"
+#include "hvs/observer/open_parameters.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "tod/plate/test_pattern.h"
@@ -141,6 +142,69 @@ Result<void> check_ranges(const IdentificationStudyTask& task) {
   return {};
 }
 
+/// Adds the curve of the observer, and what follows from it and from the range with 75 % right: criteria of the set and
+/// the predicted range.
+Result<void> rate_by_curve(const IdentificationStudyTask& task, double least_tau, IdentificationStudy& study) {
+  TODBENCH_TRY(study.tod, tod_curve_for(task, study.dt_rss_k, least_tau, study.notes));
+  if (study.tod.empty()) return {};
+  const RangeTask question{.size_m = study.size_m, .delta_t_k = study.dt_rss_k, .m75 = task.m75, .air = task.air.air};
+  std::optional<TurbulentSources> turbulent;
+  if (task.cn2_m_minus_2_3 > 0) {
+    TODBENCH_TRY(turbulent, behind_turbulence(task, study, question));
+  }
+  study.m75 = {
+      m_at(task, study, turbulent, study.r75_m.value),
+      {m_at(task, study, turbulent, study.r75_m.ci95.high), m_at(task, study, turbulent, study.r75_m.ci95.low)}};
+  const auto v50 = [](std::optional<double> m) { return m ? std::optional(*m / m75_from_v50(1)) : std::nullopt; };
+  study.v50 = {v50(study.m75.value), {v50(study.m75.ci95.low), v50(study.m75.ci95.high)}};
+  auto predicted =
+      turbulent ? turbulent_prediction(*turbulent, study.tod, question) : predict_range(study.tod, question);
+  if (!predicted) return tl::unexpected(predicted.error());
+  study.predicted = *std::move(predicted);
+  return {};
+}
+
+/// The study of the observer at an end of its open parameters; its proportions are those of `end` of the spreads.
+Result<IdentificationStudy> study_at_end(const IdentificationStudyTask& task, double least_tau,
+                                         const IdentificationStudy& study, const TemplateObserverSpec& observer,
+                                         double std::pair<double, double>::*end) {
+  IdentificationStudyTask seen = task;
+  seen.observer = observer;
+  IdentificationStudy out;
+  out.size_m = study.size_m, out.dt_rss_k = study.dt_rss_k;
+  std::vector<double> proportions;
+  for (const IdentificationPoint& point : study.points) proportions.push_back((*point.spread).*end);
+  out.r75_m.value = crossing_of_75_percent(task.ranges_m, proportions).at;
+  if (auto rated = rate_by_curve(seen, least_tau, out); !rated) return tl::unexpected(rated.error());
+  return out;
+}
+
+/// Adds the spreads over the open parameters; none without an eye. M75 is not monotone in them, because better eyes see
+/// the triangles better as well.
+Result<void> add_spreads(const IdentificationStudyTask& task, double least_tau, IdentificationStudy& study) {
+  const auto range = open_parameter_range(task.observer);
+  if (!range) return {};
+  TODBENCH_TRY(const auto best, study_at_end(task, least_tau, study, range->best, &std::pair<double, double>::second));
+  TODBENCH_TRY(const auto worst, study_at_end(task, least_tau, study, range->worst, &std::pair<double, double>::first));
+  for (SetCriterion IdentificationStudy::*criterion :
+       {&IdentificationStudy::r75_m, &IdentificationStudy::m75, &IdentificationStudy::v50}) {
+    (study.*criterion).spread =
+        spread_of({(study.*criterion).value, (best.*criterion).value, (worst.*criterion).value});
+  }
+  const auto predicted = [](const IdentificationStudy& one) {
+    return one.predicted ? one.predicted->r75_m : std::nullopt;
+  };
+  study.predicted_spread_m = spread_of({predicted(study), predicted(best), predicted(worst)});
+  for (const TodThreshold& point : study.tod) {
+    const auto at = [&](const IdentificationStudy& one) -> std::optional<double> {
+      const auto same = std::ranges::find(one.tod, point.delta_t_k, &TodThreshold::delta_t_k);
+      return same == one.tod.end() ? std::nullopt : std::optional(same->s75_mrad);
+    };
+    study.tod_spread_mrad.push_back(spread_of({point.s75_mrad, at(best), at(worst)}));
+  }
+  return {};
+}
+
 }  // namespace
 
 Crossing75 crossing_of_75_percent(const std::vector<double>& at, const std::vector<double>& proportions) {
@@ -195,22 +259,10 @@ Result<IdentificationStudy> study_identification(const IdentificationStudyTask& 
   study.chance = 1 / static_cast<double>(task.set.targets.size());
   TODBENCH_TRY(study.points, identify(experiment));
   study.r75_m = range_of_75_percent(task, study.points);
-  TODBENCH_TRY(study.tod, tod_curve_for(task, study.dt_rss_k, experiment.ranges.back().transmittance, study.notes));
-  if (study.tod.empty()) return study;
-  const RangeTask question{.size_m = study.size_m, .delta_t_k = study.dt_rss_k, .m75 = task.m75, .air = task.air.air};
-  std::optional<TurbulentSources> turbulent;
-  if (task.cn2_m_minus_2_3 > 0) {
-    TODBENCH_TRY(turbulent, behind_turbulence(task, study, question));
-  }
-  study.m75 = {
-      m_at(task, study, turbulent, study.r75_m.value),
-      {m_at(task, study, turbulent, study.r75_m.ci95.high), m_at(task, study, turbulent, study.r75_m.ci95.low)}};
-  const auto v50 = [](std::optional<double> m) { return m ? std::optional(*m / m75_from_v50(1)) : std::nullopt; };
-  study.v50 = {v50(study.m75.value), {v50(study.m75.ci95.low), v50(study.m75.ci95.high)}};
-  auto predicted =
-      turbulent ? turbulent_prediction(*turbulent, study.tod, question) : predict_range(study.tod, question);
-  if (!predicted) return tl::unexpected(predicted.error());
-  study.predicted = *std::move(predicted);
+  if (auto rated = rate_by_curve(task, experiment.ranges.back().transmittance, study); !rated)
+    return tl::unexpected(rated.error());
+  if (auto added = add_spreads(task, experiment.ranges.back().transmittance, study); !added)
+    return tl::unexpected(added.error());
   return study;
 }
 

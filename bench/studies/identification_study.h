@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "bench/plan/atmospheres.h"
@@ -32,6 +33,9 @@ struct IdentificationStudyTask {
 struct SetCriterion {
   std::optional<double> value;
   Interval ci95;
+  /// From the smallest to the largest of the values of an observer with an eye and of both ends of its open parameters
+  /// (open_parameters.h); empty if one has no value. No confidence interval.
+  std::optional<std::pair<double, double>> spread{};
 };
 
 /// Position at which rising proportions cross 75 %, made monotone (pool adjacent violators), linear in the logarithm of
@@ -44,13 +48,17 @@ struct Crossing75 {
 
 struct IdentificationStudy {
   std::vector<IdentificationPoint> points;
-  double chance = 0;                         ///< 1 / number of targets
-  double size_m = 0;                         ///< mean over targets and aspects
-  double dt_rss_k = 0;                       ///< mean over targets and aspects, before the air
-  SetCriterion r75_m;                        ///< range with 75 % right; the interval by resampling the draws of noise
-  SetCriterion m75, v50;                     ///< of the set: M at r75_m on the TOD curve; M75 / 0.6
-  std::vector<TodThreshold> tod;             ///< of the same sensor and observer
+  double chance = 0;              ///< 1 / number of targets
+  double size_m = 0;              ///< mean over targets and aspects
+  double dt_rss_k = 0;            ///< mean over targets and aspects, before the air
+  SetCriterion r75_m;             ///< range with 75 % right; the interval by resampling the draws of noise
+  SetCriterion m75, v50;          ///< of the set: M at r75_m on the TOD curve; M75 / 0.6
+  std::vector<TodThreshold> tod;  ///< of the same sensor and observer
+  /// S75 of each point of `tod` over the open parameters of an observer with an eye; empty where an end has none.
+  std::vector<std::optional<std::pair<double, double>>> tod_spread_mrad;
   std::optional<RangePrediction> predicted;  ///< by the TOD curve with the m75 of the task; empty: no curve
+  /// Of the predicted range, as SetCriterion::spread.
+  std::optional<std::pair<double, double>> predicted_spread_m;
   std::vector<std::string> notes;
 };
 

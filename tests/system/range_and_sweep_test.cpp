@@ -428,9 +428,38 @@ TEST(IdentifyCommand, SaysWhereASetIsToldApartAndWhatTheTodCurveWouldHaveSaid) {
   // Wilson 1927, of 64 draws that all agree.
   EXPECT_NEAR(near["ci95"][0].get<double>(), 64 / (64 + 1.959964 * 1.959964), 1e-6);
   EXPECT_EQ(near["ci95"][1].get<double>(), 1);
+  EXPECT_FALSE(json.contains("r75_spread_m")) << "an observer without an eye has no open parameters";
   expect_refused(identify("./twins.toml", "500,800"), 2, "listed twice");
   expect_refused(identify("./set.toml", "800,500"), 2, "increase");
   expect_refused(identify("no-such-set", "500,800"), 2, "small-craft");
+}
+
+TEST(IdentifyCommand, StatesRangeAndCriteriaOfAnEyeOverItsOpenParameters) {
+  const TemporaryFolder folder;
+  folder.write("set.toml",
+               "name = \"two\"\ntargets = [\"craft-01\", \"craft-12\"]\nazimuths_deg = [90]\nbackground_k = 288\n");
+  folder.write("display.toml",
+               "[simulation]\nsensor = \"sc2000\"\n[display]\npixel_pitch_mm = 0.25\nviewing_distance_m = 0.6\n"
+               "luminance_white_cd_m2 = 200\nzoom = 2\n");
+
+  const Ended ended =
+      todbench({"identify", "./set.toml", "--sensor", "sc2000", "--ranges", "400,800,1600,3200,6400", "--decisions",
+                "64", "--accuracy", "draft", "--observer", "hvs-2", "--display", "./display.toml", "--json"},
+               {.folder = folder.path()});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  EXPECT_EQ(json["observer"], "hvs-2");
+  const auto expect_within = [](const Json& value, const Json& spread) {
+    ASSERT_TRUE(value.is_number() && spread.is_array()) << value << spread;
+    EXPECT_LE(spread[0].get<double>(), value.get<double>());
+    EXPECT_GE(spread[1].get<double>(), value.get<double>());
+    EXPECT_LT(spread[0].get<double>(), spread[1].get<double>());
+  };
+  expect_within(json["r75_m"], json["r75_spread_m"]);
+  for (const char* criterion : {"m75", "v50"}) expect_within(json[criterion]["value"], json[criterion]["spread"]);
+  expect_within(json["predicted"]["r75_m"], json["predicted"]["r75_spread_m"]);
+  for (const Json& point : json["tod"]) expect_within(point["s75_mrad"], point["s75_spread_mrad"]);
 }
 
 TEST(MrtdCommand, TellsWhatIsAnMrtdFromWhatAMachineDoesBeyond) {

@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "acquisition/base/try.h"
+#include "hvs/observer/open_parameters.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/place_watch.h"
 #include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
+#include "tod/plate/test_pattern.h"
 #include "tod/presentation/target_failure.h"
 #include "tod/registration/patch_windows.h"
 
@@ -90,6 +94,10 @@ class MovingRun {
     places_ = PlaceWatch({.max_shift_error_px = options.measurement.max_shift_error_px,
                           .registration = options_.measurement.registration});
     result_.frame_rate_hz = source.info().frame_rate_hz;
+    if (const auto range = open_parameter_range(observer.spec())) {
+      ends_ = {std::make_unique<TemplateObserver>(range->best, triangle_alternatives()),
+               std::make_unique<TemplateObserver>(range->worst, triangle_alternatives())};
+    }
   }
 
   Result<MovingMeasurement> operator()() {
@@ -184,7 +192,15 @@ class MovingRun {
     }
     auto judge = SequenceJudge::prepare(observer_, sizes);
     if (!judge) return fail("plate " + set_up.name, judge.error());
-    judges_.emplace(set_up.name, PreparedJudge{*std::move(judge), std::move(sizes), std::move(size_of)});
+    std::vector<SequenceJudge> at_ends;
+    for (const auto& end : ends_) {
+      if (!end) continue;
+      auto other = SequenceJudge::prepare(*end, sizes);
+      if (!other) return fail("plate " + set_up.name, other.error());
+      at_ends.push_back(*std::move(other));
+    }
+    judges_.emplace(set_up.name,
+                    PreparedJudge{*std::move(judge), std::move(at_ends), std::move(sizes), std::move(size_of)});
     return {};
   }
 
@@ -379,7 +395,7 @@ class MovingRun {
         continue;
       }
       for (const SequenceObserver kind : all_sequence_observers) {
-        const int chosen = prepared.judge.choose(kind, size, seen, noise.sub(static_cast<std::uint64_t>(kind)).sub(t));
+        const RandomStream own = noise.sub(static_cast<std::uint64_t>(kind)).sub(t);
         Trial trial;
         trial.presentation = pass.pair;
         trial.plate = set_up.name;
@@ -391,12 +407,17 @@ class MovingRun {
         trial.size_mrad = triangle.size_mm / at_rest().distance_m;
         trial.size_px = prepared.sizes[size];
         trial.truth = triangle.apex;
-        trial.answer = static_cast<Apex>(chosen);
+        trial.answer = static_cast<Apex>(prepared.judge.choose(kind, size, seen, own));
         const auto window = patch_window(seen.places.front(), prepared.judge.window_samples(size));
         trial.phase_x_px = window.phase.x;
         trial.phase_y_px = window.phase.y;
         trial.frame = frames.front().sequence;
         MovingAnswer given{kind, pass.speed_mrad_s, std::move(trial)};
+        for (std::size_t end = 0; end < prepared.at_ends.size(); ++end) {
+          result_.answers_at_ends[end].push_back(given);
+          result_.answers_at_ends[end].back().trial.answer =
+              static_cast<Apex>(prepared.at_ends[end].choose(kind, size, seen, own));
+        }
         if (listener_.on_answer) {
           if (auto kept = listener_.on_answer(given); !kept) return kept;
         }
@@ -408,13 +429,16 @@ class MovingRun {
 
   struct PreparedJudge {
     SequenceJudge judge;
-    std::vector<double> sizes;         ///< in samples
-    std::vector<std::size_t> size_of;  ///< per triangle
+    std::vector<SequenceJudge> at_ends;  ///< of the open parameters: best, worst; empty without an eye
+    std::vector<double> sizes;           ///< in samples
+    std::vector<std::size_t> size_of;    ///< per triangle
   };
 
   FrameSource& source_;
   Target& target_;
   TemplateObserver& observer_;
+  /// Observers at the ends of the open parameters; null without an eye.
+  std::array<std::unique_ptr<TemplateObserver>, 2> ends_;
   MovingMeasurementOptions options_;
   RunController& host_;
   const MovingListener& listener_;

@@ -2,6 +2,7 @@
 // Measurement of a plate that a stage moves: passes of several frames, each triangle judged at its place.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -57,6 +58,8 @@ struct MovingAnswer {
 struct MovingMeasurement {
   std::vector<MovingPassRecord> passes;
   std::vector<MovingAnswer> answers;
+  /// Of an observer with an eye: answers at the best and the worst end of its open parameters, to the same frames.
+  std::array<std::vector<MovingAnswer>, 2> answers_at_ends;
   std::vector<SetUpRecord> set_ups;
   double frame_rate_hz = 0;
   double temporal_noise_k = 0;  ///< per pixel and frame

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "bench/plan/descriptions.h"
 #include "bench/plan/plan.h"
 #include "tests/bench/enhance/enhancement_support.h"
 #include "tests/support/source_file.h"
@@ -115,6 +116,79 @@ TEST(MovingMeasurement, OfASimulatedSensorFindsItsTimeConstantAndLosesAcuityWith
     return correct / total;
   };
   EXPECT_GT(right(0), right(90));
+}
+
+/// A sample of 2.9 arcmin.
+ViewedDisplay bench_display() {
+  return {.pixel_pitch_mm = 0.25,
+          .viewing_distance_m = 0.6,
+          .luminance_white_cd_m2 = 200,
+          .luminance_black_cd_m2 = 0.5,
+          .zoom = 2};
+}
+
+void expect_spreads(const std::vector<DynamicAcuity>& speeds) {
+  ASSERT_EQ(speeds.size(), 2u);
+  int spreads = 0, ratios = 0;
+  for (const DynamicAcuity& at : speeds) {
+    for (const DynamicPoint& point : at.points) {
+      if (!point.s75_spread_mrad) continue;
+      ++spreads;
+      EXPECT_LT(point.s75_spread_mrad->first, *point.fit.threshold) << at.speed_mrad_s;
+      EXPECT_GT(point.s75_spread_mrad->second, *point.fit.threshold) << at.speed_mrad_s;
+      if (!point.ratio_spread) continue;
+      ++ratios;
+      EXPECT_LE(point.ratio_spread->first, *point.ratio);
+      EXPECT_GE(point.ratio_spread->second, *point.ratio);
+    }
+  }
+  EXPECT_GE(spreads, 3);
+  EXPECT_GE(ratios, 1);
+}
+
+TEST(MovingMeasurement, ByAnObserverWithAnEyeStatesItsOpenParametersFromTheSameFrames) {
+  Plan plan = small_plan("0.5", 2, "[motion]\nspeeds_mrad_s = [40]\npasses = 4\nframes = 2\nlead_frames = 1\n").plan();
+  plan.observer = "hvs-2";
+  plan.display = bench_display();
+  const auto loaded = LoadedPlan::load(plan);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+
+  const auto found = measure_dynamic(*loaded, {}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  const MovingMeasurement& measured = found->measured;
+  ASSERT_GT(measured.answers.size(), 100u);
+  double right[3] = {};
+  for (std::size_t i = 0; i < measured.answers.size(); ++i) {
+    right[0] += measured.answers_at_ends[0].at(i).trial.correct() ? 1 : 0;
+    right[1] += measured.answers[i].trial.correct() ? 1 : 0;
+    right[2] += measured.answers_at_ends[1].at(i).trial.correct() ? 1 : 0;
+    EXPECT_EQ(measured.answers_at_ends[0][i].trial.truth, measured.answers[i].trial.truth);
+  }
+  EXPECT_GT(right[0], right[1]);
+  EXPECT_GT(right[1], right[2]);
+  expect_spreads(found->contrasts[0].speeds);
+}
+
+TEST(DynamicAcuity, OfAnObserverWithAnEyeStatesItsOpenParameters) {
+  TemplateObserver observer(*load_observer_at("hvs-2", bench_display()), triangle_alternatives());
+  const DynamicTrialOptions options{.delta_t_k = 0.5,
+                                    .sizes_pitch = {1.2, 1.8, 2.7, 4, 6},
+                                    .speeds_mrad_s = {40},
+                                    .passes = 4,
+                                    .frames = 2,
+                                    .accuracy = Accuracy::draft()};
+  const SensorSpec sensor = *load_sensor("sc2000");
+
+  const auto found = dynamic_acuity(sensor, observer, options);
+  TemplateObserver blind(TemplateObserverSpec{}, triangle_alternatives());
+  const auto without = dynamic_acuity(sensor, blind, options);
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_THAT(found->notes, ::testing::IsEmpty());
+  expect_spreads(found->speeds);
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_FALSE(without->speeds.front().points.front().s75_spread_mrad);
 }
 
 TEST(MovingMeasurement, FollowsTheLineOfTheStageWhereItIsAskedTo) {
