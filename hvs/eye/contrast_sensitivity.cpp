@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <array>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <numbers>
 #include <utility>
 
@@ -68,13 +70,18 @@ Result<void> validate(const EyeParameters& eye) {
 }
 
 double detection_d_prime(double channels) {
+  // A value takes milliseconds, few numbers of channels occur, and a filter is made for every decision about bars.
+  static std::mutex mutex;
+  static std::map<double, double> known;
+  const std::scoped_lock lock(mutex);
+  if (const auto found = known.find(channels); found != known.end()) return found->second;
   constexpr double correct = 0.84;
   double low = 0, high = 10;
   while (high - low > 1e-9) {
     const double middle = (low + high) / 2;
     (largest_response_correct(middle, channels) < correct ? low : high) = middle;
   }
-  return (low + high) / 2;
+  return known[channels] = (low + high) / 2;
 }
 
 EyeFilter::EyeFilter(const EyeParameters& eye, double luminance_cd_m2)
