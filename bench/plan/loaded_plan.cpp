@@ -189,9 +189,6 @@ Result<void> check_eye(const Plan& plan, const PlanParts& parts) {
   if (std::ranges::any_of(plan.modules, judges)) {
     if (auto blind = refuse_eye(parts.observer, "a module in place of the observer"); !blind) return blind;
   }
-  if (plan.measures.mrtd) {
-    if (auto blind = refuse_eye(parts.observer, "the MRTD"); !blind) return blind;
-  }
   if (!parts.observer.eye || has_display(plan)) return {};
   return fail_at(ErrorCode::invalid_input, "observer.name",
                  "observer " + parts.observer.name +

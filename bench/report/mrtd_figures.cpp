@@ -93,6 +93,17 @@ RichText half_difference_cell(const MrtdPoint& point) {
   return interval_or_missing(point.threshold_k, point.threshold_k ? point.ci95 : Interval{}, point.reason);
 }
 
+/// Adds a column with the spread; without an observer with an eye there is none.
+void add_spread(Table& table, const std::vector<MrtdPoint>& points) {
+  if (std::ranges::none_of(points, [](const MrtdPoint& point) { return point.spread_k.has_value(); })) return;
+  table.header.emplace_back("Spread over the open parameters (K)");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& spread = points[i].spread_k;
+    table.rows[i].push_back(spread ? plain(significant(spread->first, 3) + " to " + significant(spread->second, 3))
+                                   : missing("none"));
+  }
+}
+
 RichText offset_cell(const MrtdPoint& point) {
   if (!point.positive_k || !point.negative_k) return plain("–");
   return plain(significant(0.5 * (*point.positive_k + *point.negative_k), 2));
@@ -127,6 +138,7 @@ std::vector<Table> mrtd_tables(const MrtdMeasure& mrtd, const std::string& who) 
                          mean ? plain(significant(0.5 * (*point.threshold_k + *other->threshold_k), 3)) : plain("–"),
                          contrast_cell(point.best_phase_k)});
   }
+  add_spread(bars, mrtd.bars);
   std::vector<Table> tables{std::move(bars)};
   if (mrtd.spots.empty()) return tables;
   Table spots{.caption = fmt::format("MDTD of the {}: square spots against an empty part of the plate", who),
@@ -138,6 +150,7 @@ std::vector<Table> mrtd_tables(const MrtdMeasure& mrtd, const std::string& who) 
                           contrast_cell(point.positive_k), contrast_cell(point.negative_k), offset_cell(point),
                           half_difference_cell(point)});
   }
+  add_spread(spots, mrtd.spots);
   tables.push_back(std::move(spots));
   return tables;
 }

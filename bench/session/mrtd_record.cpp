@@ -27,8 +27,19 @@ std::string bars_words(const MrtdMeasure& mrtd, const MrtdPoint& point) {
                      point.frequency_per_pitch / mrtd.pitch_mrad, point.place);
 }
 
+std::string with_spread(const std::string& words, const std::optional<std::pair<double, double>>& spread_k) {
+  if (!spread_k) return words;
+  return words + fmt::format("; {:.3g} to {:.3g} K over the open parameters of the observer (no confidence interval)",
+                             spread_k->first, spread_k->second);
+}
+
 std::string with_reason(const std::string& words, const MrtdPoint& point) {
-  return point.reason.empty() ? words : words + "; " + point.reason;
+  return with_spread(point.reason.empty() ? words : words + "; " + point.reason, point.spread_k);
+}
+
+std::optional<std::pair<double, double>> spread_of_mean(const MrtdPoint& x, const MrtdPoint& y) {
+  if (!x.spread_k || !y.spread_k) return std::nullopt;
+  return std::pair(0.5 * (x.spread_k->first + y.spread_k->first), 0.5 * (x.spread_k->second + y.spread_k->second));
 }
 
 /// The axes have other bars at other phases, so that their errors are independent. Precondition: both have a threshold.
@@ -55,8 +66,9 @@ void add_mrtd_lines(MeasureLines& out, const MrtdMeasure& mrtd) {
   const MrtdPoint *x = mrtd.stated(EdgeAxis::x), *y = mrtd.stated(EdgeAxis::y);
   if (x != nullptr && y != nullptr && x->threshold_k && y->threshold_k) {
     const double mean = 0.5 * (*x->threshold_k + *y->threshold_k);
-    out.lines.push_back(measure_line("mrtd_mean", mean, interval_of_mean(mean, *x, *y),
-                                     mrtd_conditions(mrtd, "mean of mrtd_x and mrtd_y")));
+    out.lines.push_back(
+        measure_line("mrtd_mean", mean, interval_of_mean(mean, *x, *y),
+                     with_spread(mrtd_conditions(mrtd, "mean of mrtd_x and mrtd_y"), spread_of_mean(*x, *y))));
   }
   if (const MrtdPoint* spot = mrtd.stated_spot()) {
     const std::string words =
@@ -77,20 +89,23 @@ Json point_json(const MrtdMeasure& mrtd, const MrtdPoint& point) {
                       {"positive", json_number(point.positive_share[i])},
                       {"negative", json_number(point.negative_share[i])}});
   }
-  return {{"place", point.place},
-          {"axis", to_string(point.axis)},
-          {"frequency_per_pitch", json_number(point.frequency_per_pitch)},
-          {"frequency_per_mrad", json_number(point.frequency_per_pitch / mrtd.pitch_mrad)},
-          {"size_px", json_number(point.size_px)},
-          {"positive_k", json_number(point.positive_k)},
-          {"negative_k", json_number(point.negative_k)},
-          {"threshold_k", json_number(point.threshold_k)},
-          {"ci95_k", interval_json(point.ci95)},
-          {"best_phase_k", json_number(point.best_phase_k)},
-          {"best_phase_ci95_k", interval_json(point.best_phase_ci95)},
-          {"best_phase_px", json_number(point.best_phase)},
-          {"reason", point.reason.empty() ? Json() : Json(point.reason)},
-          {"proportion_correct", shares}};
+  Json json{{"place", point.place},
+            {"axis", to_string(point.axis)},
+            {"frequency_per_pitch", json_number(point.frequency_per_pitch)},
+            {"frequency_per_mrad", json_number(point.frequency_per_pitch / mrtd.pitch_mrad)},
+            {"size_px", json_number(point.size_px)},
+            {"positive_k", json_number(point.positive_k)},
+            {"negative_k", json_number(point.negative_k)},
+            {"threshold_k", json_number(point.threshold_k)},
+            {"ci95_k", interval_json(point.ci95)},
+            {"best_phase_k", json_number(point.best_phase_k)},
+            {"best_phase_ci95_k", interval_json(point.best_phase_ci95)},
+            {"best_phase_px", json_number(point.best_phase)},
+            {"reason", point.reason.empty() ? Json() : Json(point.reason)},
+            {"proportion_correct", shares}};
+  if (point.spread_k)
+    json["threshold_spread_k"] = {json_number(point.spread_k->first), json_number(point.spread_k->second)};
+  return json;
 }
 
 Json mrtd_json(const MrtdMeasure& mrtd) {
@@ -132,6 +147,10 @@ MrtdPoint point_from(const JsonReader& from) {
   point.best_phase_k = maybe_number(from.at("best_phase_k"));
   point.best_phase_ci95 = interval_from(from.at("best_phase_ci95_k"));
   point.best_phase = from.at("best_phase_px").number();
+  if (const JsonReader ends = from.at_if_there("threshold_spread_k"); !ends.is_null()) {
+    const Interval spread = interval_from(ends);
+    if (spread.low && spread.high) point.spread_k = std::pair(*spread.low, *spread.high);
+  }
   if (const JsonReader reason = from.at("reason"); !reason.is_null()) point.reason = reason.text();
   return point;
 }

@@ -11,6 +11,7 @@
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/rng.h"
 #include "acquisition/base/try.h"
+#include "hvs/observer/open_parameters.h"
 #include "hvs/shape/painted_shapes.h"
 #include "tod/camera_measures/plate_offset.h"
 #include "tod/registration/patch_windows.h"
@@ -102,23 +103,38 @@ struct BarsJudge::Thresholds {
   double phase_variance = 0;
 };
 
+BarsJudge::BarsJudge(const MrtdOptions& options) : options_(options), observers_{options.observer} {
+  if (const auto range = open_parameter_range(options.observer)) {
+    observers_.push_back(range->best);
+    observers_.push_back(range->worst);
+  }
+}
+
 Result<void> BarsJudge::add_place(const PlateRectangle& target, const PlateRectangle& other, Place place,
                                   const std::vector<AlternativeAspects>& alternatives) {
   TODBENCH_TRY(IdentificationBank bank, IdentificationBank::build(options_.observer, alternatives, 1));
   const int side = bank.window_samples();
-  std::vector<cv::Mat1f> white;
-  const RandomStream noise = RandomStream(options_.seed, "mrtd.own").sub(places_.size());
-  for (std::size_t i = 0; i < own_pool; ++i) {
-    white.emplace_back(side, side);
-    noise.sub(i).fill_normal({white.back().ptr<float>(), white.back().total()});
-    white.back() -= cv::mean(white.back())[0];
+  const auto drawn = [&](const char* stream, int points) {
+    std::vector<cv::Mat1f> pictures;
+    const RandomStream noise = RandomStream(options_.seed, stream).sub(places_.size());
+    for (std::size_t i = 0; i < own_pool; ++i) {
+      pictures.emplace_back(points, points);
+      noise.sub(i).fill_normal({pictures.back().ptr<float>(), pictures.back().total()});
+    }
+    return pictures;
+  };
+  std::vector<cv::Mat1f> white = drawn("mrtd.own", side);
+  if (options_.observer.eye) {
+    place.eye_noise = bank.project_eye(drawn("mrtd.eye", bank.eye_points()));
+  } else {
+    for (cv::Mat1f& picture : white) picture -= cv::mean(picture)[0];
   }
   place.own_noise = bank.project_all(white);
   place.bank = std::move(bank);
   const std::size_t levels = options_.contrasts_k.size();
   const IntervalScores none(static_cast<std::size_t>(options_.set_ups));
-  for (Scores* scores : {&place.positive, &place.negative})
-    scores->target.assign(levels, none), scores->other = scores->target;
+  const Scores empty{std::vector(levels, none), std::vector(levels, none)};
+  place.answers.assign(observers_.size(), {empty, empty});
   place.phase.resize(static_cast<std::size_t>(options_.set_ups));
   positions_.rectangles.push_back(target);
   positions_.rectangles.push_back(other);
@@ -127,8 +143,6 @@ Result<void> BarsJudge::add_place(const PlateRectangle& target, const PlateRecta
 }
 
 Result<BarsJudge> BarsJudge::create(const MrtdOptions& options, const Registration& where) {
-  if (options.observer.eye)
-    return fail(ErrorCode::invalid_input, "the MRTD does not model the eye of observer " + options.observer.name);
   BarsJudge judge(options);
   judge.said_sum_k_.assign(options.contrasts_k.size(), 0.0);
   judge.said_count_.assign(options.contrasts_k.size(), 0);
@@ -190,8 +204,6 @@ Result<BarsJudge> BarsJudge::create(const MrtdOptions& options, const Registrati
 void BarsJudge::add(const cv::Mat1d& kelvin, const ShownBars& shown) {
   const std::vector<PlateRectangle> at = mounted(positions_, shown.mounting).rectangles;
   const auto set_up = static_cast<std::size_t>(shown.set_up);
-  const double contrast = shown.said_k * options_.response;
-  const RandomStream pick(options_.seed, "mrtd.pick");
   said_sum_k_[shown.level] += std::abs(shown.said_k), ++said_count_[shown.level];
   for (std::size_t p = 0; p < places_.size(); ++p) {
     Place& place = places_[p];
@@ -208,21 +220,40 @@ void BarsJudge::add(const cv::Mat1d& kelvin, const ShownBars& shown) {
       if (which == 0) place.phase[set_up] = place.axis == EdgeAxis::x ? window.phase.x : window.phase.y;
       cv::Mat1f patch;
       cv::Mat1d(kelvin(window.pixels) - cv::mean(kelvin(window.pixels))[0]).convertTo(patch, CV_32F);
-      patches.push_back(patch);
+      patches.push_back(options_.observer.eye ? without_background(options_.observer, patch) : patch);
     }
     if (place.left_out) continue;
     const auto scores = place.bank->project_all(patches);
-    const std::vector<float> nothing(place.bank->scores(), 0.0F);
-    Scores& to = shown.said_k > 0 ? place.positive : place.negative;
-    for (std::size_t which = 0; which < 2; ++which) {
-      auto& row = (which == 0 ? to.target : to.other)[shown.level][set_up];
-      for (std::size_t k = 0; k < own_draws; ++k) {
-        float largest[2];
-        place.bank->largest_of_each(nothing, scores[which], static_cast<float>(1 / contrast),
-                                    place.own_noise[pick.below(own_pool, draws_++)],
-                                    static_cast<float>(options_.observer.internal_noise), largest);
-        row.push_back(place.size_px > 0 ? largest[0] : largest[0] - largest[1]);
+    for (std::size_t which = 0; which < 2; ++which) decide(place, which == 0, scores[which], shown);
+  }
+}
+
+void BarsJudge::decide(Place& place, bool target, const std::vector<float>& pattern, const ShownBars& shown) {
+  const double contrast_k = shown.said_k * options_.response, magnitude_k = std::abs(contrast_k);
+  const RandomStream pick(options_.seed, "mrtd.pick");
+  const std::vector<float> nothing(place.bank->scores(), 0.0F);
+  const std::uint64_t first = draws_;
+  draws_ += own_draws;
+  for (std::size_t o = 0; o < observers_.size(); ++o) {
+    const TemplateObserverSpec& observer = observers_[o];
+    const double enlarged = observer.sensor_noise_factor * observer.sensor_noise_factor - 1;
+    const auto white =
+        static_cast<float>(std::hypot(observer.internal_noise, std::sqrt(enlarged) * shown.noise_k / magnitude_k));
+    const auto eye =
+        static_cast<float>(observer.eye ? place.bank->eye_noise_k(observer, 0, 0, magnitude_k, 1) / magnitude_k : 0);
+    Scores& to = shown.said_k > 0 ? place.answers[o].positive : place.answers[o].negative;
+    auto& row = (target ? to.target : to.other)[shown.level][static_cast<std::size_t>(shown.set_up)];
+    for (std::size_t k = 0; k < own_draws; ++k) {
+      const std::size_t number = pick.below(own_pool, first + k);
+      std::vector<float> mixed;
+      if (observer.eye) {
+        mixed = place.own_noise[number];
+        for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = white * mixed[i] + eye * place.eye_noise[number][i];
       }
+      float largest[2];
+      place.bank->largest_of_each(nothing, pattern, static_cast<float>(1 / contrast_k),
+                                  observer.eye ? mixed : place.own_noise[number], observer.eye ? 1.0F : white, largest);
+      row.push_back(place.size_px > 0 ? largest[0] : largest[0] - largest[1]);
     }
   }
 }
@@ -248,7 +279,8 @@ std::vector<float> BarsJudge::LeftOut::rest(const std::vector<float>& row, std::
   return some;
 }
 
-BarsJudge::Thresholds BarsJudge::thresholds(const Place& place, const LeftOut& left_out) const {
+BarsJudge::Thresholds BarsJudge::thresholds(const Place& place, std::size_t observer, const LeftOut& left_out) const {
+  const Answers& answers = place.answers[observer];
   Thresholds out;
   std::vector<std::size_t> levels;
   for (std::size_t i = 0; i < options_.contrasts_k.size(); ++i) {
@@ -279,24 +311,24 @@ BarsJudge::Thresholds BarsJudge::thresholds(const Place& place, const LeftOut& l
     const auto fitted = fit_contrast(points, *passed);
     return fitted ? fitted->level_k : *passed;
   };
-  out.positive_k = threshold(place.positive, out.positive_share);
-  out.negative_k = threshold(place.negative, out.negative_share);
+  out.positive_k = threshold(answers.positive, out.positive_share);
+  out.negative_k = threshold(answers.negative, out.negative_share);
   if (!out.positive_k || !out.negative_k) return out;
   out.half_k = 0.5 * (*out.positive_k + *out.negative_k);
   if (place.size_px > 0) return out;
-  find_best_phase(place, left_out, levels, out);
+  find_best_phase(answers, place.phase, left_out, levels, out);
   return out;
 }
 
-void BarsJudge::find_best_phase(const Place& place, const LeftOut& left_out, const std::vector<std::size_t>& levels,
-                                Thresholds& out) {
+void BarsJudge::find_best_phase(const Answers& answers, const std::vector<double>& phases, const LeftOut& left_out,
+                                const std::vector<std::size_t>& levels, Thresholds& out) {
   // Every set-up has one phase; contrasts without the offset of the target.
   const double offset = 0.5 * (*out.positive_k - *out.negative_k);
   std::vector<ContrastShare> points;
-  for (std::size_t s = 0; s < place.phase.size(); ++s) {
+  for (std::size_t s = 0; s < phases.size(); ++s) {
     if (s == left_out.set_up) continue;
     for (std::size_t i = 0; i < levels.size(); ++i) {
-      for (const auto& [scores, sign] : {std::pair(&place.positive, 1.0), std::pair(&place.negative, -1.0)}) {
+      for (const auto& [scores, sign] : {std::pair(&answers.positive, 1.0), std::pair(&answers.negative, -1.0)}) {
         const double contrast_k = out.contrast_k[i] - sign * offset;
         const auto& target = scores->target[levels[i]][s];
         const auto& other = scores->other[levels[i]][s];
@@ -304,7 +336,7 @@ void BarsJudge::find_best_phase(const Place& place, const LeftOut& left_out, con
         const std::size_t draws = target.size();
         points.push_back({contrast_k,
                           share_of_pairs({left_out.rest(target, draws)}, {left_out.rest(other, draws)}).mean,
-                          place.phase[s]});
+                          phases[s]});
       }
     }
   }
@@ -312,14 +344,14 @@ void BarsJudge::find_best_phase(const Place& place, const LeftOut& left_out, con
     out.best_phase = fitted->best_phase();
     out.best_k = fitted->level_k * std::exp(fitted->ln_ratio_at(out.best_phase));
     std::vector<double> ln_ratios;
-    for (const double phase : place.phase) ln_ratios.push_back(fitted->ln_ratio_at(phase));
+    for (const double phase : phases) ln_ratios.push_back(fitted->ln_ratio_at(phase));
     const auto n = static_cast<double>(ln_ratios.size());
     out.phase_variance = squares_about_mean(ln_ratios) / (n * (n - 1));
   }
 }
 
 MrtdPoint BarsJudge::point(const Place& place) const {
-  const Thresholds all = thresholds(place, {});
+  const Thresholds all = thresholds(place, 0, {});
   MrtdPoint out{.place = place.name,
                 .axis = place.axis,
                 .frequency_per_pitch = place.frequency_per_pitch,
@@ -342,10 +374,12 @@ MrtdPoint BarsJudge::point(const Place& place) const {
     return out;
   }
   out.threshold_k = all.half_k;
+  if (observers_.size() == 3)
+    out.spread_k = spread_of({thresholds(place, 1, {}).half_k, thresholds(place, 2, {}).half_k});
   out.best_phase_k = all.best_k, out.best_phase = std::abs(all.best_phase);
   std::vector<Thresholds> by_set_up, by_frames;
   for (int s = 0; s < options_.set_ups; ++s)
-    by_set_up.push_back(thresholds(place, {.set_up = static_cast<std::size_t>(s)}));
+    by_set_up.push_back(thresholds(place, 0, {.set_up = static_cast<std::size_t>(s)}));
   const auto interval = [&](double value, double variance) -> Interval {
     const double reach = quantile(distribution::StudentsT(options_.set_ups - 1.0), 0.975) * std::sqrt(variance);
     return {value * std::exp(-reach), value * std::exp(reach)};
@@ -355,7 +389,7 @@ MrtdPoint BarsJudge::point(const Place& place) const {
   if (!all.best_k || !set_up_variance) return out;
   // Set-ups differ by noise, phase and fixed pattern. The function contains the phase; noise is known from the frames.
   const std::size_t parts = std::min(most_frame_parts, static_cast<std::size_t>(options_.frames));
-  for (std::size_t part = 0; part < parts; ++part) by_frames.push_back(thresholds(place, {.frame_part = part}));
+  for (std::size_t part = 0; part < parts; ++part) by_frames.push_back(thresholds(place, 0, {.frame_part = part}));
   const auto noise = jackknife_variance(by_frames, &Thresholds::half_k);
   const auto best_noise = jackknife_variance(by_frames, &Thresholds::best_k);
   if (!noise || !best_noise) return out;

@@ -19,12 +19,13 @@ struct ShownBars {
   double said_k = 0;      ///< reported by the target, signed
   Mounting mounting = Mounting::identity;
   Registration where;  ///< of the plate in this mounting and place
+  double noise_k = 0;  ///< temporal noise of the camera, sd of a pixel in one frame
 };
 
 class BarsJudge {
  public:
   /// `where`: of the plate in identity mounting, for scale and direction. Errors: `invalid_input` (no pair that can be
-  /// judged, an observer with an eye), those of the observer's templates.
+  /// judged), those of the observer's templates.
   [[nodiscard]] static Result<BarsJudge> create(const MrtdOptions& options, const Registration& where);
   /// Judges all places of one frame. Places whose window leaves the picture are left out from then on.
   void add(const cv::Mat1d& kelvin, const ShownBars& shown);
@@ -35,6 +36,10 @@ class BarsJudge {
   struct Scores {
     std::vector<IntervalScores> target, other;
   };
+  /// Of one observer.
+  struct Answers {
+    Scores positive{}, negative{};
+  };
   /// A target with its alternative on the plate.
   struct Place {
     std::string name{};
@@ -42,8 +47,9 @@ class BarsJudge {
     double frequency_per_pitch = 0, size_px = 0;
     std::optional<IdentificationBank> bank{};
     std::vector<std::vector<float>> own_noise{};  ///< scores of white noise of sd 1
-    Scores positive{}, negative{};
-    std::vector<double> phase{};  ///< of the target across the bars, by set-up
+    std::vector<std::vector<float>> eye_noise{};  ///< scores of the noise of the eye of sd 1; empty without an eye
+    std::vector<Answers> answers{};               ///< by observer
+    std::vector<double> phase{};                  ///< of the target across the bars, by set-up
     bool left_out = false;
   };
   struct Thresholds;
@@ -55,17 +61,22 @@ class BarsJudge {
     [[nodiscard]] std::vector<float> rest(const std::vector<float>& row, std::size_t draws) const;
   };
 
-  explicit BarsJudge(const MrtdOptions& options) : options_(options) {}
+  explicit BarsJudge(const MrtdOptions& options);
   Result<void> add_place(const PlateRectangle& target, const PlateRectangle& other, Place place,
                          const std::vector<AlternativeAspects>& alternatives);
-  [[nodiscard]] Thresholds thresholds(const Place& place, const LeftOut& left_out) const;
-  static void find_best_phase(const Place& place, const LeftOut& left_out, const std::vector<std::size_t>& levels,
-                              Thresholds& out);
+  /// Adds the decisions of every observer about an interval to the scores of its level and set-up. `pattern`: scores of
+  /// the frame's window, in kelvin.
+  void decide(Place& place, bool target, const std::vector<float>& pattern, const ShownBars& shown);
+  [[nodiscard]] Thresholds thresholds(const Place& place, std::size_t observer, const LeftOut& left_out) const;
+  static void find_best_phase(const Answers& answers, const std::vector<double>& phases, const LeftOut& left_out,
+                              const std::vector<std::size_t>& levels, Thresholds& out);
   static std::optional<double> jackknife_variance(const std::vector<Thresholds>& left_out,
                                                   std::optional<double> Thresholds::*of);
   [[nodiscard]] MrtdPoint point(const Place& place) const;
 
   MrtdOptions options_;
+  /// That of the plan; with an eye then those at the best and the worst end of its open parameters.
+  std::vector<TemplateObserverSpec> observers_;
   std::vector<Place> places_;
   /// Their targets and alternatives in turn, as rectangles, so that mounted() moves them.
   TargetPlate positions_;

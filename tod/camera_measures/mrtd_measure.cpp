@@ -123,6 +123,7 @@ std::vector<MrtdPresentation> mrtd_presentations(const MrtdOptions& options, dou
 Result<MrtdMeasure> measure_mrtd(FrameTaker& taker, const ShowState& show, const Registration& where,
                                  const MrtdOptions& options, std::stop_token stop) {
   cv::Point2d moved_px(0, 0);
+  double noise_k = 0;
   // Making the templates takes seconds, and the observer takes longer for a frame than the camera: it judges the frames
   // of a presentation during the next one.
   std::optional<Result<BarsJudge>> judge;
@@ -141,10 +142,15 @@ Result<MrtdMeasure> measure_mrtd(FrameTaker& taker, const ShowState& show, const
     if (one.set_up < 0) {
       TODBENCH_TRY(const AveragedPicture picture, taker.average(options.registration_frames, stop));
       TODBENCH_TRY(moved_px, located(picture.kelvin, mounted(options.plate, one.state.mounting), where));
+      noise_k = noise_of_one_frame(picture);
       continue;
     }
-    bars = {one.set_up, one.level, shown->state.delta_t_k, one.state.mounting,
-            where.shifted(one.state.shift_mm).moved(moved_px)};
+    bars = {one.set_up,
+            one.level,
+            shown->state.delta_t_k,
+            one.state.mounting,
+            where.shifted(one.state.shift_mm).moved(moved_px),
+            noise_k};
     for (int k = 0; k < options.frames; ++k) {
       TODBENCH_TRY(const Frame frame, taker.next(stop));
       TODBENCH_TRY(cv::Mat1d kelvin, to_kelvin(frame));

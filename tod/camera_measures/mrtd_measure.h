@@ -8,6 +8,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "acquisition/base/interval.h"
@@ -33,7 +34,7 @@ struct MrtdOptions {
   double locating_k = 4;              ///< contrast at which the plate is located
   int registration_frames = 32;       ///< averaged to locate it
   double response = 1;                ///< observed contrast over the contrast that the target reports
-  TemplateObserverSpec observer{};    ///< without an eye
+  TemplateObserverSpec observer{};    ///< one with an eye has its display
   std::uint64_t seed = 1;             ///< of the observer's own noise
 };
 
@@ -45,8 +46,11 @@ struct MrtdPoint {
   double size_px = 0;              ///< side of the spot; 0: bars
   /// Contrast for 75 % correct at each polarity; the negative one is below 0.
   std::optional<double> positive_k{}, negative_k{};
-  std::optional<double> threshold_k{};   ///< half of their difference
-  Interval ci95{};                       ///< of it, by jackknife over the set-ups
+  std::optional<double> threshold_k{};  ///< half of their difference
+  Interval ci95{};                      ///< of it, by jackknife over the set-ups
+  /// threshold_k between the ends of the open parameters of an observer with an eye (open_parameters.h), from the same
+  /// frames; empty without an eye, or if an end has no threshold. No confidence interval.
+  std::optional<std::pair<double, double>> spread_k{};
   std::string reason{};                  ///< of a missing threshold; empty if there is one
   std::optional<double> best_phase_k{};  ///< threshold at the sampling phase that answers best; empty: not found
   Interval best_phase_ci95{};
@@ -109,8 +113,9 @@ struct MrtdPresentation {
 /// over the set-ups, with Student's t. Spots are decided against an empty part of the plate.
 ///
 /// `where`: of a plate in the same holder, in identity mounting; the plate itself is located to a whole pixel, and the
-/// observer searches for the rest. Errors: those of target and camera, `calibration` (plate not in the picture),
-/// `invalid_input` (no pair of groups that can be judged, an observer with an eye).
+/// observer searches for the rest. The noise of the camera, which an observer of limited efficiency enlarges, is that
+/// of the frames that locate the plate. Errors: those of target and camera, `calibration` (plate not in the picture),
+/// `invalid_input` (no pair of groups that can be judged).
 [[nodiscard]] Result<MrtdMeasure> measure_mrtd(FrameTaker& taker, const ShowState& show, const Registration& where,
                                                const MrtdOptions& options, std::stop_token stop);
 

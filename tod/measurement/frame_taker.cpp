@@ -298,6 +298,15 @@ std::map<std::string, std::uint64_t> FrameTaker::rejected() const {
   return out;
 }
 
+double noise_of_one_frame(const AveragedPicture& picture) {
+  // Below this correlation successive frames understate the noise of one by less than 3 %.
+  constexpr double noticeable_correlation = 0.05;
+  const double rho = picture.lag1_correlation.value_or(0);
+  // Above 0.99 it changes so slowly that this few frames do not distinguish it from drift.
+  if (rho < noticeable_correlation) return picture.temporal_noise_k;
+  return picture.temporal_noise_k / std::sqrt(1 - std::min(rho, 0.99));
+}
+
 Result<cv::Mat1d> window_kelvin(const Frame& frame, const cv::Rect& window) {
   cv::Mat1d out(window.size());
   for (int row = 0; row < window.height; ++row) {

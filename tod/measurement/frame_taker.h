@@ -52,6 +52,9 @@ struct AveragedPicture {
   int count_step = 0;
 };
 
+/// Noise of a pixel in one frame, in kelvin. Successive frames show only sqrt(1 - rho) of noise with memory.
+[[nodiscard]] double noise_of_one_frame(const AveragedPicture& picture);
+
 /// Takes frames from a started source. One thread at a time.
 class FrameTaker {
  public:

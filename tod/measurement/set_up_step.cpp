@@ -15,20 +15,10 @@
 namespace todbench {
 namespace {
 
-/// Below this correlation successive frames understate the noise of one by less than 3 %.
-constexpr double noticeable_correlation = 0.05;
 /// Least contrast of the large triangles of a frame, in its standard uncertainty.
 constexpr double least_certainty = 3;
 /// With noise below this part of a step, errors of up to half a step remain that no averaging reveals.
 constexpr double dithering_noise_steps = 0.5;
-
-/// Noise of a pixel in one frame. Successive frames show only sqrt(1 - rho) of noise with memory.
-double noise_of_one_frame(const AveragedPicture& picture) {
-  const double rho = picture.lag1_correlation.value_or(0);
-  // Above 0.99 it changes so slowly that this few frames do not distinguish it from drift.
-  if (rho < noticeable_correlation) return picture.temporal_noise_k;
-  return picture.temporal_noise_k / std::sqrt(1 - std::min(rho, 0.99));
-}
 
 const RadiometricScale& scale_of_counts() {
   static const RadiometricScale scale = RadiometricScale::linear({.kelvin_per_count = 1, .offset_k = 0}).value();

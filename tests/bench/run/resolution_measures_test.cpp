@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bench/plan/descriptions.h"
+#include "bench/report/measure_figures.h"
 #include "bench/report/report.h"
 #include "bench/run/experiment.h"
 #include "bench/run/report_data.h"
@@ -241,6 +242,60 @@ TEST(BarsJudge, HoldsTheVirtualMrtdWithATargetOfUnknownOffset) {
   EXPECT_LT(std::abs(of.best_bias), 3 * std::hypot(0.07 / std::sqrt(8), of.truth_error));
 }
 
+/// A sample of 2.9 arcmin.
+ViewedDisplay bench_display() {
+  return {.pixel_pitch_mm = 0.25,
+          .viewing_distance_m = 0.6,
+          .luminance_white_cd_m2 = 200,
+          .luminance_black_cd_m2 = 0.5,
+          .zoom = 2};
+}
+
+// Threshold and spread are those of the sensor without frames: with the noise of the eye, and with that of the camera
+// enlarged by the observer. hvs-1 needs 0.038 K.
+TEST(BarsJudge, HasTheVirtualMrtdOfAnObserverWithAnEye) {
+  const auto found = testing::mrtd_coverage({0.4}, 1, 128, 0, *load_observer_at("hvs-2", bench_display()));
+
+  ASSERT_TRUE(found) << found.error().message;
+  const testing::MrtdCoverage& of = found->front();
+  EXPECT_EQ(of.intervals, 2);
+  EXPECT_EQ(of.spreads, 2);
+  EXPECT_GT(of.truth_k, 0.05);
+  const double error = std::hypot(of.half_width / 2 / std::sqrt(2), of.truth_error);
+  EXPECT_LT(std::abs(of.bias), 4 * error);
+  EXPECT_LT(std::abs(of.lower_bias), 4 * error);
+  EXPECT_LT(std::abs(of.upper_bias), 4 * error);
+}
+
+TEST(MrtdRecord, StatesTheSpreadOverOpenParametersBesideTheInterval) {
+  MrtdMeasure found;
+  found.plate = "mrtd", found.observer = "hvs-2", found.pitch_mrad = 1.3;
+  for (const EdgeAxis axis : {EdgeAxis::x, EdgeAxis::y}) {
+    found.bars.push_back({.place = "bars",
+                          .axis = axis,
+                          .frequency_per_pitch = 0.25,
+                          .threshold_k = 0.02,
+                          .ci95 = {0.018, 0.022},
+                          .spread_k = std::pair(0.0125, 0.05)});
+  }
+  found.bars.back().spread_k = std::pair(0.0135, 0.06);
+  CameraMeasures measures;
+  measures.mrtd = found;
+
+  const auto read = measures_from(measures_json(measures, std::nullopt));
+
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_TRUE(read->main->mrtd);
+  EXPECT_EQ(read->main->mrtd->bars.front().spread_k, std::pair(0.0125, 0.05));
+  EXPECT_THAT(line_of(read->main, "mrtd_x")->conditions,
+              HasSubstr("; 0.0125 to 0.05 K over the open parameters of the observer (no confidence interval)"));
+  EXPECT_THAT(line_of(read->main, "mrtd_mean")->conditions, HasSubstr("; 0.013 to 0.055 K over the open parameters"));
+  EXPECT_EQ(mrtd_tables(found, "camera").front().header.back(), "Spread over the open parameters (K)");
+  // Without an eye nothing is said of it.
+  for (MrtdPoint& point : found.bars) point.spread_k.reset();
+  EXPECT_EQ(mrtd_tables(found, "camera").front().header.back(), "Best phase (K)");
+}
+
 TEST(PlateBars, HoldTheTruthAtBestAndWorstPhase) {
   for (const double aberration_pitch : {0.0, 0.6}) {
     SensorSpec sensor = *load_sensor("sc2000");
@@ -308,6 +363,11 @@ TEST(PhysicalMeasures, RefusePlatesThatDoNotHaveWhatIsAskedOfThem) {
   no_mrtd.measures.mrtd = false;
   no_mrtd.limits.measures = {{"mrtd_x", std::nullopt, 0.5}};
   EXPECT_EQ(refusal(mrtd_plan()), "");
+  Plan seen = mrtd_plan();
+  seen.observer = "hvs-2";
+  EXPECT_THAT(refusal(seen), HasSubstr("needs a display"));
+  seen.display = bench_display();
+  EXPECT_EQ(refusal(seen), "");
   EXPECT_THAT(refusal(no_fives), HasSubstr("groups of five bars"));
   EXPECT_THAT(refusal(far_away), HasSubstr("finer than the cut"));
   EXPECT_THAT(refusal(twice), HasSubstr("each stated once"));
