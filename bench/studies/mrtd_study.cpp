@@ -79,6 +79,13 @@ Table axis_table(const MrtdAxisCurve& curve) {
                           plain(significant(f.modulation_best, 2) + ", " + significant(f.modulation_worst, 2)),
                           plain(fmt::format("{:.0f} %", 100 * f.share_of_four))});
   }
+  if (std::ranges::none_of(curve.points, [](const auto& p) { return p.found.spread_k.has_value(); })) return table;
+  table.header.emplace_back("Threshold over the open parameters of the observer (K)");
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    const auto& spread = curve.points[i].found.spread_k;
+    table.rows[i].push_back(spread ? plain(significant(spread->first, 3) + " to " + significant(spread->second, 3))
+                                   : missing("none"));
+  }
   return table;
 }
 
