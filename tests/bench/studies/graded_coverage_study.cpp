@@ -2,7 +2,8 @@
 // Coverage of the true S75 over whole simulated runs, graded answers beside right and wrong ones of the same runs.
 // TODBENCH_STUDY_FOLDER: where runs are kept; what is there is not made again. TODBENCH_STUDY_RUNS: how many of each
 // design (600 and 200 without it). TODBENCH_STUDY_DESIGN: this one alone. TODBENCH_STUDY_SHARE: "1/2", every second
-// run, for two processes at once. Prints the tables of docs/validation/coverage.md.
+// run, for two processes at once. TODBENCH_STUDY_TRUTH: parts of 8000 draws behind the truth (3 without it). Prints the
+// tables of docs/validation/coverage.md.
 #include <cstdio>
 #include <cstdlib>
 
@@ -109,17 +110,21 @@ TEST(GradedCoverage, OfTheTruthOverWholeRuns) {
       "| "
       "second |\n");
   const char* only = std::getenv("TODBENCH_STUDY_DESIGN");
+  const char* parts_of_truth = std::getenv("TODBENCH_STUDY_TRUTH");
   for (const auto& [design, all, pairs] : designs()) {
     if (only != nullptr && design.name != only) continue;
     const std::uint64_t runs = asked != nullptr ? std::strtoull(asked, nullptr, 10) : all;
     DesignParts parts(design);
     for (std::uint64_t seed = share.first; seed <= runs; seed += share.step)
       if (!record.has(design.name, seed)) record.append(results_of(parts, seed, seed <= pairs));
-    const auto truth = true_s75_mrad(design, design.delta_t_k, 3);
+    const auto truths = true_sizes(design, design.delta_t_k, parts_of_truth != nullptr ? std::atoi(parts_of_truth) : 3);
     const auto predicted = predicted_half_widths(design);
     for (const double contrast : design.delta_t_k) {
+      const TrueSize truth = truths.at(contrast);
+      std::printf("| %s | %g K | truth | %.5f mrad | standard error %.3f %% |\n", design.name.c_str(), contrast,
+                  truth.s75_mrad, truth.se_percent);
       for (const char* estimator : {"binary weibull", "binary twin-shape", "graded weibull", "graded twin-shape"}) {
-        const GradedSummary s = summary_of(record.rows(), design.name, contrast, estimator, truth.at(contrast));
+        const GradedSummary s = summary_of(record.rows(), design.name, contrast, estimator, truth.s75_mrad);
         std::printf(
             "| %s | %g K | %s | %d | %+.3f %% | %.3f %% | %.3f %% | %.2f %% | %.2f %% | %.2f %% | %.3f | %.2f |\n",
             design.name.c_str(), contrast, estimator, s.runs, s.bias_percent, s.scatter_percent, s.stated_percent,

@@ -206,25 +206,39 @@ inline std::vector<GradedResult> default_results_of(DesignParts& parts, std::uin
   return results;
 }
 
-/// The size at 75 % of the camera itself: `parts` times 8000 draws at the level reference.
-inline std::map<double, double> true_s75_mrad(const GradedDesign& design, const std::vector<double>& contrasts,
-                                              int parts) {
+/// The size at 75 % of a camera itself, and its standard error in percent.
+struct TrueSize {
+  double s75_mrad = 0, se_percent = 0;
+};
+
+/// `parts` times 8000 draws at the level reference.
+inline std::map<double, TrueSize> true_sizes(const GradedDesign& design, const std::vector<double>& contrasts,
+                                             int parts) {
   const Plan plan = plan_of(design, 1);
   const ExperimentInputs inputs = inputs_of(plan, design.camera);
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  std::map<double, double> truth;
+  std::map<double, TrueSize> truth;
   Accuracy accuracy = Accuracy::reference();
   accuracy.noise_draws = Accuracy::max_noise_draws;
   accuracy.standard_error_percent = 0;
   for (const double contrast : contrasts) {
-    double sum = 0;
+    double sum = 0, variance = 0;
     for (int part = 0; part < parts; ++part) {
       const auto found = direct_estimate(inputs.sensor, inputs.effects, observer, {contrast},
                                          {.accuracy = accuracy, .seed = 1000000 + static_cast<std::uint64_t>(part)});
-      sum += std::log(found.value()[0].s75_pitch);
+      const DirectPoint& point = found.value()[0];
+      sum += std::log(point.s75_pitch);
+      variance += std::pow(point.standard_error_pitch / point.s75_pitch, 2);
     }
-    truth[contrast] = std::exp(sum / parts) * inputs.sensor.ifov_mrad();
+    truth[contrast] = {std::exp(sum / parts) * inputs.sensor.ifov_mrad(), 100 * std::sqrt(variance) / parts};
   }
+  return truth;
+}
+
+inline std::map<double, double> true_s75_mrad(const GradedDesign& design, const std::vector<double>& contrasts,
+                                              int parts) {
+  std::map<double, double> truth;
+  for (const auto& [contrast, size] : true_sizes(design, contrasts, parts)) truth[contrast] = size.s75_mrad;
   return truth;
 }
 
