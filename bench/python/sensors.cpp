@@ -46,6 +46,7 @@ py::class_<SensorSpec> sensor_spec(py::module_& module) {
       TODBENCH_WRITE(SensorSpec, frames_averaged)
       TODBENCH_WRITE(SensorSpec, super_resolution_frames)
       TODBENCH_WRITE(SensorSpec, display_blur_samples)
+      TODBENCH_WRITE(SensorSpec, edge_boost)
       TODBENCH_WRITE(SensorSpec, microscan)
       TODBENCH_WRITE(SensorSpec, bits)
       TODBENCH_WRITE(SensorSpec, kelvin_per_count)

@@ -231,7 +231,7 @@ bool CameraOptics::differs(double probability) const {
 }
 
 bool CameraOpticsFit::models(const SensorSpec& twin) {
-  return twin.modules.empty() && twin.display_blur_samples == 0 &&
+  return twin.modules.empty() && twin.display_blur_samples == 0 && twin.edge_boost == 0 &&
          twin.display == DisplayReconstruction::sample_and_hold && twin.distortion_percent == 0 &&
          twin.distortion_r4_percent == 0 && twin.super_resolution_frames == 0 && twin.turbulence_cn2_m_minus_2_3 == 0;
 }

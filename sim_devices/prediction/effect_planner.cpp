@@ -10,6 +10,7 @@
 
 #include "acquisition/base/try.h"
 #include "sim_devices/prediction/cued_estimate.h"
+#include "sim_devices/sensor/effect_display.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "tod/plate/test_pattern.h"
@@ -40,10 +41,13 @@ double squared(double contrast_k) {
 
 NoiseBudget white_noise(const SensorSpec& sensor, const TemplateObserverSpec& observer, double contrast_k) {
   NoiseBudget noise;
+  // The responses contain the edge filter, which raises noise with the signal. Other displays change little.
+  const double gain = sensor.edge_boost > 0 ? display_noise_gain(sensor) : 1;
   for (const Effect effect : all_effects) {
     const EffectRow& row = row_of(effect);
     if (row.white_variance_k2 == nullptr) continue;
-    const double variance = row.white_variance_k2(sensor, observer.sensor_noise_factor) / squared(contrast_k);
+    const double variance =
+        gain * gain * row.white_variance_k2(sensor, observer.sensor_noise_factor) / squared(contrast_k);
     noise.by_effect[static_cast<std::size_t>(effect)] = variance;
     noise.white += variance;
   }

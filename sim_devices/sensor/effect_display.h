@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reconstruction and blur of the display, as a filter on samples.
+// Edge filter of the camera, and reconstruction and blur of the display, as one filter on samples.
 #pragma once
 
 #include <functional>
@@ -14,10 +14,10 @@ namespace todbench {
 /// integrals over |f| <= 1/2, normalised to sum 1.
 [[nodiscard]] std::vector<double> taps_of(const std::function<double(double)>& response);
 
-/// Response of the display beyond the sample-and-hold that observers assume: exp(-2 pi^2 sigma^2 f^2), times sinc(f)
-/// for bilinear interpolation.
+/// Response of edge filter and display beyond the sample-and-hold that observers assume: exp(-2 pi^2 sigma^2 f^2) times
+/// 1 + 4 b sin^2(pi f) for a boost of b, times sinc(f) for bilinear interpolation.
 [[nodiscard]] double display_response(const SensorSpec& spec, double f_per_sample);
-/// True if the display differs from sample-and-hold.
+/// True if the display differs from sample-and-hold, or if the camera boosts edges.
 [[nodiscard]] bool has_display(const SensorSpec& spec);
 
 /// Standard deviation behind the display of white noise with standard deviation 1.

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdio>
+
 #include "sim_devices/prediction/cued_estimate.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/effect_image_dance.h"
@@ -177,6 +180,23 @@ TEST(TwoTiers, TheAnalyticThresholdOfKnownPositionsIsThatOfTheSearchWithinItsVal
       // and the noise of the searching estimate (1 %) come on top.
       EXPECT_NEAR(std::log(*analytic / (*searching)[0].s75_pitch), 0, limit) << microscan << " " << delta_t_k;
     }
+  }
+}
+
+TEST(TwoTiers, TheEdgeFilterRaisesNoiseWithTheSignal) {
+  SensorSpec sensor = test::sc2000();
+  sensor.edge_boost = 0.4;
+  TemplateObserver observer({}, triangle_alternatives());
+  const SceneSurvey survey = survey_scene(sensor, observer, {.delta_t_k = {1.0, 0.23}});
+  const auto searching = direct_estimate(sensor, full_plan(sensor, {}, {}), observer, {1.0, 0.23}, {});
+
+  ASSERT_TRUE(searching) << searching.error().message;
+  ASSERT_EQ(survey.outlooks.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::printf("%g K: planned %.3f, found %.3f pitches\n", survey.outlooks[i].delta_t_k, survey.outlooks[i].s75_pitch,
+                (*searching)[i].s75_pitch);
+    // The gain of a sample's noise is that of all frequencies, the template uses the lower ones.
+    EXPECT_NEAR(std::log(survey.outlooks[i].s75_pitch / (*searching)[i].s75_pitch), 0, 0.25);
   }
 }
 

@@ -95,6 +95,17 @@ TEST(Effects, TheDisplayFilterHasTheStatedResponse) {
   }
 }
 
+TEST(Effects, TheEdgeFilterHasThreeTapsAndLeavesEvenSurfacesAlone) {
+  SensorSpec spec = test::sc2000();
+  spec.edge_boost = 0.4;
+  const auto taps = taps_of([&](double f) { return display_response(spec, f); });
+  ASSERT_EQ(taps.size(), 17U);
+  for (std::size_t k = 0; k < taps.size(); ++k)
+    EXPECT_NEAR(taps[k], k == 8 ? 1.8 : k == 7 || k == 9 ? -0.4 : 0, 1e-12) << k;
+  // Both axes: the square of 1.8^2 + 2 0.4^2.
+  EXPECT_NEAR(display_noise_gain(spec), 3.56, 1e-12);
+}
+
 /// A narrow field: 15 um behind 1 m, 0.2 m of aperture.
 SensorSpec narrow_field(double cn2) {
   SensorSpec spec = test::sc2000();
