@@ -2,9 +2,7 @@
 #include "bench/cli/command_watch.h"
 
 #include <chrono>
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 
 #include "bench/devices/devices.h"
 #include "bench/judgement/verdict.h"
@@ -16,7 +14,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto open_again = std::chrono::milliseconds(500);
 constexpr double most_rejected_share = 0.5;                            ///< a camera that warms up corrects itself often
 constexpr std::string_view temperature_feature = "DeviceTemperature";  // SFNC
 
@@ -35,29 +32,12 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-void rest(const std::stop_token& stop) {
-  std::mutex mutex;
-  std::condition_variable_any wake;
-  std::unique_lock lock(mutex);
-  wake.wait_for(lock, stop, open_again, [] { return false; });
-}
-
-/// Opens the camera as soon as it answers; it may be off at the start.
-Result<std::unique_ptr<FrameSource>> open_when_there(Console& console, const WatchArguments& arguments,
-                                                     Clock::time_point begin, const std::stop_token& stop) {
-  for (;;) {
-    auto camera = camera_registry(stop).open(arguments.camera);
-    if (camera || camera.error().code != ErrorCode::not_found || stop.stop_requested() ||
-        seconds_since(begin) > 60 * arguments.minutes)
-      return camera;
-    console.waiting("waiting for the camera: " + camera.error().message);
-    rest(stop);
-  }
-}
-
 Result<WatchedWarmUp> watched(Console& console, const WatchArguments& arguments, const std::stop_token& stop) {
   const auto begin = Clock::now();
-  const auto camera = open_when_there(console, arguments, begin, stop);
+  const CameraPatience patience{
+      .longest = std::chrono::milliseconds(static_cast<long>(60'000 * arguments.minutes)),
+      .on_waiting = [&](const Error& reason) { console.waiting("waiting for the camera: " + reason.message); }};
+  const auto camera = open_when_there(arguments.camera, patience, stop);
   if (!camera) return tl::unexpected(camera.error());
   FrameSource& source = **camera;
   const SourceInfo info = source.info();

@@ -2,6 +2,8 @@
 #include "bench/devices/devices.h"
 
 #include <algorithm>
+#include <condition_variable>
+#include <mutex>
 
 #include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
@@ -155,6 +157,22 @@ CameraRegistry camera_registry([[maybe_unused]] std::stop_token stop, [[maybe_un
   return registry;
 }
 
+Result<std::unique_ptr<FrameSource>> open_when_there(const std::string& id, const CameraPatience& patience,
+                                                     std::stop_token stop, const SayProgress& on_progress) {
+  const auto deadline = std::chrono::steady_clock::now() + patience.longest;
+  std::mutex mutex;
+  std::condition_variable_any never;
+  for (;;) {
+    auto camera = camera_registry(stop, on_progress).open(id);
+    const auto now = std::chrono::steady_clock::now();
+    if (camera || camera.error().code != ErrorCode::not_found || now >= deadline) return camera;
+    if (patience.on_waiting) patience.on_waiting(camera.error());
+    std::unique_lock lock(mutex);
+    never.wait_until(lock, stop, std::min(deadline, now + patience.between_attempts), [] { return false; });
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped while waiting for camera " + id);
+  }
+}
+
 OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model, const std::vector<TargetPlate>& plates,
                             double distance_m, std::map<double, double> shown_delta_t_k, SceneMotion motion,
                             const SimulatedSourceOptions& source) {
@@ -232,7 +250,7 @@ Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop, c
         "camera " + plan.camera.id + " is simulated and cannot observe a monitor: [target] kind must be 'scene'");
   }
   OpenedBench bench;
-  auto camera = camera_registry(stop, on_progress).open(plan.camera.id);
+  auto camera = open_when_there(plan.camera.id, host.camera_patience, stop, on_progress);
   if (!camera) return tl::unexpected(camera.error());
   bench.camera = std::move(*camera);
   const auto settings = settings_of(plan.camera);

@@ -29,6 +29,13 @@ using SayProgress = std::function<void(std::string_view sentence)>;
 /// opening (`interrupted`); `on_progress` is called about once a second.
 [[nodiscard]] CameraRegistry camera_registry(std::stop_token stop = {}, const SayProgress& on_progress = {});
 
+/// Opens a camera as soon as it answers: it may be off, or belong to a killed program until the time of its heartbeat
+/// is over. Errors: those of CameraRegistry::open(); only `not_found` is waited for. `stop` ends the wait with
+/// `interrupted`.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_when_there(const std::string& id,
+                                                                   const CameraPatience& patience, std::stop_token stop,
+                                                                   const SayProgress& on_progress = {});
+
 /// The library behind GigE Vision and USB3 Vision cameras.
 struct CameraLibrary {
   std::string version;              ///< "Aravis 0.8.26", the one that runs

@@ -2,6 +2,7 @@
 // The host that controls an experiment.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -31,12 +32,21 @@ struct AddedStages {
   std::function<void(MeasurementOptions& camera)> as_recorded{};
 };
 
+/// How long and how often a camera that is not there yet is opened again.
+struct CameraPatience {
+  std::chrono::milliseconds longest{0};  ///< from the call; 0: one attempt
+  std::chrono::milliseconds between_attempts{500};
+  std::function<void(const Error& reason)> on_waiting{};  ///< called after each failed attempt but the last
+};
+
 /// Controls of a run beyond its plan. An ExperimentListener only receives progress.
 struct ExperimentHost {
   /// Lets a run pause between two presentations; null: it never pauses. Outlives the run.
   const Pause* pause = nullptr;
   /// Answers the requests of a target of kind prompt; empty: asks at the terminal.
   AskOperator ask_operator{};
+  /// Wait for a camera that cannot be opened yet.
+  CameraPatience camera_patience{};
   HostClocks clocks = host_clocks();
   AddedStages added{};
   /// Changes or refuses the opened devices before the run, and returns the note of the session about that. Empty: the

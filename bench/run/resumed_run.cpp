@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "acquisition/base/try.h"
 #include "bench/devices/reconnecting_source.h"
+#include "bench/text/folders.h"
 
 namespace todbench {
 namespace {
@@ -164,10 +167,27 @@ void splice_in_front(RecordedBench recorded, OpenedBench& live) {
   live.simulated = recorded.bench.simulated;
 }
 
+/// A GigE Vision camera belongs to a killed program until its heartbeat is over: 3 s by default. Some cameras take the
+/// question whether they are free for that heartbeat, so attempts are further apart.
+constexpr std::chrono::milliseconds longer_than_a_heartbeat{3500};
+
+/// The resumed run waits for its camera as a run waits for a lost one.
+CameraPatience as_after_a_loss(const CameraPlan& camera, const std::function<void(std::string_view)>& on_phase) {
+  return {.longest = std::chrono::milliseconds(static_cast<long>(1000 * camera.reconnect_s)),
+          .between_attempts = longer_than_a_heartbeat,
+          .on_waiting = [on_phase](const Error& reason) {
+            if (on_phase) on_phase("waiting for the camera: " + reason.message);
+          }};
+}
+
 }  // namespace
 
 Result<RecordedRun> open_interrupted_run(const std::filesystem::path& session, const Pause* pause,
                                          const Opening& opening, RunModules modules) {
+  // A run that is under way holds the claim; that of a killed program ended with it.
+  if (auto claim = claim_folder(session); !claim)
+    return fail(ErrorCode::invalid_input,
+                session.string() + ": the run of this session is under way in another program; stop it first");
   TODBENCH_TRY(
       RecordedRun run,
       open_recorded_run(session, pause, {.accept_changed = opening.accept_changed, .accept_cut_off = true}, modules));
@@ -188,6 +208,7 @@ Result<ExperimentOutcome> resume_session(RecordedRun run, ExperimentOptions opti
                                 .then = judged_by(loaded),
                                 .now = judged_by(loaded),
                                 .resumed = true};
+  options.host.camera_patience = as_after_a_loss(loaded.plan().camera, listener.on_phase);
   options.host.on_opened = [&run, &loaded](OpenedBench& live) -> Result<std::string> {
     const SourceInfo recorded = run.recording.bench.camera->info();
     if (auto same = restore_settings(*live.camera, loaded.plan().camera.settings, recorded); !same)

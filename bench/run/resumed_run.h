@@ -11,7 +11,7 @@
 namespace todbench {
 
 /// Opens an interrupted session to be resumed. Errors: those of open_recorded_run(); `invalid_input` for a session that
-/// is complete.
+/// is complete or whose run is under way in another program.
 [[nodiscard]] Result<RecordedRun> open_interrupted_run(const std::filesystem::path& session, const Pause* pause,
                                                        const Opening& opening = {},
                                                        RunModules modules = RunModules::no);
@@ -19,8 +19,9 @@ namespace todbench {
 /// Measures the plan of an interrupted session to its end, into a new session. The recorded frames and answers give the
 /// first part again, with the same trials; at their end the camera takes over as after a loss: the plate is located
 /// again, the presentation is repeated, and the gap is an interruption of the run (a new segment). Camera, settings and
-/// temperature scale must be those of the recording. The frames of the new session are not recorded. Errors: those of
-/// measure_plan(); `invalid_input` for another camera.
+/// temperature scale must be those of the recording. A camera that cannot be opened yet is waited for as after a loss,
+/// at most `reconnect_s` of the plan. The frames of the new session are not recorded. Errors: those of measure_plan();
+/// `invalid_input` for another camera.
 [[nodiscard]] Result<ExperimentOutcome> resume_session(RecordedRun run, ExperimentOptions options,
                                                        const ExperimentListener& listener, std::stop_token stop);
 
