@@ -4,6 +4,8 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "acquisition/base/normal.h"
 #include "acquisition/base/try.h"
@@ -12,6 +14,8 @@
 #include "bench/round_robin/blind_items.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/text.h"
+#include "tod/plate/test_pattern.h"
+#include "tod/psychometric/psychometric_fit.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
@@ -99,6 +103,13 @@ Result<std::vector<SubmittedResult>> judged_items(const std::filesystem::path& f
                                                   std::stop_token stop) {
   TODBENCH_TRY(const auto items, NamedColumns::read(folder / "items.csv"));
   TODBENCH_TRY(const auto spec, load_observer(observer_name));
+  if (spec.sensor_noise_factor > 1) {
+    return fail(ErrorCode::invalid_input, "observer " + spec.name +
+                                              " enlarges the noise of the camera (sensor_noise_factor = " +
+                                              number_text(spec.sensor_noise_factor) +
+                                              "), which blind recordings do not state: use an observer "
+                                              "with a factor of 1 (hvs-1)");
+  }
   TemplateObserver observer(spec, triangle_alternatives());
   const RandomStream noise(seed, "round_robin.judge " + laboratory);
   std::vector<SubmittedResult> out;

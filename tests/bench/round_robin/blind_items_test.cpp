@@ -66,6 +66,9 @@ TEST(BlindItems, AreTheSameForASeedAndDoNotStateWhatIsSealed) {
     EXPECT_THAT(text, Not(HasSubstr(number_text(a->truths.front().s75_mrad)))) << file.path();
   }
   EXPECT_EQ(judged_items(folder.path() / "none", "A", "hvs-1", 1, {}).error().code, ErrorCode::invalid_input);
+  // The recordings state neither a display nor the noise of the camera.
+  EXPECT_THAT(judged_items(place, "A", "hvs-2", 1, {}).error().message, HasSubstr("has an eye and needs a display"));
+  EXPECT_THAT(judged_items(place, "A", "human-like-1", 1, {}).error().message, HasSubstr("enlarges the noise"));
 }
 
 TEST(BlindItems, WithDamagedFilesAreRefused) {
