@@ -230,6 +230,10 @@ int run_range(Console& console, const RangeArguments& arguments) {
   RangeTask task = arguments.task;
   RangeOptions options = arguments.more;
   options.asked_delta_t_k = task.delta_t_k;
+  if (options.transfer && !options.asks(RangeModel::mtdp)) {
+    return report_error(
+        console, {ErrorCode::invalid_input, "range: --tod-transfer changes the mtdp model only: add it to --models"});
+  }
   if (arguments.v50) task.m75 = m75_from_v50(*arguments.v50);
   if (arguments.m75) task.m75 = *arguments.m75;
   options.criterion_source = arguments.v50   ? CriterionSource::v50_stated
@@ -237,6 +241,11 @@ int run_range(Console& console, const RangeArguments& arguments) {
                                              : CriterionSource::published;
   const auto session = session_of(console, arguments);
   if (!session) return report_error(console, session.error());
+  if (options.transfer && *session &&
+      (!(*session)->plan.modules.empty() || !(*session)->parts.sensor.modules.empty())) {
+    return report_error(console, {ErrorCode::invalid_input,
+                                  "range: --tod-transfer was not studied for pictures or answers of modules"});
+  }
   const auto sensor = options.sensor_of(*session);
   if (!sensor) return report_error(console, sensor.error());
   const auto air = into_task(task, options, *sensor);

@@ -160,7 +160,8 @@ void RangeOptions::add_to(CLI::App& command) {
       ->check(positive)
       ->capture_default_str();
   command.add_option("--mrtd", mrtd_file, "CSV file with frequency_per_mrad and mrtd_k that replaces the MRTD formula");
-  command.add_option("--mtdp", mtdp_file, "CSV file with frequency_per_mrad and mtdp_k that replaces the MTDP formula");
+  auto* mtdp = command.add_option("--mtdp", mtdp_file,
+                                  "CSV file with frequency_per_mrad and mtdp_k that replaces the MTDP formula");
   command.add_option("--ctf", ctf_file,
                      "CSV file with frequency_per_mrad and ctf that replaces the CTF of eye and sensor");
   command
@@ -200,6 +201,17 @@ void RangeOptions::add_to(CLI::App& command) {
                   "change of the acuity in percent below which the TOD model skips turbulence")
       ->check(number_in(0.01, 50))
       ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--tod-transfer",
+          [this](const std::string& name) {
+            auto found = tod_transfer_named(name);
+            if (!found) throw CLI::ValidationError("--tod-transfer", found.error().message);
+            transfer = *found;
+          },
+          "transfer by which the TOD curve replaces the MTDP formula: " + std::string(tod_transfers().back().name))
+      ->excludes(mtdp)
+      ->excludes(turbulence);
   auto* sizes = command.add_option("--grid-sizes-m", grid.sizes_m, "target sizes of a grid in m, separated by commas")
                     ->delimiter(',')
                     ->check(number_in(1e-6, 1e6));
@@ -306,7 +318,7 @@ RangeQuestion RangeOptions::question(const RangeTask& task, std::optional<double
 
 Result<RangeSources> RangeOptions::sources(std::vector<TodThreshold> thresholds,
                                            const std::optional<SensorSpec>& spec) const {
-  RangeSources found{.thresholds = std::move(thresholds), .sensor = spec};
+  RangeSources found{.thresholds = std::move(thresholds), .sensor = spec, .transfer = transfer};
   if (auto read = read_curve(mrtd_file, "mrtd_k", found.mrtd); !read) return tl::unexpected(read.error());
   if (auto read = read_curve(mtdp_file, "mtdp_k", found.mtdp); !read) return tl::unexpected(read.error());
   if (auto read = read_curve(ctf_file, "ctf", found.ctf); !read) return tl::unexpected(read.error());

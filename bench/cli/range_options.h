@@ -16,6 +16,7 @@ namespace todbench {
 
 struct RangeOptions {
   std::string atmosphere, haze = "rural-23km", band, sensor, mrtd_file, mtdp_file, ctf_file, svg, page;
+  std::optional<TodTransfer> transfer{};
   std::vector<RangeModel> models{RangeModel::tod};
   std::optional<double> background_k, air_k, surround_k, target_contrast;
   double emissivity = 1;

@@ -33,7 +33,8 @@ std::string formula_words(const RangeQuestion& question) {
 
 /// The contrast at which a model reads its curve.
 double contrast_for(RangeModel which, const RangeSources& sources, const RangeQuestion& question) {
-  if (which == RangeModel::tod) return contrast_on_curve(sources.thresholds, question.delta_t_k);
+  if (which == RangeModel::tod || (which == RangeModel::mtdp && sources.transfer))
+    return contrast_on_curve(sources.thresholds, question.delta_t_k);
   if (which != RangeModel::ttp) return std::abs(question.delta_t_k);
   const double on_display = std::abs(question.delta_t_k) / (2 * question.formula.scene_contrast_k);
   return question.target_contrast.value_or(on_display);
@@ -70,6 +71,61 @@ Result<AxisCurves> cycle_curves(RangeModel which, const RangeSources& sources, c
   if (!sources.sensor) return fail(ErrorCode::invalid_input, "there is no curve, and no sensor to compute one from");
   return which == RangeModel::acquire ? mrtd_curves(*sources.sensor, question.formula)
                                       : mtdp_like_curves(*sources.sensor, question.formula);
+}
+
+/// Why the transfer does not hold for this curve; empty if it does.
+std::string outside_of_transfer(const TodTransfer& transfer, const RangeSources& sources,
+                                const RangeQuestion& question) {
+  const std::string head = fmt::format("transfer {}: ", transfer.name);
+  if (sources.thresholds.empty()) return head + "there is no TOD curve";
+  if (!sources.sensor) return head + "there is no sensor, whose noise it needs";
+  if (question.curve_observer != transfer.observer)
+    return head + fmt::format("it holds for curves judged by {}, this one is judged by {}", transfer.observer,
+                              question.curve_observer.empty() ? "an unknown observer" : question.curve_observer);
+  if (sources.sensor->samples_per_pitch() > 1)
+    return head + "it does not hold for cameras with more than one sample per detector and axis";
+  if (sources.sensor->edge_boost > TodTransfer::highest_edge_boost)
+    return head + fmt::format("it does not hold for an edge filter above {:g}", TodTransfer::highest_edge_boost);
+  return {};
+}
+
+/// The TOD curve as frequencies of bars; an error if the transfer does not hold.
+Result<TransferredCurve> transferred_curve(const RangeSources& sources, const RangeQuestion& question) {
+  const std::string outside = outside_of_transfer(*sources.transfer, sources, question);
+  if (!outside.empty()) return fail(ErrorCode::invalid_input, outside);
+  auto curve = transferred(sources.thresholds, *sources.transfer,
+                           sources.sensor->netd_k / std::sqrt(sources.sensor->exposures_per_sample()));
+  if (!curve) return curve;
+  std::sort(curve->points.begin(), curve->points.end(),
+            [](const auto& a, const auto& b) { return a.delta_t_k < b.delta_t_k; });
+  return curve;
+}
+
+Prepared prepared_transfer(const RangeSources& sources, const RangeQuestion& question) {
+  const TodTransfer& transfer = *sources.transfer;
+  Prepared model;
+  model.head = {.name = std::string(to_string(RangeModel::mtdp)),
+                .title = "MTDP-like",
+                .criterion = "N50",
+                .criterion_value = question.mtdp_n50,
+                .probability_form = std::string(to_string(ProbabilityForm::johnson)),
+                .reads = fmt::format("the session's TOD curve by transfer {}: {}", transfer.name, transfer.source),
+                .criterion_origin = "people, vehicles: Johnson's cycles; no interval is published",
+                .display = "none: the gain is free, and every contrast can be made visible"};
+  const auto curve = transferred_curve(sources, question);
+  if (!curve) {
+    model.head.reason = curve.error().message;
+    return model;
+  }
+  model.head.notes = curve->notes;
+  model.head.notes.push_back(
+      fmt::format("the bars are those that {} resolves in one picture, not an MTDP of people; 95 % interval of the "
+                  "transfer of the frequency: factor {:.3g}",
+                  transfer.observer, std::exp(transfer.half_width_ln)));
+  model.target = {question.size_m, contrast_for(RangeModel::mtdp, sources, question)};
+  model.criterion = {question.mtdp_n50, ProbabilityForm::johnson};
+  model.resolved = [points = curve->points](double contrast) { return interpolated_acuity_per_mrad(points, contrast); };
+  return model;
 }
 
 Prepared prepared_cycles(RangeModel which, const RangeSources& sources, const RangeQuestion& question) {
@@ -162,6 +218,7 @@ Prepared prepared_ttp(const RangeSources& sources, const RangeQuestion& question
 Prepared prepared(RangeModel which, const RangeSources& sources, const RangeQuestion& question) {
   if (which == RangeModel::tod) return prepared_tod(sources, question);
   if (which == RangeModel::ttp) return prepared_ttp(sources, question);
+  if (which == RangeModel::mtdp && sources.transfer) return prepared_transfer(sources, question);
   return prepared_cycles(which, sources, question);
 }
 
@@ -222,6 +279,24 @@ Result<void> predict_tod(Prepared& model, const RangeSources& sources, const Ran
   return {};
 }
 
+/// Range by the transferred TOD curve. The error of the transfer changes all frequencies alike, as M75 would.
+Result<void> predict_transferred(Prepared& model, const RangeSources& sources, const RangeQuestion& question) {
+  TODBENCH_TRY(const auto curve, transferred_curve(sources, question));
+  const RangeTask task{.size_m = question.size_m,
+                       .delta_t_k = question.delta_t_k,
+                       .m75 = question.mtdp_n50 * ratio_for_probability(ProbabilityForm::johnson, 0.75),
+                       .air = question.air.air};
+  TODBENCH_TRY(const auto predicted, predict_range(curve.points, task));
+  model.head.r75_m = predicted.r75_m;
+  model.head.reason = predicted.reason;
+  model.head.r75_ci95_m = predicted.r75_ci95_m;
+  if (!predicted.r75_m) return {};
+  const Interval both = joined_with_m75(curve.points, task, *predicted.r75_m, predicted.r75_ci95_m,
+                                        100 * sources.transfer->half_width_ln / normal_z95);
+  model.head.r75_ci95_m = joined_with_air(model, question, *predicted.r75_m, both);
+  return {};
+}
+
 Result<void> answer(Prepared& model, const RangeSources& sources, const RangeQuestion& question) {
   if (!model.resolved) return {};
   const Transmittance& air = question.air.air;
@@ -234,6 +309,7 @@ Result<void> answer(Prepared& model, const RangeSources& sources, const RangeQue
       model.head.r75_ci95_m = joined_with_air(model, question, *model.head.r75_m, model.head.r75_ci95_m);
     return {};
   }
+  if (model.head.name == "mtdp" && sources.transfer) return predict_transferred(model, sources, question);
   model.head.r75_m = found.range_m;
   model.head.reason = found.reason;
   if (found.at_least_m) model.head.r75_ci95_m.low = found.at_least_m;
@@ -416,12 +492,11 @@ TtpRanges ttp_ranges(const RangeSources& sources, const RangeQuestion& question,
 }
 
 std::optional<NominalRanges> nominal_ranges(const RangeSources& sources, const RangeQuestion& question) {
-  const auto curves = cycle_curves(RangeModel::mtdp, sources, question);
-  if (!curves) return std::nullopt;
+  const Prepared model = prepared(RangeModel::mtdp, sources, question);
+  if (!model.resolved) return std::nullopt;
   NominalRanges nominal;
-  const auto resolved = resolved_cycles(curves->horizontal, curves->vertical);
   const auto range = [&](double cycles) {
-    return range_for_probability(resolved, {nominal.size_m, nominal.delta_t_k},
+    return range_for_probability(model.resolved, {nominal.size_m, nominal.delta_t_k},
                                  Transmittance::beer_lambert(nominal.extinction_per_km),
                                  {cycles, ProbabilityForm::johnson}, 0.5)
         .range_m;

@@ -13,6 +13,7 @@
 #include "sim_devices/prediction/formula_curves.h"
 #include "tod/range/model_range.h"
 #include "tod/range/range_prediction.h"
+#include "tod/range/tod_transfer.h"
 
 namespace todbench {
 
@@ -54,6 +55,8 @@ struct RangeSources {
   std::vector<TodThreshold> thresholds;
   std::optional<SensorSpec> sensor{};                   ///< for curves that are not given
   std::optional<LogLinearCurve> mrtd{}, mtdp{}, ctf{};  ///< over cycles/mrad, the same for both axes
+  /// Replaces the MTDP-like curve by the thresholds, whose observer is that of the question; needs the sensor.
+  std::optional<TodTransfer> transfer{};
 };
 
 /// Evaluates every requested model, with P at common ranges up to twice the longest R75. A model without a result

@@ -131,6 +131,11 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   expect_refused(range({"--cn2", "1e-14", "--grid-sizes-m", "2", "--grid-contrasts-k", "5"}), 2, "--cn2");
   expect_refused(range({"--cn2", "-1"}), 2, "--cn2");
   expect_refused(range({"--models", "tod,nvthermip"}), 2, "unknown model");
+  const Json bars = one_object(range({"--models", "mtdp", "--tod-transfer", "simulated-imagers-1"}))["models"]["mtdp"];
+  EXPECT_THAT(bars["reads"].get<std::string>(), HasSubstr("simulated-imagers-1"));
+  EXPECT_LT(bars["r75_ci95_m"][0].get<double>(), bars["r75_m"].get<double>());
+  expect_refused(range({"--models", "mtdp", "--tod-transfer", "fraunhofer"}), 2, "simulated-imagers-1");
+  expect_refused(range({"--tod-transfer", "simulated-imagers-1"}), 2, "--models");
   expect_refused(range({"--atmosphere", "tropical", "--extinction-per-km", "0.2"}), 2, "has its own extinction");
 }
 

@@ -99,6 +99,43 @@ TEST(RangeModels, NameTheObserversOfCurveAndCriterionIfTheyDiffer) {
   EXPECT_EQ(observers_differ(asked), "");
 }
 
+TEST(RangeModels, TheTransferredTodCurveReplacesTheMtdpLikeCurve) {
+  RangeSources with = sources();
+  with.transfer = tod_transfers().front();
+  RangeQuestion asked = question("clear");
+  asked.delta_t_k = 30;
+  asked.curve_observer = "hvs-1";
+  const auto models = range_models(std::array{RangeModel::mtdp}, with, asked);
+
+  ASSERT_TRUE(models) << models.error().message;
+  const ModelRange& mtdp = models->front();
+  ASSERT_TRUE(mtdp.r75_m) << mtdp.reason;
+  // 10 K is the highest contrast: S75 = 1.5 mrad, 1.4 to 1.6. Johnson's x for 75 % is 1.3516.
+  const double frequency = transfer_factor(*with.transfer, 1) / 1.5;
+  EXPECT_NEAR(*mtdp.r75_m / (1000 * 4.9 * frequency / (6 * 1.3516)), 1, 1e-4);
+  EXPECT_NEAR(std::log(*mtdp.r75_ci95_m.high / *mtdp.r75_m),
+              std::hypot(std::log(1.5 / 1.4), with.transfer->half_width_ln), 1e-4);
+  EXPECT_THAT(mtdp.reads, HasSubstr("simulated-imagers-1"));
+  const auto nominal = nominal_ranges(with, asked);
+  ASSERT_TRUE(nominal && nominal->identification_m);
+  EXPECT_GT(*nominal->detection_m, *nominal->identification_m);
+  EXPECT_LE(*nominal->identification_m, 1000 * 2.3 * frequency / 6) << "air reduces the contrast";
+}
+
+TEST(RangeModels, TheTransferRefusesOtherObserversAndSamplings) {
+  RangeSources with = sources();
+  with.transfer = tod_transfers().front();
+  RangeQuestion asked = question("clear");
+  const auto reason = [&] { return range_models(std::array{RangeModel::mtdp}, with, asked).value().front().reason; };
+  asked.curve_observer = "human";
+  EXPECT_THAT(reason(), HasSubstr("judged by human"));
+  asked.curve_observer = "hvs-1";
+  with.sensor->microscan = 2;
+  EXPECT_THAT(reason(), HasSubstr("more than one sample"));
+  with.sensor.reset();
+  EXPECT_THAT(reason(), HasSubstr("no sensor"));
+}
+
 TEST(RangeGrid, IsEveryModelAtEveryTargetOnItsOwn) {
   const RangeGridAxes axes{.sizes_m = {2, 4.9}, .contrasts_k = {1, 30}, .ranges_m = {200, 700}};
 
