@@ -4,6 +4,7 @@
 #include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "bench/plan/descriptions.h"
+#include "bench/plan/order.h"
 
 namespace todbench {
 namespace {
@@ -50,6 +51,13 @@ void replace_laboratory(Plan& plan, const Plan& from, const Plan& to) {
   replace(plan.uncertainty.rows, from.uncertainty.rows, to.uncertainty.rows);
 }
 
+/// Removes what an order states about a single unit. Customer, laboratory and method stay.
+void forget_unit(OrderPlan& order) {
+  for (std::string* text : {&order.report_number, &order.item, &order.item_condition, &order.received, &order.issued})
+    text->clear();
+  order.camera_temperature_c.reset();
+}
+
 Result<double> sensor_ifov_mrad(const std::string& name) {
   TODBENCH_TRY(auto sensor, load_sensor(name));
   return sensor.ifov_mrad() / sensor.microscan;
@@ -62,6 +70,9 @@ Plan plan_for_camera(Plan plan, const std::string& id) {
   for (const Plan& from : {demo, example("acceptance")}) replace_laboratory(plan, from, unstated());
   if (plan.camera.id != id) {
     const CameraPlan before = plan.camera;
+    const bool of_a_unit =
+        !before.id.empty() && before.id != demo.camera.id && !has_scheme(before.id, camera_scheme::sim);
+    if (of_a_unit) forget_unit(plan.order);
     plan.camera = {};
     plan.camera.reconnect_s = before.reconnect_s;
     plan.camera.nuc_interval_s = before.nuc_interval_s;

@@ -83,6 +83,19 @@ TEST(PlanForCamera, KeepsTheStatementsOfTheUser) {
   EXPECT_EQ(plan_for_camera(plan, "gige:Maker-0815"), plan) << "the same camera chosen again";
 }
 
+TEST(PlanForCamera, KeepsNoReportNumberAndNoConditionOfAnotherUnit) {
+  Plan mine = plan_for_camera(demo_plan(), "gige:Maker-0815");
+  mine.order = {.customer = "Example Ltd", .report_number = "R-17", .item = "EX-1 no. 0815", .issued = "2026-11-28"};
+
+  const Plan same = plan_for_camera(mine, "gige:Maker-0815"), other = plan_for_camera(mine, "gige:Maker-0816");
+
+  EXPECT_EQ(same.order, mine.order);
+  EXPECT_EQ(other.order, (OrderPlan{.customer = "Example Ltd"})) << "two units with one report number";
+  Plan early = demo_plan();
+  early.order = mine.order;
+  EXPECT_EQ(plan_for_camera(early, "gige:Maker-0815").order, mine.order) << "stated before the first camera was chosen";
+}
+
 TEST(Workbench, FollowsTheCameraOfAPlanThatIsLoaded) {
   testing::TemporaryFolder folder;
   Workbench bench(folder.path());
