@@ -5,8 +5,14 @@
 #include <QFrame>
 #include <QGridLayout>
 #include <QHBoxLayout>
+#include <QListWidget>
 #include <QProgressBar>
 #include <QScrollBar>
+#include <QStyle>
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bench/gui/presenters/human_presenter.h"
 #include "bench/gui/presenters/look_presenter.h"
@@ -35,6 +41,17 @@ std::vector<double> key_of(const MeasurePresenter& presenter) {
     }
   }
   return key;
+}
+
+/// Names a single curve at the axis: a legend appears from two curves on, and a predicted curve must not pass for a
+/// measured one.
+Plot with_name_of_single_curve(Plot plot) {
+  std::vector<std::string> names;
+  for (const PlotSeries& series : plot.series) {
+    if (!series.label.empty()) names.push_back(series.label);
+  }
+  if (names.size() == 1) plot.x.label += ", " + names.front();
+  return plot;
 }
 
 }  // namespace
@@ -66,6 +83,7 @@ MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, LookPres
   step_->setProperty("role", "step");
   step_->setWordWrap(true);
   layout->addWidget(step_);
+  layout->addWidget(notes_panel());
 
   operator_ = new QFrame;
   operator_->setObjectName("messageBar");
@@ -118,6 +136,10 @@ MeasureView::MeasureView(Workbench& bench, MeasurePresenter& presenter, LookPres
   connect(&look, &LookPresenter::updated, this, [this, &look] {
     if (presenter_.operator_request()) live_->set_image(look.image());
   });
+  // A camera that sends no frames while it waits has sent those that contradict the request.
+  connect(&presenter_, &MeasurePresenter::operator_needed, this, [this, &look] {
+    if (!look.image().isNull()) live_->set_image(look.image());
+  });
   connect(log_log_, &QCheckBox::toggled, this, [this] {
     shown_key_.clear();
     show_all();
@@ -159,6 +181,32 @@ QWidget* MeasureView::log_panel() {
   return panel;
 }
 
+/// The newest notes: what the run has found before and during the measurement.
+QWidget* MeasureView::notes_panel() {
+  constexpr int lines_shown = 3;
+  notes_ = new QListWidget;
+  notes_->setObjectName("measureNotes");
+  notes_->setAccessibleName("Notes of the run, the newest first");
+  notes_->setToolTip("Notes of the run, the newest first. The report contains them, too.");
+  notes_->setWordWrap(true);
+  notes_->setSelectionMode(QAbstractItemView::NoSelection);
+  notes_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  notes_->setFixedHeight(lines_shown * notes_->fontMetrics().lineSpacing() + 8);
+  notes_->hide();
+  return notes_;
+}
+
+void MeasureView::show_notes() {
+  QStringList newest_first = presenter_.notes();
+  std::reverse(newest_first.begin(), newest_first.end());
+  QStringList shown;
+  for (int row = 0; row < notes_->count(); ++row) shown << notes_->item(row)->text();
+  notes_->setVisible(!newest_first.isEmpty());
+  if (newest_first == shown) return;
+  notes_->clear();
+  notes_->addItems(newest_first);
+}
+
 void MeasureView::make_plots() {
   const std::vector<double> contrasts = presenter_.contrasts();
   if (contrasts == contrasts_ && !function_plots_.empty()) return;
@@ -185,9 +233,14 @@ void MeasureView::show_all() {
   const auto& request = presenter_.operator_request();
   operator_->setVisible(request.has_value());
   const QString step = presenter_.next_step();
+  // Large letters for a step; the reason of a repeated request is longer than the room for them.
+  constexpr qsizetype longest_in_large_letters = 120;
+  request_->setProperty("role", step.size() > longest_in_large_letters ? "verdict" : "step");
+  request_->style()->polish(request_);
   request_->setText(request ? presenter_.request_number() + "\n" + step : QString());
   step_->setText(request ? QString() : step);
   step_->setVisible(!step_->text().isEmpty());
+  show_notes();
   if (!isVisible()) return;
   show_curves();
   show_log();
@@ -202,7 +255,8 @@ void MeasureView::show_curves() {
     plot.x.label = plot.title + ", size S (mrad)";
     function_plots_[i]->show_plot(plot);
   }
-  tod_->show_plot(presenter_.tod_plot(log_log_->isChecked() ? AxisScale::logarithmic : AxisScale::linear));
+  tod_->show_plot(with_name_of_single_curve(
+      presenter_.tod_plot(log_log_->isChecked() ? AxisScale::logarithmic : AxisScale::linear)));
 }
 
 void MeasureView::show_state() {

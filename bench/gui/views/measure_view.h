@@ -6,6 +6,7 @@
 #include <vector>
 
 class QLabel;
+class QListWidget;
 class QProgressBar;
 class QPushButton;
 class QTableWidget;
@@ -37,10 +38,12 @@ class MeasureView final : public QWidget {
 
  private:
   [[nodiscard]] QWidget* log_panel();
+  [[nodiscard]] QWidget* notes_panel();
   void show_all();
   void show_curves();
   void show_state();
   void show_log();
+  void show_notes();
   void show_judged();
   void make_plots();
 
@@ -56,6 +59,7 @@ class MeasureView final : public QWidget {
   PlotView* tod_;
   QCheckBox* log_log_;
   QTableWidget* log_;
+  QListWidget* notes_;
   PictureView *judged_, *live_;
   std::vector<double> shown_key_;
 };

@@ -6,6 +6,7 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QTabWidget>
@@ -14,6 +15,7 @@
 #include <QToolButton>
 
 #include "bench/gui/views/help_window.h"
+#include "bench/gui/views/picture_view.h"
 #include "bench/gui/views/plot_view.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
@@ -36,6 +38,7 @@ TEST(ForgivingWindow, AsksBeforeARunIsLost) {
   window.click("startMeasuring");
   ASSERT_TRUE(wait_until([&] { return window->measure().trials().size() >= 20; }));
 
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
   EXPECT_FALSE(window->close());
   window.click("abortMeasuring");
   window->show_view(View::start);
@@ -66,6 +69,7 @@ TEST(ForgivingWindow, GoesOnWithARunThatWasAborted) {
   window->sessions().open(first);
   ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
   window->show_view(View::report);
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
 
   window.click("resumeSession");
   ASSERT_TRUE(wait_until([&] { return window->measure().state() == RunState::idle; }));
@@ -101,6 +105,7 @@ TEST(ForgivingWindow, UsesTheTextOfThePlanAsOneTypesOrMarksIt) {
   EXPECT_EQ(window->bench().plan().target.distance_m, 2);
   EXPECT_TRUE(text.toPlainText().contains("distance_m = -2")) << "the text stays as it was typed";
   EXPECT_TRUE(tabs.tabText(1).contains("✗")) << "visible from the form, too";
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
   QStringList questions;
   window->set_confirm([&](const QString& question, const QString&) {
     questions << question;
@@ -122,9 +127,12 @@ TEST(ForgivingWindow, OffersTheReportAfterARun) {
   EXPECT_FALSE(window.part<QPushButton>("showReport").isVisible());
 
   window.measure();
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
 
   window.click("showReport");
   EXPECT_EQ(window->view(), View::report);
+  ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
 }
 
 TEST(ForgivingWindow, OffersToTryAgainOnlyWhatMaySucceed) {
@@ -138,8 +146,61 @@ TEST(ForgivingWindow, OffersToTryAgainOnlyWhatMaySucceed) {
   ASSERT_TRUE(wait_until([&] { return window.part<QLabel>("messageText").isVisible(); }));
 
   EXPECT_FALSE(window.part<QPushButton>("retry").isVisible()) << "the same plan fails again";
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
   emit window->bench().trouble("the camera is gone", Remedy::try_again);
   EXPECT_TRUE(window.part<QPushButton>("retry").isVisible());
+}
+
+TEST(ForgivingWindow, ShowsTheNotesOfARun) {
+  ShownWindow window("sim:sc2000", 1);
+  Plan plan = window->bench().plan();
+  plan.camera.ifov_mrad *= 1.011;
+  window->bench().set_plan(plan);
+  auto& notes = window.part<QListWidget>("measureNotes");
+  window->show_view(View::measure);
+  EXPECT_FALSE(notes.isVisible());
+
+  window.measure();
+
+  EXPECT_TRUE(notes.isVisible());
+  QStringList shown;
+  for (int row = 0; row < notes.count(); ++row) shown << notes.item(row)->text();
+  EXPECT_THAT(shown.join("\n").toStdString(), HasSubstr("of sc2000")) << "the IFOV of the plan is not that of the twin";
+  EXPECT_EQ(shown.size(), window->measure().notes().size());
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
+}
+
+TEST(ForgivingWindow, NamesAPredictedCurveThatStandsAlone) {
+  ShownWindow window("sim:sc2000");
+  Plan plan = window->bench().plan();
+  plan.limits = {};
+  window->bench().set_plan(plan);
+  ASSERT_TRUE(wait_until([&] { return window->plan().expected_known(); }));
+
+  window->show_view(View::measure);
+
+  EXPECT_THAT(window.part<PlotView>("todPlot").shown().x.label, HasSubstr("predicted"));
+}
+
+TEST(ForgivingWindow, ShowsTheLivePictureBesideARequest) {
+  ShownWindow window("sim:sc2000", 1);
+  Plan plan = window->bench().plan();
+  plan.target.kind = TargetKind::prompt;
+  window->bench().set_plan(plan);
+  window->show_view(View::measure);
+  window.click("startMeasuring");
+  const auto& request = window.part<QLabel>("operatorRequest");
+  ASSERT_TRUE(wait_until([&] { return request.text().startsWith("Request 1 of "); }));
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
+
+  window.click("operatorDone");  // nobody has put a plate in
+
+  ASSERT_TRUE(wait_until([&] { return request.text().contains("The picture contradicts the last request"); }));
+  EXPECT_TRUE(request.text().startsWith("Request 1 of ")) << request.text().toStdString();
+  EXPECT_FALSE(window.part<PictureView>("operatorPicture").image().isNull());
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
+  window.click("abortMeasuring");
+  ASSERT_TRUE(wait_until([&] { return window->measure().state() == RunState::idle; }));
 }
 
 TEST(ForgivingWindow, GivesPlotsWithoutDataTheirWholeWidth) {
@@ -192,6 +253,7 @@ TEST(ForgivingWindow, SortsTheSessionsByAColumn) {
   table.horizontalHeader()->setSortIndicator(2, Qt::DescendingOrder);
   EXPECT_EQ(table.item(0, 2)->text(), second);
   EXPECT_EQ(table.item(1, 2)->text(), first);
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
 }
 
 TEST(ForgivingWindow, SaysThatThereIsNoPdf) {
@@ -207,6 +269,7 @@ TEST(ForgivingWindow, SaysThatThereIsNoPdf) {
 
   ASSERT_TRUE(window.part<QLabel>("messageText").isVisible());
   EXPECT_THAT(window.part<QLabel>("messageText").text().toStdString(), HasSubstr("/report.pdf does not exist"));
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
 }
 
 TEST(ForgivingWindow, PutsTheOrderOnTheFirstPageAndKeepsIt) {
@@ -219,6 +282,8 @@ TEST(ForgivingWindow, PutsTheOrderOnTheFirstPageAndKeepsIt) {
   window->sessions().export_with_order(file);
   ASSERT_TRUE(wait_until([&] { return !window.part<QLabel>("exportedFiles").text().isEmpty(); }));
 
+  window->show_view(View::report);
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
   const auto folder = window->sessions().current()->folder;
   const auto page = read_text_file(folder / "report.html");
   ASSERT_TRUE(page);
@@ -256,6 +321,7 @@ TEST(ForgivingWindow, FoldsTheSectionsOfTheFormAndGreysLinesWithoutEffect) {
 
   window.part<QToolButton>("planSectionTarget").click();
   EXPECT_FALSE(window.part<QLineEdit>("planDistance").isVisible());
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
   Plan plan = window->bench().plan();
   plan.target.kind = TargetKind::scpi;
   plan.target.black_body = plan.target.stage = "127.0.0.1:1";

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/bench/gui/gui_test_support.h"
 
+#include <QApplication>
 #include <QElapsedTimer>
 
+#include "bench/gui/views/page_check.h"
 #include "tests/support/patience.h"
 
 namespace todbench::testing {
@@ -19,6 +21,24 @@ bool wait_until(const std::function<bool()>& so, int patience_ms) {
     loop.exec();
   }
   return true;
+}
+
+std::string faults_at_three_sizes(MainWindow& window) {
+  std::string found;
+  const QSize before = window.size();
+  for (const QSize size : {QSize(1024, 700), QSize(1366, 740), QSize(2560, 1400)}) {
+    window.resize(size);
+    QApplication::processEvents();
+    QApplication::processEvents();
+    if (window.size() != size) found += std::to_string(size.width()) + ": the window does not become so small\n";
+    for (const QString& fault : faults_of(window)) {
+      if (fault.startsWith("error: ") || fault.endsWith("empty plot") || fault.endsWith("empty picture")) continue;
+      found += std::to_string(size.width()) + ": " + fault.toStdString() + "\n";
+    }
+  }
+  window.resize(before);
+  QApplication::processEvents();
+  return found;
 }
 
 Plan small_plan(Plan plan, int phases) {

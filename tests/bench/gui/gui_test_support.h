@@ -6,6 +6,7 @@
 #include <QPushButton>
 #include <QtTest/QTest>
 #include <functional>
+#include <string>
 
 #include "bench/gui/views/main_window.h"
 #include "tests/support/temporary_folder.h"
@@ -14,6 +15,10 @@ namespace todbench::testing {
 
 /// Runs the event loop until something is so; false after a time in which it would have been on a loaded machine.
 [[nodiscard]] bool wait_until(const std::function<bool()>& so, int patience_ms = 60'000);
+
+/// Returns the faults of the shown page (page_check.h) on a small laptop, a desktop and a large screen, one a line,
+/// with the size before each. Empty plots and pictures are no faults, nor is the message that a test provokes.
+[[nodiscard]] std::string faults_at_three_sizes(MainWindow& window);
 
 /// One plate, one mounting, two contrasts, few phases: 40 trials per phase.
 [[nodiscard]] Plan small_plan(Plan plan, int phases);
