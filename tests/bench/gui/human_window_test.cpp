@@ -59,6 +59,7 @@ TEST(HumanObserver, LeavesItsAnswersBesideTheModelsInTheSameSession) {
   ASSERT_TRUE(changed) << changed.error().message;
   EXPECT_THAT(*changed, ::testing::IsEmpty());
   EXPECT_TRUE(wait_until([&] { return window->sessions().current() && window->sessions().current()->human; }));
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
 }
 
 TEST(HumanObserver, JudgesSeveralSourcesBlindInOneMixedOrder) {
@@ -98,6 +99,7 @@ TEST(HumanObserver, JudgesSeveralSourcesBlindInOneMixedOrder) {
   EXPECT_EQ(human.blind_result()->sources, (std::vector<std::string>{"camera", "simulated", "sharp"}));
   EXPECT_TRUE(std::filesystem::exists(human.folder() / "blind.json"));
   EXPECT_TRUE(window.part<QLabel>("humanResult").text().contains("sharp"));
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
   EXPECT_EQ(read_text_file(session / "manifest.json").value(), before) << "the recorded session does not change";
 }
 
@@ -270,8 +272,10 @@ TEST(HumanObserver, TrainsWithFeedbackBeforeAndGivesNoneDuringTheTest) {
       window->human().begin(window->measure().trials(), window->bench().plan(), window->measure().folder(), options),
       "");
 
+  window->show_view(View::human);
   window->human().answer(training[0].trial.truth);
   EXPECT_TRUE(window->human().feedback().startsWith("✓"));
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
   window->human().answer(training[1].trial.truth == Apex::up ? Apex::down : Apex::up);
   EXPECT_TRUE(window->human().feedback().startsWith("✗"));
   window->human().answer(Apex::up);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The real window with the emulated laboratory: a GigE camera at 50 Hz, instruments on the network.
 #include <QLabel>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QSlider>
 #include <QStatusBar>
 #include <QTableWidget>
 #include <QTreeWidget>
 
+#include "bench/devices/emulation.h"
 #include "bench/gui/views/picture_view.h"
 #include "bench/gui/views/plot_view.h"
 #include "tests/bench/gui/gui_test_support.h"
@@ -72,6 +74,38 @@ TEST(LaboratoryWindow, AlignsThenMeasuresThenComparesAndWritesThePdf) {
 
   EXPECT_TRUE(std::filesystem::exists(window->measure().folder() / "report.pdf"));
   EXPECT_THAT(window.part<QLabel>("sessionTitle").text().toStdString(), HasSubstr("TB0001"));
+}
+
+TEST(LaboratoryWindow, ShowsACameraWithoutATargetAndItsControls) {
+  ShownWindow window(emulated_laboratory, 2);
+  auto laboratory = start_laboratory(emulation_for(window->bench().plan()));
+  ASSERT_TRUE(laboratory) << laboratory.error().message;
+  const QString camera = QString::fromStdString((*laboratory)->camera_id());
+  Plan plan = window->bench().plan();
+  plan.camera.id = camera.toStdString();
+  window->bench().set_plan(plan);  // lists it
+  ASSERT_TRUE(window->bench().select_device(emulated_laboratory));
+  ASSERT_TRUE(window->bench().select_device(camera));
+  plan = window->bench().plan();
+  EXPECT_EQ(plan.target.kind, TargetKind::prompt);
+  EXPECT_EQ(plan.camera.ifov_mrad, 0);
+  plan.target.kind = TargetKind::scpi;
+  plan.target.black_body = plan.target.stage = "127.0.0.1:1";  // nobody's
+  window->bench().set_plan(plan);
+  QStringList notes;
+  QObject::connect(&window->bench(), &Workbench::noted, [&](const QString& sentence) { notes << sentence; });
+
+  window.click("startLooking");
+  ASSERT_TRUE(wait_until([&] { return window->look().latest() && notes.join("").contains("without its target"); }));
+
+  auto& rate = window.part<QLineEdit>("cameraFramerate");
+  ASSERT_TRUE(wait_until([&] { return rate.isEnabled(); }));
+  EXPECT_TRUE(rate.toolTip().contains("AcquisitionFrameRate")) << rate.toolTip().toStdString();
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
+  window.click("startLooking");
+  ASSERT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
+  EXPECT_EQ(window->bench().devices().back().id, camera);
+  EXPECT_EQ(window->bench().devices().back().health, DeviceHealth::ready) << "its target failed, not the camera";
 }
 
 TEST(LaboratoryWindow, SaysThatTheCameraIsGoneAndMeasuresAgainWhenAskedTo) {

@@ -320,6 +320,7 @@ TEST(Window, ShowsTheLivePictureWithCountsAndKelvinUnderTheCursor) {
   EXPECT_EQ(reading->counts, window->look().latest()->frame.counts(120, 160));
   EXPECT_THAT(window.part<QLabel>("pixelReading").text().toStdString(), HasSubstr("column 160, row 120"));
   EXPECT_THAT(window.part<QLabel>("pixelReading").text().toStdString(), HasSubstr(" K"));
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
   window.click("startLooking");
   EXPECT_TRUE(wait_until([&] { return window->bench().activity() == Activity::idle; }));
 }
