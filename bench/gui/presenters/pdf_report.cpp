@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "bench/gui/presenters/document_text.h"
 #include "bench/text/files.h"
@@ -104,14 +105,17 @@ RowExtent extent_of(const QTextDocument& document, const QTextTable& table, int 
   return out;
 }
 
-/// Adds room below the text of a row.
+/// Adds room below the text of a row. Lays the document out once, not after every cell.
 void extend_row(QTextDocument& document, QTextTable& table, int row, double by_px) {
+  QTextCursor edit(&document);
+  edit.beginEditBlock();
   for (int column = 0; column < table.columns(); ++column) {
     QTextTableCell cell = table.cellAt(row, column);
     QTextTableCellFormat format = cell.format().toTableCellFormat();
     format.setBottomPadding(format.bottomPadding() + by_px);
     cell.setFormat(format);
   }
+  edit.endEditBlock();
   lay_out_from(document, table.firstPosition());
 }
 
@@ -126,17 +130,16 @@ void keep_rows_whole(QTextDocument& document, QTextTable& table) {
     const auto [top, bottom] = extent_of(document, table, row);
     const double page_end = height * std::floor(bottom / height);
     if (top >= page_end || bottom - top > height / 2) continue;
-    double best_px = page_end - top, highest = std::numeric_limits<double>::infinity();
+    double best_px = page_end - top, highest = std::numeric_limits<double>::infinity(), extended_px = 0;
     for (double less_px = 0; less_px <= most_px; less_px += step_px) {
       const double by_px = page_end - top - less_px;
-      extend_row(document, table, row - 1, by_px);
+      extend_row(document, table, row - 1, by_px - std::exchange(extended_px, by_px));
       const double before = extent_of(document, table, row - 1).top, moved = extent_of(document, table, row).top;
-      extend_row(document, table, row - 1, -by_px);
       if (before >= page_end || moved < page_end || moved >= highest) continue;
       best_px = by_px;
       highest = moved;
     }
-    extend_row(document, table, row - 1, best_px);
+    extend_row(document, table, row - 1, best_px - extended_px);
   }
 }
 
