@@ -234,6 +234,10 @@ void add_left_out(AccuracyBill& bill, const SensorPlan& effects) {
 AccuracyBill accuracy_bill(const BillInput& input) {
   AccuracyBill bill{.rows = {}, .total_s = input.wall_s, .sentences = {}};
   add_rows(bill, input);
+  // The parts of a resumed run were taken in more than one run.
+  double parts_s = 0;
+  for (const BillRow& row : bill.rows) parts_s += row.seconds.value_or(0);
+  bill.total_s = std::max(bill.total_s, parts_s);
   add_floor(bill, input);
   add_least(bill, input);
   add_left_out(bill, input.effects);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/device_plan.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "bench/plan/descriptions.h"
@@ -31,6 +34,15 @@ void replace(T& value, const T& from, const T& to) {
   if (value == from) value = to;
 }
 
+/// The same for a list: of one that was changed in part, the rows that were filled in go.
+template <typename T>
+void replace_rows(std::vector<T>& rows, const std::vector<T>& from, const std::vector<T>& to) {
+  if (rows == from)
+    rows = to;
+  else if (to.empty())
+    std::erase_if(rows, [&](const T& row) { return std::ranges::find(from, row) != from.end(); });
+}
+
 void replace_words(Plan& plan, const Plan& from, const Plan& to) {
   replace(plan.description, from.description, to.description);
   replace(plan.unit, from.unit, to.unit);
@@ -45,10 +57,10 @@ void replace_laboratory(Plan& plan, const Plan& from, const Plan& to) {
   replace(plan.target.mounting_change_s, from.target.mounting_change_s, to.target.mounting_change_s);
   replace(plan.target.contrast_change_s, from.target.contrast_change_s, to.target.contrast_change_s);
   replace(plan.target.shift_change_s, from.target.shift_change_s, to.target.shift_change_s);
-  replace(plan.limits.acuity, from.limits.acuity, to.limits.acuity);
-  replace(plan.limits.measures, from.limits.measures, to.limits.measures);
-  replace(plan.limits.zones, from.limits.zones, to.limits.zones);
-  replace(plan.uncertainty.rows, from.uncertainty.rows, to.uncertainty.rows);
+  replace_rows(plan.limits.acuity, from.limits.acuity, to.limits.acuity);
+  replace_rows(plan.limits.measures, from.limits.measures, to.limits.measures);
+  replace_rows(plan.limits.zones, from.limits.zones, to.limits.zones);
+  replace_rows(plan.uncertainty.rows, from.uncertainty.rows, to.uncertainty.rows);
 }
 
 /// Removes what an order states about a single unit. Customer, laboratory and method stay.

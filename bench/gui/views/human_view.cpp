@@ -347,17 +347,17 @@ void HumanView::show_question() {
                        : question == of_bars ? "Answer with the left or right arrow key, or click."
                                              : "Answer with the arrow keys.";
   const bool yes_or_no = question == of_bars && criterion() == BarCriterion::bars_resolved;
-  hint_->setText(keys +
-                 (yes_or_no ? " Left: four separate bars. Some frames have no bars. There is no feedback. "
-                            : " There is no feedback. If you are not sure, guess. ") +
-                 (question == of_naked_eye
-                      ? "No camera is used: the triangles are drawn on this display, as its section "
-                        "[display] in the plan describes it."
-                  : question == of_blind ? "Camera, twin and packages are mixed, and the page does not tell which is "
-                                           "shown. The recorded frames are replayed first."
-                  : triangles()          ? "You judge the camera's own frames. The answers of the model are not shown."
-                                         : "You judge the same frames of the plan's simulated sensor as the model "
-                                           "observer."));
+  hint_->setText(
+      keys +
+      (yes_or_no ? " Left: four separate bars. Some frames have no bars. Answers that count get no feedback. "
+                 : " Answers that count get no feedback. If you are not sure, guess. ") +
+      (question == of_naked_eye ? "No camera is used: the triangles are drawn on this display, as its section "
+                                  "[display] in the plan describes it."
+       : question == of_blind   ? "Camera, twin and packages are mixed, and the page does not tell which is "
+                                  "shown. The recorded frames are replayed first."
+       : triangles()            ? "You judge the camera's own frames. The answers of the model are not shown."
+                                : "You judge the same frames of the plan's simulated sensor as the model "
+                                  "observer."));
   per_size_->setToolTip(question == of_set    ? "Frames per target and range"
                         : question == of_bars ? "Questions per contrast and frequency"
                                               : "Patches per contrast and size");

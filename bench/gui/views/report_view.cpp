@@ -163,6 +163,7 @@ QWidget* ReportView::session_panel() {
   layout->addWidget(letterhead_line());
   title_ = title_label("No session is open");
   title_->setObjectName("sessionTitle");
+  title_->setWordWrap(true);
   title_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   layout->addWidget(title_);
   verdict_ = new QLabel;

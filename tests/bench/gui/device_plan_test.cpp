@@ -63,7 +63,9 @@ TEST(PlanForCamera, KeepsNoLimitAndNoBudgetOfTheAcceptancePlan) {
 
   Plan mine = *acceptance;
   mine.uncertainty.rows.front().value += 1;
-  EXPECT_EQ(plan_for_camera(mine, "gige:Maker-0815").uncertainty, mine.uncertainty);
+  const std::vector<BudgetRow> kept = plan_for_camera(mine, "gige:Maker-0815").uncertainty.rows;
+  ASSERT_EQ(kept.size(), 1u) << "the other rows are still those of the example";
+  EXPECT_EQ(kept.front(), mine.uncertainty.rows.front());
 }
 
 TEST(PlanForCamera, KeepsTheStatementsOfTheUser) {
