@@ -26,8 +26,8 @@ struct MrtdCoverage {
 };
 
 /// Frames of the SC2000 at 2 m with white noise of its NETD, judged as in a session: eight set-ups of 16 frames at
-/// eight contrasts. `offset_k`: of the target. The plate is 0.3 and -0.2 pixels from where the judge is told: a plate is
-/// located to a whole pixel. The truth is virtual_mrtd() of `draws`.
+/// eight contrasts. `offset_k`: of the target. The plate is 0.3 and -0.2 pixels from where the judge is told: a plate
+/// is located to a whole pixel. The truth is virtual_mrtd() of `draws`.
 inline Result<std::vector<MrtdCoverage>> mrtd_coverage(std::vector<double> per_pitch, int seeds, int draws,
                                                        double offset_k = 0, const TemplateObserverSpec& observer = {}) {
   const SensorSpec sensor = *load_sensor("sc2000");
