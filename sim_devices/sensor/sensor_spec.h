@@ -56,10 +56,10 @@ struct SensorSpec {
   double display_blur_samples = 0;  ///< Gaussian blur of the display per axis, in displayed samples
   /// Strength b of the camera's edge filter per axis, on its samples behind all noise: taps -b, 1 + 2 b, -b; 0: none.
   double edge_boost = 0;
-  int microscan = 1;                ///< n: n x n displacements per picture, n^2 as many samples
-  int bits = 14;                    ///< significant bits of a count
-  double kelvin_per_count = 0.01;   ///< linear temperature output
-  double offset_k = 250;            ///< temperature of count 0
+  int microscan = 1;               ///< n: n x n displacements per picture, n^2 as many samples
+  int bits = 14;                   ///< significant bits of a count
+  double kelvin_per_count = 0.01;  ///< linear temperature output
+  double offset_k = 250;           ///< temperature of count 0
   double frame_rate_hz = 50;
   /// Programs of the user behind the sensor, from picture to picture. SensorModel and estimates do not run them.
   std::vector<ModulePlan> modules{};
