@@ -34,7 +34,8 @@ void replace(T& value, const T& from, const T& to) {
   if (value == from) value = to;
 }
 
-/// The same for a list: of one that was changed in part, the rows that were filled in go.
+/// The same for a list: of one that was changed in part, the rows that were filled in go. Not for limits: a list in
+/// which one was changed is what the user demands.
 template <typename T>
 void replace_rows(std::vector<T>& rows, const std::vector<T>& from, const std::vector<T>& to) {
   if (rows == from)
@@ -57,9 +58,9 @@ void replace_laboratory(Plan& plan, const Plan& from, const Plan& to) {
   replace(plan.target.mounting_change_s, from.target.mounting_change_s, to.target.mounting_change_s);
   replace(plan.target.contrast_change_s, from.target.contrast_change_s, to.target.contrast_change_s);
   replace(plan.target.shift_change_s, from.target.shift_change_s, to.target.shift_change_s);
-  replace_rows(plan.limits.acuity, from.limits.acuity, to.limits.acuity);
-  replace_rows(plan.limits.measures, from.limits.measures, to.limits.measures);
-  replace_rows(plan.limits.zones, from.limits.zones, to.limits.zones);
+  replace(plan.limits.acuity, from.limits.acuity, to.limits.acuity);
+  replace(plan.limits.measures, from.limits.measures, to.limits.measures);
+  replace(plan.limits.zones, from.limits.zones, to.limits.zones);
   replace_rows(plan.uncertainty.rows, from.uncertainty.rows, to.uncertainty.rows);
 }
 
