@@ -62,8 +62,7 @@ class DisplayTarget final : public Target {
                                     [&](const TargetPlate& known) { return known.name == state.plate; });
     if (plate == options_.plates.end())
       return fail(ErrorCode::invalid_input, "the display has no plate '" + state.plate + "'");
-    TODBENCH_TRY(const auto shown_levels, levels_of_contrast(state.delta_t_k, options_));
-    const DisplayLevels ends = shown_levels;
+    TODBENCH_TRY(const DisplayLevels ends, levels_of_contrast(state.delta_t_k, options_));
     TODBENCH_TRY(const auto shares,
                  plate_picture(mounted(*plate, state.mounting), state.shift_mm, options_.display, 0, 1));
     const cv::Mat1f levels = drawn_levels(shares, ends, options_.tone);
@@ -168,7 +167,7 @@ Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options
     if (auto can = levels_of_contrast(delta_t_k, options); !can) return tl::unexpected(can.error());
   }
   TODBENCH_TRY(auto show, shown_by_program(command));
-  const auto first = (show)(cv::Mat1f(options.display.size_px, static_cast<float>(options.tone.level_of(0.5))));
+  const auto first = show(cv::Mat1f(options.display.size_px, static_cast<float>(options.tone.level_of(0.5))));
   if (!first) {
     // The program never showed a picture: a screen is missing, no device was lost.
     const ErrorCode code = first.error().code;

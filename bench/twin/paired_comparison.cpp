@@ -35,7 +35,7 @@ Result<RatioOfPairs> ratio_at(const TodPoint& point, const ContrastScatter& cont
   const std::vector<GradedAnswer> camera = graded_answers(fitted);
   std::vector<PairedAnswer> pairs;
   for (std::size_t i = 0; i < camera.size(); ++i)
-    pairs.push_back({camera[i], (twin)[i].probability_correct, (twin)[i].variance});
+    pairs.push_back({camera[i], twin[i].probability_correct, twin[i].variance});
   const TwinShapeUse& use = *point.fit.twin_shape;
   std::optional<OwnFunctions> own;
   if (by_twin != nullptr) {

@@ -179,8 +179,8 @@ Result<double> band_transmittance(const Tape7Run& run, const SpectralBand& band,
   TODBENCH_TRY(const auto weights, weights_of(run, band, temperature_k));
   double sum = 0, passed = 0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    sum += (weights)[i];
-    passed += (weights)[i] * run.transmittance[i];
+    sum += weights[i];
+    passed += weights[i] * run.transmittance[i];
   }
   return std::min(1.0, passed / sum);
 }

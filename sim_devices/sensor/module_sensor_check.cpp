@@ -61,8 +61,8 @@ Result<void> look_at_numbers(const SensorSpec& spec, SensorModuleReport& report)
   for (const cv::Mat1f& scene : {zero, one, a, b, cv::Mat1f(2 * a - 0.5 * b)}) {
     TODBENCH_TRY(auto frames, frames_of(spec, {scene, zero}));
     if (added.empty())
-      report.noise_k = cv::norm((frames)[1] - (frames)[0]) / std::sqrt(2 * static_cast<double>(size.area()));
-    added.push_back(added.empty() ? (frames)[0] : cv::Mat1f((frames)[0] - added.front()));
+      report.noise_k = cv::norm(frames[1] - frames[0]) / std::sqrt(2 * static_cast<double>(size.area()));
+    added.push_back(added.empty() ? frames[0] : cv::Mat1f(frames[0] - added.front()));
   }
   report.response = cv::mean(added[1])[0];
   const auto largest = [](const cv::Mat1f& picture) { return cv::norm(picture, cv::NORM_INF); };

@@ -67,8 +67,8 @@ void talk_to_black_body(Talk& talk, BlackBodyDevice& device, InstrumentCommands 
   const auto sent = [](const NumberQuestion& question) { return joined(question.queries, "; "); };
   talk.step(device, "limits", sent(words.limits), [&]() -> Result<std::string> {
     TODBENCH_TRY(const auto ends, device.limits(stop));
-    if (!((ends)[0] < (ends)[1])) return fail(ErrorCode::disconnected, "the lower limit is not below the upper limit");
-    return fmt::format("{:.3f} to {:.3f} K", (ends)[0], (ends)[1]);
+    if (!(ends[0] < ends[1])) return fail(ErrorCode::disconnected, "the lower limit is not below the upper limit");
+    return fmt::format("{:.3f} to {:.3f} K", ends[0], ends[1]);
   });
   std::optional<double> there_k;
   talk.step(device, "set-point", sent(words.set_point), [&]() -> Result<std::string> {
@@ -133,7 +133,7 @@ void talk_to_stage(Talk& talk, StageDevice& device, InstrumentCommands commands,
     const auto sent = [](const NumberQuestion& question) { return joined(question.queries, "; "); };
     talk.step(device, "travel", sent(words.position->limits), [&]() -> Result<std::string> {
       TODBENCH_TRY(const auto ends, device.travel(stop));
-      return fmt::format("{:.3f} to {:.3f} mm, {:.3f} to {:.3f} mm", (ends)[0], (ends)[1], (ends)[2], (ends)[3]);
+      return fmt::format("{:.3f} to {:.3f} mm, {:.3f} to {:.3f} mm", ends[0], ends[1], ends[2], ends[3]);
     });
     for (const auto& [name, question] : {std::pair("requested position", &words.position->set_point),
                                          std::pair("measured position", &words.position->measured)}) {

@@ -122,7 +122,7 @@ Result<double> BlackBodyDevice::difference(const NumberQuestion& question, const
 Result<std::array<double, 2>> BlackBodyDevice::limits(const std::stop_token& stop) {
   if (!words().limits.asks()) return words().limits_k;
   TODBENCH_TRY(auto ends, numbers(words().limits, 2, stop));
-  return std::array{in_ours((ends)[0], words().unit), in_ours((ends)[1], words().unit)};
+  return std::array{in_ours(ends[0], words().unit), in_ours(ends[1], words().unit)};
 }
 
 Result<double> BlackBodyDevice::set_point(const std::stop_token& stop) {
@@ -145,7 +145,7 @@ Result<std::array<double, 2>> BlackBodyDevice::absolute_limits(const std::stop_t
   const AbsoluteWords& absolute = *words().absolute;
   if (!absolute.limits.asks()) return absolute.limits_k;
   TODBENCH_TRY(const auto ends, numbers(absolute.limits, 2, stop));
-  return std::array{in_ours((ends)[0], words().absolute_unit), in_ours((ends)[1], words().absolute_unit)};
+  return std::array{in_ours(ends[0], words().absolute_unit), in_ours(ends[1], words().absolute_unit)};
 }
 
 Result<void> BlackBodyDevice::command_absolute(double temperature_k, const std::stop_token& stop) {
@@ -207,7 +207,7 @@ Result<std::array<double, 2>> StageDevice::run_speeds(const std::stop_token& sto
   if (!run.limits.asks()) return run.limits_mm_s;
   TODBENCH_TRY(const auto ends, numbers(run.limits, 2, stop));
   const InstrumentUnit& unit = words().position->unit;
-  return std::array{(ends)[0] * unit.scale, (ends)[1] * unit.scale};
+  return std::array{ends[0] * unit.scale, ends[1] * unit.scale};
 }
 
 Result<PlateRun> StageDevice::run_along_x(double to_mm, double speed_mm_s, const std::stop_token& stop) {
@@ -219,10 +219,9 @@ Result<PlateRun> StageDevice::run_along_x(double to_mm, double speed_mm_s, const
   if (auto done = send(text, stop); !done) return tl::unexpected(done.error());
   TODBENCH_TRY(const auto said, numbers(words().run->measured, 4, stop));
   constexpr double not_a_number = 9e37;  // SCPI-99 volume 1, 7.2.1.5: 9.91E37
-  PlateRun run{.from_mm = in_ours((said)[0], unit),
-               .to_mm = in_ours((said)[1], unit),
-               .speed_mm_s = in_ours((said)[2], per_second)};
-  if ((said)[3] < not_a_number) run.start_s = (said)[3];
+  PlateRun run{
+      .from_mm = in_ours(said[0], unit), .to_mm = in_ours(said[1], unit), .speed_mm_s = in_ours(said[2], per_second)};
+  if (said[3] < not_a_number) run.start_s = said[3];
   // This form also rejects NaN.
   if (!(run.speed_mm_s > 0) || run.from_mm == run.to_mm)
     return fail(ErrorCode::disconnected, name() + ": reports no run after " + text);
@@ -293,7 +292,7 @@ Result<Mounting> StageDevice::mounting(const std::string& query, const std::stop
 Result<cv::Point2d> StageDevice::position(const NumberQuestion& question, const std::stop_token& stop) {
   TODBENCH_TRY(auto place, numbers(question, 2, stop));
   const InstrumentUnit& unit = words().position->unit;
-  return cv::Point2d(in_ours((place)[0], unit), in_ours((place)[1], unit));
+  return cv::Point2d(in_ours(place[0], unit), in_ours(place[1], unit));
 }
 
 Result<void> StageDevice::command_plate(const TargetState& state, const std::stop_token& stop) {

@@ -107,9 +107,9 @@ Result<void> ScpiTarget::open(const std::stop_token& stop) {
   if (options_.temperatures_k.empty()) return {};
   TODBENCH_TRY(const auto absolute, temperatures_k(stop));
   for (const double temperature : options_.temperatures_k) {
-    if (!(temperature >= (absolute)[0] && temperature <= (absolute)[1]))
+    if (!(temperature >= absolute[0] && temperature <= absolute[1]))
       return fail(ErrorCode::invalid_input, black_body_.name() + ": " + decimal(temperature, 3) + " K is outside " +
-                                                decimal((absolute)[0], 3) + " to " + decimal((absolute)[1], 3) + " K");
+                                                decimal(absolute[0], 3) + " to " + decimal(absolute[1], 3) + " K");
   }
   return {};
 }
@@ -276,9 +276,9 @@ Result<PresentedTarget> ScpiTarget::present_temperature(const TargetState& state
   if (auto done = check_within_limits(flat); !done) return tl::unexpected(done.error());
   TODBENCH_TRY(const auto limits, temperatures_k(stop));
   // This form also rejects NaN.
-  if (!(temperature_k >= (limits)[0] && temperature_k <= (limits)[1]))
+  if (!(temperature_k >= limits[0] && temperature_k <= limits[1]))
     return fail(ErrorCode::invalid_input, black_body_.name() + ": " + decimal(temperature_k, 3) + " K is outside " +
-                                              decimal((limits)[0], 3) + " to " + decimal((limits)[1], 3) + " K");
+                                              decimal(limits[0], 3) + " to " + decimal(limits[1], 3) + " K");
   if (auto done = stage_.ensure_connected(stop); !done) return tl::unexpected(done.error());
   if (auto done = black_body_.command_absolute(temperature_k, stop); !done) return tl::unexpected(done.error());
   if (auto done = stage_.command(flat, stop); !done) return tl::unexpected(done.error());
@@ -293,9 +293,9 @@ Result<PlateRun> ScpiTarget::run_along_x(double to_mm, double speed_mm_s, std::s
                                               decimal(travel_.min_mm.x, 3) + " to " + decimal(travel_.max_mm.x, 3) +
                                               " mm");
   TODBENCH_TRY(const auto speeds, stage_.run_speeds(stop));
-  if (!(speed_mm_s >= (speeds)[0] && speed_mm_s <= (speeds)[1]))
+  if (!(speed_mm_s >= speeds[0] && speed_mm_s <= speeds[1]))
     return fail(ErrorCode::invalid_input, stage_.name() + ": " + decimal(speed_mm_s, 3) + " mm/s is outside " +
-                                              decimal((speeds)[0], 3) + " to " + decimal((speeds)[1], 3) + " mm/s");
+                                              decimal(speeds[0], 3) + " to " + decimal(speeds[1], 3) + " mm/s");
   return stage_.run_along_x(to_mm, speed_mm_s, stop);
 }
 

@@ -299,7 +299,7 @@ class MovingRun {
     std::vector<LocatedFrame> chosen;
     cv::Point2d expected(0, 0);
     for (std::size_t i = 0; i < taken.size() && std::ssize(chosen) < options_.frames; ++i) {
-      LocatedFrame& frame = (taken)[i];
+      LocatedFrame& frame = taken[i];
       const auto found =
           measure_shift(frame.kelvin, set_up.plate, begin.moved(expected), at_rest().registration, found_within + step);
       if (!found) {
@@ -307,8 +307,7 @@ class MovingRun {
         return std::vector<LocatedFrame>{};
       }
       frame.moved_px = expected + *found;
-      expected =
-          frame.moved_px + (i + 1 < taken.size() ? px_s * ((taken)[i + 1].time_s - frame.time_s) : cv::Point2d());
+      expected = frame.moved_px + (i + 1 < taken.size() ? px_s * (taken[i + 1].time_s - frame.time_s) : cv::Point2d());
       const double gone = frame.moved_px.dot(along);
       if (gone > whole) expected = px_s * run->duration_s();  // at its end
       if (gone < step * options_.lead_frames || gone > whole - step) continue;

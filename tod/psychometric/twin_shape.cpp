@@ -116,7 +116,7 @@ Result<TwinShape> TwinShape::of(const ProportionTable& table) {
   TODBENCH_TRY(const auto nodes, nodes_of(table));
   std::vector<double> xs, ys;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    xs.push_back((nodes)[k].x);
+    xs.push_back(nodes[k].x);
     ys.push_back(smoothed(nodes, k));
   }
   ys = made_rising(ys);
