@@ -33,8 +33,8 @@ struct IdentificationStudyTask {
 struct SetCriterion {
   std::optional<double> value;
   Interval ci95;
-  /// From the smallest to the largest of the values of an observer with an eye and of both ends of its open parameters
-  /// (open_parameters.h); empty if one has no value. No confidence interval.
+  /// Smallest and largest of three values: that of an observer with an eye and those at both ends of its open
+  /// parameters (open_parameters.h). Empty if one has no value. No confidence interval.
   std::optional<std::pair<double, double>> spread{};
 };
 

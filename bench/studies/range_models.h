@@ -55,7 +55,7 @@ struct RangeSources {
   std::vector<TodThreshold> thresholds;
   std::optional<SensorSpec> sensor{};                   ///< for curves that are not given
   std::optional<LogLinearCurve> mrtd{}, mtdp{}, ctf{};  ///< over cycles/mrad, the same for both axes
-  /// Replaces the MTDP-like curve by the thresholds, whose observer is that of the question; needs the sensor.
+  /// The MTDP-like curve is computed from the thresholds of the question's observer. Needs the sensor.
   std::optional<TodTransfer> transfer{};
 };
 

@@ -49,7 +49,7 @@ inline TodTransfer fitted_transfer(std::span<const MethodPoint> points) {
   return best;
 }
 
-/// Residuals of the transfer that is fitted without the imager of the point, in the order of the points.
+/// Residuals in the order of the points. Each transfer is fitted without the imager of its point.
 inline std::vector<double> left_out_residuals(std::span<const MethodPoint> points) {
   std::map<std::string, TodTransfer> without;
   std::vector<double> residuals;
