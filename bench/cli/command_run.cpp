@@ -18,6 +18,7 @@
 #include "bench/plan/resources.h"
 #include "bench/run/experiment.h"
 #include "bench/run/replay.h"
+#include "bench/run/report_data.h"
 #include "bench/run/resumed_run.h"
 #include "bench/serve/live_run.h"
 #include "bench/session/fit_record.h"
@@ -61,8 +62,8 @@ struct SimulateArguments {
   SimulationOverrides overrides;
 };
 
-ExperimentOptions folder_of(const RunArguments& arguments, const Plan& plan) {
-  if (arguments.out.empty()) return {.folder = session_folder_name(plan.name), .existing = ExistingFolder::number};
+ExperimentOptions folder_of(const RunArguments& arguments, const std::string& name) {
+  if (arguments.out.empty()) return {.folder = session_folder_name(name), .existing = ExistingFolder::number};
   return {.folder = arguments.out,
           .existing = arguments.overwrite ? ExistingFolder::overwrite : ExistingFolder::refuse};
 }
@@ -125,22 +126,13 @@ int run_measure(Console& console, const MeasureArguments& asked, const Program& 
   if (!plan) return report_error(console, plan.error());
   loaded = loaded->with(*plan);
   if (!loaded) return report_error(console, in_terms_of_options(loaded.error()));
-  auto outcome = measure_shown(console, *plan, folder_of(arguments, *plan), asked.serve,
+  auto outcome = measure_shown(console, *plan, folder_of(arguments, plan->name), asked.serve,
                                [&](const ExperimentOptions& options, const ExperimentListener& listener) {
                                  return measure_plan(*loaded, options, listener, program.stop->token());
                                });
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   return show_run(console, *outcome, {.forecast = true});
-}
-
-/// Returns the name of a session folder for a session made from another one.
-Plan named_after(const std::string& session, const std::string& suffix) {
-  auto name = std::filesystem::path(session).lexically_normal();
-  if (name.filename().empty()) name = name.parent_path();
-  Plan named;
-  named.name = name.filename().string() + suffix;
-  return named;
 }
 
 int run_resume(Console& console, const MeasureArguments& asked, const Program& program) {
@@ -150,7 +142,7 @@ int run_resume(Console& console, const MeasureArguments& asked, const Program& p
   auto run =
       open_interrupted_run(asked.resumed, nullptr, asked.opening, asked.run_modules ? RunModules::yes : RunModules::no);
   if (!run) return report_error(console, run.error());
-  auto outcome = measure_shown(console, run->session.plan, folder_of(asked.run, named_after(asked.resumed, "-resumed")),
+  auto outcome = measure_shown(console, run->session.plan, folder_of(asked.run, run->session.plan.name + "-resumed"),
                                asked.serve, [&](const ExperimentOptions& options, const ExperimentListener& listener) {
                                  return resume_session(*std::move(run), options, listener, program.stop->token());
                                });
@@ -165,7 +157,7 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
   if (!loaded) return report_error(console, loaded.error());
   RunDisplay shown(console, loaded->plan());
   auto outcome =
-      simulate_plan(*loaded, folder_of(arguments.run, loaded->plan()), shown.listener(), program.stop->token());
+      simulate_plan(*loaded, folder_of(arguments.run, loaded->plan().name), shown.listener(), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
   return show_run(console, *outcome, {.effects = true});
@@ -187,7 +179,7 @@ int run_demo(Console& console, const DemoArguments& asked, const Program& progra
   if (!laboratory) return report_error(console, laboratory.error());
   *plan = with_laboratory(*plan, **laboratory);
   if (camera != "gige") plan->unit = "emulated " + camera + " camera";
-  auto outcome = measure_shown(console, *plan, folder_of(arguments, *plan), asked.measure.serve,
+  auto outcome = measure_shown(console, *plan, folder_of(arguments, plan->name), asked.measure.serve,
                                [&](const ExperimentOptions& options, const ExperimentListener& listener) {
                                  return measure_plan(*plan, options, listener, program.stop->token());
                                });
@@ -240,7 +232,7 @@ struct ReplayArguments {
 
 int run_replay(Console& console, const ReplayArguments& asked, const Program& program) {
   const auto& [arguments, session, opening, run_modules] = asked;
-  const ExperimentOptions options = folder_of(arguments, named_after(session, "-replay"));
+  const ExperimentOptions options = folder_of(arguments, session_name(session) + "-replay");
   auto outcome = replay_session(session, options, listener_of(console), program.stop->token(), opening,
                                 run_modules ? RunModules::yes : RunModules::no);
   console.end_progress();

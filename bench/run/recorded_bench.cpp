@@ -159,7 +159,7 @@ Result<std::shared_ptr<FrameStreamWriter>> record_bench(OpenedBench& bench, cons
       {sets_shift_key, yes_no(bench.target->capabilities().sets_shift)},
       {simulated_key, yes_no(bench.simulated)},
       {comes_back_key, yes_no(bench.host->recovers())},
-      {frames_while_presenting_key, yes_no(bench.host->frames_while_presenting() == FramesWhilePresenting::take)}};
+      {frames_while_presenting_key, yes_no(bench.host->frames_while_presenting() != FramesWhilePresenting::leave)}};
   TODBENCH_TRY(auto writer, FrameStreamWriter::create(file, header));
   const auto stream = std::make_shared<FrameStreamWriter>(std::move(writer));
   bench.camera = recording_camera(std::move(bench.camera), stream);

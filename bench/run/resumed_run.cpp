@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "acquisition/base/try.h"
@@ -180,12 +181,25 @@ CameraPatience as_after_a_loss(const CameraPlan& camera, const std::function<voi
           }};
 }
 
+/// A run that is under way holds the claim. A killed program holds it until the system has taken its memory back, which
+/// takes a moment on a busy computer.
+Result<std::shared_ptr<const FolderClaim>> claim_of_ended_run(const std::filesystem::path& session) {
+  constexpr std::chrono::seconds longest_end{2};
+  constexpr std::chrono::milliseconds between_attempts{50};
+  const auto until = std::chrono::steady_clock::now() + longest_end;
+  auto claim = claim_folder(session);
+  while (!claim && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(between_attempts);
+    claim = claim_folder(session);
+  }
+  return claim;
+}
+
 }  // namespace
 
 Result<RecordedRun> open_interrupted_run(const std::filesystem::path& session, const Pause* pause,
                                          const Opening& opening, RunModules modules) {
-  // A run that is under way holds the claim; that of a killed program ended with it.
-  if (auto claim = claim_folder(session); !claim)
+  if (auto claim = claim_of_ended_run(session); !claim)
     return fail(ErrorCode::invalid_input,
                 session.string() + ": the run of this session is under way in another program; stop it first");
   TODBENCH_TRY(
@@ -199,9 +213,7 @@ Result<RecordedRun> open_interrupted_run(const std::filesystem::path& session, c
 
 Result<ExperimentOutcome> resume_session(RecordedRun run, ExperimentOptions options, const ExperimentListener& listener,
                                          std::stop_token stop) {
-  Plan plan = run.session.plan;
-  plan.measurement.record_frames = false;
-  TODBENCH_TRY(const LoadedPlan loaded, LoadedPlan::of(std::move(plan), run.session.parts));
+  TODBENCH_TRY(const LoadedPlan loaded, LoadedPlan::of(run.session.plan, run.session.parts));
   options.origin = OriginRecord{.session = std::filesystem::absolute(run.folder).lexically_normal().string(),
                                 .manifest_sha256 = run.session.manifest_sha256,
                                 .signed_by = "",

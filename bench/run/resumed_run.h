@@ -20,8 +20,8 @@ namespace todbench {
 /// first part again, with the same trials; at their end the camera takes over as after a loss: the plate is located
 /// again, the presentation is repeated, and the gap is an interruption of the run (a new segment). Camera, settings and
 /// temperature scale must be those of the recording. A camera that cannot be opened yet is waited for as after a loss,
-/// at most `reconnect_s` of the plan. The frames of the new session are not recorded. Errors: those of measure_plan();
-/// `invalid_input` for another camera.
+/// at most `reconnect_s` of the plan. The new session records the frames of both parts, so that it can be resumed or
+/// replayed in turn. Errors: those of measure_plan(); `invalid_input` for another camera.
 [[nodiscard]] Result<ExperimentOutcome> resume_session(RecordedRun run, ExperimentOptions options,
                                                        const ExperimentListener& listener, std::stop_token stop);
 

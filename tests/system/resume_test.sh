@@ -46,11 +46,11 @@ record_frames = true
 PLAN
 "$program" measure plan.toml --out whole --quiet >/dev/null 2>said || fail "the whole run: $(cat said)"
 rows=$(wc -l <whole/trials.csv)
-# Prints problems of the resumed session $2 of the interrupted session $1.
+# Prints problems of the resumed session $2 of the interrupted session $1, which was resumed $3 times in all (1 if not given).
 check() {
-  python3 - "$1" "$2" "$camera" <<'PYTHON'
+  python3 - "$1" "$2" "$camera" "${3:-1}" <<'PYTHON'
 import csv, json, sys
-then, now, camera = sys.argv[1:]
+then, now, camera, gaps = *sys.argv[1:4], int(sys.argv[4])
 rows = lambda folder: list(csv.reader(open(folder + "/trials.csv")))
 old, new, whole = rows(then), rows(now), rows("whole")
 if len(new) != len(whole): print(f"{now}: {len(new)} rows of trials, expected {len(whole)}")
@@ -58,8 +58,8 @@ complete = len(old) - 1 if len(old[-1]) < len(old[0]) else len(old)
 if new[:complete] != old[:complete]: print(f"{now}: the trials of the first part differ")
 record = json.load(open(now + "/provenance.json"))
 # A run that was killed while it fitted its trials has nothing left to measure.
-segments = 2 if complete < len(whole) else 1
-if (record["state"], record["interrupted"], record["segments"]) != ("complete", segments == 2, segments): print(now, record["state"], record["interrupted"], record["segments"])
+segments = gaps + (complete < len(whole))
+if (record["state"], record["interrupted"], record["segments"]) != ("complete", segments > 1, segments): print(now, record["state"], record["interrupted"], record["segments"])
 if not record["origin"]["resumed"] or not record["origin"]["session"].endswith(then): print(now, record["origin"])
 curve = lambda folder: next(row for row in csv.DictReader(open(folder + "/curve.csv")) if row["side"] == "measured")
 a, b = curve("whole"), curve(now)
@@ -101,6 +101,22 @@ while [ $k -lt "$kills" ]; do
   resumed=$((resumed + 1))
 done
 echo "$resumed of $kills runs were killed and resumed, failed: $failed"
+# A resumed run that is killed can be resumed in turn.
+if [ ! -e cut-1/manifest.json ]; then
+  "$program" measure --resume cut-1 --out twice --quiet >/dev/null 2>&1 &
+  process=$!
+  until_rows twice $((rows * 3 / 4))
+  kill -9 $process 2>/dev/null
+  wait $process 2>/dev/null
+  if [ ! -e twice/manifest.json ]; then
+    "$program" measure --resume twice --out whole-twice --quiet >/dev/null 2>said || [ $? = 3 ] || fail "resumed for the second time: $(cat said)"
+    problems=$(check twice whole-twice 2)
+    [ -z "$problems" ] || fail "$problems"
+    "$program" replay whole-twice --out replayed --quiet >/dev/null 2>said || [ $? = 3 ] || fail "replay of a resumed run: $(cat said)"
+    cmp -s whole-twice/trials.csv replayed/trials.csv || fail "the replay of a resumed run has other trials"
+    echo "a resumed run was killed, resumed and replayed"
+  fi
+fi
 # A stop request ends the first part in another way: the failure of the last frame or target is recorded.
 "$program" measure plan.toml --out stopped --quiet >/dev/null 2>&1 &
 process=$!

@@ -321,6 +321,10 @@ void MainWindow::connect_parts() {
     }
     show_state();
   });
+  // A message without a remedy asks for another value; it may have been stated now.
+  connect(&bench_, &Workbench::plan_changed, this, [this] {
+    if (!away_ && retry_->isHidden()) message_->hide();
+  });
   connect(&bench_, &Workbench::device_selected, this, &MainWindow::show_state);
   connect(&bench_, &Workbench::devices_changed, this, &MainWindow::show_state);
   connect(retry_, &QPushButton::clicked, this, [this] {

@@ -147,8 +147,14 @@ TEST(ForgivingWindow, OffersToTryAgainOnlyWhatMaySucceed) {
 
   EXPECT_FALSE(window.part<QPushButton>("retry").isVisible()) << "the same plan fails again";
   EXPECT_EQ(faults_at_three_sizes(*window), "");
+  plan.simulation.sensor = "sc2000";
+  window->bench().set_plan(plan);
+  EXPECT_FALSE(window.part<QLabel>("messageText").isVisible()) << "the value was changed";
+
   emit window->bench().trouble("the camera is gone", Remedy::try_again);
-  EXPECT_TRUE(window.part<QPushButton>("retry").isVisible());
+  plan.seed += 1;
+  window->bench().set_plan(plan);
+  EXPECT_TRUE(window.part<QPushButton>("retry").isVisible()) << "the plan was not the reason";
 }
 
 TEST(ForgivingWindow, ShowsTheNotesOfARun) {
