@@ -196,8 +196,7 @@ void MeasurePresenter::replay(const std::filesystem::path& session, const Plan& 
   begin(plan);
   replayed_ = session;
   resumed_.reset();
-  const std::filesystem::path folder =
-      bench_.sessions_folder() / session_folder_name(plan.name + "-replay");
+  const std::filesystem::path folder = bench_.sessions_folder() / session_folder_name(plan.name + "-replay");
   bench_.run_without_devices(
       Activity::replaying, [this, run = run_, session, folder](const Plan&, const std::stop_token& stop) {
         const ExperimentOptions options{.folder = folder, .existing = ExistingFolder::number, .host = host()};
@@ -214,8 +213,7 @@ void MeasurePresenter::resume_run(const std::filesystem::path& session, const Pl
   begin(plan);
   replayed_.reset();
   resumed_ = session;
-  const std::filesystem::path folder =
-      bench_.sessions_folder() / session_folder_name(plan.name + "-resumed");
+  const std::filesystem::path folder = bench_.sessions_folder() / session_folder_name(plan.name + "-resumed");
   bench_.run(Activity::measuring, [this, run = run_, session, folder](const Plan&, const std::stop_token& stop) {
     const ExperimentOptions options{.folder = folder, .existing = ExistingFolder::number, .host = host()};
     auto opened = open_interrupted_run(session, options.host.pause);
