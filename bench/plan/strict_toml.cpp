@@ -43,6 +43,14 @@ struct TomlReader::Document {
   std::vector<Mistake> mistakes;
   std::vector<std::unique_ptr<Table>> tables;
 
+  /// Names the section of a misplaced key; empty unless exactly one section has it.
+  [[nodiscard]] std::string section_hint(std::string_view key) const {
+    std::set<std::string> sections;
+    for (const std::unique_ptr<Table>& table : tables) {
+      if (!table->path.empty() && table->asked.contains(key)) sections.insert(table->path);
+    }
+    return sections.size() == 1 ? ", it is a key of [" + *sections.begin() + "]" : "";
+  }
   /// `sentence` includes the key as written in the file.
   [[nodiscard]] Mistake mistake(Kind kind, std::uint32_t line, const std::string& sentence, ErrorKey key) const {
     return {kind, line, file + ":" + std::to_string(line) + ": " + sentence, std::move(key)};
@@ -379,7 +387,8 @@ Result<void> TomlReader::finish() const {
     for (const auto& [key, value] : *table->node) {
       if (table->asked.contains(key.str())) continue;
       const std::uint32_t line = std::max<std::uint32_t>(1, key.source().begin.line);
-      const std::string hint = nearest_name_hint(key.str(), known);
+      std::string hint = nearest_name_hint(key.str(), known);
+      if (hint.empty()) hint = document_->section_hint(key.str());
       mistakes.push_back(document_->mistake(Document::Kind::present, line,
                                             "unknown " + table->name_of(key.str()) + hint,
                                             {table->path_of(key.str()), "unknown" + hint}));

@@ -66,7 +66,13 @@ std::optional<std::string> nearest_name(std::string_view name, std::span<const s
       best = candidate;
     }
   }
-  return best;
+  if (best || name.empty()) return best;
+  // One word of a longer name.
+  const auto is_word_of = [&](const std::string& candidate) {
+    return candidate.ends_with("_" + std::string(name)) || candidate.starts_with(std::string(name) + "_");
+  };
+  const auto longer = std::ranges::find_if(known, is_word_of);
+  return longer == known.end() ? std::nullopt : std::optional(*longer);
 }
 
 std::string nearest_name_hint(std::string_view name, std::span<const std::string> known) {

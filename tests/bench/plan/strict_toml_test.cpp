@@ -50,6 +50,8 @@ INSTANTIATE_TEST_SUITE_P(
         TomlMistake{"unknown_key", "name = \"x\"\n[target]\nphasse = 4\n",
                     "plan.toml:3: unknown key 'phasse' in [target], did you mean 'phases'?"},
         TomlMistake{"unknown_key_far_from_all", "\n\nzzzzzz = 1\n", "plan.toml:3: unknown key 'zzzzzz'"},
+        TomlMistake{"key_of_another_section", "distance_m = 1\n",
+                    "plan.toml:1: unknown key 'distance_m', it is a key of [target]"},
         TomlMistake{"unknown_table", "[tarjet]\ndistance_m = 1\n",
                     "plan.toml:1: unknown key 'tarjet', did you mean 'target'?"},
         TomlMistake{"unknown_before_missing", "[[limit]]\n\nleats = 1\n",

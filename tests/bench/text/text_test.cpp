@@ -51,8 +51,9 @@ TEST(ParseNumber, TakesWholeFiniteNumbersOnly) {
 }
 
 TEST(NearestName, FindsTheSlipOfThePenAndNothingFarther) {
-  const std::vector<std::string> known{"phases", "plates", "distance_m"};
+  const std::vector<std::string> known{"phases", "plates", "distance_m", "item_condition"};
 
+  EXPECT_EQ(nearest_name("condition", known), "item_condition");
   EXPECT_EQ(nearest_name("phasse", known), "phases");
   EXPECT_EQ(nearest_name("distance", known), "distance_m");
   EXPECT_EQ(nearest_name("lpates", known), "plates");
