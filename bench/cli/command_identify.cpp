@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "acquisition/base/try.h"
 #include "bench/cli/chain_options.h"
@@ -16,6 +20,8 @@
 #include "bench/plan/descriptions.h"
 #include "bench/report/tod_figures.h"
 #include "bench/studies/identification_study.h"
+#include "bench/text/text.h"
+#include "sim_devices/prediction/identification_passes.h"
 
 namespace todbench {
 namespace {
@@ -28,9 +34,35 @@ struct IdentifyArguments {
   std::optional<double> cn2{};
   int decisions = 2000;
   bool plan = false;
-  std::string templates = "camera", cues = "all";
+  std::string templates = "camera", cues = "all", sequence = "single-frame";
+  std::vector<double> motion_mrad_s{};
+  int frames = 8;
   EffectDecisionOptions shown;
 };
+
+constexpr std::array template_names{std::pair("camera", TemplateKnowledge::behind_camera),
+                                    std::pair("camera-at-rest", TemplateKnowledge::behind_camera_at_rest),
+                                    std::pair("ideal", TemplateKnowledge::ideal)};
+
+TemplateKnowledge knowledge_from(const std::string& name) {
+  return std::ranges::find_if(template_names, [&](const auto& known) { return name == known.first; })->second;
+}
+
+std::string_view templates_name(TemplateKnowledge knowledge) {
+  return std::ranges::find_if(template_names, [&](const auto& known) { return knowledge == known.second; })->first;
+}
+
+/// Names of the uses of the frames of a pass.
+std::vector<std::string> sequence_names() {
+  std::vector<std::string> names;
+  for (const SequenceObserver observer : all_sequence_observers) names.emplace_back(to_string(observer));
+  return names;
+}
+
+/// Pixels from frame to frame.
+double pixels_per_frame(const IdentificationStudyTask& task) {
+  return cv::norm(step_of_pass(task.sensor, task.motion)) / task.sensor.samples_per_pitch();
+}
 
 Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, const Program& program) {
   IdentificationStudyTask task;
@@ -50,7 +82,11 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
   task.accuracy = chain.accuracy;
   task.ranges_m = a.ranges_m;
   task.decisions = a.decisions;
-  task.knowledge = a.templates == "ideal" ? TemplateKnowledge::ideal : TemplateKnowledge::behind_camera;
+  task.knowledge = knowledge_from(a.templates);
+  if (!a.motion_mrad_s.empty()) task.motion = {.x_mrad_s = a.motion_mrad_s[0], .y_mrad_s = a.motion_mrad_s[1]};
+  task.sequence =
+      *std::ranges::find(all_sequence_observers, a.sequence, [](SequenceObserver s) { return to_string(s); });
+  task.frames = a.frames;
   task.cues = a.cues == "shape" ? TargetCues::shape : TargetCues::all;
   task.m75 = a.m75;
   task.seed = program.common.seed;
@@ -129,7 +165,11 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
             {"sensor", task.sensor.name},
             {"samples_per_pitch", task.sensor.samples_per_pitch()},
             {"observer", task.observer.name},
-            {"templates", task.knowledge == TemplateKnowledge::ideal ? "ideal" : "camera"},
+            {"templates", templates_name(task.knowledge)},
+            {"motion_mrad_s", {json_number(task.motion.x_mrad_s), json_number(task.motion.y_mrad_s)}},
+            {"motion_px_per_frame", json_number(pixels_per_frame(task))},
+            {"sequence", to_string(task.sequence)},
+            {"frames", task.sequence == SequenceObserver::single_frame ? 1 : task.frames},
             {"cues", task.cues == TargetCues::shape ? "shape" : "all"},
             {"atmosphere", {{"name", task.air.name}, {"source", task.air.source}}},
             {"turbulence", turbulence},
@@ -156,6 +196,12 @@ void print_identification(Console& console, const IdentificationStudyTask& task,
   console.text(fmt::format("{} targets of {}, sensor {}, observer {}; mean size {:.3g} m, mean dT_RSS {:.3g} K",
                            task.set.targets.size(), task.set.name, task.sensor.name, task.observer.name, study.size_m,
                            study.dt_rss_k));
+  if (task.motion.moving())
+    console.text(
+        fmt::format("motion of the picture: {:g} mrad/s to the right, {:g} mrad/s downwards, {:.3g} pixels per frame",
+                    task.motion.x_mrad_s, task.motion.y_mrad_s, pixels_per_frame(task)));
+  if (task.sequence != SequenceObserver::single_frame)
+    console.text(fmt::format("{} of {} frames", to_string(task.sequence), task.frames));
   std::vector<TableRow> rows;
   TableRow header{"range [m]", "transmittance", "P correct", "95 %"};
   if (task.observer.eye) header.emplace_back("spread of the open parameters");
@@ -186,7 +232,7 @@ int run_identify(Console& console, const IdentifyArguments& a, const Program& pr
   const auto task = identification_task(a, program);
   if (!task) return report_error(console, task.error());
   for (const auto& sentence : task->air.notes) console.note(sentence);
-  const DecidedEffects effects{task->sensor.name, full_plan(task->sensor, {}, {}),
+  const DecidedEffects effects{task->sensor.name, full_plan(task->sensor, {}, {}, task->motion),
                                no_criterion_for("the identification of targets")};
   if (a.shown.dry_run) return dry_run(console, {effects}, a.shown);
   const auto experiment = experiment_of(*task);
@@ -236,9 +282,9 @@ void add_identify_command(CLI::App& app, Program& program) {
       ->capture_default_str();
   command
       ->add_option("--templates", a->templates,
-                   "templates of the observer: camera (targets as this camera shows them) or ideal (without the blur "
-                   "of the camera)")
-      ->check(CLI::IsMember({"camera", "ideal"}))
+                   "templates of the observer: camera (targets as this camera shows them in this motion), "
+                   "camera-at-rest (without motion) or ideal (without the blur of the camera)")
+      ->check(CLI::IsMember({"camera", "camera-at-rest", "ideal"}))
       ->capture_default_str();
   command
       ->add_option("--cues", a->cues,
@@ -251,6 +297,21 @@ void add_identify_command(CLI::App& app, Program& program) {
           "structure parameter of the turbulence along the path to every range, in m^(-2/3); default: the value "
           "of the sensor")
       ->check(number_in(0, 1e-11));
+  command
+      ->add_option("--motion-mrad-s", a->motion_mrad_s,
+                   "motion of the picture to the right and downwards in mrad/s: the targets move, or the camera turns "
+                   "the other way")
+      ->expected(2)
+      ->check(number_in(-1e4, 1e4));
+  command
+      ->add_option("--sequence", a->sequence,
+                   "frames that the observer uses: single-frame, tracking-sum (scores of all frames, each at the true "
+                   "place) or static-sum (mean of all frames)")
+      ->check(CLI::IsMember(sequence_names()))
+      ->capture_default_str();
+  command->add_option("--frames", a->frames, "frames of a pass for the sums")
+      ->check(whole_number(1, 64))
+      ->capture_default_str();
   a->shown.add_to(*command);
   command->add_flag("--plan", a->plan, "prints the predicted effort and ends");
   command->add_option("--m75", a->m75, "criterion M75 for the range that the TOD curve predicts")

@@ -78,12 +78,13 @@ Result<std::vector<TodThreshold>> tod_curve_for(const IdentificationStudyTask& t
   TemplateObserver observer(task.observer, triangle_alternatives());
   SensorSpec sensor = task.sensor;
   if (task.cn2_m_minus_2_3 > 0) sensor.turbulence_cn2_m_minus_2_3 = 0;  // the turbulence of the paths is added later
-  const SensorPlan plan = full_plan(sensor, {}, {});
+  const SensorPlan plan = full_plan(sensor, {}, {}, task.motion);
   const double least = dt_k * least_tau / 1.1;
   std::vector<TodThreshold> curve;
   for (const double contrast_k : {least, std::sqrt(least * 1.1 * dt_k), 1.1 * dt_k}) {
-    const auto points = direct_estimate(sensor, plan, observer, {contrast_k},
-                                        {.accuracy = task.accuracy, .seed = task.seed, .stop = task.stop});
+    const auto points =
+        direct_estimate(sensor, plan, observer, {contrast_k},
+                        {.motion = task.motion, .accuracy = task.accuracy, .seed = task.seed, .stop = task.stop});
     if (!points) {
       if (points.error().code == ErrorCode::interrupted) return tl::unexpected(points.error());
       notes.push_back(fmt::format("TOD at {:.3g} K: {}", contrast_k, points.error().message));
@@ -142,9 +143,22 @@ Result<void> check_ranges(const IdentificationStudyTask& task) {
   return {};
 }
 
+/// Reason why the direct estimate has no TOD curve for the pictures of a task; empty if it has one.
+std::string no_curve_because(const IdentificationStudyTask& task) {
+  if (task.sequence != SequenceObserver::single_frame)
+    return "the TOD curve would be that of a single frame, and the observer sums several";
+  if (task.motion.moving() && task.cn2_m_minus_2_3 > 0)
+    return "the TOD curve behind turbulent paths is that of targets at rest";
+  return "";
+}
+
 /// Adds the curve of the observer, and what follows from it and from the range with 75 % right: criteria of the set and
 /// the predicted range.
 Result<void> rate_by_curve(const IdentificationStudyTask& task, double least_tau, IdentificationStudy& study) {
+  if (const std::string reason = no_curve_because(task); !reason.empty()) {
+    study.notes.push_back("no M75, no V50 and no predicted range: " + reason);
+    return {};
+  }
   TODBENCH_TRY(study.tod, tod_curve_for(task, study.dt_rss_k, least_tau, study.notes));
   if (study.tod.empty()) return {};
   const RangeTask question{.size_m = study.size_m, .delta_t_k = study.dt_rss_k, .m75 = task.m75, .air = task.air.air};
@@ -222,7 +236,10 @@ Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task) {
   if (auto fine = check_ranges(task); !fine) return tl::unexpected(fine.error());
   IdentificationTask experiment;
   experiment.sensor = task.sensor;
-  experiment.plan = full_plan(turbulent_sensor(task, task.ranges_m.front()), {}, {});
+  experiment.plan = full_plan(turbulent_sensor(task, task.ranges_m.front()), {}, {}, task.motion);
+  experiment.motion = task.motion;
+  experiment.sequence = task.sequence;
+  experiment.frames = task.frames;
   experiment.cn2_m_minus_2_3 = task.cn2_m_minus_2_3;
   experiment.observer = task.observer;
   experiment.accuracy = task.accuracy;

@@ -22,8 +22,11 @@ struct IdentificationStudyTask {
   std::vector<double> ranges_m;  ///< at least two, increasing
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
   TargetCues cues = TargetCues::all;
-  int decisions = 2000;        ///< per target and range
-  double m75 = 5.1;            ///< for the predicted range
+  int decisions = 2000;  ///< per target and range
+  double m75 = 5.1;      ///< for the predicted range
+  SceneMotion motion{};  ///< of the targets in the picture
+  SequenceObserver sequence = SequenceObserver::single_frame;
+  int frames = 8;              ///< of a pass
   double cn2_m_minus_2_3 = 0;  ///< of turbulence along the path of each range; 0: that of the sensor
   std::uint64_t seed = 1;
   std::stop_token stop{};
@@ -66,8 +69,9 @@ struct IdentificationStudy {
 [[nodiscard]] Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task);
 
 /// Runs the study. The proportion over range is made monotone (pool adjacent violators) and interpolated linearly in ln
-/// range. Errors: `invalid_input` (ranges that do not increase or exceed the air's table; those of identify()),
-/// `interrupted`.
+/// range. The TOD curve is that of the same motion, of a single frame; there is none, with a note, for sums of frames
+/// and for motion through turbulent paths. Errors: `invalid_input` (ranges that do not increase or exceed the air's
+/// table; those of identify()), `interrupted`.
 [[nodiscard]] Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task);
 
 }  // namespace todbench

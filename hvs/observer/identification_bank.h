@@ -62,6 +62,8 @@ class IdentificationBank {
   /// Side of the square window, in samples, even.
   [[nodiscard]] int window_samples() const { return window_; }
   [[nodiscard]] std::size_t alternatives() const { return first_aspect_.size() - 1; }
+  /// Sides of all alternatives together.
+  [[nodiscard]] std::size_t views() const { return aspects_.size(); }
   /// Length of a score vector.
   [[nodiscard]] std::size_t scores() const { return aspects_.size() * static_cast<std::size_t>(places_ * places_); }
   /// Scores of all templates for a patch of window_samples()^2 values whose mean is 0.

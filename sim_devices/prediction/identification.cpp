@@ -13,6 +13,8 @@
 #include "hvs/observer/identification_bank.h"
 #include "hvs/observer/open_parameters.h"
 #include "hvs/observer/viewing_filter.h"
+#include "sim_devices/prediction/identification_passes.h"
+#include "sim_devices/prediction/identification_views.h"
 #include "sim_devices/prediction/seen_window.h"
 #include "sim_devices/prediction/window_noise.h"
 #include "sim_devices/sensor/effect_display.h"
@@ -24,110 +26,15 @@
 namespace todbench {
 namespace {
 
-constexpr int phases_on_axis = 4;
-constexpr int phases = phases_on_axis * phases_on_axis;
+constexpr int phases = identification_phases;
 
 // Rates per second on one core, for the planned effort.
-constexpr double spectrum_rate = 7e7, product_rate = 1.3e9, projection_rate = 2e10, score_rate = 5e9;
+constexpr double spectrum_rate = 7e7, product_rate = 1.3e9, projection_rate = 2e10, score_rate = 5e9, noise_rate = 2e7;
 
 /// Number of noise draws at every range. Each view meets each of them.
 std::size_t draws_of(const IdentificationTask& task) {
   const int aspects = static_cast<int>(task.targets.front().aspects.size());
   return static_cast<std::size_t>(std::max(phases, (task.decisions + aspects - 1) / aspects));
-}
-
-/// One view, independent of range: edges in metres, and contrast.
-struct SeenAspect {
-  std::vector<StepEdge> edges_m;
-  double dt_rss_k = 0, size_m = 0;
-};
-using SeenTargets = std::vector<std::vector<SeenAspect>>;
-
-bool look_alike(const std::vector<SeenAspect>& a, const std::vector<SeenAspect>& b) {
-  const auto same = [](const StepEdge& p, const StepEdge& q) {
-    return cv::norm(p.a - q.a) < 1e-6 && cv::norm(p.b - q.b) < 1e-6 && std::abs(p.step - q.step) < 1e-9;
-  };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const SeenAspect& s, const SeenAspect& t) {
-    return std::equal(s.edges_m.begin(), s.edges_m.end(), t.edges_m.begin(), t.edges_m.end(), same);
-  });
-}
-
-/// Scales all targets to the mean size.
-void make_alike_in_size(SeenTargets& targets) {
-  double sum = 0, count = 0;
-  for (const auto& target : targets) {
-    for (const auto& aspect : target) {
-      sum += aspect.size_m;
-      ++count;
-    }
-  }
-  for (auto& target : targets) {
-    for (auto& aspect : target) aspect.edges_m = placed(aspect.edges_m, sum / count / aspect.size_m, 0, {0, 0});
-  }
-}
-
-Result<SeenTargets> seen_targets(const IdentificationTask& task) {
-  const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
-                            task.sensor.scene_temperature_k};
-  SeenTargets out;
-  for (const auto& target : task.targets) {
-    if (target.aspects.empty() || target.aspects.size() != task.targets.front().aspects.size())
-      return fail(ErrorCode::invalid_input, "every target must have the same number of aspects, at least one");
-  }
-  for (const auto& target : task.targets) {
-    auto& own = out.emplace_back();
-    for (const auto& scene : target.aspects) {
-      if (auto fine = validate(scene); !fine) return fail("target " + target.name, fine.error());
-      const auto signature = target_signature(scene, scale);
-      if (!signature || !(signature->dt_rss_k() > 0))
-        return fail(ErrorCode::invalid_input, "target " + target.name + " has no contrast against its background");
-      auto painted = levels_k(scene, scale);
-      if (task.cues == TargetCues::shape) {
-        for (auto& region : painted) region.level = signature->dt_rss_k();
-      }
-      own.push_back({visible_edges(painted), signature->dt_rss_k(), signature->size_m()});
-    }
-  }
-  if (out.size() < 2) return fail(ErrorCode::invalid_input, "identification needs at least two targets");
-  if (task.cues == TargetCues::shape) make_alike_in_size(out);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    for (std::size_t other = 0; other < i; ++other) {
-      if (look_alike(out[other], out[i])) {
-        return fail(ErrorCode::invalid_input, "targets " + task.targets[other].name + " and " + task.targets[i].name +
-                                                  " look alike in every aspect, so no observer can distinguish them");
-      }
-    }
-  }
-  return out;
-}
-
-/// Each draw meets a view in one of the phases; views begin with different ones.
-std::size_t first_draw_of(std::size_t phase, std::size_t target, std::size_t aspect) {
-  return (phase + target + 5 * aspect) % phases;
-}
-
-/// Offset of a target's origin from the middle of the window, in samples.
-cv::Point2d view_offset(std::size_t phase) {
-  const auto offset = [](std::size_t k) { return (static_cast<double>(k) + 0.5) / phases_on_axis - 0.5; };
-  return {offset(phase % phases_on_axis), offset(phase / phases_on_axis)};
-}
-
-/// Number of a picture without noise, unique for the image dance.
-std::uint64_t presentation_of(std::size_t phase, std::size_t target, std::size_t aspect) {
-  return phase + phases * (aspect + 8 * target);
-}
-
-double samples_per_metre(const SensorSpec& spec, const IdentificationRange& range) {
-  return 1e3 / (range.range_m * spec.ifov_mrad()) * spec.samples_per_pitch();
-}
-
-std::vector<AlternativeAspects> in_samples(const SeenTargets& targets, double samples_per_metre) {
-  std::vector<AlternativeAspects> alternatives;
-  for (const auto& target : targets) {
-    auto& own = alternatives.emplace_back();
-    for (const auto& aspect : target) own.push_back(placed(aspect.edges_m, samples_per_metre, 0, {0, 0}));
-  }
-  return alternatives;
 }
 
 /// The observer with the camera at one range.
@@ -136,36 +43,50 @@ class RangeTrial {
   static Result<RangeTrial> create(const IdentificationTask& task, const SeenTargets& targets,
                                    IdentificationRange range, const SceneImager& imager) {
     RangeTrial trial(task, range, imager);
-    std::vector<AlternativeAspects> alternatives = in_samples(targets, trial.samples_per_metre_);
-    auto bank =
-        IdentificationBank::build(task.observer, alternatives, trial.spec_.samples_per_pitch(), trial.known_camera());
+    const auto known = in_samples(targets, trial.samples_per_metre_, trial.spec_, trial.known_motion());
+    const TemplateObserverSpec searching = trial.tracks() ? searching_at_true_places(task.observer) : task.observer;
+    auto bank = IdentificationBank::build(searching, known, trial.spec_.samples_per_pitch(), trial.known_camera());
     if (!bank) return tl::unexpected(bank.error());
     trial.bank_.emplace(*std::move(bank));
-    trial.alternatives_ = std::move(alternatives);
+    trial.alternatives_ = in_samples(targets, trial.samples_per_metre_, trial.spec_, task.motion);
     return trial;
   }
 
   Result<IdentificationPoint> run(const SeenTargets& targets) {
     const std::size_t draws = draws_of(task_);
     if (auto drawn = draw_noise(draws); !drawn) return tl::unexpected(drawn.error());
-    IdentificationPoint point{.range_m = range_.range_m,
-                              .transmittance = range_.transmittance,
-                              .answers = std::vector(targets.size(), std::vector<int>(targets.size(), 0)),
-                              .by_draw = std::vector<double>(draws, 0.0)};
-    if (auto answered = answer(targets, task_.observer, point); !answered) return tl::unexpected(answered.error());
-    const auto ends = at_open_ends(task_.observer, [&](const TemplateObserverSpec& seeing) -> Result<double> {
-      IdentificationPoint end = point;
-      for (auto& row : end.answers) std::ranges::fill(row, 0);
-      std::ranges::fill(end.by_draw, 0.0);
-      if (auto answered = answer(targets, seeing, end); !answered) return tl::unexpected(answered.error());
-      return end.proportion();
-    });
-    if (!ends) return tl::unexpected(ends.error());
-    if (*ends) point.spread = spread_of({(**ends)[0], (**ends)[1]});
-    return point;
+    const IdentificationPoint nothing{.range_m = range_.range_m,
+                                      .transmittance = range_.transmittance,
+                                      .answers = std::vector(targets.size(), std::vector<int>(targets.size(), 0)),
+                                      .by_draw = std::vector<double>(draws, 0.0)};
+    // The observer of the task, and both ends of its open parameters.
+    std::vector<Seeing> all{{task_.observer, nothing}};
+    if (const auto ends = open_parameter_range(task_.observer)) {
+      all.push_back({ends->best, nothing});
+      all.push_back({ends->worst, nothing});
+    }
+    if (judges_passes()) {
+      if (auto answered = answer_passes(targets, all); !answered) return tl::unexpected(answered.error());
+    } else {
+      for (Seeing& one : all) {
+        if (auto answered = answer(targets, one.observer, one.point); !answered)
+          return tl::unexpected(answered.error());
+      }
+    }
+    if (all.size() > 1) all[0].point.spread = spread_of({all[1].point.proportion(), all[2].point.proportion()});
+    return std::move(all.front().point);
   }
 
  private:
+  /// An observer that differs from that of the task in its own noise only, and its answers.
+  struct Seeing {
+    TemplateObserverSpec observer;
+    IdentificationPoint point;
+  };
+
+  [[nodiscard]] bool tracks() const { return task_.sequence == SequenceObserver::tracking_sum; }
+  [[nodiscard]] bool judges_passes() const { return task_.sequence != SequenceObserver::single_frame; }
+
   /// Answers of an observer that differs from that of the task in its own noise only.
   Result<void> answer(const SeenTargets& targets, const TemplateObserverSpec& observer, IdentificationPoint& point) {
     const std::size_t draws = point.by_draw.size();
@@ -176,9 +97,7 @@ class RangeTrial {
       for (std::size_t a = 0; a < targets[t].size(); ++a) {
         const double contrast_k = targets[t][a].dt_rss_k * range_.transmittance;
         if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-        const float white = own_noise(observer, contrast_k);
-        const auto eye = static_cast<float>(
-            observer.eye ? bank_->eye_noise_k(observer, t, a, contrast_k, targets[t][a].dt_rss_k) : 0);
+        const float white = own_noise(observer, contrast_k, 1), eye = noise_of_eye(observer, t, a, targets[t][a]);
         std::vector<cv::Mat1f> patches;
         for (std::size_t phase = 0; phase < phases; ++phase) patches.push_back(patch(t, a, phase));
         const auto signals = bank_->project_all(patches);
@@ -201,6 +120,74 @@ class RangeTrial {
     return {};
   }
 
+  /// Answers of several observers to the same passes.
+  Result<void> answer_passes(const SeenTargets& targets, std::vector<Seeing>& all) {
+    const IdentificationPasses passes(task_, spec_, window_, range_.transmittance, alternatives_,
+                                      bank_->window_samples());
+    const double views = static_cast<double>(targets.size() * targets.front().size());
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      for (std::size_t a = 0; a < targets[t].size(); ++a) {
+        for (std::size_t phase = 0; phase < phases; ++phase) {
+          const auto signals = passes.signals(t, a, phase);
+          for (std::size_t d = first_draw_of(phase, t, a); d < all.front().point.by_draw.size(); d += phases) {
+            if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+            const std::vector<float> scores = scores_of(passes.windows(signals, d));
+            for (Seeing& one : all) {
+              const std::size_t answer = winner(scores, one.observer, t, a, targets[t][a], d);
+              ++one.point.answers[t][answer];
+              if (answer == t) one.point.by_draw[d] += 1 / views;
+            }
+          }
+        }
+      }
+    }
+    return {};
+  }
+
+  /// Mean of the scores of the windows; a search that tracks is centred on the true place in each.
+  [[nodiscard]] std::vector<float> scores_of(const std::vector<PassWindow>& windows) const {
+    std::vector<cv::Mat1f> patches;
+    for (const PassWindow& window : windows) patches.push_back(centred(window.kelvin));
+    auto projected = bank_->project_all(patches);
+    if (!tracks()) return std::move(projected.front());
+    std::vector<float> sum(bank_->views() * places_of_search(task_.observer), 0.0F);
+    for (std::size_t k = 0; k < windows.size(); ++k)
+      add_centred(task_.observer, projected[k], windows[k].phase, 1.0F / static_cast<float>(windows.size()), sum);
+    return sum;
+  }
+
+  /// Answer to a pass with the noise of the observer, once for the decision.
+  [[nodiscard]] std::size_t winner(const std::vector<float>& scores, const TemplateObserverSpec& observer,
+                                   std::size_t target, std::size_t aspect, const SeenAspect& shown,
+                                   std::size_t draw) const {
+    const float white = own_noise(observer, shown.dt_rss_k * range_.transmittance, task_.frames);
+    const float eye = noise_of_eye(observer, target, aspect, shown);
+    std::size_t best = 0, at = 0;
+    float largest = -1e30F;
+    for (std::size_t o = 0; o < alternatives_.size(); ++o) {
+      for (const std::size_t end = at + alternatives_[o].size() * places_of_search(task_.observer); at < end; ++at) {
+        const float score = scores[at] + white * white_[draw][at] + (observer.eye ? eye * eye_[draw][at] : 0.0F);
+        if (score > largest) largest = score, best = o;
+      }
+    }
+    return best;
+  }
+
+  /// Scores of noise as the observer's own search has them.
+  [[nodiscard]] std::vector<float> own_search(std::vector<float> scores) const {
+    if (!tracks()) return scores;
+    std::vector<float> own(bank_->views() * places_of_search(task_.observer), 0.0F);
+    add_centred(task_.observer, scores, {0, 0}, 1, own);
+    return own;
+  }
+
+  [[nodiscard]] float noise_of_eye(const TemplateObserverSpec& observer, std::size_t target, std::size_t aspect,
+                                   const SeenAspect& shown) const {
+    if (!observer.eye) return 0;
+    const double contrast_k = shown.dt_rss_k * range_.transmittance;
+    return static_cast<float>(bank_->eye_noise_k(observer, target, aspect, contrast_k, shown.dt_rss_k));
+  }
+
   RangeTrial(const IdentificationTask& task, IdentificationRange range, const SceneImager& imager)
       : task_(task),
         range_(range),
@@ -208,13 +195,19 @@ class RangeTrial {
         window_(spec_, imager),
         samples_per_metre_(samples_per_metre(spec_, range)) {}
 
+  /// Motion in which the observer knows its targets.
+  [[nodiscard]] SceneMotion known_motion() const {
+    return task_.knowledge == TemplateKnowledge::behind_camera ? task_.motion : SceneMotion{};
+  }
+
   /// Transfer function of the camera with its display; empty for an observer without knowledge of it. Cut at 3 cycles
   /// per pitch, which leaves out 0.3 % of the contrast at an edge.
   [[nodiscard]] std::optional<KnownCamera> known_camera() const {
     if (task_.knowledge == TemplateKnowledge::ideal) return std::nullopt;
     const int n = spec_.samples_per_pitch();
     return KnownCamera{
-        [spec = spec_, n, camera = sensor_transfer(spec_, task_.plan, task_.accuracy.wavelengths)](double u, double w) {
+        [spec = spec_, n, camera = sensor_transfer(spec_, task_.plan, task_.accuracy.wavelengths, known_motion())](
+            double u, double w) {
           const double display = has_display(spec) ? display_response(spec, u) * display_response(spec, w) : 1;
           return display * camera(u * n, w * n);
         },
@@ -228,11 +221,12 @@ class RangeTrial {
                                    range_.transmittance, presentation_of(phase, target, aspect)));
   }
 
-  /// Noise of the observer in kelvin per sample: internal noise, and the enlargement of the sensor's noise.
-  [[nodiscard]] float own_noise(const TemplateObserverSpec& observer, double contrast_k) const {
+  /// Noise of the observer in kelvin per sample: internal noise, and the enlargement of the sensor's noise in the mean
+  /// of some frames.
+  [[nodiscard]] float own_noise(const TemplateObserverSpec& observer, double contrast_k, int frames) const {
     const double enlarged = observer.sensor_noise_factor * observer.sensor_noise_factor - 1;
     return static_cast<float>(std::sqrt(std::pow(observer.internal_noise * contrast_k, 2) +
-                                        enlarged * white_variance_k2(spec_, task_.plan, 1)));
+                                        enlarged * white_variance_k2(spec_, task_.plan, 1) / frames));
   }
 
   /// Every range has the same random numbers, except for the size of the window.
@@ -243,7 +237,7 @@ class RangeTrial {
       if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
       std::vector<cv::Mat1f> sensor, white, eye;
       for (std::size_t d = first; d < std::min(draws, first + at_once); ++d) {
-        sensor.push_back(centred(noise.sensor_k(d)));
+        if (!judges_passes()) sensor.push_back(centred(noise.sensor_k(d)));
         white.push_back(task_.observer.eye ? noise.white(d) : centred(noise.white(d)));
         if (const int points = bank_->eye_points(); points > 0) {
           eye.emplace_back(points, points);
@@ -251,9 +245,9 @@ class RangeTrial {
         }
       }
       for (auto& projected : bank_->project_all(sensor)) sensor_noise_.push_back(std::move(projected));
-      for (auto& projected : bank_->project_all(white)) white_.push_back(std::move(projected));
+      for (auto& projected : bank_->project_all(white)) white_.push_back(own_search(std::move(projected)));
       if (eye.empty()) continue;
-      for (auto& projected : bank_->project_eye(eye)) eye_.push_back(std::move(projected));
+      for (auto& projected : bank_->project_eye(eye)) eye_.push_back(own_search(std::move(projected)));
     }
     return {};
   }
@@ -281,6 +275,7 @@ SensorSpec sensor_at(const IdentificationTask& task, double range_m) {
 }
 
 Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
+  if (auto fine = check_passes(task); !fine) return tl::unexpected(fine.error());
   TODBENCH_TRY(const auto targets, seen_targets(task));
   const SensorSpec spec = as_planned(task.sensor, task.plan);
   const int n = spec.samples_per_pitch();
@@ -298,6 +293,7 @@ Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
       std::pow(2 * std::round(task.observer.search_range_samples / task.observer.search_step_samples) + 1, 2);
   IdentificationEffort out;
   out.decisions = draws * views * static_cast<double>(task.ranges.size());
+  const double windows = task.sequence == SequenceObserver::tracking_sum ? task.frames : 1;
   for (const auto& range : task.ranges) {
     const double reach = reach_m * 1e3 / (range.range_m * spec.ifov_mrad());  // pitches
     const double side = 2 * n * std::ceil(1.1 * reach + task.observer.window_margin_pitch);
@@ -312,6 +308,10 @@ Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
     out.processor_s += edges * frequencies / spectrum_rate + views * rank * places * samples / product_rate +
                        (16 * views + 2 * draws) * rank * views * (samples + places) / projection_rate +
                        draws * views * views * places / score_rate;
+    if (task.sequence == SequenceObserver::single_frame) continue;
+    out.processor_s +=
+        draws * views *
+        (windows * rank * views * (samples + places) / projection_rate + task.frames * samples / noise_rate);
   }
   return out;
 }
@@ -328,6 +328,7 @@ double IdentificationPoint::standard_error() const {
 }
 
 Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task) {
+  if (auto fine = check_passes(task); !fine) return tl::unexpected(fine.error());
   const auto targets = seen_targets(task);
   if (!targets) return tl::unexpected(targets.error());
   if (task.plan.simulates(Effect::quantisation) && rounds_coarsely(as_planned(task.sensor, task.plan)))
@@ -335,13 +336,14 @@ Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task
                 "a count of the camera is larger than its noise, so rounding depends on the targets. The experiment "
                 "does not simulate this");
   const SensorSpec spec = as_planned(task.sensor, task.plan);
-  const SceneImager imager(spec, task.plan, task.accuracy);
+  const SceneImager imager(spec, task.plan, task.accuracy, task.motion);
   std::vector<Result<IdentificationPoint>> found(task.ranges.size(), IdentificationPoint{});
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < found.size(); i = next++) {
       std::optional<SceneImager> own;
-      if (task.cn2_m_minus_2_3 > 0) own.emplace(sensor_at(task, task.ranges[i].range_m), task.plan, task.accuracy);
+      if (task.cn2_m_minus_2_3 > 0)
+        own.emplace(sensor_at(task, task.ranges[i].range_m), task.plan, task.accuracy, task.motion);
       auto trial = RangeTrial::create(task, *targets, task.ranges[i], own ? *own : imager);
       if (trial) {
         found[i] = trial->run(*targets);
@@ -367,24 +369,29 @@ Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task
 
 /// One range: everything except the observer.
 struct IdentificationFrames::Range {
-  Range(const IdentificationTask& task, const SeenTargets& targets, const IdentificationRange& range)
-      : spec(sensor_at(task, range.range_m)),
-        imager(spec, task.plan, task.accuracy),
+  Range(const IdentificationTask& experiment, const SeenTargets& targets, const IdentificationRange& range)
+      : task(experiment),
+        spec(sensor_at(task, range.range_m)),
+        imager(spec, task.plan, task.accuracy, task.motion),
         window(spec, imager),
         transmittance(range.transmittance),
-        alternatives(in_samples(targets, samples_per_metre(spec, range))),
-        side(identification_window_samples(task.observer, alternatives, spec.samples_per_pitch())),
-        noise(spec, task.plan, task.accuracy, side, task.seed) {}
+        alternatives(in_samples(targets, samples_per_metre(spec, range), spec, task.motion)),
+        passes(task, spec, window, transmittance, alternatives,
+               identification_window_samples(task.observer, alternatives, spec.samples_per_pitch())) {}
+  IdentificationTask task;
   SensorSpec spec;
   SceneImager imager;
   SeenWindow window;
   double transmittance;
   std::vector<AlternativeAspects> alternatives;
-  int side;
-  WindowNoise noise;
+  IdentificationPasses passes;
 };
 
 Result<IdentificationFrames> IdentificationFrames::of(const IdentificationTask& task) {
+  if (auto fine = check_passes(task); !fine) return tl::unexpected(fine.error());
+  if (task.sequence == SequenceObserver::tracking_sum)
+    return fail(ErrorCode::invalid_input,
+                "one picture cannot show the sum over a target that is tracked: use single-frame or static-sum");
   TODBENCH_TRY(const auto targets, seen_targets(task));
   IdentificationFrames frames;
   for (const auto& range : task.ranges) frames.ranges_.push_back(std::make_shared<const Range>(task, targets, range));
@@ -397,12 +404,10 @@ Result<IdentificationFrames> IdentificationFrames::of(const IdentificationTask& 
 
 cv::Mat1f IdentificationFrames::frame_k(std::size_t range, std::size_t target, std::size_t aspect,
                                         std::uint64_t draw) const {
-  const Range& at = *ranges_[range];
+  const IdentificationPasses& passes = ranges_[range]->passes;
   std::size_t phase = 0;
   while (first_draw_of(phase, target, aspect) != draw % phases) ++phase;
-  return at.window.picture(at.alternatives[target][aspect], at.side, view_offset(phase), at.transmittance,
-                           presentation_of(phase, target, aspect)) +
-         at.noise.sensor_k(draw);
+  return passes.windows(passes.signals(target, aspect, phase), draw).front().kelvin;
 }
 
 double IdentificationFrames::contrast_k(std::size_t range, std::size_t target, std::size_t aspect) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -13,9 +14,11 @@
 
 #include "acquisition/base/accuracy.h"
 #include "hvs/observer/template_observer.h"
+#include "sim_devices/module/picture_stage.h"
 #include "sim_devices/scene/field_scene.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
+#include "tod/measurement/sequence_judge.h"
 
 namespace todbench {
 
@@ -32,8 +35,9 @@ struct IdentificationRange {
 
 /// The observer's knowledge of its targets.
 enum class TemplateKnowledge {
-  behind_camera,  ///< pictures behind this camera, as people have who learned from its pictures
-  ideal           ///< ideal pictures only: blur then makes targets look like others
+  behind_camera,          ///< pictures behind this camera in this motion, as people have who learned from them
+  behind_camera_at_rest,  ///< pictures behind this camera without motion
+  ideal                   ///< ideal pictures only: blur then makes targets look like others
 };
 /// Differences between the targets.
 enum class TargetCues {
@@ -51,6 +55,11 @@ struct IdentificationTask {
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
   TargetCues cues = TargetCues::all;
   int decisions = 2000;  ///< per target and range, all aspects together
+  /// Of the targets in the picture: they move, or the camera turns. The plan must be made for it.
+  SceneMotion motion{};
+  /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
+  SequenceObserver sequence = SequenceObserver::single_frame;
+  int frames = 8;  ///< of a pass; a single frame ignores them
   /// Turbulence along the path of each range, instead of that of the sensor; 0: as in the sensor. The plan must
   /// simulate it. An observer with knowledge behind the camera also knows the targets behind this air.
   double cn2_m_minus_2_3 = 0;
@@ -84,10 +93,12 @@ struct IdentificationEffort {
 /// One point per range, in the same order. Every target in every aspect meets each draw of sensor and internal noise,
 /// in one of 16 sampling phases that the draws take in turn. Internal noise and the enlargement of the sensor's noise
 /// are those of the template observer; the contrast is dT_RSS behind the air, and an observer with an eye sees it at
-/// the luminance contrast of its display. Ranges run in parallel on all processors, and the result does not depend on
-/// their number. Dead detectors are left out. Counts are rounded with the noise, not with the signal. Errors:
-/// `invalid_input` (fewer than two targets, targets that look alike from every side, a target without contrast, counts
-/// too coarse for the noise, targets too large for the observer), `interrupted`.
+/// the luminance contrast of its display. A target in motion is judged at its true place, without the mean lag of time
+/// constant and exposure, and each row at its time, as in dynamic_trials(). Ranges run in parallel on all processors,
+/// and the result does not depend on their number. Dead detectors are left out. Counts are rounded with the noise, not
+/// with the signal. Errors: `invalid_input` (fewer than two targets, targets that look alike from every side, a target
+/// without contrast, counts too coarse for the noise, targets too large for the observer, more than 5 pixels per frame,
+/// motion in front of microscan or super-resolution, several frames with image dance), `interrupted`.
 [[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
 
 /// Pictures of identify() for another observer. Immutable, thread-safe.

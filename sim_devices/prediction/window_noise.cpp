@@ -19,10 +19,15 @@ WindowNoise::WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const A
   small_.dead_pixel_share = 0;
 }
 
-cv::Mat1f WindowNoise::sensor_k(std::uint64_t draw) const {
+std::vector<cv::Mat1f> WindowNoise::sensor_frames_k(std::uint64_t draw, int count) const {
   const SensorModel model(small_, plan_, accuracy_, seed_ + 1000003 * (draw + 1));
-  const cv::Mat1f picture = model.picture(cv::Mat1f::zeros(model.size()), 1, small_.scene_temperature_k, 0);
-  return picture(cv::Rect(margin_, margin_, window_, window_)).clone();
+  const cv::Mat1f nothing = cv::Mat1f::zeros(model.size());
+  std::vector<cv::Mat1f> frames;
+  for (int k = 0; k < count; ++k) {
+    const cv::Mat1f picture = model.picture(nothing, 1, small_.scene_temperature_k, static_cast<std::uint64_t>(k));
+    frames.push_back(picture(cv::Rect(margin_, margin_, window_, window_)).clone());
+  }
+  return frames;
 }
 
 cv::Mat1f WindowNoise::white(std::uint64_t draw) const {

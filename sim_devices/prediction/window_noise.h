@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "acquisition/base/accuracy.h"
 #include "sim_devices/sensor/sensor_plan.h"
@@ -18,7 +19,9 @@ class WindowNoise {
   WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, int window_samples,
               std::uint64_t seed);
   /// Noise of the camera behind its display, in kelvin.
-  [[nodiscard]] cv::Mat1f sensor_k(std::uint64_t draw) const;
+  [[nodiscard]] cv::Mat1f sensor_k(std::uint64_t draw) const { return sensor_frames_k(draw, 1).front(); }
+  /// The same for `count` successive frames, which share the fixed pattern of the draw; the first equals sensor_k().
+  [[nodiscard]] std::vector<cv::Mat1f> sensor_frames_k(std::uint64_t draw, int count) const;
   /// White noise of sd 1.
   [[nodiscard]] cv::Mat1f white(std::uint64_t draw) const;
 
