@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/plan/strict_toml.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <regex>
@@ -174,6 +176,8 @@ std::string TomlReader::text(std::string_view key, const std::optional<std::stri
   const toml::node* node = document_->ask(*table_, key, !fallback, "a text in quotes");
   if (!node) return fallback.value_or("");
   if (const auto* value = node->as_string()) return value->get();
+  if (const auto* date = node->as_date())
+    return fmt::format("{:04}-{:02}-{:02}", date->get().year, date->get().month, date->get().day);
   document_->wrong(*table_, key, line_of(*node), expected_found("a text in quotes", *node));
   return fallback.value_or("");
 }

@@ -152,6 +152,14 @@ TEST(StrictTomlKeys, AnErrorHasTheKeyItIsAboutAndWhatIsWrongWithIt) {
   EXPECT_EQ(key_of_complaint("tarjet = 2\n"), (ErrorKey{"tarjet", "unknown, did you mean 'target'?"}));
 }
 
+TEST(StrictTomlKeys, ADateWithoutQuotesIsItsText) {
+  auto reader = TomlReader::parse("received = 2026-03-09\n", "plan.toml");
+  ASSERT_TRUE(reader) << reader.error().message;
+
+  EXPECT_EQ(reader->text("received", ""), "2026-03-09");
+  EXPECT_TRUE(reader->finish());
+}
+
 TEST(StrictTomlKeys, ABrokenFileIsAboutItsLine) {
   const auto key = key_of_complaint("a = 1\nb = =\n");
 
