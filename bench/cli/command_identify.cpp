@@ -16,6 +16,7 @@
 #include "acquisition/base/try.h"
 #include "bench/cli/chain_options.h"
 #include "bench/cli/effect_decisions.h"
+#include "bench/enhance/package_file.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/report/tod_figures.h"
@@ -37,6 +38,7 @@ struct IdentifyArguments {
   std::string templates = "camera", cues = "all", sequence = "single-frame";
   std::vector<double> motion_mrad_s{};
   int frames = 8;
+  std::string package;
   EffectDecisionOptions shown;
 };
 
@@ -87,6 +89,12 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
   task.sequence =
       *std::ranges::find(all_sequence_observers, a.sequence, [](SequenceObserver s) { return to_string(s); });
   task.frames = a.frames;
+  if (!a.package.empty()) {
+    TODBENCH_TRY(auto package, read_package(a.package));
+    if (auto same = refuse_finer_pictures(package, "identification"); !same) return tl::unexpected(same.error());
+    task.stage_reach_px = reach_px(package);
+    task.stages = [package = std::move(package)] { return made_stages(package, {}); };
+  }
   task.cues = a.cues == "shape" ? TargetCues::shape : TargetCues::all;
   task.m75 = a.m75;
   task.seed = program.common.seed;
@@ -128,8 +136,15 @@ std::string effort_text(const IdentificationEffort& effort) {
                      effort.decisions, effort.largest_bytes / 1e6, std::ceil(effort.processor_s));
 }
 
+Json judged_json(const std::optional<JudgedPictures>& judged) {
+  if (!judged) return {};
+  return {{"gain", json_number(judged->gain)},
+          {"gain_of_views", {json_number(judged->least_gain), json_number(judged->largest_gain)}},
+          {"noise_k", json_number(judged->noise_k)}};
+}
+
 Json identification_json(const IdentificationStudyTask& task, const IdentificationEffort& effort,
-                         const IdentificationStudy& study) {
+                         const IdentificationStudy& study, const std::string& package) {
   Json ranges = Json::array(), names = Json::array(), tod = Json::array();
   for (const auto& target : task.set.targets) names.push_back(target.name);
   Json turbulence;
@@ -140,6 +155,7 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
              {"proportion_correct", json_number(point.proportion())},
              {"ci95", json_interval(interval_of(point))},
              {"draws", point.by_draw.size()},
+             {"judged", judged_json(point.judged)},
              {"confusion", point.answers}};
     add_spread(row, "proportion_correct_spread", point.spread);
     ranges.push_back(std::move(row));
@@ -165,6 +181,7 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
             {"sensor", task.sensor.name},
             {"samples_per_pitch", task.sensor.samples_per_pitch()},
             {"observer", task.observer.name},
+            {"package", package.empty() ? Json() : Json(package)},
             {"templates", templates_name(task.knowledge)},
             {"motion_mrad_s", {json_number(task.motion.x_mrad_s), json_number(task.motion.y_mrad_s)}},
             {"motion_px_per_frame", json_number(pixels_per_frame(task))},
@@ -196,6 +213,12 @@ void print_identification(Console& console, const IdentificationStudyTask& task,
   console.text(fmt::format("{} targets of {}, sensor {}, observer {}; mean size {:.3g} m, mean dT_RSS {:.3g} K",
                            task.set.targets.size(), task.set.name, task.sensor.name, task.observer.name, study.size_m,
                            study.dt_rss_k));
+  for (const auto& point : study.points) {
+    if (point.judged)
+      console.text(
+          fmt::format("behind the package at {:g} m: contrast times {:.3g}, noise of a sample {:.3g} K in units of it",
+                      point.range_m, point.judged->gain, point.judged->noise_k));
+  }
   if (task.motion.moving())
     console.text(
         fmt::format("motion of the picture: {:g} mrad/s to the right, {:g} mrad/s downwards, {:.3g} pixels per frame",
@@ -254,7 +277,7 @@ int run_identify(Console& console, const IdentifyArguments& a, const Program& pr
   if (!study) return report_error(console, study.error());
   for (const auto& sentence : study->notes) console.note(sentence);
   if (console.json()) {
-    Json json = identification_json(*task, *effort, *study);
+    Json json = identification_json(*task, *effort, *study, a.package);
     add_effects(json, effects);
     console.object(json);
   } else {
@@ -312,6 +335,8 @@ void add_identify_command(CLI::App& app, Program& program) {
   command->add_option("--frames", a->frames, "frames of a pass for the sums")
       ->check(whole_number(1, 64))
       ->capture_default_str();
+  command->add_option("--package", a->package,
+                      "package of stages behind the camera, a file; the lag of the stages is not removed");
   a->shown.add_to(*command);
   command->add_flag("--plan", a->plan, "prints the predicted effort and ends");
   command->add_option("--m75", a->m75, "criterion M75 for the range that the TOD curve predicts")

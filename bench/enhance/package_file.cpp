@@ -104,6 +104,30 @@ Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::strin
   return {};
 }
 
+std::optional<int> reach_px(const EnhancementPackage& package) {
+  int reach = 0;
+  for (const StagePlan& stage : package.stages) {
+    switch (stage.kind) {
+      case StagePlan::Kind::recursive:
+        break;
+      case StagePlan::Kind::sharpen:
+      case StagePlan::Kind::kernel:
+        reach += 1;
+        break;
+      case StagePlan::Kind::median:
+        reach += stage.size / 2;
+        break;
+      case StagePlan::Kind::clahe:
+      case StagePlan::Kind::plateau:
+      case StagePlan::Kind::agc:
+      case StagePlan::Kind::module:
+      case StagePlan::Kind::super_resolution:
+        return std::nullopt;
+    }
+  }
+  return reach;
+}
+
 std::vector<std::unique_ptr<ChainStage>> made_stages(const EnhancementPackage& package,
                                                      const std::function<void(std::string_view line)>& on_error_line) {
   std::vector<std::unique_ptr<ChainStage>> stages;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,10 @@ struct EnhancementPackage {
 /// Returns `invalid_input` in one sentence for a package with super-resolution. `what`: the user of the package, which
 /// needs the camera's own pixels.
 [[nodiscard]] Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what);
+
+/// Distance in samples from which on a picture has no influence on a sample behind the stages; empty: the whole picture
+/// has.
+[[nodiscard]] std::optional<int> reach_px(const EnhancementPackage& package);
 
 /// Creates the stages, ready for the first picture.
 [[nodiscard]] std::vector<std::unique_ptr<ChainStage>> made_stages(

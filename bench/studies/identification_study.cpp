@@ -145,6 +145,8 @@ Result<void> check_ranges(const IdentificationStudyTask& task) {
 
 /// Reason why the direct estimate has no TOD curve for the pictures of a task; empty if it has one.
 std::string no_curve_because(const IdentificationStudyTask& task) {
+  if (task.stages)
+    return "the TOD curve would be that of the camera without the package; 'enhance' determines the curve behind it";
   if (task.sequence != SequenceObserver::single_frame)
     return "the TOD curve would be that of a single frame, and the observer sums several";
   if (task.motion.moving() && task.cn2_m_minus_2_3 > 0)
@@ -219,6 +221,21 @@ Result<void> add_spreads(const IdentificationStudyTask& task, double least_tau, 
   return {};
 }
 
+/// States that stages change the targets differently, as stages that are not linear do.
+void add_notes_of_stages(IdentificationStudy& study) {
+  constexpr double alike = 0.05;
+  for (const IdentificationPoint& point : study.points) {
+    if (!point.judged) continue;
+    const JudgedPictures& judged = *point.judged;
+    if (judged.largest_gain - judged.least_gain <= alike * std::abs(judged.gain)) continue;
+    study.notes.push_back(
+        fmt::format("at {:g} m the package multiplies the contrast of the views by {:.3g} to {:.3g}: the difference "
+                    "between them is "
+                    "part of the result",
+                    point.range_m, judged.least_gain, judged.largest_gain));
+  }
+}
+
 }  // namespace
 
 Crossing75 crossing_of_75_percent(const std::vector<double>& at, const std::vector<double>& proportions) {
@@ -240,6 +257,8 @@ Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task) {
   experiment.motion = task.motion;
   experiment.sequence = task.sequence;
   experiment.frames = task.frames;
+  experiment.stages = task.stages;
+  experiment.stage_reach_px = task.stage_reach_px;
   experiment.cn2_m_minus_2_3 = task.cn2_m_minus_2_3;
   experiment.observer = task.observer;
   experiment.accuracy = task.accuracy;
@@ -275,6 +294,7 @@ Result<IdentificationStudy> study_identification(const IdentificationStudyTask& 
   study.dt_rss_k /= views;
   study.chance = 1 / static_cast<double>(task.set.targets.size());
   TODBENCH_TRY(study.points, identify(experiment));
+  add_notes_of_stages(study);
   study.r75_m = range_of_75_percent(task, study.points);
   if (auto rated = rate_by_curve(task, experiment.ranges.back().transmittance, study); !rated)
     return tl::unexpected(rated.error());

@@ -2,6 +2,8 @@
 // Simulates an identification experiment with a set of targets, and compares it with the prediction of the TOD curve.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -26,7 +28,10 @@ struct IdentificationStudyTask {
   double m75 = 5.1;      ///< for the predicted range
   SceneMotion motion{};  ///< of the targets in the picture
   SequenceObserver sequence = SequenceObserver::single_frame;
-  int frames = 8;              ///< of a pass
+  int frames = 8;  ///< of a pass
+  /// Stages behind the camera, as in IdentificationTask.
+  std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
+  std::optional<int> stage_reach_px{};
   double cn2_m_minus_2_3 = 0;  ///< of turbulence along the path of each range; 0: that of the sensor
   std::uint64_t seed = 1;
   std::stop_token stop{};
@@ -69,9 +74,9 @@ struct IdentificationStudy {
 [[nodiscard]] Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task);
 
 /// Runs the study. The proportion over range is made monotone (pool adjacent violators) and interpolated linearly in ln
-/// range. The TOD curve is that of the same motion, of a single frame; there is none, with a note, for sums of frames
-/// and for motion through turbulent paths. Errors: `invalid_input` (ranges that do not increase or exceed the air's
-/// table; those of identify()), `interrupted`.
+/// range. The TOD curve is that of the same motion, of a single frame; there is none, with a note, for stages, for
+/// sums of frames and for motion through turbulent paths. Errors: `invalid_input` (ranges that do not increase or
+/// exceed the air's table; those of identify()), `interrupted`.
 [[nodiscard]] Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task);
 
 }  // namespace todbench

@@ -146,6 +146,7 @@ Result<PersonExperiment> PersonExperiment::of_set(const IdentificationStudyTask&
                       {"atmosphere", task.air.name},
                       {"azimuths_deg", task.set.azimuths_deg},
                       {"cn2_m_minus_2_3", task.cn2_m_minus_2_3},
+                      {"motion_mrad_s", {task.motion.x_mrad_s, task.motion.y_mrad_s}},
                       {"seed", task.seed}};
   out.frames_ = std::move(frames);
   out.shuffle(task.seed);
@@ -205,7 +206,7 @@ Result<PersonExperiment> PersonExperiment::of_bars(const VirtualMrtdTask& task, 
   return out;
 }
 
-cv::Mat1f PersonExperiment::picture_k(const PersonTrial& trial) const {
+Result<cv::Mat1f> PersonExperiment::picture_k(const PersonTrial& trial) const {
   const PersonCondition& condition = conditions_[trial.condition];
   if (task_ == PersonTask::identify) return frames_->frame_k(condition.place, trial.truth, trial.aspect, trial.draw);
   const auto interval = [&](bool four, std::uint64_t draw) {

@@ -63,7 +63,8 @@ class PersonExperiment {
   [[nodiscard]] const std::vector<PersonCondition>& conditions() const { return conditions_; }
   [[nodiscard]] const std::vector<PersonTrial>& trials() const { return trials_; }
   /// The shown picture, kelvin above the background; for two intervals both, separated by a strip of background.
-  [[nodiscard]] cv::Mat1f picture_k(const PersonTrial& trial) const;
+  /// Errors: those of stages behind the camera.
+  [[nodiscard]] Result<cv::Mat1f> picture_k(const PersonTrial& trial) const;
   /// The same for all trials of a condition: it does not depend on the answer.
   [[nodiscard]] GreyScale grey(const PersonTrial& trial) const { return grey_[trial.condition]; }
   /// Sensor, set or axis, seed, for the record.

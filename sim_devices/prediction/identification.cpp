@@ -85,7 +85,7 @@ class RangeTrial {
   };
 
   [[nodiscard]] bool tracks() const { return task_.sequence == SequenceObserver::tracking_sum; }
-  [[nodiscard]] bool judges_passes() const { return task_.sequence != SequenceObserver::single_frame; }
+  [[nodiscard]] bool judges_passes() const { return task_.stages || task_.sequence != SequenceObserver::single_frame; }
 
   /// Answers of an observer that differs from that of the task in its own noise only.
   Result<void> answer(const SeenTargets& targets, const TemplateObserverSpec& observer, IdentificationPoint& point) {
@@ -95,9 +95,8 @@ class RangeTrial {
     std::vector<float> own(observer.eye ? bank_->scores() : 0);
     for (std::size_t t = 0; t < targets.size(); ++t) {
       for (std::size_t a = 0; a < targets[t].size(); ++a) {
-        const double contrast_k = targets[t][a].dt_rss_k * range_.transmittance;
         if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-        const float white = own_noise(observer, contrast_k, 1), eye = noise_of_eye(observer, t, a, targets[t][a]);
+        const auto [white, eye] = own_noise_of(observer, t, a, targets[t][a], {});
         std::vector<cv::Mat1f> patches;
         for (std::size_t phase = 0; phase < phases; ++phase) patches.push_back(patch(t, a, phase));
         const auto signals = bank_->project_all(patches);
@@ -122,18 +121,21 @@ class RangeTrial {
 
   /// Answers of several observers to the same passes.
   Result<void> answer_passes(const SeenTargets& targets, std::vector<Seeing>& all) {
-    const IdentificationPasses passes(task_, spec_, window_, range_.transmittance, alternatives_,
-                                      bank_->window_samples());
+    TODBENCH_TRY(const auto passes, IdentificationPasses::of(task_, spec_, window_, range_.transmittance, alternatives_,
+                                                             bank_->window_samples()));
+    for (Seeing& one : all) one.point.judged = passes->judged();
     const double views = static_cast<double>(targets.size() * targets.front().size());
     for (std::size_t t = 0; t < targets.size(); ++t) {
       for (std::size_t a = 0; a < targets[t].size(); ++a) {
         for (std::size_t phase = 0; phase < phases; ++phase) {
-          const auto signals = passes.signals(t, a, phase);
+          const auto signals = passes->signals(t, a, phase);
           for (std::size_t d = first_draw_of(phase, t, a); d < all.front().point.by_draw.size(); d += phases) {
             if (task_.stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-            const std::vector<float> scores = scores_of(passes.windows(signals, d));
+            TODBENCH_TRY(const auto windows, passes->windows(signals, d));
+            const std::vector<float> scores = scores_of(windows);
             for (Seeing& one : all) {
-              const std::size_t answer = winner(scores, one.observer, t, a, targets[t][a], d);
+              const OwnNoise noise = own_noise_of(one.observer, t, a, targets[t][a], passes->scale(t, a));
+              const std::size_t answer = winner(scores, noise, d);
               ++one.point.answers[t][answer];
               if (answer == t) one.point.by_draw[d] += 1 / views;
             }
@@ -156,17 +158,28 @@ class RangeTrial {
     return sum;
   }
 
+  /// Standard deviations of the noise of an observer, in units of its white scores and those of its eye.
+  struct OwnNoise {
+    float white = 0, eye = 0;
+  };
+  [[nodiscard]] OwnNoise own_noise_of(const TemplateObserverSpec& observer, std::size_t target, std::size_t aspect,
+                                      const SeenAspect& shown, ViewScale scale) const {
+    const double contrast_k = shown.dt_rss_k * range_.transmittance * scale.contrast;
+    const int frames = task_.sequence == SequenceObserver::single_frame ? 1 : task_.frames;
+    OwnNoise out{.white = own_noise(observer, contrast_k, scale.noise, frames)};
+    if (observer.eye)
+      out.eye = static_cast<float>(bank_->eye_noise_k(observer, target, aspect, contrast_k, shown.dt_rss_k));
+    return out;
+  }
+
   /// Answer to a pass with the noise of the observer, once for the decision.
-  [[nodiscard]] std::size_t winner(const std::vector<float>& scores, const TemplateObserverSpec& observer,
-                                   std::size_t target, std::size_t aspect, const SeenAspect& shown,
-                                   std::size_t draw) const {
-    const float white = own_noise(observer, shown.dt_rss_k * range_.transmittance, task_.frames);
-    const float eye = noise_of_eye(observer, target, aspect, shown);
+  [[nodiscard]] std::size_t winner(const std::vector<float>& scores, OwnNoise noise, std::size_t draw) const {
     std::size_t best = 0, at = 0;
     float largest = -1e30F;
     for (std::size_t o = 0; o < alternatives_.size(); ++o) {
       for (const std::size_t end = at + alternatives_[o].size() * places_of_search(task_.observer); at < end; ++at) {
-        const float score = scores[at] + white * white_[draw][at] + (observer.eye ? eye * eye_[draw][at] : 0.0F);
+        const float score =
+            scores[at] + noise.white * white_[draw][at] + (eye_.empty() ? 0.0F : noise.eye * eye_[draw][at]);
         if (score > largest) largest = score, best = o;
       }
     }
@@ -179,13 +192,6 @@ class RangeTrial {
     std::vector<float> own(bank_->views() * places_of_search(task_.observer), 0.0F);
     add_centred(task_.observer, scores, {0, 0}, 1, own);
     return own;
-  }
-
-  [[nodiscard]] float noise_of_eye(const TemplateObserverSpec& observer, std::size_t target, std::size_t aspect,
-                                   const SeenAspect& shown) const {
-    if (!observer.eye) return 0;
-    const double contrast_k = shown.dt_rss_k * range_.transmittance;
-    return static_cast<float>(bank_->eye_noise_k(observer, target, aspect, contrast_k, shown.dt_rss_k));
   }
 
   RangeTrial(const IdentificationTask& task, IdentificationRange range, const SceneImager& imager)
@@ -223,10 +229,12 @@ class RangeTrial {
 
   /// Noise of the observer in kelvin per sample: internal noise, and the enlargement of the sensor's noise in the mean
   /// of some frames.
-  [[nodiscard]] float own_noise(const TemplateObserverSpec& observer, double contrast_k, int frames) const {
+  [[nodiscard]] float own_noise(const TemplateObserverSpec& observer, double contrast_k, double noise_ratio,
+                                int frames) const {
     const double enlarged = observer.sensor_noise_factor * observer.sensor_noise_factor - 1;
-    return static_cast<float>(std::sqrt(std::pow(observer.internal_noise * contrast_k, 2) +
-                                        enlarged * white_variance_k2(spec_, task_.plan, 1) / frames));
+    return static_cast<float>(
+        std::sqrt(std::pow(observer.internal_noise * contrast_k, 2) +
+                  enlarged * white_variance_k2(spec_, task_.plan, 1) * noise_ratio * noise_ratio / frames));
   }
 
   /// Every range has the same random numbers, except for the size of the window.
@@ -294,6 +302,12 @@ Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
   IdentificationEffort out;
   out.decisions = draws * views * static_cast<double>(task.ranges.size());
   const double windows = task.sequence == SequenceObserver::tracking_sum ? task.frames : 1;
+  // Pictures of a pass; those of stages that need the whole picture of the camera are larger.
+  double frames = task.sequence == SequenceObserver::single_frame ? 1 : task.frames, whole = 0;
+  if (task.stages) {
+    for (const auto& stage : task.stages()) frames += stage->memory_frames();
+    if (!task.stage_reach_px) whole = static_cast<double>(spec.width) * spec.height * n * n;
+  }
   for (const auto& range : task.ranges) {
     const double reach = reach_m * 1e3 / (range.range_m * spec.ifov_mrad());  // pitches
     const double side = 2 * n * std::ceil(1.1 * reach + task.observer.window_margin_pitch);
@@ -308,10 +322,10 @@ Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
     out.processor_s += edges * frequencies / spectrum_rate + views * rank * places * samples / product_rate +
                        (16 * views + 2 * draws) * rank * views * (samples + places) / projection_rate +
                        draws * views * views * places / score_rate;
-    if (task.sequence == SequenceObserver::single_frame) continue;
-    out.processor_s +=
-        draws * views *
-        (windows * rank * views * (samples + places) / projection_rate + task.frames * samples / noise_rate);
+    if (task.sequence == SequenceObserver::single_frame && !task.stages) continue;
+    out.processor_s += draws * views *
+                       (windows * rank * views * (samples + places) / projection_rate +
+                        frames * std::max(samples, whole) / noise_rate);
   }
   return out;
 }
@@ -375,16 +389,14 @@ struct IdentificationFrames::Range {
         imager(spec, task.plan, task.accuracy, task.motion),
         window(spec, imager),
         transmittance(range.transmittance),
-        alternatives(in_samples(targets, samples_per_metre(spec, range), spec, task.motion)),
-        passes(task, spec, window, transmittance, alternatives,
-               identification_window_samples(task.observer, alternatives, spec.samples_per_pitch())) {}
+        alternatives(in_samples(targets, samples_per_metre(spec, range), spec, task.motion)) {}
   IdentificationTask task;
   SensorSpec spec;
   SceneImager imager;
   SeenWindow window;
   double transmittance;
   std::vector<AlternativeAspects> alternatives;
-  IdentificationPasses passes;
+  std::unique_ptr<const IdentificationPasses> passes;
 };
 
 Result<IdentificationFrames> IdentificationFrames::of(const IdentificationTask& task) {
@@ -394,7 +406,13 @@ Result<IdentificationFrames> IdentificationFrames::of(const IdentificationTask& 
                 "one picture cannot show the sum over a target that is tracked: use single-frame or static-sum");
   TODBENCH_TRY(const auto targets, seen_targets(task));
   IdentificationFrames frames;
-  for (const auto& range : task.ranges) frames.ranges_.push_back(std::make_shared<const Range>(task, targets, range));
+  for (const auto& range : task.ranges) {
+    auto at = std::make_shared<Range>(task, targets, range);
+    const int side = identification_window_samples(task.observer, at->alternatives, at->spec.samples_per_pitch());
+    TODBENCH_TRY(at->passes,
+                 IdentificationPasses::of(at->task, at->spec, at->window, at->transmittance, at->alternatives, side));
+    frames.ranges_.push_back(std::move(at));
+  }
   for (const auto& target : targets) {
     auto& own = frames.contrasts_k_.emplace_back();
     for (const auto& aspect : target) own.push_back(aspect.dt_rss_k);
@@ -402,12 +420,13 @@ Result<IdentificationFrames> IdentificationFrames::of(const IdentificationTask& 
   return frames;
 }
 
-cv::Mat1f IdentificationFrames::frame_k(std::size_t range, std::size_t target, std::size_t aspect,
-                                        std::uint64_t draw) const {
-  const IdentificationPasses& passes = ranges_[range]->passes;
+Result<cv::Mat1f> IdentificationFrames::frame_k(std::size_t range, std::size_t target, std::size_t aspect,
+                                                std::uint64_t draw) const {
+  const IdentificationPasses& passes = *ranges_[range]->passes;
   std::size_t phase = 0;
   while (first_draw_of(phase, target, aspect) != draw % phases) ++phase;
-  return passes.windows(passes.signals(target, aspect, phase), draw).front().kelvin;
+  TODBENCH_TRY(const auto windows, passes.windows(passes.signals(target, aspect, phase), draw));
+  return windows.front().kelvin;
 }
 
 double IdentificationFrames::contrast_k(std::size_t range, std::size_t target, std::size_t aspect) const {

@@ -60,6 +60,12 @@ struct IdentificationTask {
   /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
   SequenceObserver sequence = SequenceObserver::single_frame;
   int frames = 8;  ///< of a pass; a single frame ignores them
+  /// Stages behind the camera, made anew for every pass if they have a memory; empty: none. Before the first frame of a
+  /// pass they receive as many frames of the same motion as they remember. Their lag is not removed.
+  std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
+  /// Distance in samples from which on a picture has no influence on a sample behind the stages; empty: the whole
+  /// picture has.
+  std::optional<int> stage_reach_px{};
   /// Turbulence along the path of each range, instead of that of the sensor; 0: as in the sensor. The plan must
   /// simulate it. An observer with knowledge behind the camera also knows the targets behind this air.
   double cn2_m_minus_2_3 = 0;
@@ -70,6 +76,13 @@ struct IdentificationTask {
 /// Sensor of the task at a range, as planned.
 [[nodiscard]] SensorSpec sensor_at(const IdentificationTask& task, double range_m);
 
+/// Contrast and noise of the pictures behind the stages, measured in pictures at rest.
+struct JudgedPictures {
+  double gain = 1;  ///< of the contrast of all views together; judged pictures are divided by it
+  double least_gain = 1, largest_gain = 1;  ///< of single views
+  double noise_k = 0;                       ///< temporal noise of a sample, divided by the gain: mean over the views
+};
+
 struct IdentificationPoint {
   double range_m = 0, transmittance = 1;
   std::vector<std::vector<int>> answers;  ///< [shown][answered]
@@ -77,6 +90,7 @@ struct IdentificationPoint {
   std::vector<double> by_draw;
   /// Proportion correct of an observer with an eye at the worst and the best end of the range of its open parameters.
   std::optional<std::pair<double, double>> spread{};
+  std::optional<JudgedPictures> judged{};  ///< with stages
   [[nodiscard]] double proportion() const;
   [[nodiscard]] double standard_error() const;
 };
@@ -94,11 +108,17 @@ struct IdentificationEffort {
 /// in one of 16 sampling phases that the draws take in turn. Internal noise and the enlargement of the sensor's noise
 /// are those of the template observer; the contrast is dT_RSS behind the air, and an observer with an eye sees it at
 /// the luminance contrast of its display. A target in motion is judged at its true place, without the mean lag of time
-/// constant and exposure, and each row at its time, as in dynamic_trials(). Ranges run in parallel on all processors,
-/// and the result does not depend on their number. Dead detectors are left out. Counts are rounded with the noise, not
-/// with the signal. Errors: `invalid_input` (fewer than two targets, targets that look alike from every side, a target
-/// without contrast, counts too coarse for the noise, targets too large for the observer, more than 5 pixels per frame,
-/// motion in front of microscan or super-resolution, several frames with image dance), `interrupted`.
+/// constant and exposure, and each row at its time, as in dynamic_trials().
+///
+/// Stages receive rounded and clipped counts: of the window and its surround, or of the whole picture if a stage needs
+/// it. The contrast of a view, to which internal noise is relative, and the noise that the observer enlarges are those
+/// of the judged pictures; so a gain changes nothing. The observer knows its targets without the stages. Ranges run in
+/// parallel on all processors, and the result does not depend on their number. Dead detectors are left out. Counts are
+/// rounded with the noise, not with the signal. Errors: `invalid_input` (fewer than two targets, targets that look
+/// alike from every side, a target without contrast, counts too coarse for the noise, targets too large for the
+/// observer, more than 5 pixels per frame, motion in front of microscan or super-resolution, several frames with image
+/// dance, targets that do not fit into the picture of a stage, contrasts that reach an end of the counts),
+/// `not_identifiable` (no contrast behind the stages), `interrupted`, errors of the stages.
 [[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
 
 /// Pictures of identify() for another observer. Immutable, thread-safe.
@@ -107,8 +127,9 @@ class IdentificationFrames {
   /// Errors: those of identify() about the targets.
   [[nodiscard]] static Result<IdentificationFrames> of(const IdentificationTask& task);
   /// Displayed kelvin above the background, with the noise of this draw and its sampling phase for this view, as in
-  /// identify() of the same task. All frames of a range have one size.
-  [[nodiscard]] cv::Mat1f frame_k(std::size_t range, std::size_t target, std::size_t aspect, std::uint64_t draw) const;
+  /// identify() of the same task. All frames of a range have one size. Errors: those of the stages.
+  [[nodiscard]] Result<cv::Mat1f> frame_k(std::size_t range, std::size_t target, std::size_t aspect,
+                                          std::uint64_t draw) const;
   /// Contrast dT_RSS behind the air.
   [[nodiscard]] double contrast_k(std::size_t range, std::size_t target, std::size_t aspect) const;
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passes of the targets of an identification experiment: successive frames round a target that moves.
+// Passes of the targets of an identification experiment: successive frames round a target that moves, behind the
+// stages.
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,35 +30,70 @@ struct PassWindow {
   cv::Point2d phase;
 };
 
+/// Contrast of a view and noise behind the stages, relative to those in front of them, after division by the gain.
+struct ViewScale {
+  double contrast = 1, noise = 1;
+};
+
 /// Passes at one range. Thread-safe.
 class IdentificationPasses {
  public:
   /// `spec` is the sensor of the range as planned; `shown` are the targets in displayed samples. `window` outlives the
-  /// object, as does the task.
-  IdentificationPasses(const IdentificationTask& task, const SensorSpec& spec, const SeenWindow& window,
-                       double transmittance, std::vector<AlternativeAspects> shown, int side);
+  /// object, as does the task. Errors: those of identify() about stages.
+  [[nodiscard]] static Result<std::unique_ptr<const IdentificationPasses>> of(
+      const IdentificationTask& task, const SensorSpec& spec, const SeenWindow& window, double transmittance,
+      std::vector<AlternativeAspects> shown, int side);
 
   /// The target of a view in every frame of a pass, without noise.
   struct Signals {
-    std::vector<cv::Mat1f> frames;
+    std::vector<cv::Mat1f> frames;    ///< also those in front of the pass that the stages remember
     std::vector<cv::Point> corners;   ///< of each in the picture
     std::vector<cv::Point2d> places;  ///< of the target from the middle of the picture, in samples
   };
   [[nodiscard]] Signals signals(std::size_t target, std::size_t aspect, std::size_t phase) const;
   /// Windows that the observer of the task judges, with the noise of a draw: the first frame, all frames, or their mean
-  /// at the place in the middle of the pass.
-  [[nodiscard]] std::vector<PassWindow> windows(const Signals& signals, std::uint64_t draw) const;
+  /// at the place in the middle of the pass. In kelvin of the judged contrast. Errors: those of the stages.
+  [[nodiscard]] Result<std::vector<PassWindow>> windows(const Signals& signals, std::uint64_t draw) const;
+
+  [[nodiscard]] ViewScale scale(std::size_t target, std::size_t aspect) const { return scales_[target][aspect]; }
+  /// Empty without stages.
+  [[nodiscard]] const std::optional<JudgedPictures>& judged() const { return judged_; }
 
  private:
+  IdentificationPasses(const IdentificationTask& task, const SensorSpec& spec, const SeenWindow& window,
+                       double transmittance, std::vector<AlternativeAspects> shown, int side);
+  [[nodiscard]] Result<void> prepare_stages();
+  [[nodiscard]] Result<void> measure_scales();
+  /// A view behind the stages against the same in front of them, by least squares over the window.
+  struct ViewGain {
+    double product = 0, energy = 0;  ///< the gain is their ratio
+    double variance = 0;             ///< of the product
+    double noise_ratio = 1;
+    [[nodiscard]] double gain() const { return product / energy; }
+  };
+  /// `empty`: judged frames without a target, with the same noise.
+  [[nodiscard]] Result<ViewGain> gain_of(std::size_t target, std::size_t aspect, const std::vector<cv::Mat1f>& noise,
+                                         const std::vector<cv::Mat1f>& empty) const;
+  /// Middle of a window as place of the nearest sample to `place`.
   [[nodiscard]] cv::Rect window_at(cv::Point2d place) const;
+  /// Adds the targets to the noise and passes the frames through the stages; without the frames in front of the pass.
+  [[nodiscard]] Result<std::vector<cv::Mat1f>> shown_frames(std::vector<cv::Mat1f> noise, const Signals& signals) const;
+  [[nodiscard]] Result<void> through_stages(std::vector<cv::Mat1f>& frames) const;
+
   const IdentificationTask& task_;
   SensorSpec spec_;
   const SeenWindow& window_;
   double transmittance_;
   std::vector<AlternativeAspects> shown_;
   cv::Point2d step_;
-  int frames_, side_, picture_;  ///< frames of a pass; sides of window and picture
-  WindowNoise noise_;
+  int frames_, side_;            ///< frames of a pass; side of the window
+  int lead_ = 0, surround_ = 0;  ///< frames, samples round the window, for the stages
+  cv::Size picture_;
+  std::optional<WindowNoise> noise_;
+  std::vector<std::vector<ViewScale>> scales_;
+  std::optional<JudgedPictures> judged_;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<ChainStage>> without_memory_;  ///< kept from pass to pass
 };
 
 /// Search that can be centred on any true place between two samples: half a sample further than that of the observer.

@@ -9,13 +9,14 @@
 
 namespace todbench {
 
-WindowNoise::WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, int window_samples,
-                         std::uint64_t seed)
+WindowNoise::WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy,
+                         cv::Size window_samples, std::uint64_t seed)
     : small_(spec), plan_(plan), accuracy_(accuracy), window_(window_samples), seed_(seed) {
   if (has_display(spec)) {
     margin_ = static_cast<int>(taps_of([&](double f) { return display_response(spec, f); }).size());
   }
-  small_.width = small_.height = (window_ + 2 * margin_) / spec.samples_per_pitch() + 1;
+  small_.width = (window_.width + 2 * margin_) / spec.samples_per_pitch() + 1;
+  small_.height = (window_.height + 2 * margin_) / spec.samples_per_pitch() + 1;
   small_.dead_pixel_share = 0;
 }
 
@@ -25,13 +26,13 @@ std::vector<cv::Mat1f> WindowNoise::sensor_frames_k(std::uint64_t draw, int coun
   std::vector<cv::Mat1f> frames;
   for (int k = 0; k < count; ++k) {
     const cv::Mat1f picture = model.picture(nothing, 1, small_.scene_temperature_k, static_cast<std::uint64_t>(k));
-    frames.push_back(picture(cv::Rect(margin_, margin_, window_, window_)).clone());
+    frames.push_back(picture(cv::Rect({margin_, margin_}, window_)).clone());
   }
   return frames;
 }
 
 cv::Mat1f WindowNoise::white(std::uint64_t draw) const {
-  cv::Mat1f out(window_, window_);
+  cv::Mat1f out(window_);
   RandomStream(seed_, "identification.white").sub(draw).fill_normal(std::span(out.ptr<float>(), out.total()));
   return out;
 }

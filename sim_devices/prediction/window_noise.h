@@ -16,8 +16,12 @@ namespace todbench {
 class WindowNoise {
  public:
   /// Precondition: `spec` is as_planned().
-  WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, int window_samples,
+  WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, cv::Size window_samples,
               std::uint64_t seed);
+  /// The same for a square window.
+  WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, int window_samples,
+              std::uint64_t seed)
+      : WindowNoise(spec, plan, accuracy, cv::Size(window_samples, window_samples), seed) {}
   /// Noise of the camera behind its display, in kelvin.
   [[nodiscard]] cv::Mat1f sensor_k(std::uint64_t draw) const { return sensor_frames_k(draw, 1).front(); }
   /// The same for `count` successive frames, which share the fixed pattern of the draw; the first equals sensor_k().
@@ -29,7 +33,8 @@ class WindowNoise {
   SensorSpec small_;
   SensorPlan plan_;
   Accuracy accuracy_;
-  int window_ = 0, margin_ = 0;
+  cv::Size window_;
+  int margin_ = 0;
   std::uint64_t seed_;
 };
 

@@ -92,7 +92,14 @@ void PersonPresenter::show_next() {
     return;
   }
   const PersonTrial& trial = experiment_->trials()[answers_.size()];
-  screen_.show(picture_of(experiment_->picture_k(trial), experiment_->grey(trial), magnification_), shown_ms_);
+  const auto kelvin = experiment_->picture_k(trial);
+  if (!kelvin) {
+    problem_ = QString::fromStdString(kelvin.error().message);
+    screen_.end(HumanState::finished);
+    emit updated();
+    return;
+  }
+  screen_.show(picture_of(*kelvin, experiment_->grey(trial), magnification_), shown_ms_);
 }
 
 void PersonPresenter::answer(std::size_t alternative) {

@@ -49,9 +49,9 @@ TEST(PersonExperiment, AsksOfEveryTargetAtEveryRangeAsOften) {
   for (const PersonTrial& trial : experiment->trials()) {
     ++asked[{trial.condition, trial.truth}];
     order.push_back(trial.truth);
-    const cv::Mat1f picture = experiment->picture_k(trial);
+    const cv::Mat1f picture = experiment->picture_k(trial).value();
     EXPECT_EQ(picture.rows, picture.cols);
-    EXPECT_LT(cv::norm(picture, experiment->picture_k(trial), cv::NORM_INF), 1e-9) << "the same again";
+    EXPECT_LT(cv::norm(picture, experiment->picture_k(trial).value(), cv::NORM_INF), 1e-9) << "the same again";
     // The same grey for all targets of a range.
     EXPECT_EQ(experiment->grey(trial).white_k, -experiment->grey(trial).black_k);
   }
@@ -109,7 +109,7 @@ TEST(PersonExperiment, OfBarsFindsTheContrastOfEveryFrequency) {
   for (const PersonTrial& trial : experiment->trials()) left += trial.truth == 0 ? 1 : 0;
   EXPECT_NEAR(left, 60, 4 * std::sqrt(30.0)) << "four bars are on the left as often";
   // Four on the left and five on the right are as wide as one another.
-  EXPECT_GT(experiment->picture_k(experiment->trials()[0]).cols, experiment->picture_k(experiment->trials()[0]).rows);
+  EXPECT_GT(experiment->picture_k(experiment->trials()[0])->cols, experiment->picture_k(experiment->trials()[0])->rows);
 
   const PersonResult result = person_result(*experiment, answers_of(*experiment, [](const PersonTrial& trial) {
     return trial.condition % 6 >= (trial.condition < 6 ? 3U : 2U);
@@ -136,7 +136,7 @@ TEST(PersonExperiment, OfResolvedBarsAsksWhetherThereAreAnyAndCountsFalseAlarms)
   EXPECT_NEAR(conditions[1].contrast_k / conditions[0].contrast_k, 2, 1e-9);
   const auto strength = [&](const PersonTrial& trial) {
     cv::Scalar mean, sd;
-    cv::meanStdDev(experiment->picture_k(trial), mean, sd);
+    cv::meanStdDev(experiment->picture_k(trial).value(), mean, sd);
     return sd[0];
   };
   for (const PersonTrial& trial : experiment->trials()) {
@@ -181,7 +181,7 @@ TEST(PersonExperiment, OfDetectionShowsBarsOnOneSideAndNothingOnTheOther) {
   EXPECT_EQ(experiment->description()["criterion"], "detection");
   for (const PersonTrial& trial : experiment->trials()) {
     if (trial.condition % 6 != 5) continue;
-    const cv::Mat1f picture = experiment->picture_k(trial);
+    const cv::Mat1f picture = experiment->picture_k(trial).value();
     const int half = (picture.cols - 4) / 2;
     const double left = cv::mean(picture.colRange(0, half))[0],
                  right = cv::mean(picture.colRange(half + 4, picture.cols))[0];

@@ -386,7 +386,7 @@ TEST(Identification, ShowsAPersonTheFramesOfTheModel) {
   std::vector answers(2, std::vector(2, 0));
   for (std::size_t target = 0; target < 2; ++target) {
     for (std::uint64_t draw = 0; draw < 64; ++draw) {
-      cv::Mat1f frame = frames->frame_k(0, target, 0, draw);
+      cv::Mat1f frame = frames->frame_k(0, target, 0, draw).value();
       ASSERT_EQ(frame.rows, bank->window_samples());
       frame -= cv::mean(frame)[0];
       ++answers[target][bank->best(bank->project(frame), nothing, 0, nothing, 0)];
