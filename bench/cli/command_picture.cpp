@@ -10,6 +10,7 @@
 #include "bench/cli/chain_options.h"
 #include "bench/cli/effect_decisions.h"
 #include "bench/cli/scene_files.h"
+#include "bench/enhance/package_file.h"
 #include "bench/picture_files/encoded_picture.h"
 #include "bench/plan/descriptions.h"
 #include "bench/report/picture_page.h"
@@ -22,7 +23,7 @@ namespace todbench {
 namespace {
 
 struct PictureArguments {
-  std::string scene, out;
+  std::string scene, out, package;
   ChainOptions chain;
   double range_m = 0, rotation_deg = 0, x_pitch = 0, y_pitch = 0, tolerance_percent = 1;
   std::optional<double> cn2{};
@@ -48,6 +49,12 @@ Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t 
   task.accuracy = chain.accuracy;
   task.view = {.range_m = a.range_m, .rotation_deg = a.rotation_deg, .centre_pitch = {a.x_pitch, a.y_pitch}};
   if (!a.motion_mrad_s.empty()) task.motion = {.x_mrad_s = a.motion_mrad_s[0], .y_mrad_s = a.motion_mrad_s[1]};
+  if (!a.package.empty()) {
+    TODBENCH_TRY(auto package, read_package(a.package));
+    if (auto same = refuse_finer_pictures(package, "the pictures of the stages"); !same)
+      return tl::unexpected(same.error());
+    task.stages = [package = std::move(package)] { return made_stages(package, {}); };
+  }
   task.effects.tolerance_percent = a.tolerance_percent;
   task.seed = seed;
   task.field_pitch = a.field_pitch;
@@ -88,6 +95,7 @@ Document picture_document(const ScenePicturesTask& task, const ScenePictures& pi
             t->path.cn2_m_minus_2_3, t->path.path_m, t->r0_m, t->mtf_at_nyquist, t->tilt_sd_pitch));
   }
   add("background temperature shown by the camera", fmt::format("{:.2f} K", pictures.background_k));
+  if (pictures.judged_gain) add("gain of the package", fmt::format("{:.4g}", *pictures.judged_gain));
   add("grey scale", grey_sentence(pictures));
   Table effects{"", {"Effect", "Decision", "Reason"}, {}};
   const auto word = [](Decision decision) { return plain(decision == Decision::simulate ? "simulated" : "skipped"); };
@@ -156,6 +164,7 @@ Json picture_json(const ScenePicturesTask& task, const ScenePictures& pictures) 
       {"apparent_delta_t_k", json_number(pictures.apparent_dt_k)},
       {"grey_scale", {{"black_k", json_number(pictures.grey_low_k)}, {"white_k", json_number(pictures.grey_high_k)}}},
       {"effects", effects_json(pictures.effects.plan)},
+      {"judged_gain", json_number(pictures.judged_gain)},
       {"warnings", pictures.effects.warnings},
       {"stages", stages},
       {"frame", {{"png", "frame.png"}, {"tiff", "frame.tiff"}}},
@@ -261,6 +270,8 @@ void add_picture_command(CLI::App& app, Program& program) {
           "other way; smears by time constant and exposure of the sensor")
       ->expected(2)
       ->check(number_in(-1e4, 1e4));
+  command->add_option("--package", a->package,
+                      "package of stages behind the camera, a file; the lag of the stages is not removed");
   command
       ->add_option("--field-pitch", a->field_pitch,
                    "side of the shown field in detector pitches; default: the target and a margin")

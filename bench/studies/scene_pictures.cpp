@@ -8,10 +8,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "acquisition/base/try.h"
+#include "bench/studies/staged_scene.h"
 #include "sim_devices/atmosphere/radiative_path.h"
 #include "sim_devices/sensor/effect_distortion.h"
 #include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_quantisation.h"
+#include "sim_devices/sensor/effect_readout.h"
 #include "sim_devices/sensor/effect_turbulence.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/plate/test_pattern.h"
@@ -110,6 +112,33 @@ Result<cv::Mat1d> danced_signal_k(const SceneImager& imager, const SensorSpec& s
   return sum;
 }
 
+/// Signals of the frames that the stages remember, in kelvin, and of the picture itself.
+Result<std::vector<cv::Mat1f>> signals_for_stages(const SceneImager& imager, const SensorSpec& spec,
+                                                  const ScenePicturesTask& task, const RadianceScale& scale,
+                                                  const SceneView& view, const cv::Mat1f& last, double transmittance,
+                                                  const std::vector<cv::Point2d>& displacements_pitch) {
+  int memory = 0;
+  for (const auto& stage : task.stages()) memory += stage->memory_frames();
+  const cv::Point2d step =
+      cv::Point2d(task.motion.x_mrad_s, task.motion.y_mrad_s) / (spec.ifov_mrad() * spec.frame_rate_hz);
+  std::vector<cv::Mat1f> signals;
+  for (int k = -memory; k < 0; ++k) {
+    if (!task.motion.moving()) {
+      signals.push_back(last);
+      continue;
+    }
+    SceneView earlier = view;
+    earlier.centre_pitch += step * static_cast<double>(k);
+    TODBENCH_TRY(const auto signal,
+                 danced_signal_k(imager, spec, task, scale, earlier,
+                                 {spec.width * spec.samples_per_pitch(), spec.height * spec.samples_per_pitch()},
+                                 displacements_pitch));
+    signals.push_back(as_float(signal, transmittance));
+  }
+  signals.push_back(last);
+  return signals;
+}
+
 std::vector<AirDecision> air_decisions(const ScenePicturesTask& task, const ScenePictures& out, double level_shift_k) {
   std::vector<AirDecision> decisions;
   const double lost_percent = 100 * (1 - out.transmittance);
@@ -183,9 +212,9 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   out.apparent_dt_k = *tau * contrast_of(out.signature, levels);
   out.effects = planned(task, out.apparent_dt_k);
   if (distorts(task.sensor)) out.effects.warnings.emplace_back("the pictures do not show the distortion of the lens");
-  if (out.effects.plan.simulates(Effect::readout))
+  if (out.effects.plan.simulates(Effect::readout) && task.scene.picture)
     out.effects.warnings.emplace_back(
-        "the pictures do not show that rows are read one after another while the scene moves");
+        "the pictures of a radiometric picture do not show that rows are read one after another while it moves");
   out.air = air_decisions(task, out, scale.kelvin(seen - radiance));
   out.turbulence = turbulence_seen(task.sensor);
   const SensorPlan& plan = out.effects.plan;
@@ -195,8 +224,9 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   const SceneImager imager(spec, plan, task.accuracy, task.motion);
   std::vector<cv::Point2d> displacements_pitch = model.displacements_px(0);
   for (cv::Point2d& displacement : displacements_pitch) displacement /= spec.samples_per_pitch();
-  TODBENCH_TRY(const auto signal,
-               danced_signal_k(imager, spec, task, scale, task.view, model.size(), displacements_pitch));
+  SceneView view = task.view;
+  view.readout_slope = readout_slope(spec, task.motion);
+  TODBENCH_TRY(const auto signal, danced_signal_k(imager, spec, task, scale, view, model.size(), displacements_pitch));
   const cv::Mat1f unit = as_float(signal, *tau);
 
   const int field = field_of(task, spec);
@@ -211,8 +241,10 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   SceneView fine_view = task.view;
   // Centre of the displayed field relative to that of the frame.
   fine_view.centre_pitch += cv::Point2d((spec.width - field) % 2, (spec.height - field) % 2) / 2;
+  SceneView read_out = fine_view;
+  read_out.readout_slope = view.readout_slope;
   const auto filtered_scene = [&](const SensorPlan& filters) {
-    return danced_signal_k(SceneImager(fine, filters, task.accuracy, task.motion), fine, task, scale, fine_view,
+    return danced_signal_k(SceneImager(fine, filters, task.accuracy, task.motion), fine, task, scale, read_out,
                            fine_size, displacements_pitch);
   };
   TODBENCH_TRY(const auto behind_optics, filtered_scene(with_decision(plan, Effect::detector, Decision::skip)));
@@ -224,9 +256,18 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
       task.accuracy, task.seed);
   const cv::Mat1f noisy = undisplayed.picture(unit, 1, out.background_k, 0);
   out.frame = model.picture(unit, 1, out.background_k, 0);
-  cv::Mat1f shown, seen_by_observer;
-  cv::resize(out.frame(samples), shown, {}, display_factor, display_factor, cv::INTER_NEAREST);
-  cv::GaussianBlur(shown, seen_by_observer, {}, task.observer.blur_sigma_samples * display_factor, 0,
+  cv::Mat1f in_front_of_stages = out.frame;
+  if (task.stages) {
+    TODBENCH_TRY(const auto signals,
+                 signals_for_stages(imager, spec, task, scale, view, unit, *tau, displacements_pitch));
+    TODBENCH_TRY(const auto staged, behind_stages(model, task.stages, signals, out.background_k, samples));
+    out.frame = staged.kelvin;
+    out.judged_gain = staged.gain;
+  }
+  cv::Mat1f shown, judged, seen_by_observer;
+  cv::resize(in_front_of_stages(samples), shown, {}, display_factor, display_factor, cv::INTER_NEAREST);
+  cv::resize(out.frame(samples), judged, {}, display_factor, display_factor, cv::INTER_NEAREST);
+  cv::GaussianBlur(judged, seen_by_observer, {}, task.observer.blur_sigma_samples * display_factor, 0,
                    cv::BORDER_REFLECT_101);
   const std::string air_note = fmt::format("after {:.0f} m of air, transmittance {:.3f}", task.view.range_m, *tau);
   out.stages = {
@@ -246,6 +287,13 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
       {"7-observer", "After the observer's filter",
        fmt::format("blur of display and eye, sigma {:g} samples", task.observer.blur_sigma_samples), seen_by_observer,
        static_cast<double>(n * display_factor)}};
+  if (out.judged_gain) {
+    out.stages.back().name = "8-observer";
+    out.stages.insert(out.stages.end() - 1,
+                      {"7-package", "Behind the package",
+                       fmt::format("divided by the gain of the contrast, {:.3g}", *out.judged_gain), judged,
+                       static_cast<double>(n * display_factor)});
+  }
   double low = 0, high = 0;
   cv::minMaxLoc(noisy(samples), &low, &high);
   out.grey_low_k = low;

@@ -2,6 +2,8 @@
 // A scene on its way through air, camera and eye: the picture after every stage.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +13,7 @@
 #include "bench/plan/atmospheres.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/atmosphere/turbulence.h"
+#include "sim_devices/module/picture_stage.h"
 #include "sim_devices/prediction/effect_planner.h"
 #include "sim_devices/scene/field_scene.h"
 #include "sim_devices/sensor/scene_signal.h"
@@ -25,6 +28,8 @@ struct ScenePicturesTask {
   SceneView view{};
   SceneMotion motion{};  ///< of the picture across the detectors: the target moves, or the camera turns
   Accuracy accuracy{};
+  /// Stages behind the camera; they receive as many frames of the same motion as they remember. Empty: none.
+  std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   EffectPlannerOptions effects{};
   std::uint64_t seed = 1;
   int field_pitch = 0;  ///< side of the displayed square, in pitches; 0: the target with a margin
@@ -59,8 +64,10 @@ struct TurbulenceSeen {
 };
 
 struct ScenePictures {
-  std::vector<SceneStage> stages;          ///< at the sensor, optics, detector, sampled, noise, display, observer
-  cv::Mat1f frame;                         ///< the camera's whole frame, as displayed
+  /// At the sensor, optics, detector, sampled, noise, display, with stages behind them, observer.
+  std::vector<SceneStage> stages;
+  cv::Mat1f frame;                         ///< the camera's whole frame, as displayed, behind the stages
+  std::optional<double> judged_gain;       ///< of the stages; their picture is divided by it
   double grey_low_k = 0, grey_high_k = 1;  ///< black and white of every picture, above the background
   double background_k = 300;               ///< camera reading of the background: scene, air and one conversion
   double transmittance = 1;
@@ -73,7 +80,8 @@ struct ScenePictures {
 
 /// Renders the stages. Stages 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, 6 and 7 eight per
 /// sample. The effects that matter at the target's contrast are simulated, or all of them if no size has a threshold at
-/// it. Errors: `invalid_input` (a range beyond the air's table), those of scene_signal_k().
+/// it. Errors: `invalid_input` (a range beyond the air's table), `not_identifiable` (no contrast
+/// behind the stages), those of scene_signal_k() and of the stages.
 [[nodiscard]] Result<ScenePictures> scene_pictures(const ScenePicturesTask& task);
 
 /// Returns 8 bits, black at low and white at high, enlarged by an integer factor until the longer side has `least_px`.

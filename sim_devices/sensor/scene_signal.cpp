@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "sim_devices/sensor/effect_readout.h"
+
 namespace todbench {
 namespace {
 
@@ -41,8 +43,13 @@ double samples_per_metre(const SensorSpec& spec, const SceneView& view) {
 
 std::vector<StepEdge> edges_in_samples(const FieldScene& scene, const RadianceScale& scale, const SensorSpec& spec,
                                        const SceneView& view, cv::Size size) {
-  return placed(visible_edges(levels_k(scene, scale)), samples_per_metre(spec, view), view.rotation_deg,
-                middle_of(spec, view, size));
+  auto edges = placed(visible_edges(levels_k(scene, scale)), samples_per_metre(spec, view), view.rotation_deg,
+                      middle_of(spec, view, size));
+  for (StepEdge& edge : edges) {
+    edge.a = as_read_out(edge.a, view.readout_slope, (size.height - 1) / 2.0);
+    edge.b = as_read_out(edge.b, view.readout_slope, (size.height - 1) / 2.0);
+  }
+  return edges;
 }
 
 Result<cv::Mat1d> scene_signal_k(const SceneImager& imager, const SensorSpec& spec, const FieldScene& scene,

@@ -15,6 +15,9 @@ struct SceneView {
   double range_m = 100;
   double rotation_deg = 0;         ///< about the line of sight, clockwise in the picture
   cv::Point2d centre_pitch{0, 0};  ///< place of the scene's origin, from the middle of the picture
+  /// Motion of the scene from one row to the next, in pitches per row (effect_readout.h). The middle row of the picture
+  /// samples at the time of the picture. Polygons only.
+  cv::Point2d readout_slope{0, 0};
 };
 
 /// Map from metres in the scene to samples of the camera; sample (i, j) is centred at (i, j).

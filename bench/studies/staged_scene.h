@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The frame of a scene behind processing stages, in units of its contrast in front of them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "sim_devices/module/picture_stage.h"
+#include "sim_devices/sensor/sensor_model.h"
+
+namespace todbench {
+
+struct StagedFrame {
+  cv::Mat1f kelvin;  ///< above the mean of the frame without a scene, divided by the gain
+  double gain = 1;   ///< of the scene at rest, by least squares over a field
+};
+
+/// Passes the counts of successive frames through new stages and returns the last. `signals`: kelvin above the
+/// background, of the frames in front of it and its own; it has random number 0. The gain comes from the last frame
+/// with and without the scene in the same noise. Errors: those of the stages; `not_identifiable` (no contrast behind
+/// the stages).
+[[nodiscard]] Result<StagedFrame> behind_stages(const SensorModel& model,
+                                                const std::function<std::vector<std::unique_ptr<ChainStage>>()>& stages,
+                                                const std::vector<cv::Mat1f>& signals, double background_k,
+                                                const cv::Rect& field);
+
+}  // namespace todbench
