@@ -16,6 +16,7 @@
 #include "acquisition/base/try.h"
 #include "bench/cli/chain_options.h"
 #include "bench/cli/effect_decisions.h"
+#include "bench/cli/identify_people.h"
 #include "bench/enhance/package_file.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
@@ -39,6 +40,7 @@ struct IdentifyArguments {
   std::vector<double> motion_mrad_s{};
   int frames = 8;
   std::string package;
+  PeopleOptions people;
   EffectDecisionOptions shown;
 };
 
@@ -258,6 +260,7 @@ int run_identify(Console& console, const IdentifyArguments& a, const Program& pr
   const DecidedEffects effects{task->sensor.name, full_plan(task->sensor, {}, {}, task->motion),
                                no_criterion_for("the identification of targets")};
   if (a.shown.dry_run) return dry_run(console, {effects}, a.shown);
+  if (a.people.used()) return run_identify_people(console, a.people, *task);
   const auto experiment = experiment_of(*task);
   if (!experiment) return report_error(console, experiment.error());
   const auto effort = planned_effort(*experiment);
@@ -337,6 +340,7 @@ void add_identify_command(CLI::App& app, Program& program) {
       ->capture_default_str();
   command->add_option("--package", a->package,
                       "package of stages behind the camera, a file; the lag of the stages is not removed");
+  a->people.add_to(*command);
   a->shown.add_to(*command);
   command->add_flag("--plan", a->plan, "prints the predicted effort and ends");
   command->add_option("--m75", a->m75, "criterion M75 for the range that the TOD curve predicts")

@@ -14,6 +14,7 @@
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"
 #include "bench/session/fit_record.h"
+#include "bench/studies/people_set.h"
 #include "bench/studies/turbulent_ranges.h"
 #include "bench/text/text.h"
 #include "sim_devices/sensor/effect_turbulence.h"
@@ -26,6 +27,7 @@ struct RangeArguments {
   std::string tod;
   RangeTask task;
   std::optional<double> m75, v50;
+  std::string m75_of;
   RangeOptions more;
   Opening opening{};
 };
@@ -226,6 +228,29 @@ Json turbulence_json(const TurbulentAnswers& answers, const SensorSpec& sensor, 
   return json;
 }
 
+/// M75 with its uncertainty from a file. Error: `invalid_input` for the curve of another observer, or without interval.
+Result<void> take_m75(const std::string& file, const std::string& curve_observer, RangeTask& task,
+                      RangeOptions& options) {
+  TODBENCH_TRY(const auto stated, read_m75_file(file));
+  if (stated.curve_of != curve_observer) {
+    return fail(ErrorCode::invalid_input,
+                fmt::format("--m75-of: the M75 belongs to the TOD curve of {}, and the curve of the session is that of "
+                            "{}: judge the session with {}, or evaluate the answers with --observer {}",
+                            stated.curve_of, curve_observer, stated.curve_of, curve_observer));
+  }
+  if (!stated.ci95.low || !stated.ci95.high)
+    return fail(ErrorCode::invalid_input,
+                "--m75-of: the M75 has no interval on both sides, so the range would have none");
+  task.m75 = stated.m75;
+  // The larger side: the interval of a range is never too short.
+  const double wider = std::max(std::log(*stated.ci95.high / stated.m75), std::log(stated.m75 / *stated.ci95.low));
+  options.m75_u_percent = 100 * wider / normal_z95;
+  options.criterion_source = CriterionSource::m75_file;
+  options.m75_observer = fmt::format("{} who identified the targets of {}, on the TOD curve of {}", stated.answers_of,
+                                     stated.set, stated.curve_of);
+  return {};
+}
+
 int run_range(Console& console, const RangeArguments& arguments) {
   RangeTask task = arguments.task;
   RangeOptions options = arguments.more;
@@ -251,6 +276,12 @@ int run_range(Console& console, const RangeArguments& arguments) {
   const auto air = into_task(task, options, *sensor);
   if (!air) return report_error(console, air.error());
   for (const auto& sentence : air->notes) console.note(sentence);
+  if (!arguments.m75_of.empty()) {
+    if (!*session || !(*session)->curve)
+      return report_error(console, {ErrorCode::invalid_input, "--m75-of needs the TOD curve of a session (--tod)"});
+    if (auto taken = take_m75(arguments.m75_of, (*session)->curve->observer, task, options); !taken)
+      return report_error(console, taken.error());
+  }
   TodAnswer tod;
   ThresholdSelection selection;
   if (*session && (*session)->curve) {
@@ -345,6 +376,9 @@ void add_range_command(CLI::App& app, Program& program) {
       ->check(number_in(0, 1e4))
       ->capture_default_str();
   a->more.add_to(*command);
+  auto* m75_of = command->add_option("--m75-of", a->m75_of,
+                                     "file with the M75 of people and its interval, by todbench identify --m75-out");
+  for (const char* other : {"--m75", "--v50", "--m75-u-percent"}) m75_of->excludes(command->get_option(other));
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a](Console& console) { return run_range(console, *a); });
 }

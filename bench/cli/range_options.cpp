@@ -305,6 +305,7 @@ RangeQuestion RangeOptions::question(const RangeTask& task, std::optional<double
           .m75 = task.m75,
           .criterion_source = criterion_source,
           .m75_u_percent = m75_u_percent,
+          .m75_observer = m75_observer,
           .curve_observer = curve_observer,
           .n50 = n50,
           .mtdp_n50 = mtdp_n50,

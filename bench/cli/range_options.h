@@ -23,6 +23,7 @@ struct RangeOptions {
   double asked_delta_t_k = 0;  ///< as on the command line
   CriterionSource criterion_source = CriterionSource::published;
   std::string curve_observer{};  ///< of the session; empty: none
+  std::string m75_observer{};    ///< of the file of --m75-of
   double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0, curve_u_percent = 0;
   double m75_u_percent = 0;
   double cn2 = 0, tolerance_percent = 1;

@@ -275,8 +275,10 @@ Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task) {
   return experiment;
 }
 
-Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task) {
-  TODBENCH_TRY(const auto experiment, experiment_of(task));
+namespace {
+
+/// A study with the means over the views of the set.
+IdentificationStudy described(const IdentificationStudyTask& task, const IdentificationTask& experiment) {
   const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
                             task.sensor.scene_temperature_k};
   IdentificationStudy study;
@@ -293,6 +295,23 @@ Result<IdentificationStudy> study_identification(const IdentificationStudyTask& 
   study.size_m /= views;
   study.dt_rss_k /= views;
   study.chance = 1 / static_cast<double>(task.set.targets.size());
+  return study;
+}
+
+}  // namespace
+
+Result<IdentificationStudy> rate_found_range(const IdentificationStudyTask& task, const SetCriterion& r75_m) {
+  TODBENCH_TRY(const auto experiment, experiment_of(task));
+  IdentificationStudy study = described(task, experiment);
+  study.r75_m = r75_m;
+  if (auto rated = rate_by_curve(task, experiment.ranges.back().transmittance, study); !rated)
+    return tl::unexpected(rated.error());
+  return study;
+}
+
+Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task) {
+  TODBENCH_TRY(const auto experiment, experiment_of(task));
+  IdentificationStudy study = described(task, experiment);
   TODBENCH_TRY(study.points, identify(experiment));
   add_notes_of_stages(study);
   study.r75_m = range_of_75_percent(task, study.points);

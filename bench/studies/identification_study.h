@@ -73,6 +73,11 @@ struct IdentificationStudy {
 /// Returns the experiment of a study: views, ranges with their air. Errors: those of study_identification().
 [[nodiscard]] Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task);
 
+/// Criteria of the set for a range with 75 % right that others found, for example people: M75 and V50 on the TOD curve
+/// of the observer of the task, and the predicted range. `points` is empty. Errors: those of study_identification().
+[[nodiscard]] Result<IdentificationStudy> rate_found_range(const IdentificationStudyTask& task,
+                                                           const SetCriterion& r75_m);
+
 /// Runs the study. The proportion over range is made monotone (pool adjacent violators) and interpolated linearly in ln
 /// range. The TOD curve is that of the same motion, of a single frame; there is none, with a note, for stages, for
 /// sums of frames and for motion through turbulent paths. Errors: `invalid_input` (ranges that do not increase or

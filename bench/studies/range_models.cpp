@@ -452,6 +452,8 @@ std::string criterion_origin(const RangeQuestion& question, RangeModel which) {
                    "published";
     case CriterionSource::m75_stated:
       return tod ? "stated by the user" : "stated M75 / 0.6, the ratio of one published pair (EO-VISTA, 4.2.3)";
+    case CriterionSource::m75_file:
+      return question.m75_observer + (tod ? "" : "; M75 / 0.6, the ratio of one published pair (EO-VISTA, 4.2.3)");
     case CriterionSource::v50_stated:
       return tod ? "0.6 of the stated V50, the ratio of one published pair (EO-VISTA, 4.2.3)" : "stated by the user";
   }
@@ -473,7 +475,8 @@ Interval joined_with_m75(std::span<const TodThreshold> thresholds, const RangeTa
 
 std::string observers_differ(const RangeQuestion& question) {
   if (question.curve_observer.empty() || question.curve_observer == "human" ||
-      question.criterion_source == CriterionSource::m75_stated)
+      question.criterion_source == CriterionSource::m75_stated ||
+      question.criterion_source == CriterionSource::m75_file)
     return "";
   return fmt::format(
       "the curve is judged by {}, but M75 = {:.4g} is a criterion of people: in the published experiment their acuity "

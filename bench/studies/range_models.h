@@ -25,6 +25,7 @@ inline constexpr std::array all_range_models{RangeModel::tod, RangeModel::acquir
 enum class CriterionSource {
   published,   ///< V50 = 8.5 of people with small craft (Krapels et al. 2006), M75 = 5.1 by EO-VISTA, 4.2.3
   m75_stated,  ///< V50 is M75 / 0.6
+  m75_file,    ///< of an identification experiment; V50 is M75 / 0.6
   v50_stated,  ///< M75 is 0.6 V50
 };
 
@@ -36,6 +37,7 @@ struct RangeQuestion {
   CriterionSource criterion_source = CriterionSource::published;
   /// Relative standard uncertainty of M75, for the interval of TOD. The published value has none.
   double m75_u_percent = 0;
+  std::string m75_observer{};    ///< with m75_file: who answered, and on whose curve M75 lies
   std::string curve_observer{};  ///< of the TOD curve; empty: not known
   double n50 = 6;                ///< cycles of ACQUIRE (2-D) for 50 %; 6: identification
   double mtdp_n50 = 6;           ///< cycles of the MTDP-like curve for 50 %; 6: identification

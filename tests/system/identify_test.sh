@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# identify_test.sh PROGRAM: targets in motion and behind a package, and pictures of the same.
+# identify_test.sh PROGRAM: targets in motion, behind a package, and for people; pictures of the same; the M75 of people in a range.
 set -u
 program=$1
 failed=0
@@ -67,4 +67,71 @@ check 'len(a["stages"]) == 7 and len(b["stages"]) == 8 and b["stages"][6]["name"
 check 'abs((b["stages"][6]["max_k"] - b["stages"][6]["min_k"]) / (b["stages"][5]["max_k"] - b["stages"][5]["min_k"]) - 1) < 0.01' rows.json rows.json
 check 'a["warnings"] == [] and b["warnings"] == [] and a["stages"][0] == b["stages"][0] and a["stages"][3] != b["stages"][3]' at-once.json rows.json
 
+# People: pictures with the truth apart; simulated people who are always right near and every other time far.
+people="identify ./set.toml --sensor ./slow.toml --ranges 800,1600 --accuracy draft --per-target 8"
+runs 0 said.txt $people --people set
+[ "$(ls set/show/*.png | wc -l)" = 48 ] || fail "48 pictures were expected"
+[ "$(ls set/show/targets/*.png | wc -l)" = 3 ] || fail "3 targets were expected"
+grep -q craft set/show/answers.csv && fail "the sheet for the person contains the truth"
+runs 2 refused $people --people set
+says "exists"
+answer() { # seed of the simulated person
+  python3 - "$1" <<'PYTHON'
+import csv, random, sys
+numbers = random.Random(int(sys.argv[1]))
+truth = {row["number"]: row for row in csv.DictReader(open("set/truth/truth.csv"))}
+names = sorted({row["target"] for row in truth.values()})
+far = [n for n, row in truth.items() if float(row["range_m"]) > 1000]
+wrong = set(numbers.sample(far, len(far) // 2))
+rows = list(csv.DictReader(open("set/show/answers.csv")))
+with open("person%s.csv" % sys.argv[1], "w", newline="") as out:
+    writer = csv.DictWriter(out, rows[0].keys())
+    writer.writeheader()
+    for row in rows:
+        right = truth[row["number"]]["target"]
+        row["answer"] = names[(names.index(right) + 1) % 3] if row["number"] in wrong else right
+        writer.writerow(row)
+PYTHON
+}
+for person in 1 2 3; do answer $person; done
+runs 0 person.json $people --answers person1.csv --json --m75-out m75.json
+# From 1 to 1/2: 3/4 half way in ln range.
+check 'abs(a["r75_m"] / (800 * 1600) ** 0.5 - 1) < 1e-9 and a["ranges"][0]["right"] == 24 and a["ranges"][1]["right"] == 12' person.json person.json
+check 'a["m75"]["ci95"][0] < a["m75"]["value"] < a["m75"]["ci95"][1] and b["curve_of"] == "hvs-1" and b["answers_of"] == "one person"' person.json m75.json
+runs 0 people.json $people --answers person1.csv person2.csv person3.csv --json
+check 'len(b["persons"]) == 3 and b["ranges"][1]["shown"] == 72 and abs(b["r75_m"] / a["r75_m"] - 1) < 1e-6' person.json people.json
+runs 2 refused $people --seed 2 --answers person1.csv
+says "belong to experiment"
+sed '3s/craft-[0-9]*$/boat/;3s/craft-[0-9]*\r$/boat/' person1.csv >unknown.csv
+runs 2 refused $people --answers unknown.csv
+says "unknown target"
+runs 2 refused $people --answers set/show/answers.csv
+says "guesses"
+
+# The range of the same people with a TOD curve of the same observer; with that of another it is refused.
+cat >plan.toml <<'PLAN'
+name = "curve"
+[camera]
+id = "sim:sc2000"
+ifov_mrad = 1.3085
+[target]
+kind = "scene"
+distance_m = 2
+plates = ["tcat-a", "tcat-b"]
+mountings = ["identity"]
+delta_t_k = [16.9]
+phases = 4
+[simulation]
+accuracy = "draft"
+phases = 4
+PLAN
+runs 0 said.txt measure plan.toml --out session --quiet
+runs 0 range.json range --tod session --size-m 3 --delta-t-k 16.9 --m75-of m75.json --json
+check 'abs(a["m75"] / b["m75"] - 1) < 1e-9 and "one person" in a["m75_origin"] and "hvs-1" in a["m75_origin"] and a["m75_ci95"][0] <= b["m75_ci95"][0] * 1.000001' range.json m75.json
+check 'not any("criterion of people" in n for n in a["notes"])' range.json range.json
+sed 's/"curve_of": "hvs-1"/"curve_of": "hvs-2"/' m75.json >other.json
+runs 2 refused range --tod session --size-m 3 --delta-t-k 16.9 --m75-of other.json
+says "belongs to the TOD curve of hvs-2"
+printf '{"schema": "todbench-m75-1", "m75": 1e308}' >silly.json
+runs 2 refused range --tod session --size-m 3 --delta-t-k 16.9 --m75-of silly.json
 exit $failed
