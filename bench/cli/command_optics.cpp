@@ -126,27 +126,39 @@ int run_mtf(Console& console, const MtfArguments& a) {
   if (!spec) return report_error(console, spec.error());
   const SensorPlan plan = full_plan(*spec, {}, {});
   const OpticsMtf optics(*spec, plan, 16);
-  Json frequency = Json::array(), per_mrad = Json::array(), optical = Json::array(), detector = Json::array(),
-       system = Json::array();
+  Json frequency = Json::array(), per_mrad = Json::array(), optical = Json::array();
+  Json detector[2] = {Json::array(), Json::array()}, system[2] = {Json::array(), Json::array()};
   std::vector<TableRow> rows;
   for (const double f : a.frequency_per_pitch) {
     const double o = optics(f);
-    const double d = detector_mtf(f, 0, spec->detector_pitch_ratio());
     frequency.push_back(f);
     per_mrad.push_back(f / spec->ifov_mrad());
     optical.push_back(o);
-    detector.push_back(d);
-    system.push_back(o * d);
-    rows.push_back({fixed(f, 4), fixed(f / spec->ifov_mrad(), 4), fixed(o, 6), fixed(d, 6), fixed(o * d, 6)});
+    rows.push_back({fixed(f, 4), fixed(f / spec->ifov_mrad(), 4), fixed(o, 6)});
+    for (const PitchAxis axis : {PitchAxis::x, PitchAxis::y}) {
+      const double along_x = axis == PitchAxis::x ? f : 0, along_y = axis == PitchAxis::y ? f : 0;
+      const double d = detector_mtf(along_x, along_y, spec->detector_pitch_ratio(PitchAxis::x),
+                                    spec->detector_pitch_ratio(PitchAxis::y));
+      detector[static_cast<int>(axis)].push_back(d);
+      system[static_cast<int>(axis)].push_back(o * d);
+      if (axis == PitchAxis::x || !spec->square_detector())
+        rows.back().insert(rows.back().end(), {fixed(d, 6), fixed(o * d, 6)});
+    }
   }
   if (console.json()) {
     console.object({{"frequency_per_pitch", frequency},
                     {"frequency_per_mrad", per_mrad},
                     {"optics", optical},
-                    {"detector", detector},
-                    {"system", system}});
-  } else {
+                    {"detector", detector[0]},
+                    {"system", system[0]},
+                    {"detector_y", detector[1]},
+                    {"system_y", system[1]}});
+  } else if (spec->square_detector()) {
     console.table({"f [1/pitch]", "f [1/mrad]", "MTF optics", "MTF detector", "MTF system"}, rows);
+  } else {
+    console.table(
+        {"f [1/pitch]", "f [1/mrad]", "MTF optics", "MTF detector x", "MTF system x", "MTF detector y", "MTF system y"},
+        rows);
   }
   return 0;
 }

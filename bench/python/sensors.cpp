@@ -19,6 +19,7 @@ py::class_<SensorSpec> sensor_spec(py::module_& module) {
       .def_readwrite("height", &SensorSpec::height, "Detectors in a column.")
       TODBENCH_WRITE(SensorSpec, pitch_um)
       TODBENCH_WRITE(SensorSpec, detector_um)
+      TODBENCH_WRITE(SensorSpec, detector_y_um)
       .def_readwrite("focal_length_mm", &SensorSpec::focal_length_mm, "Focal length of the lens.")
       .def_readwrite("f_number", &SensorSpec::f_number, "Focal length over diameter of the pupil.")
       .def_readwrite("wavelength_min_um", &SensorSpec::wavelength_min_um, "Lower end of the spectral band.")

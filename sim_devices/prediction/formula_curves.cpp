@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "acquisition/base/try.h"
@@ -20,13 +21,17 @@ constexpr int wavelengths = 16;
 /// MTF along one axis, in cycles per detector pitch. The eye averages frames, so image dance acts as blur.
 class AxisMtf {
  public:
-  explicit AxisMtf(const SensorSpec& spec)
-      : plan_(full_plan(spec, {Effect::image_dance}, {})),
+  AxisMtf(const SensorSpec& spec, BarAxis axis)
+      : axis_(axis == BarAxis::horizontal ? PitchAxis::x : PitchAxis::y),
+        plan_(full_plan(spec, {Effect::image_dance}, {})),
         optics_(spec, plan_, wavelengths),
         footprint_({.spec = spec, .plan = plan_}) {}
-  [[nodiscard]] double operator()(double f_per_pitch) const { return optics_(f_per_pitch) * footprint_(f_per_pitch); }
+  [[nodiscard]] double operator()(double f_per_pitch) const {
+    return optics_(f_per_pitch) * footprint_(f_per_pitch, axis_);
+  }
 
  private:
+  PitchAxis axis_;
   SensorPlan plan_;
   OpticsMtf optics_;
   FootprintMtf footprint_;
@@ -144,41 +149,42 @@ Result<MrtdFormula> mrtd_formula_of(const SensorSpec& spec, const FormulaConditi
 
 Result<AxisCurves> mrtd_curves(const SensorSpec& spec, const FormulaConditions& conditions) {
   TODBENCH_TRY(const auto formula, mrtd_formula_of(spec, conditions));
-  const AxisMtf mtf(spec);
-  std::vector<CurvePoint> horizontal, vertical;
-  for (const double f : frequencies_up_to(nyquist_per_mrad(spec), 100)) {
-    const double passed = mtf(f * spec.ifov_mrad());
-    if (!(passed > 1e-6)) break;
-    horizontal.push_back({f, mrtd_k(formula, f, passed, BarAxis::horizontal)});
-    vertical.push_back({f, mrtd_k(formula, f, passed, BarAxis::vertical)});
-  }
-  auto h = LogLinearCurve::of(horizontal, "MRTD"), v = LogLinearCurve::of(vertical, "MRTD");
+  const auto along = [&](BarAxis axis) {
+    const AxisMtf mtf(spec, axis);
+    std::vector<CurvePoint> points;
+    for (const double f : frequencies_up_to(nyquist_per_mrad(spec), 100)) {
+      const double passed = mtf(f * spec.ifov_mrad());
+      if (!(passed > 1e-6)) break;
+      points.push_back({f, mrtd_k(formula, f, passed, axis)});
+    }
+    return LogLinearCurve::of(points, "MRTD");
+  };
+  auto h = along(BarAxis::horizontal), v = along(BarAxis::vertical);
   if (!h) return tl::unexpected(h.error());
   if (!v) return tl::unexpected(v.error());
   return AxisCurves{*std::move(h), *std::move(v)};
 }
 
-Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions) {
-  TODBENCH_TRY(const auto formula, mrtd_formula_of(spec, conditions));
-  const AxisMtf mtf(spec);
+namespace {
+
+/// Frequency in cycles per mrad, and the modulation of four bars at the best phase.
+using BarModulations = std::vector<std::pair<double, double>>;
+
+BarModulations best_modulations(const SensorSpec& spec, double pitch_mrad, BarAxis axis) {
+  const AxisMtf mtf(spec, axis);
   const int n = spec.samples_per_pitch();
   // In samples: the lattice of the modulation has a step of 1.
   const Tabulated per_sample([&](double f) { return mtf(f * n); });
-  std::vector<CurvePoint> horizontal, vertical;
-  const auto add = [&](double f, double modulation) {
-    horizontal.push_back({f, mtdp_like_k(formula, f, modulation, BarAxis::horizontal)});
-    vertical.push_back({f, mtdp_like_k(formula, f, modulation, BarAxis::vertical)});
-  };
   // Blur does not affect bars of fifty samples.
   const double nyquist = nyquist_per_mrad(spec);
-  add(0.01 * nyquist, 1);
+  BarModulations out{{0.01 * nyquist, 1}};
   constexpr int count = 80, phases = 16;
   const auto adds = [&](double f) {
     const BlurredBars bars(
-        f * formula.pitch_mrad, [&](double u) { return per_sample(u); }, per_sample.band());
+        f * pitch_mrad, [&](double u) { return per_sample(u); }, per_sample.band());
     const BarModulation left = bar_modulation(bars, phases);
     if (left.best < 0.01 || left.bars_separated_at_best < 2) return false;
-    add(f, left.best);
+    out.emplace_back(f, left.best);
     return true;
   };
   double last = 0;
@@ -195,7 +201,22 @@ Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditi
     }
     break;
   }
-  auto h = LogLinearCurve::of(horizontal, "MTDP-like"), v = LogLinearCurve::of(vertical, "MTDP-like");
+  return out;
+}
+
+}  // namespace
+
+Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions) {
+  TODBENCH_TRY(const auto formula, mrtd_formula_of(spec, conditions));
+  const BarModulations horizontal = best_modulations(spec, formula.pitch_mrad, BarAxis::horizontal);
+  const auto curve = [&](const BarModulations& of, BarAxis axis) {
+    std::vector<CurvePoint> points;
+    for (const auto& [f, modulation] : of) points.push_back({f, mtdp_like_k(formula, f, modulation, axis)});
+    return LogLinearCurve::of(points, "MTDP-like");
+  };
+  auto h = curve(horizontal, BarAxis::horizontal);
+  auto v = curve(spec.square_detector() ? horizontal : best_modulations(spec, formula.pitch_mrad, BarAxis::vertical),
+                 BarAxis::vertical);
   if (!h) return tl::unexpected(h.error());
   if (!v) return tl::unexpected(v.error());
   return AxisCurves{*std::move(h), *std::move(v)};
@@ -206,12 +227,12 @@ Result<LogLinearCurve> system_ctf(const SensorSpec& spec, const FormulaCondition
   SensorSpec noisy = spec;
   noisy.netd_k = std::max(spec.netd_k, 1e-12);
   TODBENCH_TRY(const auto formula, mrtd_formula_of(noisy, conditions));
-  const AxisMtf mtf(spec);
+  const AxisMtf along_x(spec, BarAxis::horizontal), along_y(spec, BarAxis::vertical);
   std::vector<CurvePoint> points;
   for (const double f : frequencies_up_to(nyquist_per_mrad(spec), 200)) {
-    if (!(mtf(f * spec.ifov_mrad()) > 1e-9)) break;
-    const double h = axis_ctf(spec, mtf, formula, conditions, f, BarAxis::horizontal);
-    const double v = axis_ctf(spec, mtf, formula, conditions, f, BarAxis::vertical);
+    if (!(std::min(along_x(f * spec.ifov_mrad()), along_y(f * spec.ifov_mrad())) > 1e-9)) break;
+    const double h = axis_ctf(spec, along_x, formula, conditions, f, BarAxis::horizontal);
+    const double v = axis_ctf(spec, along_y, formula, conditions, f, BarAxis::vertical);
     const double mean = std::sqrt(h) * std::sqrt(v);
     if (!std::isfinite(mean)) break;
     points.push_back({f, mean});

@@ -97,7 +97,7 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
                      const TrialConditions& conditions, RandomStream stream)
     : bank_(std::move(bank)), conditions_(conditions), stream_(stream) {
   const SensorSpec& sensor = conditions_.sensor;
-  bool turns_alike = true;
+  bool turns_alike = sensor.square_detector();
   for (const Effect effect : all_effects) {
     const EffectRow& row = row_of(effect);
     if (is_neutral(sensor, effect, conditions_.motion)) continue;

@@ -83,8 +83,11 @@ cv::Mat1f coefficient_responses(const SampleTransfer& transfer, int degree) {
   const int band = static_cast<int>(std::floor(transfer.band_per_sample() * table_period));
   const auto count = static_cast<std::size_t>(2 * band + 1);
   std::vector<std::vector<std::complex<double>>> spectra(static_cast<std::size_t>(degree) + 1);
-  std::vector<double> footprint;
-  for (int m = -band; m <= band; ++m) footprint.push_back(transfer.footprint(static_cast<double>(m) / table_period));
+  std::vector<double> along_x, along_y;
+  for (int m = -band; m <= band; ++m) {
+    along_x.push_back(transfer.footprint(static_cast<double>(m) / table_period, PitchAxis::x));
+    along_y.push_back(transfer.footprint(static_cast<double>(m) / table_period, PitchAxis::y));
+  }
   for (int a = 0; a <= degree; ++a) {
     for (int m = -band; m <= band; ++m)
       spectra[static_cast<std::size_t>(a)].push_back(legendre_spectrum(a, static_cast<double>(m) / table_period));
@@ -94,7 +97,7 @@ cv::Mat1f coefficient_responses(const SampleTransfer& transfer, int degree) {
     for (int m = -band; m <= band; ++m) {
       const double u = static_cast<double>(m) / table_period, w = static_cast<double>(n) / table_period;
       const auto i = static_cast<std::size_t>(m + band), j = static_cast<std::size_t>(n + band);
-      const double value = transfer.optics(u * u + w * w) * footprint[i] * footprint[j];
+      const double value = transfer.optics(u * u + w * w) * along_x[i] * along_y[j];
       chain[j * count + i] = value == 0 ? 0 : value * transfer.rest(u, w);
     }
   }
@@ -139,19 +142,19 @@ cv::Mat2d unit_cell_response(const SampleTransfer& transfer, cv::Size size) {
   struct Axis {
     std::vector<double> f, factor;  ///< [bin][alias]
   };
-  const auto axis = [&](int n) {
+  const auto axis = [&](int n, PitchAxis which) {
     Axis out;
     for (int k = 0; k < n; ++k) {
       const double base = static_cast<double>(k <= n / 2 ? k : k - n) / n;
       for (int m = -aliases; m <= aliases; ++m) {
         const double f = base + m;
         out.f.push_back(f);
-        out.factor.push_back(std::abs(f) > band ? 0 : transfer.footprint(f) * cell_sinc(f));
+        out.factor.push_back(std::abs(f) > band ? 0 : transfer.footprint(f, which) * cell_sinc(f));
       }
     }
     return out;
   };
-  const Axis x = axis(size.width), y = axis(size.height);
+  const Axis x = axis(size.width, PitchAxis::x), y = axis(size.height, PitchAxis::y);
   const auto per = static_cast<std::size_t>(2 * aliases + 1);
   cv::Mat2d out(size);
   // If no effect depends on direction, a quarter of the plane is sufficient.

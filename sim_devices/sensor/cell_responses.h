@@ -33,9 +33,11 @@ class SampleTransfer {
   /// The band is the highest one that the planned effects pass, at most 16 cycles per pitch.
   SampleTransfer(const ChainScope& scope, const Accuracy& accuracy);
   [[nodiscard]] double band_per_sample() const { return band_ / per_pitch_; }
-  /// True if no effect in the chain depends on direction.
+  /// True if every effect in the chain is the same on both sides of either axis.
   [[nodiscard]] bool symmetric() const { return others_.empty(); }
-  [[nodiscard]] double footprint(double f_per_sample) const { return footprint_(f_per_sample * per_pitch_); }
+  [[nodiscard]] double footprint(double f_per_sample, PitchAxis axis) const {
+    return footprint_(f_per_sample * per_pitch_, axis);
+  }
   /// Optics at a squared radial frequency; 0 beyond the band.
   [[nodiscard]] double optics(double rho_squared) const;
   /// Product of all transfer functions except optics and footprint.

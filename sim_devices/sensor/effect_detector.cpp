@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/effect_detector.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,21 +17,27 @@ double sinc(double x) {
 
 }  // namespace
 
-double detector_mtf(double u_per_pitch, double w_per_pitch, double detector_pitch_ratio) {
-  return sinc(u_per_pitch * detector_pitch_ratio) * sinc(w_per_pitch * detector_pitch_ratio);
+double detector_mtf(double u_per_pitch, double w_per_pitch, double pitch_ratio_x, double pitch_ratio_y) {
+  return sinc(u_per_pitch * pitch_ratio_x) * sinc(w_per_pitch * pitch_ratio_y);
 }
 
 EffectRow effect_rows::detector() {
   EffectRow row;
   row.title = "Detector footprint";
   row.keys = {{"detector_um", &SensorSpec::detector_um, NumberRange::between(0.1, 1000), KeyPresence::required,
-               "sensitive side of a detector"}};
+               "sensitive side of a detector"},
+              {"detector_y_um", &SensorSpec::detector_y_um, NumberRange::between(0, 1000), KeyPresence::optional,
+               "sensitive side along the columns, if it differs; 0: detector_um"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
-    return spec.detector_um > spec.pitch_um ? "detector_um is larger than pitch_um: detectors cannot overlap" : "";
+    if (spec.detector_um > spec.pitch_um) return "detector_um is larger than pitch_um: detectors cannot overlap";
+    if (spec.detector_y_um > spec.pitch_um) return "detector_y_um is larger than pitch_um: detectors cannot overlap";
+    return spec.detector_y_um > 0 && spec.detector_y_um < 0.1 ? "detector_y_um must be 0, or 0.1 to 1000" : "";
   };
-  row.stage = stage::Footprint{[](double f, const SensorSpec& spec) { return sinc(f * spec.detector_pitch_ratio()); }};
+  row.stage = stage::Footprint{
+      [](double f, const SensorSpec& spec, PitchAxis axis) { return sinc(f * spec.detector_pitch_ratio(axis)); }};
   row.spread = [](const ChainScope& scope) {
-    const double side = scope.spec.detector_pitch_ratio();
+    const SensorSpec& spec = scope.spec;
+    const double side = std::max(spec.detector_pitch_ratio(PitchAxis::x), spec.detector_pitch_ratio(PitchAxis::y));
     return Spread{.period = 0, .window = 0, .variance = side * side / 12};
   };
   row.always = "always simulated: without the footprint, aliasing can raise or lower the acuity";

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The footprint of a square detector.
+// The footprint of a rectangular detector.
 #pragma once
 
 namespace todbench {
 
-/// sinc(u d) sinc(w d), sinc(x) = sin(pi x) / (pi x), d = detector over pitch; u, w in cycles per pitch.
-[[nodiscard]] double detector_mtf(double u_per_pitch, double w_per_pitch, double detector_pitch_ratio);
+/// sinc(u a) sinc(w b), sinc(x) = sin(pi x) / (pi x), a and b = sides of the detector over pitch; u, w in cycles per
+/// pitch.
+[[nodiscard]] double detector_mtf(double u_per_pitch, double w_per_pitch, double pitch_ratio_x, double pitch_ratio_y);
 
 }  // namespace todbench

@@ -44,9 +44,9 @@ namespace stage {
 struct Optics {
   std::function<double(double rho)> (*factor)(const ChainScope& scope);
 };
-/// Detector: multiplies by factor(u) factor(w).
+/// Detector: multiplies by factor(u) along x and factor(w) along y.
 struct Footprint {
-  double (*factor)(double f_per_pitch, const SensorSpec& spec);
+  double (*factor)(double f_per_pitch, const SensorSpec& spec, PitchAxis axis);
 };
 /// Any other filter of the continuous image; an empty function: none.
 struct Transfer {
@@ -93,7 +93,7 @@ using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfe
 struct Spread {
   double period = 0;      ///< added to the period, so that tails do not wrap round
   double window = 0;      ///< added round a window, within which shapes are computed exactly
-  double variance = 0;    ///< per axis, pitches squared
+  double variance = 0;    ///< per axis, the larger of both, pitches squared
   double far = 0;         ///< the parts of a plane more than r pitches away add far r^(-5/3)
   double halo_share = 0;  ///< of the light, spread over `halo_reach`
   double halo_reach = 0;  ///< added to the period, and round a frame

@@ -19,13 +19,17 @@ enum class DisplayReconstruction {
 };
 [[nodiscard]] std::string_view to_string(DisplayReconstruction reconstruction);
 
-/// A staring thermal camera with square detectors. Names state the units.
+/// Axis of the array: along rows or along columns.
+enum class PitchAxis { x, y };
+
+/// A staring thermal camera: rectangular detectors on a square lattice. Names state the units.
 struct SensorSpec {
   std::string name;
   std::string description;
   int width = 320, height = 240;  ///< detectors
   double pitch_um = 47.5;         ///< between the centres of neighbouring detectors
-  double detector_um = 42.5;      ///< side of the sensitive square; at most the pitch
+  double detector_um = 42.5;      ///< side of the sensitive area along x, and along y by default; at most the pitch
+  double detector_y_um = 0;       ///< side of the sensitive area along y; 0: detector_um
   double focal_length_mm = 36.3;
   double f_number = 1;
   double wavelength_min_um = 7.5, wavelength_max_um = 13;
@@ -72,7 +76,11 @@ struct SensorSpec {
   [[nodiscard]] int exposures_per_sample() const {
     return frames_averaged * (super_resolution_frames > 0 ? super_resolution_frames / 4 : 1);
   }
-  [[nodiscard]] double detector_pitch_ratio() const { return detector_um / pitch_um; }
+  [[nodiscard]] double detector_pitch_ratio(PitchAxis axis = PitchAxis::x) const {
+    return (axis == PitchAxis::y && detector_y_um > 0 ? detector_y_um : detector_um) / pitch_um;
+  }
+  /// Whether the sensitive area is a square.
+  [[nodiscard]] bool square_detector() const { return detector_y_um == 0 || detector_y_um == detector_um; }
   bool operator==(const SensorSpec&) const = default;
 };
 

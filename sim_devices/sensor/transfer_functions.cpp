@@ -28,9 +28,9 @@ FootprintMtf::FootprintMtf(const ChainScope& scope) : spec_(scope.spec) {
   }
 }
 
-double FootprintMtf::operator()(double f_per_pitch) const {
+double FootprintMtf::operator()(double f_per_pitch, PitchAxis axis) const {
   double value = 1;
-  for (const auto& own : factors_) value *= own.factor(f_per_pitch, spec_);
+  for (const auto& own : factors_) value *= own.factor(f_per_pitch, spec_, axis);
   return value;
 }
 
@@ -48,7 +48,7 @@ TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan,
   const ChainScope scope{.spec = spec, .plan = plan, .wavelengths = wavelengths, .motion = motion};
   return [optics = OpticsMtf(scope), footprint = FootprintMtf(scope), others = other_transfers(scope)](double u,
                                                                                                        double w) {
-    std::complex<double> value = optics(std::hypot(u, w)) * (footprint(u) * footprint(w));
+    std::complex<double> value = optics(std::hypot(u, w)) * (footprint(u, PitchAxis::x) * footprint(w, PitchAxis::y));
     for (const auto& other : others) value *= other(u, w);
     return value;
   };
@@ -59,20 +59,21 @@ TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& 
   const FootprintMtf footprint(scope);
   const double period = lattice.period;
   const auto count = static_cast<std::size_t>(lattice.band) + 1;
-  std::vector<double> radial, axis;  // radial: [larger][smaller], a triangle
+  std::vector<double> radial, along_x, along_y;  // radial: [larger][smaller], a triangle
   radial.reserve(count * (count + 1) / 2);
   for (std::size_t larger = 0; larger < count; ++larger) {
     const double u = static_cast<double>(larger) / period;
-    axis.push_back(footprint(u));
+    along_x.push_back(footprint(u, PitchAxis::x));
+    along_y.push_back(footprint(u, PitchAxis::y));
     for (std::size_t smaller = 0; smaller <= larger; ++smaller)
       radial.push_back(optics(std::hypot(u, static_cast<double>(smaller) / period)));
   }
-  return [radial = std::move(radial), axis = std::move(axis), others = other_transfers(scope), period](double u,
-                                                                                                       double w) {
+  return [radial = std::move(radial), along_x = std::move(along_x), along_y = std::move(along_y),
+          others = other_transfers(scope), period](double u, double w) {
     const auto m = static_cast<std::size_t>(std::llround(std::abs(u) * period));
     const auto n = static_cast<std::size_t>(std::llround(std::abs(w) * period));
     const std::size_t larger = std::max(m, n);
-    std::complex<double> value = radial[larger * (larger + 1) / 2 + std::min(m, n)] * (axis[m] * axis[n]);
+    std::complex<double> value = radial[larger * (larger + 1) / 2 + std::min(m, n)] * (along_x[m] * along_y[n]);
     for (const auto& other : others) value *= other(u, w);
     return value;
   };

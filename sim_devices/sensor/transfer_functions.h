@@ -27,7 +27,7 @@ class OpticsMtf {
 class FootprintMtf {
  public:
   explicit FootprintMtf(const ChainScope& scope);
-  [[nodiscard]] double operator()(double f_per_pitch) const;
+  [[nodiscard]] double operator()(double f_per_pitch, PitchAxis axis) const;
 
  private:
   SensorSpec spec_;
@@ -41,7 +41,7 @@ class FootprintMtf {
 [[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths,
                                                SceneMotion motion = {});
 /// The same at the frequencies m / period, |m| <= band, bit for bit. Optics depend only on the radius and the footprint
-/// is a product over the axes, so only an eighth of the plane and one axis are computed.
+/// is a product over the axes, so only an eighth of the plane and both axes are computed.
 [[nodiscard]] TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope);
 
 /// Highest relevant frequency in cycles per pitch: the cut-off of the optics, or the frequency at which they have

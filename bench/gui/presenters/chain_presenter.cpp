@@ -223,9 +223,13 @@ Result<std::vector<StagePicture>> chain_pictures(const ChainSettings& options) {
   out.push_back({Stage::optics, k * continuous(s, without(plan, {Effect::detector})), fine,
                  onoff(plan, Effect::diffraction, QString("f/%1").arg(s.sensor.f_number)) + ", aberration " +
                      onoff(plan, Effect::aberration, QString("σ %1 pitch").arg(s.sensor.aberration_sigma_pitch))});
-  out.push_back({Stage::detector, k * continuous(s, plan), fine,
-                 onoff(plan, Effect::detector,
-                       QString("width %1 µm, pitch %2 µm").arg(s.sensor.detector_um).arg(s.sensor.pitch_um))});
+  out.push_back(
+      {Stage::detector, k * continuous(s, plan), fine,
+       onoff(plan, Effect::detector,
+             QString("width %1 µm%2, pitch %3 µm")
+                 .arg(s.sensor.detector_um)
+                 .arg(s.sensor.square_detector() ? QString() : QString(", height %1 µm").arg(s.sensor.detector_y_um))
+                 .arg(s.sensor.pitch_um))});
   out.push_back({Stage::samples, samples, per_pitch, QString("%1 per pitch").arg(per_pitch)});
   out.push_back({Stage::noise, noisy, per_pitch,
                  onoff(plan, Effect::temporal_noise, QString("NETD %1 mK").arg(1000 * s.sensor.netd_k)) +

@@ -24,7 +24,7 @@ TEST(FormulaCurves, MrtdOfTheSc2000IsTheFormulaAndEndsAtNyquist) {
   const auto& last = curves->horizontal.points().back();
   EXPECT_NEAR(last.frequency, 0.5 / spec.ifov_mrad(), 1e-12);
   const SensorPlan plan = full_plan(spec, {}, {});
-  const double mtf = OpticsMtf(spec, plan, 16)(0.5) * FootprintMtf({.spec = spec, .plan = plan})(0.5);
+  const double mtf = OpticsMtf(spec, plan, 16)(0.5) * FootprintMtf({.spec = spec, .plan = plan})(0.5, PitchAxis::x);
   const MrtdFormula formula{.pitch_mrad = spec.ifov_mrad(), .netd_k = 0.07, .frame_rate_hz = 50};
   EXPECT_NEAR(last.value / mrtd_k(formula, last.frequency, mtf, BarAxis::horizontal), 1, 1e-12);
 }

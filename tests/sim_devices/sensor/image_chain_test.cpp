@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "sim_devices/sensor/transfer_functions.h"
 #include "tests/sim_devices/reference.h"
@@ -95,6 +96,37 @@ TEST(ImageChain, HoldsAllPhasesOnTheFineImage) {
       const int y = ((-2 + j) * k - 5 * k / 16 + n) % n;
       const int x = ((-2 + i) * k + 3 * k / 16 + n) % n;
       EXPECT_NEAR(fine(y, x), shifted(j, i), 1e-13);
+    }
+  }
+}
+
+/// Mean over a detector's side of a strip from -half to half behind a normal blur, one axis.
+double strip_on_detector(double at, double half, double side, double sigma) {
+  // The integral of the normal distribution function.
+  const auto integral = [&](double x) {
+    const double z = x / sigma;
+    return x * 0.5 * std::erfc(-z / std::numbers::sqrt2) +
+           sigma * std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
+  };
+  const auto edge = [&](double border) {
+    return (integral(at + side / 2 - border) - integral(at - side / 2 - border)) / side;
+  };
+  return edge(-half) - edge(half);
+}
+
+TEST(ImageChain, AveragesOverADetectorThatIsNoSquare) {
+  SensorSpec spec = test::sc2000();
+  spec.detector_um = 0.9 * spec.pitch_um, spec.detector_y_um = 0.4 * spec.pitch_um;
+  spec.aberration_sigma_pitch = 0.3;
+  const ImageChain chain(spec, full_plan(spec, {Effect::diffraction}, {}), Accuracy::normal());
+  const Polygon square{{-1.7, -1.7}, {1.7, -1.7}, {1.7, 1.7}, {-1.7, 1.7}};
+  const cv::Mat1d seen = chain.infinite_plane(square, {-2.6, -2.4}, 0.4, {14, 14}).values;
+  for (int j = 0; j < seen.rows; ++j) {
+    for (int i = 0; i < seen.cols; ++i) {
+      EXPECT_NEAR(seen(j, i),
+                  strip_on_detector(0.4 * i - 2.6, 1.7, 0.9, 0.3) * strip_on_detector(0.4 * j - 2.4, 1.7, 0.4, 0.3),
+                  2e-4)
+          << i << " " << j;
     }
   }
 }

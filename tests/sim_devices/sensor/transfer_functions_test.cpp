@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "sim_devices/sensor/effect_detector.h"
 #include "sim_devices/sensor/effect_diffraction.h"
@@ -30,7 +31,7 @@ TEST(TransferFunctions, EqualTheReferenceAtEveryFrequency) {
     EXPECT_NEAR(diffraction_mtf(f, 10, 1, 47.5), mtf["diff_10"][i].get<double>(), 1e-12);
     EXPECT_NEAR(diffraction_mtf(f, 13, 1, 47.5), mtf["diff_13"][i].get<double>(), 1e-12);
     EXPECT_NEAR(optics(f), mtf["diff_poly16"][i].get<double>(), 1e-10);
-    EXPECT_NEAR(detector_mtf(f, 0, 42.5 / 47.5), mtf["det"][i].get<double>(), 1e-12);
+    EXPECT_NEAR(detector_mtf(f, 0, 42.5 / 47.5, 42.5 / 47.5), mtf["det"][i].get<double>(), 1e-12);
     EXPECT_NEAR(system(f, 0).real(), mtf["system_x"][i].get<double>(), 1e-10);
     EXPECT_NEAR(system(f / std::sqrt(2.0), f / std::sqrt(2.0)).real(), mtf["system_diag"][i].get<double>(), 1e-10);
     EXPECT_NEAR(f / spec.ifov_mrad(), mtf["freq_cyc_per_mrad"][i].get<double>(), 1e-12);
@@ -71,6 +72,39 @@ TEST(TransferFunctions, SkippingAnEffectEqualsItsNeutralValueBitForBit) {
   }
 }
 
+SensorSpec flat_detectors() {
+  SensorSpec spec = sc2000();
+  spec.detector_um = 40, spec.detector_y_um = 20;
+  return spec;
+}
+
+TEST(TransferFunctions, OfAFlatDetectorHaveASincOfEachAxis) {
+  const SensorSpec spec = flat_detectors();
+  const SensorPlan plan = full_plan(spec, {}, {});
+  const auto system = sensor_transfer(spec, plan, 16);
+  const auto tabulated = tabulated_transfer({.period = 16, .band = 64}, {.spec = spec, .plan = plan});
+  const OpticsMtf optics(spec, plan, 16);
+  const auto sinc = [](double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); };
+  const double a = 40 / spec.pitch_um, b = 20 / spec.pitch_um;
+  for (double u = 0; u <= 3; u += 0.25) {
+    for (double w = 0; w <= 3; w += 0.25) {
+      const double truth = optics(std::hypot(u, w)) * sinc(a * u) * sinc(b * w);
+      EXPECT_NEAR(system(u, w).real(), truth, 1e-14);
+      EXPECT_NEAR(tabulated(u, w).real(), truth, 1e-14);
+      EXPECT_EQ(detector_mtf(u, w, a, b), sinc(a * u) * sinc(b * w));
+    }
+  }
+}
+
+TEST(TransferFunctions, OfAStatedSquareAreThoseOfTheDefaultBitForBit) {
+  SensorSpec stated = sc2000();
+  stated.detector_y_um = stated.detector_um;
+  const auto plain = sensor_transfer(sc2000(), full_plan(sc2000(), {}, {}), 4);
+  const auto square = sensor_transfer(stated, full_plan(stated, {}, {}), 4);
+  EXPECT_TRUE(stated.square_detector());
+  for (double f = 0; f < 7; f += 0.13) EXPECT_EQ(plain(f, 0.3 * f), square(f, 0.3 * f));
+}
+
 TEST(SensorSpec, RefusesSensorsThatCannotExist) {
   const auto message = [](auto change) {
     SensorSpec spec = sc2000();
@@ -84,6 +118,9 @@ TEST(SensorSpec, RefusesSensorsThatCannotExist) {
   EXPECT_THAT(message([](SensorSpec& s) { s.f_number = 1e9; }), testing::HasSubstr("f_number"));
   EXPECT_THAT(message([](SensorSpec& s) { s.wavelength_max_um = 1e6; }), testing::HasSubstr("wavelength_max_um"));
   EXPECT_THAT(message([](SensorSpec& s) { s.detector_um = 48; }), testing::HasSubstr("larger than pitch"));
+  EXPECT_THAT(message([](SensorSpec& s) { s.detector_y_um = 48; }), testing::HasSubstr("detector_y_um is larger"));
+  EXPECT_THAT(message([](SensorSpec& s) { s.detector_y_um = 0.05; }), testing::HasSubstr("detector_y_um must be 0"));
+  EXPECT_EQ(message([](SensorSpec& s) { s.detector_y_um = 20; }), "");
   EXPECT_THAT(message([](SensorSpec& s) { s.focal_length_mm = 0; }), testing::HasSubstr("focal_length_mm"));
   EXPECT_THAT(message([](SensorSpec& s) { s.netd_k = std::nan(""); }), testing::HasSubstr("netd_k"));
 }
