@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "bench/cli/commands.h"
+#include "bench/cli/compare_boresight.h"
 #include "bench/cli/findings.h"
 #include "bench/cli/session_argument.h"
 #include "bench/forecast/comparison_forecast.h"
@@ -25,6 +26,7 @@ namespace {
 struct CompareArguments {
   std::string a, b, svg;
   double margin_percent = 0;
+  bool boresight = false;
   Opening opening{};
 };
 
@@ -63,6 +65,10 @@ int run_compare(Console& console, const CompareArguments& arguments) {
   if (!a) return report_error(console, a.error());
   const auto b = opened(console, arguments.b, arguments.opening);
   if (!b) return report_error(console, b.error());
+  if (arguments.boresight) {
+    return show_boresight(console, {{{arguments.a, *a}, {arguments.b, *b}}}, arguments.opening,
+                          accepted_files(arguments, *a, *b));
+  }
   const auto margin = arguments.margin_percent > 0 ? std::optional(arguments.margin_percent) : std::nullopt;
   const auto compared = compare_sessions(*a, *b, margin);
   if (!compared) return report_error(console, with_context(arguments.a + ", " + arguments.b, compared.error()));
@@ -248,6 +254,10 @@ void add_compare_command(CLI::App& app, Program& program) {
                    "equivalence margin in percent; default: the smaller margin of the two plans, or 10")
       ->check(number_in(0.1, 100));
   command->add_option("--svg", a->svg, "writes a figure of both curves to this SVG file");
+  command->add_flag(
+      "--boresight", a->boresight,
+      "compares the line of sight instead, from the geometry of both sessions: zoom states, or before and "
+      "after remounting");
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a](Console& console) { return run_compare(console, *a); });
 }

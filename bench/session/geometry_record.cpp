@@ -79,6 +79,8 @@ Json geometry_json(const GeometryMeasure& measure) {
           {"picture_px", {measure.picture.width, measure.picture.height}},
           {"mm_per_px_x", estimate_json(found.mm_per_px_x)},
           {"mm_per_px_y", estimate_json(found.mm_per_px_y)},
+          {"centre_x_mm", estimate_json(found.centre_x_mm)},
+          {"centre_y_mm", estimate_json(found.centre_y_mm)},
           {"rotation_deg", estimate_json(found.rotation_deg)},
           {"keystone_x_percent", estimate_json(found.keystone_x_percent)},
           {"keystone_y_percent", estimate_json(found.keystone_y_percent)},
@@ -89,6 +91,18 @@ Json geometry_json(const GeometryMeasure& measure) {
           {"places", places}};
 }
 
+void read_line_of_sight(const JsonReader& geometry, GeometryMeasure& found) {
+  found.plate = geometry.at("plate").text();
+  found.distance_m = geometry.at("distance_m").number();
+  found.distance_relative_u = geometry.at("distance_relative_u").optional_number();
+  found.stated_ifov_mrad = geometry.at("stated_ifov_mrad").number();
+  found.geometry.mm_per_px_x = estimate_from(geometry.at("mm_per_px_x"));
+  found.geometry.mm_per_px_y = estimate_from(geometry.at("mm_per_px_y"));
+  found.geometry.centre_x_mm = estimate_from(geometry.at("centre_x_mm"));
+  found.geometry.centre_y_mm = estimate_from(geometry.at("centre_y_mm"));
+  found.geometry.rotation_deg = estimate_from(geometry.at("rotation_deg"));
+}
+
 GeometryMeasure geometry_from(const JsonReader& geometry) {
   const Interval size = geometry.at("picture_px").interval();
   const auto pixels = [](const std::optional<double>& side) {
@@ -97,6 +111,8 @@ GeometryMeasure geometry_from(const JsonReader& geometry) {
   };
   GeometryMeasure found;
   found.picture = {pixels(size.low), pixels(size.high)};
+  // Records of earlier versions have no line of sight; figures need none of these values.
+  if (!geometry.at_if_there("centre_x_mm").is_null()) read_line_of_sight(geometry, found);
   for (const JsonReader& place : geometry.at("places").elements()) {
     const Interval at = place.at("found_px").interval(), left = place.at("residual_px").interval();
     found.geometry.places.push_back({place.at("triangle").text(),

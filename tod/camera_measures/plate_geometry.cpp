@@ -192,6 +192,13 @@ cv::Matx22d undistorted_scale(const Lens& lens, const LensParameters& p, cv::Poi
   return jacobian(h, mm / lens.unit_mm) * (1 / lens.unit_mm);
 }
 
+/// Place of the plate in the middle of the picture, which distortion does not move.
+cv::Point2d centre_mm(const Lens& lens, const LensParameters& p) {
+  const cv::Matx33d h(p(0), p(1), p(2), p(3), p(4), p(5), p(6), p(7), 1);
+  const cv::Vec3d at = h.inv() * cv::Vec3d(0, 0, 1);
+  return cv::Point2d(at(0), at(1)) * (lens.unit_mm / at(2));
+}
+
 double area_scale(const Lens& lens, const LensParameters& p, cv::Point2d mm) {
   return std::sqrt(std::abs(cv::determinant(undistorted_scale(lens, p, mm))));
 }
@@ -215,6 +222,8 @@ PlateGeometry described(const std::vector<LocatedTriangle>& located, const Lens&
   };
   PlateGeometry out;
   out.mm_per_px_x = mm_per_px({1, 0}), out.mm_per_px_y = mm_per_px({0, 1});
+  out.centre_x_mm = derived([&](const LensParameters& p) { return centre_mm(lens, p).x; });
+  out.centre_y_mm = derived([&](const LensParameters& p) { return centre_mm(lens, p).y; });
   out.rotation_deg = derived([&](const LensParameters& p) {
     const cv::Matx22d j = undistorted_scale(lens, p, {0, 0});
     return std::atan2(j(1, 0) - j(0, 1), j(0, 0) + j(1, 1)) * 180 / std::numbers::pi;

@@ -25,6 +25,8 @@ struct GeometryPlace {
 struct PlateGeometry {
   /// On the plate along the picture's rows and columns, at the middle of the plate, without distortion.
   Estimate mm_per_px_x, mm_per_px_y;
+  /// Place of the plate that the middle of the picture shows, from the middle of the plate: x along the plate's rows.
+  Estimate centre_x_mm, centre_y_mm;
   Estimate rotation_deg;        ///< of the plate in the picture, clockwise
   Estimate keystone_x_percent;  ///< excess of the scale at the plate's right border over that at its left
   Estimate keystone_y_percent;  ///< excess at its lower border over that at its upper
