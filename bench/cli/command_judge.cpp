@@ -2,8 +2,10 @@
 #include "bench/cli/command_judge.h"
 
 #include <memory>
+#include <string>
 #include <utility>
 
+#include "bench/cli/judge_bars.h"
 #include "bench/cli/run_display.h"
 #include "bench/cli/run_results.h"
 #include "bench/cli/session_argument.h"
@@ -18,9 +20,17 @@ struct JudgeArguments {
   JudgeRequest request{};
   Opening opening{};
   bool overwrite = false, run_modules = false;
+  BarsArguments bars{};
 };
 
 int run_judge(Console& console, JudgeArguments a, const Program& program) {
+  if (a.bars.questions || !a.bars.answers.empty()) {
+    a.bars.session = a.session, a.bars.out = a.out, a.bars.opening = a.opening;
+    a.bars.request.seed = program.common.seed;
+    return run_judge_bars(console, a.bars);
+  }
+  if (a.out.empty())
+    return report_error(console, {ErrorCode::invalid_input, "--out is missing: the folder of the new session"});
   if (!a.package.empty()) {
     auto package = read_package(a.package);
     if (!package) return report_error(console, package.error());
@@ -57,10 +67,11 @@ void add_judge_command(CLI::App& app, Program& program) {
   command->add_option("--display", a->display,
                       "plan, name or file, whose section [display] an observer with an eye uses; default: that of the "
                       "session");
-  command->add_option("--out", a->out, "folder of the new session")->required();
+  command->add_option("--out", a->out, "folder of the new session, or of the pictures of --bars");
   command->add_flag("--force", a->overwrite, "overwrites the session in an existing folder");
   command->add_flag("--run-modules", a->run_modules, "starts the programs that the session names in [[module]]");
   add_accept_changed(*command, a->opening.accept_changed);
+  add_bars_options(*command, a->bars);
   finish_command(*command, program, [a, &program](Console& console) { return run_judge(console, *a, program); });
 }
 

@@ -287,6 +287,12 @@ PlanSection measures_section() {
                        "come from the differences between them",
            .place = of(&MeasuresPlan::mrtd_set_ups),
            .form = {"Set-ups of the MRTD", "planMrtdSetUps"}},
+          {.name = "mrtd_kept_frames",
+           .type = WholeKey{0, 100},
+           .sentence = "Frames of each contrast and set-up whose bars are kept for people to judge. 0: none. Two need "
+                       "about 50 MB",
+           .place = of(&MeasuresPlan::mrtd_kept_frames),
+           .written_at_default = false},
           {.name = "mrtd_frequency_per_pitch",
            .type = NumberKey{NumberRange::above_to(0, 0.5)},
            .sentence = "Frequency of the MRTD, in cycles per pixel pitch. The nearest bars are reported and limited",

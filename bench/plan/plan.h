@@ -345,6 +345,7 @@ struct MeasuresPlan {
   std::vector<double> mrtd_delta_t_k = MrtdOptions{}.contrasts_k;       ///< magnitudes, shown at both polarities
   int mrtd_frames = MrtdOptions{}.frames;                               ///< judged at each contrast of each set-up
   int mrtd_set_ups = MrtdOptions{}.set_ups;                             ///< places of the plate between the pixels
+  int mrtd_kept_frames = MrtdOptions{}.kept_frames;                     ///< of them, kept for people to judge
   double mrtd_frequency_per_pitch = MrtdOptions{}.frequency_per_pitch;  ///< the nearest bars are reported and limited
   double mdtd_size_px = MrtdOptions{}.spot_px;                          ///< the nearest spot is reported and limited
   bool operator==(const MeasuresPlan&) const = default;

@@ -167,6 +167,7 @@ std::optional<MrtdOptions> mrtd_options(const Plan& plan, const ExperimentInputs
                       .mountings = plan.target.mountings,
                       .frequency_per_pitch = measures.mrtd_frequency_per_pitch,
                       .spot_px = measures.mdtd_size_px,
+                      .kept_frames = measures.mrtd_kept_frames,
                       .observer = inputs.observer,
                       .seed = plan.seed};
   return options;
@@ -293,6 +294,7 @@ MaybeMeasures measures_of_sensor(const LoadedPlan& loaded, const ExperimentInput
   // A scene has no absolute set-point and no clock, and the sensor no automatic gain: these measures are those of a
   // real camera.
   plan.measures.absolute = plan.measures.timing = plan.measures.latency = plan.measures.gain_control = false;
+  plan.measures.mrtd_kept_frames = 0;  // people judge the camera
   const auto model = whole_sensor(loaded, inputs);
   // The sensor does not drift, so the default time is enough; a program in its place gets the shortest.
   plan.measures.drift_s =

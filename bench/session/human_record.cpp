@@ -131,16 +131,6 @@ Result<HumanRecord> read_record_of(const std::filesystem::path& session, const P
 struct People {
   std::vector<PersonFacts> people;
 };
-void person_fields(JsonFields& json, PersonFacts& person) {
-  json.value("code", person.code);
-  json.value("age_years", person.age_years);
-  json.value("acuity_decimal", person.acuity_decimal);
-  json.value("distance_m", person.distance_m);
-  json.value("luminance_cd_m2", person.luminance_cd_m2);
-  json.value("screen", person.screen);
-  json.value("judged_utc", person.judged_utc);
-  json.value("training_answers", person.training_answers);
-}
 void people_fields(JsonFields& json, People& people) {
   json.value("people", people.people, person_fields);
 }
@@ -162,6 +152,17 @@ Result<People> read_facts(const std::filesystem::path& session) {
 }
 
 }  // namespace
+
+void person_fields(JsonFields& json, PersonFacts& person) {
+  json.value("code", person.code);
+  json.value("age_years", person.age_years);
+  json.value("acuity_decimal", person.acuity_decimal);
+  json.value("distance_m", person.distance_m);
+  json.value("luminance_cd_m2", person.luminance_cd_m2);
+  json.value("screen", person.screen);
+  json.value("judged_utc", person.judged_utc);
+  json.value("training_answers", person.training_answers);
+}
 
 Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPatch> shown, const Plan& plan) {
   assert(shown.size() == answers.size());
@@ -221,32 +222,42 @@ std::string shown_file_of_person(std::size_t number) {
   return files_of(number).shown;
 }
 
+MeanOverPeople mean_over_people(const std::vector<std::string>& codes, const std::vector<double>& thresholds) {
+  // ln threshold of the sittings by person; a person without a code has a key of their own.
+  std::map<std::string, std::vector<double>> persons;
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    persons[codes[i].empty() ? "\n" + std::to_string(i) : codes[i]].push_back(std::log(thresholds[i]));
+  std::vector<double> logs;
+  for (const auto& [key, sittings] : persons)
+    logs.push_back(std::accumulate(sittings.begin(), sittings.end(), 0.0) / static_cast<double>(sittings.size()));
+  if (logs.empty()) return {};
+  const auto n = static_cast<double>(logs.size());
+  const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / n;
+  MeanOverPeople out{.people = static_cast<int>(logs.size()), .mean = std::exp(mean)};
+  if (logs.size() > 1) {
+    double squares = 0;
+    for (const double value : logs) squares += (value - mean) * (value - mean);
+    const double half = distribution::quantile_above(0.025, n - 1) * std::sqrt(squares / (n - 1) / n);
+    out.ci95 = std::pair(std::exp(mean - half), std::exp(mean + half));
+  }
+  return out;
+}
+
 std::vector<PeopleMean> mean_over_people(const std::vector<PersonRecord>& people) {
-  // ln S75 of the sittings, by contrast and person; a person without a code has a key of their own.
-  std::map<double, std::map<std::string, std::vector<double>>, std::greater<>> thresholds;
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    const std::string& code = people[i].person.code;
-    const std::string key = code.empty() ? "\n" + std::to_string(i) : code;
-    for (const TodPoint& point : people[i].record.curve.points) {
-      if (point.fit.threshold && *point.fit.threshold > 0)
-        thresholds[point.set_delta_t_k][key].push_back(std::log(*point.fit.threshold));
+  // Codes and thresholds of the sittings with a threshold, by contrast.
+  std::map<double, std::pair<std::vector<std::string>, std::vector<double>>, std::greater<>> found;
+  for (const PersonRecord& one : people) {
+    for (const TodPoint& point : one.record.curve.points) {
+      if (!point.fit.threshold || !(*point.fit.threshold > 0)) continue;
+      auto& [codes, thresholds] = found[point.set_delta_t_k];
+      codes.push_back(one.person.code);
+      thresholds.push_back(*point.fit.threshold);
     }
   }
   std::vector<PeopleMean> means;
-  for (const auto& [contrast, persons] : thresholds) {
-    std::vector<double> logs;
-    for (const auto& [key, sittings] : persons)
-      logs.push_back(std::accumulate(sittings.begin(), sittings.end(), 0.0) / static_cast<double>(sittings.size()));
-    const auto n = static_cast<double>(logs.size());
-    const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / n;
-    PeopleMean out{.set_delta_t_k = contrast, .people = static_cast<int>(logs.size()), .s75_mrad = std::exp(mean)};
-    if (logs.size() > 1) {
-      double squares = 0;
-      for (const double value : logs) squares += (value - mean) * (value - mean);
-      const double half = distribution::quantile_above(0.025, n - 1) * std::sqrt(squares / (n - 1) / n);
-      out.ci95_mrad = std::pair(std::exp(mean - half), std::exp(mean + half));
-    }
-    means.push_back(out);
+  for (const auto& [contrast, sittings] : found) {
+    const MeanOverPeople of = mean_over_people(sittings.first, sittings.second);
+    means.push_back({.set_delta_t_k = contrast, .people = of.people, .s75_mrad = of.mean, .ci95_mrad = of.ci95});
   }
   return means;
 }

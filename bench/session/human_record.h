@@ -16,6 +16,8 @@
 
 namespace todbench {
 
+class JsonFields;
+
 /// Presentation of a patch; the picture that the person saw can be reproduced from it.
 struct ShownPatch {
   cv::Mat1f kelvin;                 ///< samples that the model observer judged
@@ -44,6 +46,9 @@ struct PersonFacts {
   int training_answers = 0;                           ///< with feedback, before the first answer
 };
 
+/// Describes a person in records of answers.
+void person_fields(JsonFields& json, PersonFacts& person);
+
 /// A person with the answers given at one sitting.
 struct PersonRecord {
   PersonFacts person;
@@ -58,6 +63,17 @@ struct PeopleMean {
   double s75_mrad = 0;
   std::optional<std::pair<double, double>> ci95_mrad{};  ///< empty: fewer than two people
 };
+
+/// Geometric mean of a threshold over people, every person once: sittings with one code count as their geometric mean,
+/// a sitting without a code is a person. `codes` and `thresholds` have one element for each sitting; thresholds above
+/// 0. The interval contains the scatter between people (Student's t of the logarithms); empty: fewer than two people.
+struct MeanOverPeople {
+  int people = 0;
+  double mean = 0;
+  std::optional<std::pair<double, double>> ci95{};
+};
+[[nodiscard]] MeanOverPeople mean_over_people(const std::vector<std::string>& codes,
+                                              const std::vector<double>& thresholds);
 
 /// Fits the answers like those of the model. Precondition: one patch per answer. Errors: `invalid_input` (no answers).
 [[nodiscard]] Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPatch> shown,

@@ -19,6 +19,7 @@
 #include "bench/session/fit_record.h"
 #include "bench/session/foreign_files.h"
 #include "bench/session/grey_levels_csv.h"
+#include "bench/session/kept_bars_record.h"
 #include "bench/session/measure_pictures.h"
 #include "bench/session/signature.h"
 #include "bench/session/uncertainty_record.h"
@@ -304,6 +305,9 @@ Result<void> SessionFolder::write_grey_levels(const std::vector<GreyFrame>& fram
 
 Result<void> SessionFolder::write_measures(const std::optional<CameraMeasures>& main,
                                            const std::optional<CameraMeasures>& twin) {
+  if (main && main->mrtd && !main->mrtd->kept.pictures.empty()) {
+    if (auto written = write_kept_bars(folder_, main->mrtd->kept); !written) return written;
+  }
   return write_measures(measures_json(main, twin));
 }
 

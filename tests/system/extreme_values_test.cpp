@@ -79,6 +79,7 @@ TEST(ExtremeValues, OfOptionsAreRefused) {
       {{"history", "show"}, {"x"}},
       {{"history", "check"}, {}},
       {{"blind"}, {"m", "--simulated-person", "--out", "b"}},
+      {{"judge"}, {"a", "--bars", "--out", "o"}},
       {{"observer", "fit"}, {"a", "--from", "hvs-1", "--free", "internal_noise", "--out", "o.toml"}},
       {{"observer", "naked-eye"}, {"demo", "--out", "naked"}},
       {{"sweep", "run"}, {"no.toml"}},

@@ -103,7 +103,8 @@ struct BarsJudge::Thresholds {
   double phase_variance = 0;
 };
 
-BarsJudge::BarsJudge(const MrtdOptions& options) : options_(options), observers_{options.observer} {
+BarsJudge::BarsJudge(const MrtdOptions& options)
+    : options_(options), observers_{options.observer}, keeper_(options.kept_frames) {
   if (const auto range = open_parameter_range(options.observer)) {
     observers_.push_back(range->best);
     observers_.push_back(range->worst);
@@ -208,7 +209,7 @@ void BarsJudge::add(const cv::Mat1d& kelvin, const ShownBars& shown) {
   for (std::size_t p = 0; p < places_.size(); ++p) {
     Place& place = places_[p];
     if (place.left_out) continue;
-    std::vector<cv::Mat1f> patches;
+    std::vector<cv::Mat1f> patches, windows;
     for (std::size_t which = 0; which < 2; ++which) {
       const PatchWindow window =
           patch_window(shown.where.pixel(at[2 * p + which].position_mm), place.bank->window_samples());
@@ -220,12 +221,29 @@ void BarsJudge::add(const cv::Mat1d& kelvin, const ShownBars& shown) {
       if (which == 0) place.phase[set_up] = place.axis == EdgeAxis::x ? window.phase.x : window.phase.y;
       cv::Mat1f patch;
       cv::Mat1d(kelvin(window.pixels) - cv::mean(kelvin(window.pixels))[0]).convertTo(patch, CV_32F);
+      windows.push_back(patch);
       patches.push_back(options_.observer.eye ? without_background(options_.observer, patch) : patch);
     }
     if (place.left_out) continue;
+    keep(p, shown, windows[0], windows[1]);
     const auto scores = place.bank->project_all(patches);
     for (std::size_t which = 0; which < 2; ++which) decide(place, which == 0, scores[which], shown);
   }
+}
+
+void BarsJudge::keep(std::size_t place, const ShownBars& shown, const cv::Mat1f& target, const cv::Mat1f& other) {
+  if (!keeper_.keeps() || places_[place].frequency_per_pitch > mrtd_cut_per_pitch) return;
+  keeper_.add({place, shown.set_up, shown.said_k, target, other});
+}
+
+KeptBars BarsJudge::kept() const {
+  std::vector<KeptPlace> places;
+  for (const Place& place : places_) {
+    const bool judged = !place.left_out && place.frequency_per_pitch <= mrtd_cut_per_pitch;
+    places.push_back({judged ? place.name : std::string(), place.axis, place.frequency_per_pitch, place.size_px,
+                      place.bank->window_samples()});
+  }
+  return keeper_.of(places);
 }
 
 void BarsJudge::decide(Place& place, bool target, const std::vector<float>& pattern, const ShownBars& shown) {
@@ -407,6 +425,7 @@ MrtdMeasure BarsJudge::result() const {
   out.pitch_mrad = options_.pitch_mrad;
   out.frequency_per_pitch = options_.frequency_per_pitch, out.spot_px = options_.spot_px;
   out.reasons = reasons_;
+  if (keeper_.keeps()) out.kept = kept();
   for (std::size_t i = 0; i < said_sum_k_.size(); ++i) {
     if (said_count_[i] > 0) out.contrast_k.push_back(said_sum_k_[i] / said_count_[i]);
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hvs/observer/identification_bank.h"
+#include "tod/camera_measures/kept_bars.h"
 #include "tod/camera_measures/mrtd_measure.h"
 #include "tod/measures/two_intervals.h"
 
@@ -67,6 +68,9 @@ class BarsJudge {
   /// Adds the decisions of every observer about an interval to the scores of its level and set-up. `pattern`: scores of
   /// the frame's window, in kelvin.
   void decide(Place& place, bool target, const std::vector<float>& pattern, const ShownBars& shown);
+  /// Keeps both windows of a frame for people. Bars beyond the cut have no threshold and are not kept.
+  void keep(std::size_t place, const ShownBars& shown, const cv::Mat1f& target, const cv::Mat1f& other);
+  [[nodiscard]] KeptBars kept() const;
   [[nodiscard]] Thresholds thresholds(const Place& place, std::size_t observer, const LeftOut& left_out) const;
   static void find_best_phase(const Answers& answers, const std::vector<double>& phases, const LeftOut& left_out,
                               const std::vector<std::size_t>& levels, Thresholds& out);
@@ -84,6 +88,7 @@ class BarsJudge {
   std::vector<int> said_count_;
   std::vector<std::string> reasons_;
   std::uint64_t draws_ = 0;
+  BarsKeeper keeper_;
 };
 
 }  // namespace todbench

@@ -13,6 +13,7 @@
 
 #include "acquisition/base/interval.h"
 #include "hvs/observer/template_observer.h"
+#include "tod/camera_measures/kept_bars.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measures/slanted_edge.h"
 #include "tod/plate/target_plate.h"
@@ -33,6 +34,7 @@ struct MrtdOptions {
   double pitch_mrad = 0;              ///< IFOV of a pixel
   double locating_k = 4;              ///< contrast at which the plate is located
   int registration_frames = 32;       ///< averaged to locate it
+  int kept_frames = 0;                ///< of each contrast of each set-up, kept for people
   double response = 1;                ///< observed contrast over the contrast that the target reports
   TemplateObserverSpec observer{};    ///< one with an eye has its display
   std::uint64_t seed = 1;             ///< of the observer's own noise
@@ -69,6 +71,7 @@ struct MrtdMeasure {
   std::vector<MrtdPoint> bars{};                ///< x before y, low frequencies first
   std::vector<MrtdPoint> spots{};               ///< small ones first
   std::vector<std::string> reasons{};           ///< sentences about places that could not be judged
+  KeptBars kept{};                              ///< windows for people; empty unless kept_frames is above 0
 
   /// Bars on this axis whose frequency is nearest to the requested one; null if there are none.
   [[nodiscard]] const MrtdPoint* stated(EdgeAxis axis) const;

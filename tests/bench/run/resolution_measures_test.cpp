@@ -5,15 +5,23 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <string>
 
+#include "bench/enhance/bars_questions.h"
 #include "bench/plan/descriptions.h"
 #include "bench/report/measure_figures.h"
 #include "bench/report/report.h"
 #include "bench/run/experiment.h"
+#include "bench/run/rebuild_report.h"
 #include "bench/run/report_data.h"
+#include "bench/session/bars_people.h"
+#include "bench/session/kept_bars_record.h"
 #include "bench/session/open_session.h"
 #include "sim_devices/prediction/virtual_mrtd.h"
 #include "tests/bench/run/bars_coverage.h"
+#include "tests/bench/run/bars_people_check.h"
 #include "tests/bench/run/edge_coverage.h"
 #include "tests/bench/run/measures_plan.h"
 #include "tests/bench/run/mrtd_coverage.h"
@@ -171,10 +179,55 @@ Plan mrtd_plan() {
   return plan;
 }
 
+/// Four people of known thresholds judge the bars of the session in this folder.
+void people_judge_bars(const std::filesystem::path& folder) {
+  const std::filesystem::path session = folder / "session";
+  const auto kept = read_kept_bars(session);
+  ASSERT_TRUE(kept && *kept);
+  // 12 of 14 bars are below the cut; 5 spots; 2 of the 8 frames at 5 contrasts of both polarities at 5 set-ups.
+  EXPECT_EQ((*kept)->pictures.size(), (*kept)->places.size() * 2 * 5 * 2 * 5);
+  const BarsRequest request{.times = 3};
+  const auto questions = bars_questions(**kept, request);
+  ASSERT_TRUE(questions) << questions.error().message;
+  EXPECT_EQ(questions->size(), 3u * 3 * 5 * 2 * 5);
+  EXPECT_GT(testing::share_of_a_spectral_person(**kept, *questions, 0.06), 0.9);
+  const double truths[] = {0.012, 0.016, 0.02, 0.026};
+  int held = 0;
+  for (std::size_t i = 0; i < std::size(truths); ++i) {
+    BarsRequest own = request;
+    own.seed = 11 + i;
+    const std::filesystem::path shown = folder / ("shown-" + std::to_string(i));
+    ASSERT_TRUE(write_bars_questions(shown, session, **kept, own));
+    const std::string code = "P" + std::to_string(i + 1);
+    testing::enter_answers(
+        shown, testing::answers_of(**kept, *bars_questions(**kept, own), code, {.threshold_k = truths[i]}, own.seed));
+    auto sitting = read_bars_answers(shown, session, **kept);
+    ASSERT_TRUE(sitting) << sitting.error().message;
+    sitting->person.code = code;
+    for (const BarsThreshold& one : bars_thresholds(*sitting)) {
+      ASSERT_TRUE(one.found.half_k) << one.found.reason;
+      held += *one.found.ci95.low <= truths[i] && truths[i] <= *one.found.ci95.high ? 1 : 0;
+    }
+    ASSERT_TRUE(add_bars_sitting(session, *sitting));
+  }
+  EXPECT_GE(held, 10);  // of 12
+  const auto sittings = read_bars_sittings(session);
+  ASSERT_TRUE(sittings) << sittings.error().message;
+  ASSERT_EQ(sittings->size(), 4u);
+  const auto means = bars_means(*sittings);
+  ASSERT_EQ(means.size(), 3u);
+  for (const BarsMean& mean : means) {
+    ASSERT_TRUE(mean.over.ci95);
+    EXPECT_LE(mean.over.ci95->first, 0.01776);  // geometric mean of the four
+    EXPECT_GE(mean.over.ci95->second, 0.01776);
+  }
+}
+
 TEST(PhysicalMeasures, FindTheMrtdOfTheVirtualBarsAndJudgeIt) {
   const TemporaryFolder folder;
   Plan plan = mrtd_plan();
   plan.limits.measures = {{"mrtd_x", std::nullopt, 0.05}, {"mrtd_y", std::nullopt, 0.005}};
+  plan.measures.mrtd_kept_frames = 2;
   VirtualMrtdTask task;
   task.sensor = *load_sensor("sc2000");
   task.plan = full_plan(task.sensor, {}, {});
@@ -225,6 +278,7 @@ TEST(PhysicalMeasures, FindTheMrtdOfTheVirtualBarsAndJudgeIt) {
   const std::string page = render_report(*report_data(*session, "session"));
   EXPECT_THAT(page, HasSubstr("mrtd-x"));
   EXPECT_THAT(page, HasSubstr("half difference"));
+  people_judge_bars(folder.path());
 }
 
 // Short form of MrtdStudy: the target shows 2 mK more than it reports, which the half difference does not contain.

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Decisions of a person between the windows of bars that a session kept: in the window, or as pictures in a folder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "bench/session/bars_people.h"
+#include "tod/camera_measures/kept_bars.h"
+
+namespace todbench {
+
+/// Selects decisions.
+struct BarsRequest {
+  bool all_places = false;            ///< otherwise the bars of each axis and the spot nearest to the next two values
+  double frequency_per_pitch = 0.25;  ///< of the plan
+  double spot_px = 3;                 ///< of the plan
+  int times = 1;                      ///< decisions at each contrast of each set-up of a place
+  int magnification = 12;             ///< screen pixels per pixel of the camera
+  std::uint64_t seed = 1;
+};
+
+/// One decision: two windows of one place, contrast and set-up, of two frames if more than one is kept.
+struct BarsQuestion {
+  std::size_t target_picture = 0, other_picture = 0;  ///< in KeptBars::pictures
+  bool target_left = false;
+};
+
+/// All decisions of a request in random order. Errors: `invalid_input` (no place or fewer than five set-ups, so that no
+/// threshold could follow).
+[[nodiscard]] Result<std::vector<BarsQuestion>> bars_questions(const KeptBars& kept, const BarsRequest& request);
+/// Both windows side by side, separated by a strip of background: 8-bit grey, enlarged by bicubic interpolation. The
+/// grey scale spans three contrasts, or six standard deviations of both windows, whichever is more: it does not depend
+/// on the side of the target.
+[[nodiscard]] cv::Mat1b bars_picture(const KeptBars& kept, const BarsQuestion& question, int magnification);
+[[nodiscard]] BarsAnswer bars_answer(const KeptBars& kept, const BarsQuestion& question, bool answered_left);
+
+/// Writes the pictures of all decisions to a new folder (0001.png ...), answers.csv with an empty answer for each, and
+/// bars.json with the request. The folder does not tell which side has the target. Errors: `invalid_input` (folder
+/// exists; as bars_questions()), `io`.
+[[nodiscard]] Result<std::size_t> write_bars_questions(const std::filesystem::path& folder,
+                                                       const std::filesystem::path& session, const KeptBars& kept,
+                                                       const BarsRequest& request);
+/// Reads the answers ("left" or "right"; empty: not answered) that a person entered in answers.csv. Errors:
+/// `invalid_input` with the file and line (another word, another number of decisions, pictures of another session, no
+/// answer).
+[[nodiscard]] Result<BarsSitting> read_bars_answers(const std::filesystem::path& folder,
+                                                    const std::filesystem::path& session, const KeptBars& kept);
+
+}  // namespace todbench
