@@ -36,6 +36,8 @@ namespace todbench {
                                                     const std::string& who);
 /// One figure for each axis: MRTD, best phase; and one of the spots.
 [[nodiscard]] std::optional<FigurePairs> mrtd_figures(const SessionMeasures& measures, bool camera);
+/// A contrast with three digits, or "none".
+[[nodiscard]] RichText contrast_cell(const std::optional<double>& value);
 /// Table of bars and spots as an acceptance document lists them: frequency, contrast of each polarity, offset, half
 /// difference of each axis, best phase. Of one side, with its name in the captions.
 [[nodiscard]] std::vector<Table> mrtd_tables(const MrtdMeasure& mrtd, const std::string& who);

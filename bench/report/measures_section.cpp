@@ -124,13 +124,8 @@ std::optional<Section> measures_section(const ReportData& data) {
   const bool camera = data.camera.has_value();
   for (const auto& figures_of :
        {transfer_figures, mtf_figures, drift_figures, response_figures, geometry_figures, ctf_figures,
-        source_size_figures, absolute_figures, latency_figures, gain_control_figures, mrtd_figures}) {
+        source_size_figures, absolute_figures, latency_figures, gain_control_figures}) {
     if (auto figures = figures_of(*data.measures, camera)) section.blocks.emplace_back(*std::move(figures));
-  }
-  for (const auto& [side, who] :
-       {std::pair(&main, data.camera ? "camera" : "simulated sensor"), std::pair(&twin, "simulated twin")}) {
-    if (!*side || !(*side)->mrtd) continue;
-    for (Table& of_mrtd : mrtd_tables(*(*side)->mrtd, who)) section.blocks.emplace_back(std::move(of_mrtd));
   }
   if (main && main->picture) section.blocks.emplace_back(plate_figures(*main->picture, twin, camera));
   if (auto figures = pixel_figures(*data.measures, camera)) section.blocks.emplace_back(*std::move(figures));

@@ -85,10 +85,6 @@ std::optional<Figure> mrtd_figure(EdgeAxis axis, const SessionMeasures& measures
                                  "the best sampling phase (MTDP-like)"};
 }
 
-RichText contrast_cell(const std::optional<double>& value) {
-  return value ? plain(significant(*value, 3)) : missing("none");
-}
-
 RichText half_difference_cell(const MrtdPoint& point) {
   return interval_or_missing(point.threshold_k, point.threshold_k ? point.ci95 : Interval{}, point.reason);
 }
@@ -110,6 +106,10 @@ RichText offset_cell(const MrtdPoint& point) {
 }
 
 }  // namespace
+
+RichText contrast_cell(const std::optional<double>& value) {
+  return value ? plain(significant(*value, 3)) : missing("none");
+}
 
 std::optional<FigurePairs> mrtd_figures(const SessionMeasures& measures, bool camera) {
   FigurePairs figures;

@@ -97,6 +97,7 @@ Document report_document(const ReportData& data) {
   add(viewing_section(data));
   if (curve) add(comparison_section(data));
   add(measures_section(data));
+  add(mrtd_section(data));
   add(set_up_section(data));
   add(effects_section(data));
   if (const TodCurve* timed = timed_curve(data)) {

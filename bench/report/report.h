@@ -16,10 +16,12 @@
 #include "bench/plan/order.h"
 #include "bench/report/document.h"
 #include "bench/report/plot.h"
+#include "bench/session/bars_people.h"
 #include "bench/session/display_record.h"
 #include "bench/session/human_record.h"
 #include "bench/session/measures_record.h"
 #include "bench/session/signature.h"
+#include "hvs/eye/viewed_display.h"
 #include "sim_devices/prediction/cost_frontier.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "sim_devices/sensor/sensor_spec.h"
@@ -51,13 +53,15 @@ struct ReportData {
   /// Name with unit, and value: customer, lens, room temperature ...
   std::vector<std::pair<std::string, std::string>> conditions;
 
-  std::optional<SourceInfo> camera;  ///< unit under test, as read from the device; empty: simulation only
-  std::string temperature_scale;     ///< of the camera, in words; empty: as described by the scale in `camera`
-  double distance_m = 0;             ///< entrance pupil to plate, or focal length of a collimator; 0: not stated
-  bool collimated = false;           ///< the plate is behind a collimator
-  double ifov_mrad = 0;              ///< 0: not stated
-  std::string target;                ///< instruments with serial numbers
-  std::vector<TargetPlate> plates;   ///< in identity mounting
+  std::optional<SourceInfo> camera;        ///< unit under test, as read from the device; empty: simulation only
+  std::string temperature_scale;           ///< of the camera, in words; empty: as described by the scale in `camera`
+  double distance_m = 0;                   ///< entrance pupil to plate, or focal length of a collimator; 0: not stated
+  bool collimated = false;                 ///< the plate is behind a collimator
+  double ifov_mrad = 0;                    ///< 0: not stated
+  double air_temperature_c = 20;           ///< of the plan
+  std::optional<ViewedDisplay> display{};  ///< of the plan; empty: none
+  std::string target;                      ///< instruments with serial numbers
+  std::vector<TargetPlate> plates;         ///< in identity mounting
   std::vector<SetUpRecord> set_ups;
   std::vector<Presentation> presentations;  ///< of the camera, or of the simulation without a camera
   std::string observer;                     ///< name and version
@@ -67,6 +71,7 @@ struct ReportData {
   std::optional<TodCurve> simulated;
   std::optional<TodCurve> human;         ///< answers of the first person to patches of the camera's frames
   std::vector<PersonRecord> people;      ///< all people, without their trials and pictures
+  std::vector<BarsSitting> bars_people;  ///< answers of people to the bars of the camera
   std::optional<Comparison> comparison;  ///< A is measured, B is simulated
 
   std::optional<SessionMeasures> measures;  ///< physical measures; empty: not requested

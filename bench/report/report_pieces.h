@@ -33,6 +33,9 @@ namespace todbench {
 [[nodiscard]] Section curve_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> psychometric_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> human_section(const ReportData& data);
+/// Returns MRTD and MDTD of the model and of people with their conditions, and how they differ from STANAG 4349; empty
+/// if they were not measured.
+[[nodiscard]] std::optional<Section> mrtd_section(const ReportData& data);
 /// Returns what limits the acuity, and the thresholds of an operator at the display.
 [[nodiscard]] std::optional<Section> viewing_section(const ReportData& data);
 [[nodiscard]] Section comparison_section(const ReportData& data);

@@ -7,6 +7,7 @@
 #include "bench/plan/order.h"
 #include "bench/report/report_csv.h"
 #include "bench/run/report_data.h"
+#include "bench/session/bars_people.h"
 #include "bench/session/foreign_files.h"
 #include "bench/session/human_record.h"
 #include "bench/session/manifest.h"
@@ -27,6 +28,7 @@ Result<ReportData> report_data_of(const Session& session, const std::filesystem:
   }
   if (!people.empty()) data->human = people.front().record.curve;
   data->people = std::move(people);
+  TODBENCH_TRY(data->bars_people, read_bars_sittings(folder));
   TODBENCH_TRY(auto letterhead, kept_letterhead(folder));
   if (letterhead) data->letterhead = std::move(letterhead);
   std::error_code none;

@@ -101,6 +101,8 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   data.distance_m = plan.target.distance_m;
   data.collimated = plan.target.collimator.stated();
   data.ifov_mrad = plan.camera.ifov_mrad;
+  data.air_temperature_c = plan.target.air_temperature_c;
+  if (has_display(plan)) data.display = plan.display;
   data.target = provenance.target;
   data.plates = session.parts.plates;
   data.presentations = session.presentations;

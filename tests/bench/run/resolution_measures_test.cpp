@@ -221,6 +221,11 @@ void people_judge_bars(const std::filesystem::path& folder) {
     EXPECT_LE(mean.over.ci95->first, 0.01776);  // geometric mean of the four
     EXPECT_GE(mean.over.ci95->second, 0.01776);
   }
+  const auto open = open_session(session, {});
+  ASSERT_TRUE(open) << open.error().message;
+  const std::string page = render_report(*report_data_of(*open, session));
+  EXPECT_THAT(page, HasSubstr("mean of 4 people"));
+  EXPECT_THAT(page, HasSubstr("P3"));
 }
 
 TEST(PhysicalMeasures, FindTheMrtdOfTheVirtualBarsAndJudgeIt) {
