@@ -22,6 +22,7 @@
 #include "bench/plan/descriptions.h"
 #include "bench/report/tod_figures.h"
 #include "bench/studies/identification_study.h"
+#include "bench/text/spread_text.h"
 #include "bench/text/text.h"
 #include "sim_devices/prediction/identification_passes.h"
 
@@ -102,11 +103,6 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
   task.seed = program.common.seed;
   task.stop = program.stop->token();
   return task;
-}
-
-/// Adds a range over the open parameters of an observer with an eye, which is no confidence interval.
-void add_spread(Json& json, const char* key, const std::optional<std::pair<double, double>>& spread) {
-  if (spread) json[key] = {json_number(spread->first), json_number(spread->second)};
 }
 
 std::string spread_text(const std::optional<std::pair<double, double>>& spread, int digits) {

@@ -16,6 +16,7 @@
 #include "bench/session/fit_record.h"
 #include "bench/studies/people_set.h"
 #include "bench/studies/turbulent_ranges.h"
+#include "bench/text/spread_text.h"
 #include "bench/text/text.h"
 #include "sim_devices/sensor/effect_turbulence.h"
 #include "tod/range/range_prediction.h"
@@ -57,22 +58,24 @@ Json range_json(const TodAnswer& tod, const RangeTask& task, const RangeQuestion
                       {"probability_ci95", json_interval(point.probability_ci95)},
                       {"apparent_delta_t_k", json_number(point.apparent_delta_t_k)}});
   }
-  return {{"r75_m", json_number(prediction.r75_m)},
-          {"r75_ci95_m", json_interval(prediction.r75_ci95_m)},
-          {"reason", prediction.reason.empty() ? Json() : Json(prediction.reason)},
-          {"adequacy", adequacy_json(prediction.adequacy)},
-          {"notes", prediction.notes},
-          {"observer", tod.observer},
-          {"sensor", tod.sensor},
-          {"size_m", task.size_m},
-          {"delta_t_k", task.delta_t_k},
-          {"m75", task.m75},
-          {"m75_ci95", u_percent > 0 ? json_interval(Interval{task.m75 * std::exp(-normal_z95 * u_percent / 100),
-                                                              task.m75 * std::exp(normal_z95 * u_percent / 100)})
-                                     : Json()},
-          {"m75_origin", m75_origin},
-          {"extinction_per_km", task.extinction_per_km},
-          {"curve", points}};
+  Json json{{"r75_m", json_number(prediction.r75_m)},
+            {"r75_ci95_m", json_interval(prediction.r75_ci95_m)},
+            {"reason", prediction.reason.empty() ? Json() : Json(prediction.reason)},
+            {"adequacy", adequacy_json(prediction.adequacy)},
+            {"notes", prediction.notes},
+            {"observer", tod.observer},
+            {"sensor", tod.sensor},
+            {"size_m", task.size_m},
+            {"delta_t_k", task.delta_t_k},
+            {"m75", task.m75},
+            {"m75_ci95", u_percent > 0 ? json_interval(Interval{task.m75 * std::exp(-normal_z95 * u_percent / 100),
+                                                                task.m75 * std::exp(normal_z95 * u_percent / 100)})
+                                       : Json()},
+            {"m75_origin", m75_origin},
+            {"extinction_per_km", task.extinction_per_km},
+            {"curve", points}};
+  add_spread(json, "r75_spread_m", prediction.r75_spread_m);
+  return json;
 }
 
 void print_range(Console& console, const TodAnswer& tod, const RangeTask& task, const RangeQuestion& question,
@@ -97,6 +100,7 @@ void print_range(Console& console, const TodAnswer& tod, const RangeTask& task, 
   if (prediction.r75_m || prediction.r75_ci95_m.low)
     console.text("75 % correct at " + fixed(prediction.r75_m, 1) + " m, 95 %: " + range(prediction.r75_ci95_m, 1) +
                  " m");
+  if (prediction.r75_spread_m) console.text("75 % correct at " + spread_in_words(*prediction.r75_spread_m, "m"));
   if (!prediction.reason.empty()) console.text(prediction.reason);
   print_findings(console, prediction.adequacy, "the TOD curve ");
 }
@@ -178,8 +182,13 @@ Result<TurbulentAnswers> through_turbulence(const RangeOptions& options, const R
                                     options.cn2, std::max(2.2 * longest_m, 1.0)));
   if (simulated) {
     auto notes = std::move(tod.prediction.notes);
+    const bool still_has_spread = tod.prediction.r75_spread_m.has_value();
     TODBENCH_TRY(tod.prediction, turbulent_prediction(behind, sources.thresholds, task));
     tod.prediction.notes = std::move(notes);
+    if (still_has_spread)
+      tod.prediction.notes.emplace_back(
+          "no spread of the range over the open parameters of the observer: the effect of the turbulence is that on "
+          "the observer itself");
     if (tod.twin_r75_m) {
       const auto twin = turbulent_prediction(behind, thresholds_of(*session->twin, task.delta_t_k).thresholds, task);
       tod.twin_r75_m = twin ? twin->r75_m : std::nullopt;

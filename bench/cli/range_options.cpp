@@ -16,6 +16,7 @@
 #include "bench/report/range_figure.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
+#include "bench/text/spread_text.h"
 #include "bench/text/text.h"
 #include "bench/text/unit_hint.h"
 #include "sim_devices/atmosphere/radiative_path.h"
@@ -447,6 +448,7 @@ Json models_json(const std::vector<ModelRange>& models, const RangeSources& sour
                {"notes", model.notes},
                {"curve", curve}};
     if (model.name == "tod") {
+      add_spread(entry, "r75_spread_m", model.r75_spread_m);
       entry["twin_r75_m"] = json_number(twin_r75_m);
       entry["ratio_to_twin"] =
           json_number(twin_r75_m && model.r75_m ? std::optional(*model.r75_m / *twin_r75_m) : std::nullopt);
@@ -492,6 +494,7 @@ void print_models(Console& console, const std::vector<ModelRange>& models) {
     console.text(model.title + " uses " + model.reads);
     console.text(model.title + ", " + model.criterion + ": " + model.criterion_origin);
     console.text(model.title + ", display: " + model.display);
+    if (model.r75_spread_m) console.text(model.title + ", R75: " + spread_in_words(*model.r75_spread_m, "m"));
     if (!model.reason.empty()) console.text(model.title + ": " + model.reason);
     for (const auto& sentence : model.notes) console.note(model.title + ": " + sentence);
   }

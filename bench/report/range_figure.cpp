@@ -8,6 +8,7 @@
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/svg.h"
+#include "bench/text/spread_text.h"
 
 namespace todbench {
 namespace {
@@ -104,6 +105,11 @@ Document range_page(std::span<const ModelRange> models, const RangePage& page) {
                                      "Probability of a correct answer against range by each model with its own "
                                      "criterion. Marks: range for 75 % with its 95 % interval, if known."});
   section.blocks.emplace_back(range_table(models));
+  for (const auto& model : models) {
+    if (model.r75_spread_m)
+      section.blocks.emplace_back(
+          Paragraph{plain(model.title + ", R75: " + spread_in_words(*model.r75_spread_m, "m") + ".")});
+  }
   std::vector<std::string> notes = page.notes;
   for (const auto& model : models) {
     notes.push_back(model.title + ", " + model.criterion + ": " + model.criterion_origin);

@@ -270,6 +270,7 @@ Result<void> predict_tod(Prepared& model, const RangeSources& sources, const Ran
   model.head.r75_m = predicted.r75_m;
   model.head.reason = predicted.reason;
   model.head.r75_ci95_m = predicted.r75_ci95_m;
+  model.head.r75_spread_m = predicted.r75_spread_m;
   model.head.notes = predicted.notes;
   if (predicted.r75_m) {
     model.head.r75_ci95_m =

@@ -130,6 +130,7 @@ std::vector<TodThreshold> TurbulentSources::thresholds_at(std::span<const TodThr
     if (!change) continue;
     const double factor = std::exp(*change);
     threshold.s75_mrad *= factor;
+    if (factor != 1) threshold.s75_spread_mrad.reset();  // the factor is that of the observer itself
     for (auto* side : {&threshold.s75_ci95_mrad.low, &threshold.s75_ci95_mrad.high}) {
       if (*side) **side *= factor;
     }

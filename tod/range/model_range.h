@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tod/psychometric/psychometric_fit.h"
@@ -27,6 +28,8 @@ struct ModelRange {
   std::string display{};           ///< contrast on the display that the model assumes: a sentence
   std::optional<double> r50_m{}, r75_m{};
   Interval r75_ci95_m{};  ///< of the curve and the air; a side is open if unknown
+  /// Over the open parameters of the observer of a TOD curve (RangePrediction); not a confidence interval.
+  std::optional<std::pair<double, double>> r75_spread_m{};
   std::optional<RangeSensitivity> sensitivity{};
   std::string reason{};              ///< why there is no r75_m; else empty
   std::vector<std::string> notes{};  ///< assumptions of this model

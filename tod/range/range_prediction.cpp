@@ -7,6 +7,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
+
+#include "hvs/observer/open_parameters.h"
 
 namespace todbench {
 namespace {
@@ -262,6 +265,27 @@ std::optional<Adequacy> findings_of(const RangePrediction& prediction, const Tar
   return findings_between(sorted, far_k, near_k);
 }
 
+/// Adds R75 at both ends of the open parameters, or the reason why it is missing.
+void add_spread(std::span<const TodThreshold> sorted, const RangeTask& task, RangePrediction& prediction) {
+  const auto has_spread = [](const TodThreshold& threshold) { return threshold.s75_spread_mrad.has_value(); };
+  if (!prediction.r75_m || std::ranges::none_of(sorted, has_spread)) return;
+  const std::string head = "no spread of the range over the open parameters of the observer: ";
+  if (const auto without = std::ranges::find_if_not(sorted, has_spread); without != sorted.end()) {
+    prediction.notes.push_back(head + fmt::format("the threshold at {:g} K has no spread", without->delta_t_k));
+    return;
+  }
+  const auto r75_at = [&](double std::pair<double, double>::*end) {
+    std::vector<TodThreshold> thresholds(sorted.begin(), sorted.end());
+    for (TodThreshold& threshold : thresholds) threshold.s75_mrad = (*threshold.s75_spread_mrad).*end;
+    const std::vector<Node> nodes = nodes_of(thresholds);
+    return TargetLine(nodes, task).crossing(Side::estimate);
+  };
+  prediction.r75_spread_m = spread_of(
+      {r75_at(&std::pair<double, double>::first), prediction.r75_m, r75_at(&std::pair<double, double>::second)});
+  if (!prediction.r75_spread_m)
+    prediction.notes.push_back(head + "at one end the target line does not meet the TOD curve");
+}
+
 }  // namespace
 
 double m75_from_v50(double v50) {
@@ -290,7 +314,7 @@ ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k)
       continue;
     }
     selection.thresholds.push_back({std::abs(point.delta_t_k), *point.fit.threshold, point.fit.ci95,
-                                    std::abs(point.set_delta_t_k), point.adequacy});
+                                    std::abs(point.set_delta_t_k), point.adequacy, point.s75_spread_mrad});
   }
   return selection;
 }
@@ -359,6 +383,7 @@ Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, 
                     "assumed to be constant there",
                     sorted.back().delta_t_k));
   }
+  add_spread(sorted, task, prediction);
   prediction.adequacy = findings_of(prediction, line, sorted);
   double farthest = 0;
   for (const auto& node : nodes) farthest = std::max(farthest, line.range_of(node.acuity.value));

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "acquisition/base/result.h"
@@ -24,6 +25,8 @@ struct TodThreshold {
   /// Magnitude of the set contrast of `delta_t_k`: the name of this point; 0: not known.
   double set_delta_t_k = 0;
   std::optional<Adequacy> adequacy{};  ///< findings against the threshold; empty: not examined
+  /// Over the open parameters of an observer with an eye, low and high; empty: no open parameters, or not varied.
+  std::optional<std::pair<double, double>> s75_spread_mrad{};
 };
 
 /// Target and air of a prediction. Signal and criterion as in Bijl, Hogervorst and Vos (EO-VISTA), 4.2.3.
@@ -51,8 +54,11 @@ struct RangePoint {
 };
 
 struct RangePrediction {
-  std::optional<double> r75_m;     ///< empty if the target line does not meet the TOD curve
-  Interval r75_ci95_m;             ///< from the intervals of the thresholds
+  std::optional<double> r75_m;  ///< empty if the target line does not meet the TOD curve
+  Interval r75_ci95_m;          ///< from the intervals of the thresholds
+  /// R75 at both ends of the spreads of the thresholds, low and high. It is not a confidence interval. Empty: a
+  /// threshold has no spread, or an end has no range; a note gives the reason.
+  std::optional<std::pair<double, double>> r75_spread_m{};
   std::string reason;              ///< why there is no r75_m, in a sentence; else empty
   std::vector<std::string> notes;  ///< assumptions of this prediction
   /// Findings of the thresholds that determine the range and its interval, each with its contrast in the sentence;

@@ -392,6 +392,20 @@ TEST(RangePage, HasTheFigureAndEveryModel) {
   EXPECT_FALSE(range_svg(std::vector<ModelRange>{}));
 }
 
+TEST(RangePage, StatesTheSpreadOfAnObserverWithAnEye) {
+  RangeSources seen = sources();
+  for (TodThreshold& one : seen.thresholds) one.s75_spread_mrad = {0.5 * one.s75_mrad, 2 * one.s75_mrad};
+
+  const auto models = range_models(all_range_models, seen, question("clear"));
+  ASSERT_TRUE(models) << models.error().message;
+  const ModelRange& tod_model = models->front();
+  ASSERT_TRUE(tod_model.r75_spread_m);
+  EXPECT_NEAR(tod_model.r75_spread_m->first, 0.5 * *tod_model.r75_m, 1e-9);
+  EXPECT_NEAR(tod_model.r75_spread_m->second, 2 * *tod_model.r75_m, 1e-9);
+  const std::string page = render_html(range_page(*models, {.target = "4.9 m", .air = "some", .notes = {}}));
+  EXPECT_THAT(page, HasSubstr("over the open parameters of the observer (no confidence interval)"));
+}
+
 TEST(Atmospheres, OfTheShippedTableAreThoseOfTheSheetOfFacts) {
   struct Row {
     const char* name;

@@ -135,6 +135,34 @@ TEST(RangePrediction, BetweenTwoPointsTheirErrorsAreJoinedAsIndependentOnes) {
   EXPECT_NEAR(found->r75_ci95_m.low.value(), 400 * std::exp(-0.025), 1e-9);
 }
 
+TEST(RangePrediction, StatesTheRangeOverTheOpenParametersOfTheObserver) {
+  std::vector<TodThreshold> tod{threshold(0.2, 4), threshold(20, 2)};
+  const RangeTask task{.size_m = 3, .delta_t_k = -2, .m75 = 6};
+  EXPECT_FALSE(predict_range(tod, task).value().r75_spread_m) << "an observer without open parameters";
+  EXPECT_TRUE(predict_range(tod, task).value().notes.empty());
+
+  tod[0].s75_spread_mrad = {3, 8};
+  const auto half = predict_range(tod, task).value();
+  EXPECT_FALSE(half.r75_spread_m);
+  ASSERT_EQ(half.notes.size(), 1u);
+  EXPECT_NE(half.notes[0].find("the threshold at 20 K has no spread"), std::string::npos) << half.notes[0];
+
+  tod[1].s75_spread_mrad = {1.5, 2.5};
+  const auto found = predict_range(tod, task).value();
+  // Between two points: the geometric middle of the thresholds at the same end.
+  ASSERT_TRUE(found.r75_spread_m);
+  EXPECT_NEAR(found.r75_spread_m->first, 3000 / std::sqrt(8 * 2.5) / 6, 1e-9);
+  EXPECT_NEAR(found.r75_spread_m->second, 3000 / std::sqrt(3 * 1.5) / 6, 1e-9);
+  EXPECT_EQ(found.r75_m, half.r75_m);
+
+  // With an air in which the best eyes still resolve the target at the end of the curve, that end has no range.
+  const auto far = predict_range(tod, {.size_m = 3, .delta_t_k = -2, .m75 = 6, .extinction_per_km = 16}).value();
+  ASSERT_TRUE(far.r75_m);
+  EXPECT_FALSE(far.r75_spread_m);
+  ASSERT_EQ(far.notes.size(), 1u);
+  EXPECT_NE(far.notes[0].find("at one end"), std::string::npos) << far.notes[0];
+}
+
 TEST(RangePrediction, AnOpenSideOfAThresholdLeavesThatSideOfTheRangeOpen) {
   TodThreshold open = threshold(10, 2, 0.05);
   open.s75_ci95_mrad.low.reset();  // S75 may be anything smaller: the range may be anything larger
