@@ -8,7 +8,7 @@
 
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/gui/presenters/person_presenter.h"
-#include "bench/gui/presenters/viewing_presenter.h"
+#include "bench/gui/presenters/plan_advice.h"
 #include "bench/plan/descriptions.h"
 #include "hvs/eye/display_levels.h"
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Proposes zoom and viewing distance for the display and the simulated sensor of a plan.
+// Estimates about the display and the simulated sensor of a plan, as text: what limits the acuity, zoom and distance.
 #pragma once
 
 #include <QObject>
 #include <QString>
+#include <functional>
+#include <stop_token>
 
+#include "acquisition/base/result.h"
 #include "bench/gui/presenters/job_runner.h"
 #include "bench/plan/plan.h"
 
@@ -13,18 +16,30 @@ namespace todbench {
 inline constexpr const char* no_display_sentence =
     "The plan has no section [display]: state the pixel pitch, distance and luminances.";
 
-/// Used in the thread of the window. The estimates run on another thread.
-class ViewingPresenter final : public QObject {
+/// Compares zooms and viewing distances for hvs-2 at the display and at the largest contrast of the plan. Errors:
+/// `invalid_input` without a display, those of the loaders and of propose_viewing().
+[[nodiscard]] Result<QString> viewing_advice(const Plan& plan, const std::stop_token& stop);
+
+/// Table of the costs of acuity_limits() at each contrast of the plan, as HTML. At a display the observer is that of
+/// the plan if it has an eye, otherwise hvs-2. Without a display it is the observer of the plan. Errors:
+/// `invalid_input` if the plan has modules, and those of the loaders and of acuity_limits().
+[[nodiscard]] Result<QString> limits_advice(const Plan& plan, const std::stop_token& stop);
+
+/// An estimate on a thread of its own. Used in the thread of the window.
+class PlanAdvice final : public QObject {
   Q_OBJECT
 
  public:
-  explicit ViewingPresenter(QObject* parent = nullptr);
+  using Estimate = std::function<Result<QString>(const Plan&, const std::stop_token&)>;
+  /// `running` is shown while the estimate runs.
+  PlanAdvice(Estimate estimate, QString running, QObject* parent = nullptr);
 
-  /// Compares viewing distances for hvs-2 at the display and at the largest contrast of the plan. A later call replaces
-  /// an earlier one.
-  void propose(const Plan& plan);
+  /// A later call replaces an earlier one.
+  void ask(const Plan& plan);
+  /// Ends a running estimate.
+  void stop();
   [[nodiscard]] bool busy() const { return busy_; }
-  /// The proposal, or why there is none; empty before the first one.
+  /// The result, the sentence of its error, or that it runs or was stopped; empty before the first one.
   [[nodiscard]] const QString& words() const { return words_; }
 
  signals:
@@ -33,7 +48,8 @@ class ViewingPresenter final : public QObject {
  private:
   void take(int number, const QString& words);
 
-  QString words_;
+  Estimate estimate_;
+  QString running_, words_;
   bool busy_ = false;
   int number_ = 0;
   JobRunner jobs_;

@@ -7,7 +7,6 @@
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLineEdit>
-#include <QLocale>
 #include <QSpinBox>
 #include <algorithm>
 #include <array>
@@ -18,14 +17,15 @@
 #include "bench/gui/presenters/measure_presenter.h"
 #include "bench/gui/presenters/naked_eye_presenter.h"
 #include "bench/gui/presenters/person_presenter.h"
-#include "bench/gui/presenters/viewing_presenter.h"
+#include "bench/gui/presenters/plan_advice.h"
 #include "bench/gui/views/alternatives_panel.h"
+#include "bench/gui/views/human_results.h"
 #include "bench/gui/views/layout_pieces.h"
+#include "bench/gui/views/limits_panel.h"
+#include "bench/gui/views/person_fields.h"
 #include "bench/gui/views/picture_view.h"
 #include "bench/plan/atmospheres.h"
 #include "bench/plan/resources.h"
-#include "bench/report/number_format.h"
-#include "bench/report/tod_figures.h"
 
 namespace todbench {
 namespace {
@@ -62,73 +62,6 @@ QString question_title(BarCriterion criterion) {
   return "Which one has four bars?";
 }
 
-/// False alarms for frames without bars, over all frequencies.
-QString false_alarms_in_words(const PersonResult& result) {
-  int seen = 0, shown = 0;
-  for (const PersonShare& share : result.false_alarms) {
-    seen += share.right;
-    shown += share.shown;
-  }
-  return result.false_alarms.empty() ? QString()
-                                     : QString("<p>Bars reported in %1 of %2 empty frames</p>").arg(seen).arg(shown);
-}
-
-/// Summary of the answers and their folder.
-QString result_of_a_person(const PersonPresenter& person) {
-  const PersonExperiment& experiment = *person.experiment();
-  const PersonResult result = person_result(experiment, person.answers());
-  QString rows;
-  for (std::size_t c = 0; c < result.conditions.size(); ++c) {
-    const PersonShare& share = result.conditions[c];
-    if (share.shown == 0 || experiment.task() == PersonTask::bars) continue;
-    rows += QString("<tr><td>%1 m&nbsp;</td><td>%2</td></tr>")
-                .arg(experiment.conditions()[c].range_m)
-                .arg(QString::fromStdString(with_interval(static_cast<double>(share.right) / share.shown, share.ci95)));
-  }
-  for (std::size_t f = 0; f < result.thresholds_k.size(); ++f) {
-    const auto& of = experiment.conditions();
-    const auto at = std::find_if(of.begin(), of.end(), [&](const PersonCondition& one) { return one.place == f; });
-    const SetCriterion& found = result.thresholds_k[f];
-    rows += QString("<tr><td>%1 /mrad&nbsp;</td><td>%2</td></tr>")
-                .arg(at->frequency_per_mrad, 0, 'g', 3)
-                .arg(found.value ? QString::fromStdString(with_interval(found.value, found.ci95)) + " K" : "none");
-  }
-  const bool set = experiment.task() == PersonTask::identify;
-  QString text = "<table cellspacing=4><tr><th>" + QString(set ? "Range" : "Frequency") + "</th><th>" +
-                 QString(set ? "Correct" : "75 % point") + "</th></tr>" + rows + "</table>";
-  if (set && result.r75_m.value)
-    text +=
-        "<p>75 % correct at " + QString::fromStdString(with_interval(result.r75_m.value, result.r75_m.ci95)) + " m</p>";
-  text += false_alarms_in_words(result);
-  const QString where = QString::fromStdString(person.folder().filename().string());
-  return text + "<p>" + (person.problem().isEmpty() ? "Saved in " + where.toHtmlEscaped() : person.problem()) + "</p>";
-}
-
-/// S75 of each source, and its acuity over that of the first.
-QString result_of_sources(const HumanPresenter& human) {
-  const BlindResult& result = *human.blind_result();
-  QString rows;
-  for (std::size_t s = 0; s < result.sources.size(); ++s) {
-    for (const TodPoint& point : result.records[s].curve.points) {
-      QString ratio;
-      for (const ComparisonPoint& compared : s == 0 ? std::vector<ComparisonPoint>() : result.ratios[s - 1].points) {
-        if (compared.set_delta_t_k == point.set_delta_t_k)
-          ratio = QString::fromStdString(with_interval(compared.ratio, compared.ratio_ci95));
-      }
-      rows += QString("<tr><td>%1, %2 K&nbsp;</td><td>%3&nbsp;</td><td>%4</td></tr>")
-                  .arg(QString::fromStdString(result.sources[s]).toHtmlEscaped())
-                  .arg(point.set_delta_t_k)
-                  .arg(QString::fromStdString(with_interval(point.fit.threshold, point.fit.ci95)), ratio);
-    }
-  }
-  return "<table cellspacing=4><tr><th>Source</th><th>S75 (mrad)</th><th>acuity ratio</th></tr>" + rows +
-         "</table><p>" +
-         (human.problem().isEmpty()
-              ? "Saved in " + QString::fromStdString(human.folder().filename().string()).toHtmlEscaped()
-              : human.problem()) +
-         "</p>";
-}
-
 }  // namespace
 
 HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresenter& person, MeasurePresenter& measured,
@@ -139,7 +72,7 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresente
       person_(person),
       measured_(measured),
       naked_eye_(new NakedEyePresenter(this)),
-      viewing_(new ViewingPresenter(this)) {
+      viewing_(new PlanAdvice(viewing_advice, "Zooms and distances are compared.", this)) {
   setFocusPolicy(Qt::StrongFocus);
   auto* layout = new QHBoxLayout(this);
   auto* seen = new QVBoxLayout;
@@ -150,6 +83,7 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresente
   seen->addWidget(picture_, 1);
   alternatives_ = new AlternativesPanel;
   seen->addWidget(alternatives_, 0, Qt::AlignHCenter);
+  seen->addWidget(limits_ = new LimitsPanel(bench));
   layout->addLayout(seen, 1);
   layout->addWidget(side_panel());
   connect(question_, &QComboBox::currentIndexChanged, this, &HumanView::show_question);
@@ -164,8 +98,8 @@ HumanView::HumanView(Workbench& bench, HumanPresenter& presenter, PersonPresente
   connect(&person_, &PersonPresenter::updated, this, &HumanView::show_state);
   connect(abort_, &QPushButton::clicked, naked_eye_, &NakedEyePresenter::abort);
   connect(naked_eye_, &NakedEyePresenter::updated, this, &HumanView::show_state);
-  connect(propose_, &QPushButton::clicked, viewing_, [this] { viewing_->propose(bench_.plan()); });
-  connect(viewing_, &ViewingPresenter::updated, proposal_, [this] { proposal_->setText(viewing_->words()); });
+  connect(propose_, &QPushButton::clicked, viewing_, [this] { viewing_->ask(bench_.plan()); });
+  connect(viewing_, &PlanAdvice::updated, proposal_, [this] { proposal_->setText(viewing_->words()); });
   connect(&measured_, &MeasurePresenter::state_changed, this, &HumanView::show_state);
   show_question();
 }
@@ -190,7 +124,9 @@ QWidget* HumanView::side_panel() {
   shown_ms_->setSuffix(" ms");
   shown_ms_->setAccessibleName("Display time of a patch");
   shown_ms_->setEnabled(false);
-  add_person_rows(*form);
+  form->setVerticalSpacing(3);
+  fields_ = new PersonFields(*form, this);
+  add_proposal(*form);
   form->addRow("Repetitions", per_size_);
   form->addRow(limited_, shown_ms_);
   side->addLayout(form);
@@ -213,28 +149,7 @@ QWidget* HumanView::side_panel() {
   return panel;
 }
 
-void HumanView::add_person_rows(QFormLayout& form) {
-  form.setVerticalSpacing(3);
-  const auto line = [&form](const QString& label, const char* name, const QString& tool_tip) {
-    auto* edit = new QLineEdit;
-    edit->setObjectName(name);
-    edit->setToolTip(tool_tip);
-    edit->setAccessibleName(label);
-    form.addRow(label, edit);
-    return edit;
-  };
-  code_ = line("Person", "personCode", "A code will do: the person decides whether a name is stored");
-  age_ = line("Age (years)", "personAge", "May be empty");
-  acuity_ =
-      line("Acuity (decimal)", "personAcuity", "Visual acuity with the correction worn now, 1.0 is 6/6; may be empty");
-  distance_ = line("Distance (m)", "personDistance", "From the eye to the screen; may be empty");
-  screen_ = line("Screen", "personScreen", "Maker and model; may be empty");
-  luminance_ = line("White (cd/m²)", "personLuminance", "Luminance of the white of the screen; may be empty");
-  training_ = new QSpinBox;
-  training_->setObjectName("humanTraining");
-  training_->setRange(0, 200);
-  training_->setToolTip("Patches with feedback before the answers count. They are not stored.");
-  form.addRow("Training", training_);
+void HumanView::add_proposal(QFormLayout& form) {
   propose_ = plain_button("Propose zoom and distance", "proposeViewing");
   propose_->setFocusPolicy(Qt::TabFocus);
   propose_->setToolTip("At which size of the picture display and eye cost less than 1 % of acuity, by hvs-2");
@@ -242,28 +157,6 @@ void HumanView::add_person_rows(QFormLayout& form) {
   proposal_ = hint_label();
   proposal_->setObjectName("viewingProposal");
   form.addRow(proposal_);
-}
-
-std::optional<PersonFacts> HumanView::person_facts() {
-  PersonFacts facts;
-  facts.code = code_->text().trimmed().toStdString();
-  facts.screen = screen_->text().trimmed().toStdString();
-  const auto read = [this](const QLineEdit& edit, std::optional<double>& value) {
-    const QString text = edit.text().trimmed();
-    if (text.isEmpty()) return true;
-    bool good = false;
-    const double number = QLocale::c().toDouble(text, &good);
-    if (good && number > 0) {
-      value = number;
-      return true;
-    }
-    emit bench_.trouble(
-        edit.accessibleName() + ": expected a number above 0 with a decimal point, found '" + text + "'", Remedy::none);
-    return false;
-  };
-  const bool good = read(*age_, facts.age_years) && read(*acuity_, facts.acuity_decimal) &&
-                    read(*distance_, facts.distance_m) && read(*luminance_, facts.luminance_cd_m2);
-  return good ? std::optional(facts) : std::nullopt;
 }
 
 void HumanView::add_questions(QFormLayout& form) {
@@ -323,6 +216,10 @@ bool HumanView::triangles() const {
   return question_->currentIndex() != of_set && question_->currentIndex() != of_bars;
 }
 
+bool HumanView::of_frames() const {
+  return question_->currentIndex() == of_triangles || question_->currentIndex() == of_blind;
+}
+
 void HumanView::show_question() {
   const int question = question_->currentIndex();
   form_->setRowVisible(set_, question == of_set);
@@ -335,9 +232,7 @@ void HumanView::show_question() {
   form_->setRowVisible(twin_, question == of_blind);
   form_->setRowVisible(contrasts_, question == of_naked_eye);
   form_->setRowVisible(noise_, question == of_naked_eye);
-  for (QWidget* of_person :
-       std::initializer_list<QWidget*>{code_, age_, acuity_, distance_, screen_, luminance_, training_})
-    form_->setRowVisible(of_person, question == of_triangles || question == of_blind);
+  fields_->set_visible(of_frames());
   form_->setRowVisible(propose_, triangles());
   form_->setRowVisible(proposal_, triangles());
   title_->setText(question == of_set    ? "Which one is it?"
@@ -373,11 +268,14 @@ void HumanView::begin() {
     begin_person();
     return;
   }
-  const auto facts = person_facts();
-  if (!facts) return;
+  const auto facts = fields_->facts();
+  if (!facts) {
+    emit bench_.trouble(QString::fromStdString(facts.error().message), Remedy::none);
+    return;
+  }
   HumanOptions options;
   options.person = *facts;
-  options.training = training_->value();
+  options.training = fields_->training();
   options.per_size = per_size_->value();
   if (limited_->isChecked()) options.shown_ms = shown_ms_->value();
   options.seed = bench_.plan().seed;
@@ -466,6 +364,7 @@ void HumanView::show_state() {
                         !naked_eye_->predicting() && !presenter_.preparing());
   criterion_->setEnabled(question_->isEnabled());
   alternatives_->setVisible(!triangles() && running(person_.state()));
+  limits_->setVisible(of_frames() && !running(presenter_.state()) && !presenter_.preparing());
   if (question_->currentIndex() == of_naked_eye)
     show_naked_eye();
   else if (triangles())
@@ -517,19 +416,7 @@ void HumanView::show_naked_eye() {
     result_->setText(naked_eye_->problem());
     return;
   }
-  QString rows;
-  for (const NakedEyeContrast& predicted : session->prediction().contrasts) {
-    const TodPoint* found = point_at(session->record().curve, predicted.contrast);
-    rows += QString("<tr><td>%1&nbsp;</td><td>%2&nbsp;</td><td>%3</td></tr>")
-                .arg(predicted.contrast)
-                .arg(found == nullptr ? QString("–")
-                                      : QString::fromStdString(with_interval(found->fit.threshold, found->fit.ci95)))
-                .arg(QString::fromStdString(
-                    with_interval(predicted.s75_mrad, {predicted.spread_low_mrad, predicted.spread_high_mrad})));
-  }
-  result_->setText("<table cellspacing=4><tr><th>Contrast</th><th>S75 (mrad)</th><th>predicted [spread]</th></tr>" +
-                   rows + "</table><p>Saved in " +
-                   QString::fromStdString(naked_eye_->folder().filename().string()).toHtmlEscaped() + "</p>");
+  result_->setText(result_of_naked_eye(*naked_eye_));
 }
 
 void HumanView::show_triangles() {
@@ -562,29 +449,7 @@ void HumanView::show_triangles() {
     result_->setText(presenter_.problem());
     return;
   }
-  QString rows;
-  for (const auto& point : presenter_.record()->curve.points) {
-    const TodPoint* model = measured_.measured() ? point_at(*measured_.measured(), point.set_delta_t_k) : nullptr;
-    rows += QString("<tr><td>%1 K&nbsp;</td><td>%2&nbsp;</td><td>%3</td></tr>")
-                .arg(point.set_delta_t_k)
-                .arg(QString::fromStdString(with_interval(point.fit.threshold, point.fit.ci95)))
-                .arg(model == nullptr ? QString("–")
-                                      : QString::fromStdString(with_interval(model->fit.threshold, model->fit.ci95)));
-  }
-  QString means;
-  for (const PeopleMean& mean : presenter_.means()) {
-    if (mean.people < 2 || !mean.ci95_mrad) continue;
-    means += QString("<tr><td>%1 K&nbsp;</td><td>%2</td><td>%3 people</td></tr>")
-                 .arg(mean.set_delta_t_k)
-                 .arg(QString::fromStdString(
-                     with_interval(mean.s75_mrad, Interval{mean.ci95_mrad->first, mean.ci95_mrad->second})))
-                 .arg(mean.people);
-  }
-  if (!means.isEmpty())
-    means = "<p>Mean over people, interval between people:</p><table cellspacing=4>" + means + "</table>";
-  result_->setText("<p>" + presenter_.problem() +
-                   "</p><table cellspacing=4><tr><th>ΔT</th><th>S75 human (mrad)</th><th>model (mrad)</th></tr>" +
-                   rows + "</table>" + means);
+  result_->setText(result_of_triangles(presenter_, measured_));
 }
 
 }  // namespace todbench

@@ -3,9 +3,6 @@
 #pragma once
 
 #include <QWidget>
-#include <optional>
-
-#include "bench/session/human_record.h"
 
 class QCheckBox;
 class QComboBox;
@@ -19,11 +16,13 @@ namespace todbench {
 
 class AlternativesPanel;
 class HumanPresenter;
+class LimitsPanel;
 class MeasurePresenter;
 class NakedEyePresenter;
+class PersonFields;
 class PersonPresenter;
 class PictureView;
-class ViewingPresenter;
+class PlanAdvice;
 class Workbench;
 enum class BarCriterion;
 
@@ -41,13 +40,13 @@ class HumanView final : public QWidget {
   [[nodiscard]] QWidget* side_panel();
   void add_questions(QFormLayout& form);
   [[nodiscard]] bool triangles() const;
+  /// Whether the question is about frames of a sensor with triangles.
+  [[nodiscard]] bool of_frames() const;
   [[nodiscard]] BarCriterion criterion() const;
   void begin();
   void begin_person();
   void begin_naked_eye();
-  void add_person_rows(QFormLayout& form);
-  /// Reads the facts of the person; empty after a message about a value that is no number.
-  [[nodiscard]] std::optional<PersonFacts> person_facts();
+  void add_proposal(QFormLayout& form);
   void show_question();
   void show_state();
   void show_triangles();
@@ -59,15 +58,16 @@ class HumanView final : public QWidget {
   PersonPresenter& person_;
   MeasurePresenter& measured_;
   NakedEyePresenter* naked_eye_;
-  ViewingPresenter* viewing_;
+  PlanAdvice* viewing_;
   QFormLayout* form_ = nullptr;
   PictureView* picture_;
   AlternativesPanel* alternatives_;
+  LimitsPanel* limits_;
+  PersonFields* fields_ = nullptr;
   QComboBox *question_, *set_, *air_, *criterion_, *axis_;
   QLineEdit *ranges_, *frequencies_, *contrasts_, *noise_, *packages_;
-  QLineEdit *code_, *age_, *acuity_, *distance_, *luminance_, *screen_;
   QLabel *title_, *hint_;
-  QSpinBox *per_size_, *shown_ms_, *training_;
+  QSpinBox *per_size_, *shown_ms_;
   QCheckBox *limited_, *twin_;
   QPushButton *begin_, *abort_, *propose_;
   QLabel *progress_, *result_, *proposal_;

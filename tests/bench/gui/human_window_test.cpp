@@ -13,9 +13,13 @@
 #include "bench/gui/views/human_view.h"
 #include "bench/gui/views/page_check.h"
 #include "bench/gui/views/picture_view.h"
+#include "bench/plan/descriptions.h"
+#include "bench/plan/loaded_plan.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
+#include "bench/twin/acuity_limits.h"
+#include "bench/twin/experiment_inputs.h"
 #include "tests/bench/gui/gui_test_support.h"
 
 namespace todbench::testing {
@@ -451,7 +455,7 @@ TEST(HumanObserver, PageProposesZoomAndDistance) {
   const auto said = [&] { return window.part<QLabel>("viewingProposal").text().toStdString(); };
 
   window.click("proposeViewing");
-  EXPECT_THAT(said(), ::testing::HasSubstr("no section [display]"));
+  EXPECT_TRUE(wait_until([&] { return said().find("no section [display]") != std::string::npos; })) << said();
   Plan plan = window->bench().plan();
   plan.display = {.pixel_pitch_mm = 0.27, .viewing_distance_m = 0.6, .luminance_white_cd_m2 = 200, .zoom = 1};
   window->bench().set_plan(plan);
@@ -459,6 +463,53 @@ TEST(HumanObserver, PageProposesZoomAndDistance) {
 
   EXPECT_TRUE(wait_until([&] { return said().starts_with("from "); })) << said();
   EXPECT_THAT(said(), ::testing::HasSubstr("stated: 1.5 arcmin"));
+}
+
+TEST(HumanObserver, PageStatesWhatLimitsTheAcuityBeforeTheFirstAnswer) {
+  ShownWindow window("sim:sc2000", 1);
+  Plan plan = window->bench().plan();
+  plan.target.delta_t_k = {16.9};
+  plan.limits = {};  // of other contrasts
+  window->bench().set_plan(plan);
+  const QLabel& limits = window.part<QLabel>("acuityLimits");
+  const auto said = [&] { return limits.text().toStdString(); };
+  const auto all_stated = [&] { return limits.text().contains("</table>"); };
+
+  window->show_view(View::human);
+  EXPECT_THAT(said(), HasSubstr("is being calculated"));
+  EXPECT_TRUE(window.part<QPushButton>("stopLimits").isVisible());
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
+  window.click("stopLimits");
+  EXPECT_THAT(said(), HasSubstr("was stopped"));
+  window.click("stopLimits");
+  ASSERT_TRUE(wait_until(all_stated)) << said();
+  EXPECT_FALSE(window.part<QPushButton>("stopLimits").isVisible());
+  EXPECT_THAT(said(), HasSubstr("for hvs-1. There is no display"));
+  EXPECT_EQ(limits.text().count("<b>"), 2) << "the heading and the largest cost: " << said();
+  EXPECT_EQ(limits.text().count("–"), 2) << "hvs-1 has no display and no light";
+
+  plan.display = {.pixel_pitch_mm = 0.27, .viewing_distance_m = 0.6, .luminance_white_cd_m2 = 200, .zoom = 1};
+  window->bench().set_plan(plan);
+  ASSERT_TRUE(wait_until([&] { return all_stated() && limits.text().contains("hvs-2"); })) << said();
+  EXPECT_THAT(said(), HasSubstr("at the display of the plan (zoom 1, 0.6 m"));
+  EXPECT_EQ(limits.text().count("–"), 0);
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
+  // The table has the values of the function behind `plan` and `doctor`.
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+  EffectPlanner planner;
+  ExperimentInputs inputs = experiment_inputs(loaded, planner).value();
+  inputs.observer = load_observer_at("hvs-2", plan.display).value();
+  const auto stated = acuity_limits(inputs, plan.target.delta_t_k, {}).value();
+  ASSERT_EQ(stated.size(), 1u);
+  for (const FactorCost& cost : stated[0].costs)
+    EXPECT_THAT(said(), HasSubstr(std::to_string(std::lround(cost.percent)) + " %"));
+  EXPECT_THAT(said(), HasSubstr("<b>" + std::to_string(std::lround(stated[0].costs.at(0).percent)) + " %</b>"));
+
+  plan.observer = "no-such-observer";
+  window->bench().set_plan(plan);
+  EXPECT_TRUE(wait_until([&] { return limits.text().contains("no-such-observer"); })) << said();
+  window.part<QComboBox>("humanQuestion").setCurrentIndex(3);
+  EXPECT_FALSE(limits.isVisible()) << "the naked eye has no sensor";
 }
 
 TEST(HumanObserver, AnswersTrianglesOfTheDisplayWithoutACamera) {

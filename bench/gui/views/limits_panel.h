@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What limits the acuity at the display of the plan, on the page Human observer before the first answer.
+#pragma once
+
+#include <QWidget>
+#include <optional>
+
+#include "bench/plan/plan.h"
+
+class QLabel;
+class QPushButton;
+
+namespace todbench {
+
+class PlanAdvice;
+class Workbench;
+
+/// Computes limits_advice() while it is visible, again after a change of the plan. Hiding it stops the calculation, so
+/// that it does not delay the pictures that a person judges.
+class LimitsPanel final : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit LimitsPanel(Workbench& bench, QWidget* parent = nullptr);
+
+ protected:
+  void showEvent(QShowEvent* event) override;
+  void hideEvent(QHideEvent* event) override;
+
+ private:
+  void follow_plan();
+  void ask();
+  void show_advice();
+
+  Workbench& bench_;
+  PlanAdvice* advice_;
+  QLabel* text_;
+  QPushButton* button_;        ///< stops the calculation, or starts it again after it was stopped
+  std::optional<Plan> asked_;  ///< the plan of the text or of the running calculation
+  bool stopped_ = false;       ///< by the user
+};
+
+}  // namespace todbench

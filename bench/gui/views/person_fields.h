@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of a form with the facts about a person.
+#pragma once
+
+#include <QObject>
+
+#include "acquisition/base/result.h"
+#include "bench/session/human_record.h"
+
+class QFormLayout;
+class QLineEdit;
+class QSpinBox;
+
+namespace todbench {
+
+class PersonFields final : public QObject {
+  Q_OBJECT
+
+ public:
+  /// Adds the rows to the form, which must exist as long as this object.
+  PersonFields(QFormLayout& form, QObject* parent);
+
+  void set_visible(bool visible);
+  /// Facts as entered. Errors: `invalid_input` for a value that is not a number above 0.
+  [[nodiscard]] Result<PersonFacts> facts() const;
+  /// Patches with feedback before the answers count.
+  [[nodiscard]] int training() const;
+
+ private:
+  QFormLayout& form_;
+  QLineEdit *code_, *age_, *acuity_, *distance_, *screen_, *luminance_;
+  QSpinBox* training_;
+};
+
+}  // namespace todbench
