@@ -15,6 +15,7 @@
 #include "bench/report/svg.h"
 #include "bench/studies/mrtd_study.h"
 #include "bench/text/files.h"
+#include "bench/text/spread_text.h"
 
 namespace todbench {
 namespace {
@@ -81,8 +82,7 @@ Json point_json(const MrtdStudyPoint& point) {
             {"modulation_worst", json_number(found.modulation_worst)},
             {"share_of_phases_with_four_bars", json_number(found.share_of_four)}};
   // Of an observer with an eye, over its open parameters; no confidence interval.
-  if (found.spread_k)
-    json["threshold_spread_k"] = {json_number(found.spread_k->first), json_number(found.spread_k->second)};
+  add_spread(json, "threshold_spread_k", found.spread_k);
   return json;
 }
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "bench/text/spread_text.h"
 #include "tod/psychometric/acuity.h"
 
 namespace todbench {
@@ -43,10 +44,8 @@ Json speeds_json(const std::vector<DynamicAcuity>& found) {
                {"acuity_per_mrad", json_number(acuity_per_mrad(point.fit))},
                {"ratio_to_static", json_number(point.ratio)},
                {"ratio_to_static_ci95", json_interval(point.ratio_ci95)}};
-      for (const auto& [key, spread] : {std::pair("s75_spread_mrad", &point.s75_spread_mrad),
-                                        std::pair("ratio_to_static_spread", &point.ratio_spread)}) {
-        if (*spread) row[key] = {json_number((*spread)->first), json_number((*spread)->second)};
-      }
+      add_spread(row, "s75_spread_mrad", point.s75_spread_mrad);
+      add_spread(row, "ratio_to_static_spread", point.ratio_spread);
       points.push_back(std::move(row));
     }
     speeds.push_back({{"speed_mrad_s", at.speed_mrad_s},

@@ -171,14 +171,13 @@ Json naked_eye_comparison(const NakedEyePrediction& prediction, const HumanRecor
       chi2 += (right - shown * size.share) * (right - shown * size.share) / variance;
       ++cells;
     }
-    Json row{
-        {"contrast", predicted.contrast},
-        {"predicted_s75_mrad", predicted.s75_mrad},
-        {"predicted_spread_mrad", {json_number(predicted.spread_low_mrad), json_number(predicted.spread_high_mrad)}},
-        {"s75_mrad", nullptr},
-        {"s75_ci95_mrad", nullptr},
-        {"inside_spread", nullptr},
-        {"sizes", sizes}};
+    Json row{{"contrast", predicted.contrast},
+             {"predicted_s75_mrad", predicted.s75_mrad},
+             {"predicted_spread_mrad", json_interval({predicted.spread_low_mrad, predicted.spread_high_mrad})},
+             {"s75_mrad", nullptr},
+             {"s75_ci95_mrad", nullptr},
+             {"inside_spread", nullptr},
+             {"sizes", sizes}};
     const auto point = std::find_if(record.curve.points.begin(), record.curve.points.end(),
                                     [&](const TodPoint& one) { return one.set_delta_t_k == predicted.contrast; });
     if (point != record.curve.points.end() && point->fit.threshold) {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "bench/text/json_fields.h"
+#include "bench/text/spread_text.h"
 
 namespace todbench {
 namespace {
@@ -32,12 +33,9 @@ void limits_fields(JsonFields& json, AcuityLimits& limits) {
 }
 
 void point_fields(JsonFields& json, DisplayedPoint& point) {
-  std::vector<double> spread;
-  if (point.spread_mrad) spread = {point.spread_mrad->first, point.spread_mrad->second};
   json.value("delta_t_k", point.delta_t_k);
   json.value("s75_mrad", point.s75_mrad);
-  json.value("s75_spread_mrad", spread);
-  point.spread_mrad = spread.size() == 2 ? std::optional(std::pair(spread[0], spread[1])) : std::nullopt;
+  spread_or_empty_list(json, "s75_spread_mrad", point.spread_mrad);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "bench/text/json_fields.h"
+#include "bench/text/spread_text.h"
 #include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
@@ -135,10 +136,7 @@ void curve_point_fields(JsonFields& json, TodPoint& point) {
   json.later("adequacy", point.adequacy, adequacy_fields);
   json.value("direct_s75_mrad", point.direct_s75_mrad);
   json.value("direct_s75_se_mrad", point.direct_s75_se_mrad);
-  std::optional<std::vector<double>> spread;
-  if (point.s75_spread_mrad) spread = {point.s75_spread_mrad->first, point.s75_spread_mrad->second};
-  json.if_any("s75_spread_mrad", spread);
-  if (spread && spread->size() == 2) point.s75_spread_mrad = {spread->front(), spread->back()};
+  spread_if_any(json, "s75_spread_mrad", point.s75_spread_mrad);
   json.later("saturated_share", point.saturated_share);
   json.later("noise_counts", point.noise_counts);
   json.later("lag1_correlation", point.lag1_correlation);

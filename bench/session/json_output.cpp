@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bench/session/fit_record.h"
+#include "bench/text/spread_text.h"
 #include "tod/psychometric/acuity.h"
 
 namespace todbench {
@@ -31,8 +32,7 @@ Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures&
     json["s75_ci95_mrad"] = json_interval(point.fit.ci95);
     json["s75_direct_mrad"] = json_number(point.direct_s75_mrad);
     json["s75_direct_se_mrad"] = json_number(point.direct_s75_se_mrad);
-    if (point.s75_spread_mrad)
-      json["s75_spread_mrad"] = {json_number(point.s75_spread_mrad->first), json_number(point.s75_spread_mrad->second)};
+    add_spread(json, "s75_spread_mrad", point.s75_spread_mrad);
     json["acuity_per_mrad"] = json_number(acuity_per_mrad(point.fit));
     json["trials"] = static_cast<std::int64_t>(std::llround(point.fit.trials));
     json["verdict"] = to_string(point.fit.verdict);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bench/session/measure_row.h"
+#include "bench/text/spread_text.h"
 
 namespace todbench {
 namespace {
@@ -28,9 +29,7 @@ std::string bars_words(const MrtdMeasure& mrtd, const MrtdPoint& point) {
 }
 
 std::string with_spread(const std::string& words, const std::optional<std::pair<double, double>>& spread_k) {
-  if (!spread_k) return words;
-  return words + fmt::format("; {:.3g} to {:.3g} K over the open parameters of the observer (no confidence interval)",
-                             spread_k->first, spread_k->second);
+  return spread_k ? words + "; " + spread_in_words(*spread_k, "K") : words;
 }
 
 std::string with_reason(const std::string& words, const MrtdPoint& point) {
@@ -103,8 +102,7 @@ Json point_json(const MrtdMeasure& mrtd, const MrtdPoint& point) {
             {"best_phase_px", json_number(point.best_phase)},
             {"reason", point.reason.empty() ? Json() : Json(point.reason)},
             {"proportion_correct", shares}};
-  if (point.spread_k)
-    json["threshold_spread_k"] = {json_number(point.spread_k->first), json_number(point.spread_k->second)};
+  add_spread(json, "threshold_spread_k", point.spread_k);
   return json;
 }
 
