@@ -33,7 +33,7 @@ BEGIN {
   may["tod/comparison"] = base " tod/psychometric"
   may["tod/adequacy"] = base " tod/psychometric tod/presentation"
   may["tod/observer_fit"] = hvs " tod/plate tod/psychometric"
-  may["tod/range"] = base " hvs/shape tod/psychometric"
+  may["tod/range"] = base " hvs/shape hvs/observer tod/psychometric"
   may["tod/measures"] = base
   may["tod/instruments"] = base " tod/plate tod/presentation"
   tod = hvs " tod/plate tod/pattern tod/presentation tod/registration tod/psychometric tod/schedule tod/measurement tod/comparison tod/adequacy tod/observer_fit tod/range tod/measures tod/camera_measures"
@@ -75,7 +75,7 @@ BEGIN {
   may["bench/run_control"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/serve"
   may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
   may["bench/doctor"] = base " bench/text"
-  may["bench/enhance"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
+  may["bench/enhance"] = core " " science " bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
   may["bench/moving_target"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/enhance"
   may["bench/scene_dependence"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/enhance"
   may["bench/model_comparison"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/enhance"
