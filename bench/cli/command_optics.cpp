@@ -146,13 +146,16 @@ int run_mtf(Console& console, const MtfArguments& a) {
     }
   }
   if (console.json()) {
-    console.object({{"frequency_per_pitch", frequency},
-                    {"frequency_per_mrad", per_mrad},
-                    {"optics", optical},
-                    {"detector", detector[0]},
-                    {"system", system[0]},
-                    {"detector_y", detector[1]},
-                    {"system_y", system[1]}});
+    Json json{{"frequency_per_pitch", frequency},
+              {"frequency_per_mrad", per_mrad},
+              {"optics", optical},
+              {"detector", detector[0]},
+              {"system", system[0]}};
+    if (!spec->square_detector()) {
+      json["detector_y"] = detector[1];
+      json["system_y"] = system[1];
+    }
+    console.object(json);
   } else if (spec->square_detector()) {
     console.table({"f [1/pitch]", "f [1/mrad]", "MTF optics", "MTF detector", "MTF system"}, rows);
   } else {
