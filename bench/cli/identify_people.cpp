@@ -11,7 +11,6 @@
 #include "bench/report/tod_figures.h"
 #include "bench/session/fit_record.h"
 #include "bench/studies/people_set.h"
-#include "bench/text/files.h"
 
 namespace todbench {
 namespace {
@@ -111,8 +110,7 @@ int read_answers(Console& console, const PeopleOptions& options, const Identific
                         .curve_of = task.observer.name,
                         .m75 = *rated->m75.value,
                         .ci95 = rated->m75.ci95};
-    if (auto written = write_file_atomically(options.m75_out, m75_file_text(m75)); !written)
-      return report_error(console, written.error());
+    if (auto written = write_m75_file(options.m75_out, m75); !written) return report_error(console, written.error());
   }
   if (console.json()) {
     console.object(people_json(experiment, task, people, *rated));

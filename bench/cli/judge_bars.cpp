@@ -25,13 +25,14 @@ void show(Console& console, const std::vector<BarsSitting>& sittings) {
                           : fmt::format("{}, {:.3g} cycles per pitch along {}", of.place, of.frequency_per_pitch,
                                         to_string(of.axis));
   };
-  for (const BarsSitting& sitting : sittings) {
-    for (const BarsThreshold& one : bars_thresholds(sitting)) {
-      rows.push_back({words(one), sitting.person.code, std::to_string(one.found.answers),
+  const std::vector<JudgedBars> people = judged_bars(sittings);
+  for (const JudgedBars& sitting : people) {
+    for (const BarsThreshold& one : sitting.thresholds) {
+      rows.push_back({words(one), sitting.person, std::to_string(one.found.answers),
                       one.found.half_k ? with_interval(one.found.half_k, one.found.ci95) : one.found.reason});
     }
   }
-  for (const BarsMean& mean : bars_means(sittings)) {
+  for (const BarsMean& mean : bars_means(people)) {
     if (mean.over.people == 0) {
       rows.push_back({words(mean.of), "mean", std::to_string(mean.answers),
                       fmt::format("none: {} without a threshold", mean.without)});

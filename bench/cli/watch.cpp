@@ -17,6 +17,7 @@
 #include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
 #include "bench/text/json.h"
+#include "bench/text/json_file.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -24,15 +25,8 @@ namespace {
 
 constexpr auto look_period = std::chrono::seconds(1);
 
-Result<Json> read_json(const std::filesystem::path& file) {
-  TODBENCH_TRY(const auto text, read_text_file(file));
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
-  return json;
-}
-
 Result<SessionState> state_of(const std::filesystem::path& folder) {
-  TODBENCH_TRY(const auto json, read_json(folder / "provenance.json"));
+  TODBENCH_TRY(const auto json, read_json_file(folder / "provenance.json"));
   TODBENCH_TRY(const auto provenance, provenance_from(json));
   return provenance.state;
 }
@@ -65,7 +59,7 @@ int conclude(Console& console, const std::filesystem::path& folder, SessionState
     console.text("the session was interrupted; its trials so far are valid");
     return exit_code(ErrorCode::interrupted);
   }
-  const auto json = read_json(folder / "verdict.json");
+  const auto json = read_json_file(folder / "verdict.json");
   if (!json) return report_error(console, json.error());
   const auto verdict = verdict_from(*json);
   if (!verdict) return report_error(console, with_context((folder / "verdict.json").string(), verdict.error()));

@@ -20,7 +20,7 @@
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
-#include "bench/text/json_fields.h"
+#include "bench/text/json_file.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -160,23 +160,18 @@ Result<std::size_t> write_bars_questions(const std::filesystem::path& folder, co
 
 Result<BarsSitting> read_bars_answers(const std::filesystem::path& folder, const std::filesystem::path& session,
                                       const KeptBars& kept) {
-  TODBENCH_TRY(const std::string text, read_text_file(folder / request_name));
-  const Json json = Json::parse(text, nullptr, false);
-  const std::string name = (folder / request_name).string();
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, name + ": not valid JSON");
-  const auto content = from_json<BarsFolder>(json, folder_fields);
-  if (!content) return fail(name, content.error());
+  TODBENCH_TRY(const auto content, read_record_file<BarsFolder>(folder / request_name, folder_fields));
   TODBENCH_TRY(const std::string sha256, sha256_of_file(kept_bars_file(session)));
-  if (sha256 != content->kept_sha256)
-    return fail(ErrorCode::invalid_input, name + ": the pictures are of another session");
-  TODBENCH_TRY(const auto questions, bars_questions(kept, content->request));
+  if (sha256 != content.kept_sha256)
+    return fail(ErrorCode::invalid_input, (folder / request_name).string() + ": the pictures are of another session");
+  TODBENCH_TRY(const auto questions, bars_questions(kept, content.request));
   TODBENCH_TRY(const std::string csv, read_text_file(folder / answers_name));
   TODBENCH_TRY(const CsvTable table, parse_csv(csv, (folder / answers_name).string()));
   if (table.header != std::vector<std::string>{"number", "answer"})
     return table.wrong(1, "expected the columns number,answer");
   if (table.rows.size() != questions.size())
     return table.wrong(1, fmt::format("expected one row for each of the {} pictures", questions.size()));
-  BarsSitting sitting{.seed = content->request.seed, .magnification = content->request.magnification};
+  BarsSitting sitting{.seed = content.request.seed, .magnification = content.request.magnification};
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const CsvRow& row = table.rows[i];
     if (row.fields[0] != std::to_string(i + 1)) return table.wrong(row.line, "the rows are not in their order");

@@ -57,8 +57,8 @@ struct EnhancementPackage {
 /// needs the camera's own pixels.
 [[nodiscard]] Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what);
 
-/// Distance in samples from which on a picture has no influence on a sample behind the stages; empty: the whole picture
-/// has.
+/// Largest distance, in samples, over which a picture influences a sample behind the stages; empty: the whole picture
+/// does.
 [[nodiscard]] std::optional<int> reach_px(const EnhancementPackage& package);
 
 /// Creates the stages, ready for the first picture.

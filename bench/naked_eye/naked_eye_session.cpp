@@ -12,6 +12,7 @@
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/json_fields.h"
+#include "bench/text/json_file.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -53,12 +54,8 @@ void record_fields(JsonFields& json, NakedEyeRecord& record) {
 
 Result<NakedEyeRecord> read_record(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / naked_eye_name;
-  TODBENCH_TRY(const auto text, read_text_file(file));
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
-  auto record = from_json<NakedEyeRecord>(json, record_fields);
-  if (!record) return fail(file.string(), record.error());
-  if (auto possible = validate(record->display); !possible) return fail(file.string(), possible.error());
+  TODBENCH_TRY(NakedEyeRecord record, read_record_file<NakedEyeRecord>(file, record_fields));
+  if (auto possible = validate(record.display); !possible) return fail(file.string(), possible.error());
   return record;
 }
 

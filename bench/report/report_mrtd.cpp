@@ -28,14 +28,14 @@ std::string mrtd_place_words(const BarsThreshold& of, double pitch_mrad) {
 }
 
 /// One row for each sitting, then their mean, then the model.
-void add_mrtd_place(Table& rows, const BarsMean& mean, const std::vector<BarsSitting>& people,
-                    const std::vector<std::vector<BarsThreshold>>& thresholds, const MrtdMeasure& model) {
+void add_mrtd_place(Table& rows, const BarsMean& mean, const std::vector<JudgedBars>& people,
+                    const MrtdMeasure& model) {
   const std::string place = mrtd_place_words(mean.of, model.pitch_mrad);
   for (std::size_t i = 0; i < people.size(); ++i) {
-    const auto own = std::ranges::find(thresholds[i], mean.of.place, &BarsThreshold::place);
-    if (own == thresholds[i].end()) continue;
+    const auto own = std::ranges::find(people[i].thresholds, mean.of.place, &BarsThreshold::place);
+    if (own == people[i].thresholds.end()) continue;
     const ForcedChoiceThreshold& found = own->found;
-    const std::string& code = people[i].person.code;
+    const std::string& code = people[i].person;
     rows.rows.push_back({plain(place), plain(code.empty() ? "person " + std::to_string(i + 1) : code),
                          plain(std::to_string(found.answers)), contrast_cell(found.positive_k),
                          contrast_cell(found.negative_k),
@@ -62,13 +62,10 @@ std::optional<Table> mrtd_people_table(const ReportData& data, const MrtdMeasure
   Table rows;
   rows.caption =
       "MRTD and MDTD of people, from the frames that the model judged. Mean: geometric, every person once; its "
-      "interval "
-      "contains the scatter between people and that of the set-ups, which are common to them";
+      "interval contains the scatter between people and that of the set-ups, which are common to them";
   rows.header = {"Target", "Observer", "Answers", "ΔT positive (K)", "ΔT negative (K)", "Half difference (K), 95 %"};
-  std::vector<std::vector<BarsThreshold>> thresholds;
-  for (const BarsSitting& sitting : data.bars_people) thresholds.push_back(bars_thresholds(sitting));
-  for (const BarsMean& mean : bars_means(data.bars_people))
-    add_mrtd_place(rows, mean, data.bars_people, thresholds, model);
+  const std::vector<JudgedBars> people = judged_bars(data.bars_people);
+  for (const BarsMean& mean : bars_means(people)) add_mrtd_place(rows, mean, people, model);
   return rows;
 }
 

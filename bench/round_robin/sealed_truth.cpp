@@ -5,15 +5,14 @@
 #include <cmath>
 
 #include "acquisition/base/try.h"
+#include "bench/text/json_file.h"
 #include "bench/text/json_reader.h"
 #include "bench/text/text.h"
 
 namespace todbench {
 
 Result<std::vector<SealedValue>> read_sealed(const std::filesystem::path& file) {
-  TODBENCH_TRY(const std::string text, read_text_file(file));
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
+  TODBENCH_TRY(const Json json, read_json_file(file));
   const JsonReader reader(json);
   reader.at("schema").expect(sealed_schema);
   std::vector<SealedValue> out;

@@ -15,7 +15,7 @@
 #include "bench/session/open_session.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
-#include "bench/text/json_fields.h"
+#include "bench/text/json_file.h"
 
 namespace todbench {
 namespace {
@@ -46,9 +46,9 @@ Json place_json(const BarsThreshold& of) {
           {"size_px", json_number(of.size_px)}};
 }
 
-Json thresholds_json(const BarsSitting& sitting) {
+Json thresholds_json(const std::vector<BarsThreshold>& thresholds) {
   Json rows = Json::array();
-  for (const BarsThreshold& one : bars_thresholds(sitting)) {
+  for (const BarsThreshold& one : thresholds) {
     Json row = place_json(one);
     row["positive_k"] = json_number(one.found.positive_k);
     row["negative_k"] = json_number(one.found.negative_k);
@@ -68,7 +68,7 @@ void sitting_fields(JsonFields& json, BarsSitting& sitting) {
   json.value("seed", sitting.seed);
   json.value("magnification", sitting.magnification);
   json.value("answers", sitting.answers, answer_fields);
-  if (!json.reading()) json.derived("thresholds", thresholds_json(sitting));
+  if (!json.reading()) json.derived("thresholds", thresholds_json(bars_thresholds(sitting)));
 }
 
 void sittings_fields(JsonFields& json, BarsSittings& all) {
@@ -136,11 +136,17 @@ std::vector<BarsThreshold> bars_thresholds(const BarsSitting& sitting) {
   return out;
 }
 
-std::vector<BarsMean> bars_means(const std::vector<BarsSitting>& sittings) {
+std::vector<JudgedBars> judged_bars(const std::vector<BarsSitting>& sittings) {
+  std::vector<JudgedBars> out;
+  for (const BarsSitting& sitting : sittings) out.push_back({sitting.person.code, bars_thresholds(sitting)});
+  return out;
+}
+
+std::vector<BarsMean> bars_means(const std::vector<JudgedBars>& sittings) {
   std::vector<BarsMean> means;
   std::vector<ThresholdsOfPlace> found;
-  for (const BarsSitting& sitting : sittings) {
-    for (const BarsThreshold& one : bars_thresholds(sitting)) {
+  for (const JudgedBars& sitting : sittings) {
+    for (const BarsThreshold& one : sitting.thresholds) {
       const auto known = std::ranges::find_if(means, [&](const BarsMean& mean) { return mean.of.place == one.place; });
       const auto at = static_cast<std::size_t>(known - means.begin());
       if (known == means.end()) {
@@ -152,7 +158,7 @@ std::vector<BarsMean> bars_means(const std::vector<BarsSitting>& sittings) {
         ++means[at].without;
         continue;
       }
-      found[at].codes.push_back(sitting.person.code);
+      found[at].codes.push_back(sitting.person);
       found[at].found.push_back(one.found);
     }
   }
@@ -175,23 +181,20 @@ Result<void> add_bars_sitting(const std::filesystem::path& session, const BarsSi
 
 Result<std::vector<BarsSitting>> read_bars_sittings(const std::filesystem::path& session) {
   if (!is_there(session / bars_name)) return std::vector<BarsSitting>{};
-  TODBENCH_TRY(const std::string text, read_text_file(session / bars_name));
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, (session / bars_name).string() + ": not valid JSON");
-  auto all = from_json<BarsSittings>(json, sittings_fields);
-  if (!all) return fail((session / bars_name).string(), all.error());
-  return std::move(all->people);
+  TODBENCH_TRY(BarsSittings all, read_record_file<BarsSittings>(session / bars_name, sittings_fields));
+  return std::move(all.people);
 }
 
 Json bars_people_json(const std::vector<BarsSitting>& sittings) {
   Json people = Json::array(), means = Json::array();
-  for (const BarsSitting& sitting : sittings) {
-    people.push_back({{"person", sitting.person.code},
-                      {"judged_utc", sitting.person.judged_utc},
-                      {"answers", sitting.answers.size()},
-                      {"thresholds", thresholds_json(sitting)}});
+  const std::vector<JudgedBars> judged = judged_bars(sittings);
+  for (std::size_t i = 0; i < sittings.size(); ++i) {
+    people.push_back({{"person", judged[i].person},
+                      {"judged_utc", sittings[i].person.judged_utc},
+                      {"answers", sittings[i].answers.size()},
+                      {"thresholds", thresholds_json(judged[i].thresholds)}});
   }
-  for (const BarsMean& mean : bars_means(sittings)) {
+  for (const BarsMean& mean : bars_means(judged)) {
     Json row = place_json(mean.of);
     row["people"] = mean.over.people;
     row["without_threshold"] = mean.without;

@@ -54,8 +54,14 @@ struct BarsMean {
   int without = 0;  ///< sittings without a threshold: then there is no mean, because it would be that of the best
   int answers = 0;  ///< of all sittings
 };
+/// A person and the thresholds of one sitting.
+struct JudgedBars {
+  std::string person;
+  std::vector<BarsThreshold> thresholds;
+};
+[[nodiscard]] std::vector<JudgedBars> judged_bars(const std::vector<BarsSitting>& sittings);
 /// Returns the mean at every place of the sittings, in the order of bars_thresholds().
-[[nodiscard]] std::vector<BarsMean> bars_means(const std::vector<BarsSitting>& sittings);
+[[nodiscard]] std::vector<BarsMean> bars_means(const std::vector<JudgedBars>& sittings);
 
 /// Adds a sitting to people/bars.json of a finished session and lists the file in the manifest. Replaces no earlier
 /// answers. Errors: `io`; `invalid_input` (no manifest, or files that differ from it), in which case no file is

@@ -21,6 +21,7 @@
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
 #include "bench/text/json_fields.h"
+#include "bench/text/json_file.h"
 #include "bench/text/text.h"
 #include "tod/adequacy/adequacy.h"
 
@@ -115,9 +116,7 @@ PersonFiles files_of(std::size_t number) {
 
 Result<HumanRecord> read_record_of(const std::filesystem::path& session, const PersonFiles& files) {
   TODBENCH_TRY(auto trials, read_trials(session / files.trials));
-  TODBENCH_TRY(const auto text, read_text_file(session / files.fits));
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, (session / files.fits).string() + ": not valid JSON");
+  TODBENCH_TRY(const Json json, read_json_file(session / files.fits));
   TODBENCH_TRY(auto curve, curve_from(json));
   std::vector<ShownPatch> shown;
   std::error_code none;
@@ -143,12 +142,7 @@ Result<People> read_facts(const std::filesystem::path& session) {
     if (std::filesystem::exists(session / trials_name, none)) one.people.emplace_back();
     return one;
   }
-  TODBENCH_TRY(const auto text, read_text_file(session / facts_name));
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, (session / facts_name).string() + ": not valid JSON");
-  auto people = from_json<People>(json, people_fields);
-  if (!people) return fail((session / facts_name).string(), people.error());
-  return people;
+  return read_record_file<People>(session / facts_name, people_fields);
 }
 
 }  // namespace

@@ -14,7 +14,8 @@
 #include "bench/session/measure_pictures.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
-#include "bench/text/json_fields.h"
+#include "bench/text/json_file.h"
+#include "bench/text/text.h"
 
 namespace todbench {
 namespace {
@@ -79,17 +80,13 @@ Result<void> write_kept_bars(const std::filesystem::path& session, const KeptBar
 Result<std::optional<KeptBars>> read_kept_bars(const std::filesystem::path& session) {
   if (!is_there(index_file(session))) return std::nullopt;
   const std::string name = index_file(session).string();
-  TODBENCH_TRY(const std::string text, read_text_file(index_file(session)));
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, name + ": not valid JSON");
-  auto kept = from_json<KeptBars>(json, kept_fields);
-  if (!kept) return fail(name, kept.error());
+  TODBENCH_TRY(KeptBars kept, read_record_file<KeptBars>(index_file(session), kept_fields));
   TODBENCH_TRY(const std::string samples, read_text_file(kept_bars_file(session)));
   std::string_view left = samples;
-  for (KeptPicture& picture : kept->pictures) {
-    if (picture.place >= kept->places.size() || !std::isfinite(picture.contrast_k) || picture.contrast_k == 0)
+  for (KeptPicture& picture : kept.pictures) {
+    if (picture.place >= kept.places.size() || !std::isfinite(picture.contrast_k) || picture.contrast_k == 0)
       return fail(ErrorCode::invalid_input, name + ": a picture without a place or a contrast");
-    const int side = kept->places[picture.place].side_px;
+    const int side = kept.places[picture.place].side_px;
     if (side < 1 || side > most_side_px) return fail(ErrorCode::invalid_input, name + ": 'side_px' is out of range");
     picture.target = taken(left, side);
     picture.other = taken(left, side);
@@ -98,7 +95,7 @@ Result<std::optional<KeptBars>> read_kept_bars(const std::filesystem::path& sess
   }
   if (!left.empty())
     return fail(ErrorCode::invalid_input, kept_bars_file(session).string() + ": is longer than " + name + " states");
-  return std::move(*kept);
+  return kept;
 }
 
 }  // namespace todbench

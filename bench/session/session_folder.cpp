@@ -26,6 +26,7 @@
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/json_fields.h"
+#include "bench/text/json_file.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 #include "tod/psychometric/contrast_slope.h"
@@ -150,18 +151,11 @@ void add_continuous(std::string& text, const TodCurve& curve, const std::optiona
   }
 }
 
-Result<Json> read_json(const std::filesystem::path& file) {
-  TODBENCH_TRY(const std::string text, read_text_file(file));
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
-  return json;
-}
-
 /// Reads an optional record.
 template <typename T>
 Result<std::optional<T>> read_record(const std::filesystem::path& file, Result<T> (*from)(const Json&)) {
   if (!is_there(file)) return std::nullopt;
-  TODBENCH_TRY(const Json json, read_json(file));
+  TODBENCH_TRY(const Json json, read_json_file(file));
   Result<T> record = from(json);
   if (!record) return fail(file.string(), record.error());
   return *std::move(record);
@@ -171,7 +165,7 @@ Result<std::optional<T>> read_record(const std::filesystem::path& file, Result<T
 Result<std::optional<SessionMeasures>> read_measures(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "measures.json";
   if (!is_there(file)) return std::nullopt;
-  TODBENCH_TRY(const Json record, read_json(file));
+  TODBENCH_TRY(const Json record, read_json_file(file));
   const Result<Json> whole = with_pictures(record, folder);
   if (!whole) return fail(file.string(), whole.error());
   auto measures = measures_from(*whole);
@@ -410,7 +404,7 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   session.parts = loaded.parts();
 
   const std::filesystem::path provenance_file = folder / "provenance.json";
-  TODBENCH_TRY(const Json provenance_text, read_json(provenance_file));
+  TODBENCH_TRY(const Json provenance_text, read_json_file(provenance_file));
   Result<Provenance> provenance = provenance_from(provenance_text);
   if (!provenance) return fail(provenance_file.string(), provenance.error());
   session.provenance = *std::move(provenance);

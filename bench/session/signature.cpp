@@ -14,6 +14,7 @@
 #include "bench/session/open_session.h"
 #include "bench/text/files.h"
 #include "bench/text/json.h"
+#include "bench/text/json_file.h"
 #include "bench/text/json_reader.h"
 #include "bench/text/text.h"
 
@@ -159,16 +160,9 @@ Result<std::string> public_key_of(SigningProgram with, const std::string& secret
   return read_text_file(out);
 }
 
-Result<Json> read_record_file(const std::filesystem::path& file) {
-  TODBENCH_TRY(const auto text, read_text_file(file));
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorCode::invalid_input, file.string() + ": not valid JSON");
-  return json;
-}
-
 Result<SessionSignature> read_signature(const std::filesystem::path& folder) {
   const auto file = folder / signature_record;
-  TODBENCH_TRY(const auto json, read_record_file(file));
+  TODBENCH_TRY(const auto json, read_json_file(file));
   const JsonReader reader(json);
   SessionSignature signature;
   signature.signs_time = reader.at("schema").text() != signature_schema_1;
@@ -186,7 +180,7 @@ Result<SessionSignature> read_signature(const std::filesystem::path& folder) {
 
 Result<Json> revisions_of(const std::filesystem::path& folder) {
   if (!is_there(folder / revisions_record)) return Json{{"schema", revisions_schema}, {"revisions", Json::array()}};
-  auto json = read_record_file(folder / revisions_record);
+  auto json = read_json_file(folder / revisions_record);
   if (!json) return json;
   if (!json->is_object() || !json->contains("revisions") || !(*json)["revisions"].is_array())
     return fail(ErrorCode::invalid_input, (folder / revisions_record).string() + ": expected a list of revisions");

@@ -79,9 +79,9 @@ struct IdentificationStudy {
                                                            const SetCriterion& r75_m);
 
 /// Runs the study. The proportion over range is made monotone (pool adjacent violators) and interpolated linearly in ln
-/// range. The TOD curve is that of the same motion, of a single frame; there is none, with a note, for stages, for
-/// sums of frames and for motion through turbulent paths. Errors: `invalid_input` (ranges that do not increase or
-/// exceed the air's table; those of identify()), `interrupted`.
+/// range. The TOD curve is that of a single frame in the same motion. With stages, with sums of frames, and with motion
+/// through turbulent paths there is no curve, and a note says so. Errors: `invalid_input` (ranges that do not increase
+/// or exceed the air's table; those of identify()), `interrupted`.
 [[nodiscard]] Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task);
 
 }  // namespace todbench

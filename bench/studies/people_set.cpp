@@ -13,6 +13,7 @@
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
+#include "bench/text/json_file.h"
 #include "bench/text/text.h"
 #include "tod/observer_fit/people.h"
 
@@ -51,6 +52,15 @@ std::string truth_csv(const PersonExperiment& experiment) {
 Result<void> write_png(const std::filesystem::path& file, const cv::Mat1b& picture, const PngEncoder& png) {
   TODBENCH_TRY(const auto bytes, png(picture));
   return write_file_atomically(file, bytes);
+}
+
+void m75_fields(JsonFields& json, StatedM75& m75) {
+  json.constant("schema", m75_schema);
+  json.value("set", m75.set);
+  json.value("answers_of", m75.answers_of);
+  json.value("curve_of", m75.curve_of);
+  json.value("m75", m75.m75);
+  json.value("m75_ci95", m75.ci95);
 }
 
 /// Number of the column of a table.
@@ -197,38 +207,17 @@ PeopleResult people_result(const PersonExperiment& experiment,
   return out;
 }
 
-std::string m75_file_text(const StatedM75& m75) {
-  return Json{{"schema", m75_schema},         {"set", m75.set},
-              {"answers_of", m75.answers_of}, {"curve_of", m75.curve_of},
-              {"m75", json_number(m75.m75)},  {"m75_ci95", json_interval(m75.ci95)}}
-             .dump(2) +
-         "\n";
+Result<void> write_m75_file(const std::filesystem::path& file, const StatedM75& m75) {
+  return write_json_file(file, json_of(m75, m75_fields));
 }
 
 Result<StatedM75> read_m75_file(const std::filesystem::path& file) {
-  TODBENCH_TRY(const auto text, read_text_file(file));
-  const Json json = Json::parse(text, nullptr, false);
-  const auto wrong = [&](const char* why) { return fail(ErrorCode::invalid_input, file.string() + ": " + why); };
-  if (!json.is_object() || json.value("schema", Json()) != m75_schema)
-    return wrong("is no file of an M75 (todbench identify --m75-out)");
-  const auto number = [](const Json& value) -> std::optional<double> {
-    if (!value.is_number()) return std::nullopt;
-    const auto found = value.get<double>();
-    return found >= 1e-6 && found <= 1e6 ? std::optional(found) : std::nullopt;
-  };
-  const Json ci95 = json.value("m75_ci95", Json::array());
-  const auto m75 = number(json.value("m75", Json()));
-  if (!m75 || !ci95.is_array() || ci95.size() != 2) return wrong("m75 is no number between 1e-6 and 1e6");
-  StatedM75 out;
-  out.m75 = *m75;
-  out.ci95 = {number(ci95[0]), number(ci95[1])};
-  for (auto [key, into] :
-       {std::pair("set", &out.set), std::pair("answers_of", &out.answers_of), std::pair("curve_of", &out.curve_of)}) {
-    const Json value = json.value(key, Json());
-    if (!value.is_string()) return wrong("set, answers_of and curve_of must be texts");
-    *into = value.get<std::string>();
+  TODBENCH_TRY(const StatedM75 m75, read_record_file<StatedM75>(file, m75_fields));
+  for (const std::optional<double>& value : {std::optional(m75.m75), m75.ci95.low, m75.ci95.high}) {
+    if (value && !(*value >= 1e-6 && *value <= 1e6))
+      return fail(ErrorCode::invalid_input, file.string() + ": m75 or its interval is not between 1e-6 and 1e6");
   }
-  return out;
+  return m75;
 }
 
 }  // namespace todbench

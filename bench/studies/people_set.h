@@ -13,9 +13,9 @@
 
 namespace todbench {
 
-/// Number of an experiment: 12 hexadecimal digits of the hash of its description, alternatives and trials, and of the
-/// contrast of a picture at every range, which differs for another sensor, air, motion or package. Errors: those of
-/// PersonExperiment::picture_k().
+/// Number of an experiment: 12 hexadecimal digits of a hash. The hash covers description, alternatives and trials. It
+/// also covers the contrast of one picture at every range, so that another sensor, air, motion or package has another
+/// number. Errors: those of PersonExperiment::picture_k().
 [[nodiscard]] Result<std::string> people_set_number(const PersonExperiment& experiment);
 
 /// Encodes a grey picture as PNG.
@@ -55,7 +55,8 @@ struct StatedM75 {
   double m75 = 0;
   Interval ci95;
 };
-[[nodiscard]] std::string m75_file_text(const StatedM75& m75);
+/// Errors: `io`.
+[[nodiscard]] Result<void> write_m75_file(const std::filesystem::path& file, const StatedM75& m75);
 /// Errors: `invalid_input` with the file (no such file, another schema, values beyond 1e-6 to 1e6).
 [[nodiscard]] Result<StatedM75> read_m75_file(const std::filesystem::path& file);
 

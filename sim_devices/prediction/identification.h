@@ -63,8 +63,8 @@ struct IdentificationTask {
   /// Stages behind the camera, made anew for every pass if they have a memory; empty: none. Before the first frame of a
   /// pass they receive as many frames of the same motion as they remember. Their lag is not removed.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
-  /// Distance in samples from which on a picture has no influence on a sample behind the stages; empty: the whole
-  /// picture has.
+  /// Largest distance, in samples, over which a picture influences a sample behind the stages; empty: the whole picture
+  /// does.
   std::optional<int> stage_reach_px{};
   /// Turbulence along the path of each range, instead of that of the sensor; 0: as in the sensor. The plan must
   /// simulate it. An observer with knowledge behind the camera also knows the targets behind this air.

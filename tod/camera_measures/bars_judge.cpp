@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "hvs/observer/open_parameters.h"
 #include "hvs/shape/painted_shapes.h"
 #include "tod/camera_measures/plate_offset.h"
+#include "tod/measures/forced_choice.h"
 #include "tod/registration/patch_windows.h"
 
 namespace todbench {
@@ -279,13 +281,12 @@ void BarsJudge::decide(Place& place, bool target, const std::vector<float>& patt
 /// Variance of ln of a threshold by jackknife; empty if one of the thresholds does not exist.
 std::optional<double> BarsJudge::jackknife_variance(const std::vector<Thresholds>& left_out,
                                                     std::optional<double> Thresholds::*of) {
-  std::vector<double> logs;
+  std::map<int, double> without;
   for (const Thresholds& one : left_out) {
     if (!(one.*of) || !(*(one.*of) > 0)) return std::nullopt;
-    logs.push_back(std::log(*(one.*of)));
+    without[static_cast<int>(without.size())] = *(one.*of);
   }
-  const auto n = static_cast<double>(logs.size());
-  return squares_about_mean(logs) * (n - 1) / n;
+  return jackknife_variance_of_ln(without);
 }
 
 std::vector<float> BarsJudge::LeftOut::rest(const std::vector<float>& row, std::size_t draws) const {

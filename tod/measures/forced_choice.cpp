@@ -166,8 +166,8 @@ int shown_in(const Cells& cells) {
 double jackknife_variance_of_ln(const std::map<int, double>& without) {
   const auto n = static_cast<double>(without.size());
   double mean = 0, squares = 0;
-  for (const auto& [set_up, value] : without) mean += std::log(value) / n;
-  for (const auto& [set_up, value] : without) squares += std::pow(std::log(value) - mean, 2);
+  for (const auto& [part, value] : without) mean += std::log(value) / n;
+  for (const auto& [part, value] : without) squares += std::pow(std::log(value) - mean, 2);
   return squares * (n - 1) / n;
 }
 

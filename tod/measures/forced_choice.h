@@ -29,7 +29,8 @@ struct ForcedChoiceThreshold {
   std::string reason{};  ///< of a missing threshold; empty if there is one
 };
 
-/// Variance of ln of a value by jackknife over set-ups, from the values without each; above 0.
+/// Variance of ln of a value by jackknife over parts of the data, such as set-ups, from the values without each part.
+/// Precondition: all values above 0.
 [[nodiscard]] double jackknife_variance_of_ln(const std::map<int, double>& without);
 
 /// Fewest answers at each polarity, and fewest set-ups, of a threshold.

@@ -214,7 +214,7 @@ void people_judge_bars(const std::filesystem::path& folder) {
   const auto sittings = read_bars_sittings(session);
   ASSERT_TRUE(sittings) << sittings.error().message;
   ASSERT_EQ(sittings->size(), 4u);
-  const auto means = bars_means(*sittings);
+  const auto means = bars_means(judged_bars(*sittings));
   ASSERT_EQ(means.size(), 3u);
   for (const BarsMean& mean : means) {
     ASSERT_TRUE(mean.over.ci95);
