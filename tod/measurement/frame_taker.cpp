@@ -309,12 +309,19 @@ double noise_of_one_frame(const AveragedPicture& picture) {
 
 Result<cv::Mat1d> window_kelvin(const Frame& frame, const cv::Rect& window) {
   cv::Mat1d out(window.size());
+  const LinearScale* line = frame.scale->straight_line();
   for (int row = 0; row < window.height; ++row) {
+    const auto* counts = frame.counts[window.y + row] + window.x;
+    double* into = out[row];
     for (int column = 0; column < window.width; ++column) {
-      const auto kelvin = frame.scale->kelvin(frame.counts(window.y + row, window.x + column));
+      if (line != nullptr) {
+        into[column] = line->offset_k + line->kelvin_per_count * counts[column];
+        continue;
+      }
+      const auto kelvin = frame.scale->kelvin(counts[column]);
       if (!kelvin)
         return fail(ErrorCode::calibration, "a pixel has no temperature on the scale " + frame.scale->describe());
-      out(row, column) = *kelvin;
+      into[column] = *kelvin;
     }
   }
   return out;
