@@ -5,9 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "bench/plan/bench_checks.h"
 #include "bench/plan/key_places.h"
-#include "bench/plan/plan_checks.h"
 #include "bench/plan/plan_options.h"
+#include "bench/plan/run_checks.h"
 
 namespace todbench {
 

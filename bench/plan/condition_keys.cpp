@@ -2,8 +2,8 @@
 // Plan keys of conditions of a run: warm-up of the camera, collimator before the target.
 #include <utility>
 
+#include "bench/plan/bench_checks.h"
 #include "bench/plan/key_places.h"
-#include "bench/plan/plan_checks.h"
 #include "bench/plan/plan_sections.h"
 
 namespace todbench {

@@ -84,6 +84,8 @@ struct ValueMistake {
   std::optional<std::size_t> element;  ///< index, if the value is a list
   std::string sentence;                ///< "expected a number above 0, found -1"
 };
+using ValueMistakes = std::vector<ValueMistake>;
+
 /// Returns the mistakes that the type alone shows. Resources are not looked up.
 [[nodiscard]] std::vector<ValueMistake> mistakes_of(const KeyType& type, const KeyValue& value);
 

@@ -3,7 +3,7 @@
 #include "bench/plan/plan_sections.h"
 
 #include "bench/plan/key_places.h"
-#include "bench/plan/plan_checks.h"
+#include "bench/plan/limit_checks.h"
 #include "bench/plan/quantity.h"
 
 namespace todbench {

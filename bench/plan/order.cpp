@@ -5,7 +5,7 @@
 #include <array>
 
 #include "acquisition/base/try.h"
-#include "bench/plan/plan_checks.h"
+#include "bench/plan/bench_checks.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/text/text.h"
 

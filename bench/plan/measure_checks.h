@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks of keys of [measures] against the rest of the plan. Each returns the mistakes of the value; its comment
+// states the condition for a correct one.
+#pragma once
+
+#include <cstddef>
+
+#include "bench/plan/key_types.h"
+#include "bench/plan/plan.h"
+
+namespace todbench {
+
+/// At least three different steps.
+[[nodiscard]] ValueMistakes check_transfer_steps(const Plan& plan, std::size_t row);
+/// Requires noise measurement with enough frames to detect blinking pixels.
+[[nodiscard]] ValueMistakes check_pixels(const Plan& plan, std::size_t row);
+/// Not 0 if an MTF is requested.
+[[nodiscard]] ValueMistakes check_mtf_contrast(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_ctf_contrast(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_source_size_contrast(const Plan& plan, std::size_t row);
+/// Three different temperatures in the range of a black body, if absolute temperatures are requested.
+[[nodiscard]] ValueMistakes check_absolute_temperatures(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_mrtd(const Plan& plan, std::size_t row);
+[[nodiscard]] ValueMistakes check_mrtd_contrasts(const Plan& plan, std::size_t row);
+/// If a response time is requested: a step large enough to observe, and a target with a known settling time.
+[[nodiscard]] ValueMistakes check_response(const Plan& plan, std::size_t row);
+
+}  // namespace todbench
