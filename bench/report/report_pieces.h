@@ -12,6 +12,9 @@
 
 namespace todbench {
 
+inline constexpr std::string_view one_sided_note =
+    "A single bound in brackets (≥ or ≤) is a one-sided 95 % limit: the data do not bound the other side.";
+
 /// Returns a list with one item per sentence.
 [[nodiscard]] List list_of(const std::vector<std::string>& sentences);
 
