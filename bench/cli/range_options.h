@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bench/cli/console.h"
+#include "bench/range/range_models.h"
 #include "bench/session/session_folder.h"
-#include "bench/studies/range_models.h"
 #include "sim_devices/atmosphere/radiative_path.h"
 
 namespace todbench {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/studies/turbulent_ranges.h"
+#include "bench/range/turbulent_ranges.h"
 
 #include <fmt/format.h>
 

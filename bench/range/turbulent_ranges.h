@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/studies/range_models.h"
+#include "bench/range/range_models.h"
 #include "hvs/observer/template_observer.h"
 
 namespace todbench {

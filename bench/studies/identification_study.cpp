@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "acquisition/base/try.h"
-#include "bench/studies/turbulent_ranges.h"
+#include "bench/range/turbulent_ranges.h"
 #include "hvs/observer/open_parameters.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/sensor_plan.h"

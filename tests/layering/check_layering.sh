@@ -54,6 +54,7 @@ BEGIN {
   may["bench/text"] = base " tod/psychometric"
   may["bench/picture_files"] = base
   may["bench/plan"] = core " " science " tod/instruments bench/text"
+  may["bench/range"] = core " " science " bench/text bench/plan"
   may["bench/judgement"] = science " bench/text bench/plan"
   may["bench/session"] = core " " science " bench/text bench/picture_files bench/plan bench/judgement"
   may["bench/report"] = core " " science " bench/text bench/plan bench/judgement bench/session"
@@ -69,7 +70,7 @@ BEGIN {
   may["bench/twin"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/devices"
   may["bench/forecast"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin"
   may["bench/run"] = core " " science " acquisition/recording bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast"
-  may["bench/studies"] = core " " science " sim_devices/lab bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
+  may["bench/studies"] = core " " science " sim_devices/lab bench/text bench/plan bench/range bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
   may["bench/history"] = core " bench/text bench/plan bench/judgement bench/session"
   may["bench/serve"] = core " " science " bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
   may["bench/run_control"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/serve"
@@ -79,7 +80,7 @@ BEGIN {
   may["bench/moving_target"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/enhance"
   may["bench/scene_dependence"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/enhance"
   may["bench/model_comparison"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/enhance"
-  bench = "bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/certificate bench/observer_fit bench/naked_eye bench/reference_set bench/selftest bench/plate_drawing bench/devices bench/twin bench/forecast bench/run bench/serve bench/run_control bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history bench/round_robin"
+  bench = "bench/text bench/picture_files bench/plan bench/range bench/judgement bench/session bench/report bench/certificate bench/observer_fit bench/naked_eye bench/reference_set bench/selftest bench/plate_drawing bench/devices bench/twin bench/forecast bench/run bench/serve bench/run_control bench/studies bench/sweep bench/enhance bench/moving_target bench/scene_dependence bench/model_comparison bench/history bench/round_robin"
   may["bench/cli"] = core " " science " acquisition/recording tod/instruments bench/doctor " bench
   may["bench/python"] = core " " science " acquisition/recording " bench
   may["bench/gui/presenters"] = core " " science " acquisition/recording " bench

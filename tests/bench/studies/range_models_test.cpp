@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Range models side by side, and the air by name.
-#include "bench/studies/range_models.h"
+#include "bench/range/range_models.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <numbers>
 
 #include "bench/plan/bench_air.h"
+#include "bench/range/turbulent_ranges.h"
 #include "bench/report/grid_figure.h"
 #include "bench/report/html.h"
 #include "bench/report/range_figure.h"
-#include "bench/studies/turbulent_ranges.h"
 #include "sim_devices/sensor/effect_turbulence.h"
 #include "tests/support/temporary_folder.h"
 
