@@ -12,6 +12,7 @@
 #include "bench/text/text.h"
 #include "tod/measures/signal_transfer.h"
 #include "tod/measures/slanted_edge.h"
+#include "tod/measures/slanted_star.h"
 
 namespace todbench {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 struct SfrArguments {
   std::string picture, axis;
   std::vector<int> region;
+  std::vector<double> star;
   std::optional<double> pitch_mrad;
   std::optional<double> f_number, pitch_um, halo_at_most;
   std::vector<double> wavelength_um;
@@ -61,7 +63,7 @@ Result<TailBounds> tail_bounds(const SfrArguments& a) {
   return bounds;
 }
 
-Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
+Json edge_json(const SlantedEdge& edge, const SfrArguments& arguments) {
   Json intervals = Json::array();
   Json in_picture = Json::array();
   for (std::size_t i = 0; i < edge.mtf.size(); ++i) {
@@ -72,8 +74,7 @@ Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
   const auto per_mrad = [&](const std::optional<double>& per_pitch) {
     return pitch && per_pitch ? json_number(*per_pitch / *pitch) : Json();
   };
-  return {{"picture", arguments.picture},
-          {"axis", to_string(edge.axis)},
+  return {{"axis", to_string(edge.axis)},
           {"angle_deg", json_number(edge.angle_deg)},
           {"edge_at_pitch", json_number(edge.edge_at_pitch)},
           {"curvature_pitch", json_number(edge.curvature_pitch)},
@@ -93,6 +94,45 @@ Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
           {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
           {"mtf50_per_mrad", per_mrad(edge.mtf50_per_pitch)},
           {"notes", edge.notes}};
+}
+
+Json sfr_json(const SlantedEdge& edge, const SfrArguments& arguments) {
+  Json json{{"picture", arguments.picture}};
+  json.update(edge_json(edge, arguments));
+  return json;
+}
+
+Json star_json(const std::vector<StarEdge>& edges, const SfrArguments& arguments) {
+  Json rows = Json::array();
+  for (const StarEdge& edge : edges) {
+    Json row = edge.measured ? edge_json(*edge.measured, arguments) : Json{{"rejected", edge.rejected}};
+    row["edge_deg"] = json_number(edge.edge_deg);
+    row["normal_deg"] = json_number(edge.normal_deg);
+    row["direction"] = to_string(edge.direction);
+    row["region"] = {edge.region.x, edge.region.y, edge.region.width, edge.region.height};
+    rows.push_back(std::move(row));
+  }
+  return {{"picture", arguments.picture}, {"star", json_numbers(arguments.star)}, {"edges", rows}};
+}
+
+void print_star(Console& console, const std::vector<StarEdge>& edges, const SfrArguments& arguments) {
+  std::vector<TableRow> rows;
+  for (const StarEdge& edge : edges) {
+    TableRow row{fixed(edge.edge_deg, 1), fixed(edge.normal_deg, 1), std::string(to_string(edge.direction))};
+    for (const std::size_t i : {10u, 20u, 30u, 50u})
+      row.push_back(edge.measured ? fixed(edge.measured->mtf[i], 4) + " " +
+                                        range(interval_of(*edge.measured, edge.measured->mtf_low, i, arguments), 4)
+                                  : "-");
+    row.push_back(edge.measured ? fixed(edge.measured->mtf50_per_pitch, 4) : edge.rejected);
+    rows.push_back(std::move(row));
+  }
+  console.table({"edge (deg)", "normal (deg)", "direction", "MTF at 0.1", "at 0.2", "at 0.3", "at 0.5", "MTF 0.5 at"},
+                rows);
+  console.text("");
+  console.text(
+      "MTF along the normal of each edge, at frequencies in cycles per pitch, with 95 % intervals relative to a source "
+      "of any size. Angles are from +x towards +y (down). Tangential: along the line from the middle of the picture to "
+      "the star, within 22.5 degrees; sagittal: across it.");
 }
 
 void print_sfr(Console& console, const SlantedEdge& edge, const SfrArguments& arguments) {
@@ -126,27 +166,50 @@ bool reaches_end(const PictureFile& file) {
   return high >= file.counts->second || (low <= file.counts->first && file.counts->first != 0);
 }
 
+/// Adds what the file and the bounds say of a measured edge.
+void add_notes(SlantedEdge& edge, bool at_end, const SfrArguments& arguments) {
+  if (at_end) edge.notes.emplace_back("pixels have the lowest or highest value of the pixel type and may be clipped");
+  if (!arguments.halo_at_most && !std::all_of(edge.low_known.begin(), edge.low_known.end(), [](bool k) { return k; })) {
+    edge.notes.emplace_back(
+        "a halo cannot be distinguished from shading, because the picture is too noisy or too small: the MTF has no "
+        "lower limit. Average more frames, include more of the two sides, or state the largest share of halos "
+        "(--halo-at-most).");
+  }
+}
+
+int run_star(Console& console, const PictureFile& file, const SlantedEdgeOptions& options,
+             const SfrArguments& arguments) {
+  auto edges = slanted_star(file.picture, {{arguments.star[0], arguments.star[1]}, arguments.star[2]}, options);
+  if (!edges) return report_error(console, with_context(arguments.picture, edges.error()));
+  std::vector<std::string> said;
+  for (StarEdge& edge : *edges) {
+    if (!edge.measured) continue;
+    add_notes(*edge.measured, reaches_end(file), arguments);
+    for (const auto& note : edge.measured->notes)
+      if (std::ranges::find(said, note) == said.end()) said.push_back(note);
+  }
+  for (const auto& note : said) console.note(note);
+  if (console.json())
+    console.object(star_json(*edges, arguments));
+  else
+    print_star(console, *edges, arguments);
+  return 0;
+}
+
 int run_sfr(Console& console, const SfrArguments& arguments) {
   const auto file = read_picture(arguments.picture);
   if (!file) return report_error(console, file.error());
-  const auto picture = cut(file->picture, arguments.region);
-  if (!picture) return report_error(console, with_context(arguments.picture, picture.error()));
   SlantedEdgeOptions options;
   if (!arguments.axis.empty()) options.axis = arguments.axis == "x" ? EdgeAxis::x : EdgeAxis::y;
   const auto bounds = tail_bounds(arguments);
   if (!bounds) return report_error(console, bounds.error());
   options.tails = *bounds;
+  if (!arguments.star.empty()) return run_star(console, *file, options, arguments);
+  const auto picture = cut(file->picture, arguments.region);
+  if (!picture) return report_error(console, with_context(arguments.picture, picture.error()));
   auto edge = slanted_edge(*picture, options);
   if (!edge) return report_error(console, with_context(arguments.picture, edge.error()));
-  if (reaches_end(*file))
-    edge->notes.emplace_back("pixels have the lowest or highest value of the pixel type and may be clipped");
-  if (!arguments.halo_at_most &&
-      !std::all_of(edge->low_known.begin(), edge->low_known.end(), [](bool k) { return k; })) {
-    edge->notes.emplace_back(
-        "a halo cannot be distinguished from shading, because the picture is too noisy or too small: the MTF has no "
-        "lower limit. Average more frames, include more of the two sides, or state the largest share of halos "
-        "(--halo-at-most).");
-  }
+  add_notes(*edge, reaches_end(*file), arguments);
   for (const auto& note : edge->notes) console.note(note);
   if (console.json())
     console.object(sfr_json(*edge, arguments));
@@ -286,6 +349,15 @@ void add_sfr_command(CLI::App& app, Program& program) {
       ->delimiter(',')
       ->expected(4)
       ->check(whole_number(0, 65535));
+  command
+      ->add_option(
+          "--star", a->star,
+          "X,Y,RADIUS of a star of bright and dark sectors in the picture, in pixels: measures each of its edges")
+      ->delimiter(',')
+      ->expected(3)
+      ->check(number_in(0, 65535))
+      ->excludes("--region")
+      ->excludes("--axis");
   command
       ->add_option("--pitch-mrad", a->pitch_mrad,
                    "angle of a pixel (IFOV) in mrad; adds frequencies in cycles per mrad")

@@ -10,8 +10,8 @@
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/system/system_test_support.h"
-#include "tests/tod/measures/edge_picture.h"
 #include "tests/tod/measures/measures_reference.h"
+#include "tests/tod/measures/star_picture.h"
 
 namespace todbench::testing {
 namespace {
@@ -105,6 +105,29 @@ TEST(Sfr, FindsTheMtfOfAnEdgeAndItsAngle) {
     EXPECT_LE(json["mtf_ci95"][i][0].get<double>(), truth + 1e-12);
     EXPECT_GE(json["mtf_ci95"][i][1].get<double>(), truth - 1e-12);
   }
+}
+
+TEST(Sfr, MeasuresEveryEdgeOfAStar) {
+  const TemporaryFolder folder;
+  const test::StarPicture made;
+  const std::string picture = npy_picture(folder, made.picture());
+
+  const Ended ended = todbench({"sfr", picture, "--star", "150.3,99.6,80", "--pitch-mrad", "0.5", "--json"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
+  ASSERT_EQ(json["edges"].size(), 8u);
+  for (const Json& edge : json["edges"]) {
+    EXPECT_EQ(edge["direction"], "central");
+    const double truth = made.edge_of(edge["normal_deg"]).mtf(edge["frequency_per_pitch"][30]);
+    EXPECT_NEAR(edge["mtf"][30].get<double>(), truth, 0.001) << edge["edge_deg"];
+    EXPECT_LE(edge["mtf_ci95"][30][0].get<double>(), truth) << edge["edge_deg"];
+    EXPECT_GE(edge["mtf_ci95"][30][1].get<double>(), truth) << edge["edge_deg"];
+  }
+  EXPECT_THAT(todbench({"sfr", picture, "--star", "150.3,99.6,80"}).out, ::testing::HasSubstr("central"));
+  expect_refused(todbench({"sfr", picture, "--star", "150,99,120"}), 2, "the star extends beyond the picture");
+  expect_refused(todbench({"sfr", picture, "--star", "60,60,40"}), 2, "expected an even number of at least 4");
+  expect_refused(todbench({"sfr", picture, "--star", "150,99,80", "--region", "1,1,9,9"}), 2, "excludes");
 }
 
 TEST(Sfr, RefusesEveryEdgeThatItCannotMeasureWithOneSentence) {
