@@ -10,6 +10,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <sstream>
 #include <string>
@@ -104,8 +105,8 @@ struct MovingResult {
   double delta_t_k = 0, ln_s75 = 0, half = 0;
 };
 
-/// The functions of one twin, which runs of the same camera share.
-using Surfaces = std::map<std::string, ContrastSurface>;
+/// The functions of the twin of a design, which its runs share.
+using Surfaces = std::map<std::string, std::optional<ContrastSurface>>;
 
 inline std::vector<MovingResult> results_of(const TodCurve& curve, const MovingContrasts& design) {
   std::vector<MovingResult> out;
@@ -164,13 +165,13 @@ inline std::vector<MovingResult> moving_run(const MovingContrasts& design, std::
     return {};
   }
   const auto lent = surrogate.lent();
-  auto surface = surfaces.find(design.name);
-  if (surface == surfaces.end())
-    surface = surfaces.emplace(design.name, contrast_surface(plan, lent ? *lent : inputs, {}).value()).first;
-  const std::vector<Trial> trials = at_set_contrasts(run->trials, surface->second, 1);
+  // The surrogate differs from run to run.
+  auto& surface = surfaces[lent ? design.name + " " + std::to_string(seed) : design.name];
+  if (!surface) surface = contrast_surface(plan, lent ? *lent : inputs, {}).value();
+  const std::vector<Trial> trials = at_set_contrasts(run->trials, *surface, 1);
   TodCurve curve = tod_curve(trials, fit_options(plan)).value();
   if (design.ramp) {
-    const auto taken = take_ramp(curve, *run, surface->second, plan);
+    const auto taken = take_ramp(curve, *run, *surface, plan);
     if (!taken) ADD_FAILURE() << taken.error().message;
   } else {
     const auto said = fit_twin_shapes(curve, trials, lent ? *lent : inputs, fit_options(plan),
@@ -180,26 +181,33 @@ inline std::vector<MovingResult> moving_run(const MovingContrasts& design, std::
   return results_of(curve, design);
 }
 
-/// ln S75 without trials.
-inline double ln_truth(const SensorSpec& sensor, double delta_t_k) {
+/// ln S75 without trials, and its standard error from the scatter of independent parts.
+struct MovingTruth {
+  double ln_s75 = 0, se = 0;
+};
+
+inline MovingTruth truth_of(const SensorSpec& sensor, double delta_t_k, int parts = 2) {
   Plan plan;
   EffectPlanner planner;
   const ExperimentInputs inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner).value();
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  double sum = 0;
-  constexpr int parts = 2;
+  double sum = 0, squares = 0;
   for (int part = 0; part < parts; ++part) {
     const auto found =
         direct_estimate(sensor, full_plan(sensor, {}, {}), observer, {delta_t_k},
                         {.accuracy = Accuracy::reference(), .seed = 3'000'000 + static_cast<std::uint64_t>(part)});
-    sum += std::log(found.value()[0].s75_pitch * sensor.ifov_mrad()) / parts;
+    const double ln_s75 = std::log(found.value()[0].s75_pitch * sensor.ifov_mrad());
+    sum += ln_s75;
+    squares += ln_s75 * ln_s75;
   }
-  return sum;
+  const double mean = sum / parts;
+  return {mean, std::sqrt(std::max(0.0, squares / parts - mean * mean) / (parts - 1))};
 }
 
 /// Figures of one contrast over the seeds of a study.
 struct MovingSummary {
   double delta_t_k = 0, bias_percent = 0, se_percent = 0, sd_percent = 0, half_percent = 0;
+  double truth_se_percent = 0;
   int covered = 0, runs = 0;
 };
 
@@ -237,7 +245,7 @@ class MovingRecord {
 };
 
 inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::uint64_t first_seed, int runs,
-                                           MovingRecord& record) {
+                                           MovingRecord& record, int parts_of_truth = 2) {
   Surfaces surfaces;
   std::map<double, std::vector<MovingResult>> by_contrast;
   for (int i = 0; i < runs; ++i)
@@ -245,12 +253,13 @@ inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::u
       by_contrast[one.delta_t_k].push_back(one);
   std::vector<MovingSummary> out;
   for (const auto& [delta_t_k, results] : by_contrast) {
-    const double truth = ln_truth(design.camera, delta_t_k);
+    const MovingTruth truth = truth_of(design.camera, delta_t_k, parts_of_truth);
     const auto n = static_cast<double>(results.size());
-    MovingSummary sum{.delta_t_k = delta_t_k, .runs = static_cast<int>(results.size())};
+    MovingSummary sum{
+        .delta_t_k = delta_t_k, .truth_se_percent = 100 * truth.se, .runs = static_cast<int>(results.size())};
     double squares = 0;
     for (const MovingResult& one : results) {
-      const double error = 100 * (one.ln_s75 - truth);
+      const double error = 100 * (one.ln_s75 - truth.ln_s75);
       sum.bias_percent += error / n;
       squares += error * error;
       sum.half_percent += 100 * one.half / n;
