@@ -72,8 +72,8 @@ Result<void> check_order(const OrderPlan& order, const Provenance& provenance) {
   need("authorised_by", order.authorised_by);
   if (!missing.empty()) {
     return fail(ErrorCode::invalid_input,
-                "a certificate needs " + missing +
-                    ": state them in section [order] of the plan, or of a file named with --order");
+                "section [order] lacks " + missing +
+                    ", which a certificate needs: complete that of the plan, or name a file with --order");
   }
   if (order.issued < day_of(provenance.ended_utc)) {
     return fail(ErrorCode::invalid_input,

@@ -193,7 +193,7 @@ Result<void> check_eye(const Plan& plan, const PlanParts& parts) {
   return fail_at(ErrorCode::invalid_input, "observer.name",
                  "observer " + parts.observer.name +
                      " has an eye and needs a display: state its pixel pitch, viewing distance and luminance in "
-                     "section [display] of the plan");
+                     "section [display] of the plan ('todbench judge' takes that of another plan with --display)");
 }
 
 namespace {

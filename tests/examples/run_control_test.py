@@ -196,9 +196,9 @@ class Certificate(unittest.TestCase):
     def test_an_order_without_what_it_needs_is_refused(self):
         order = self.folder / "other.toml"
         order.write_text("[order]\n")
-        self.refused("a certificate needs customer, report_number", self.session, "--order", order)
+        self.refused("lacks customer, report_number", self.session, "--order", order)
         order.write_text("[order]\ncustomer = \"A\"\n")
-        self.refused("a certificate needs report_number, laboratory, country, issued, authorised_by", self.session,
+        self.refused("lacks report_number, laboratory, country, issued, authorised_by", self.session,
                      "--order", order)
         order.write_text("[order]\ncustommer = \"A\"\n")
         self.refused("custommer", self.session, "--order", order)
