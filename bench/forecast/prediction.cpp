@@ -197,9 +197,15 @@ void predict_graded_schedule(ContrastPrediction& point, const Plan& plan, const 
   int needed = std::min(least_adaptive_presentations, cap);
   while (needed < all_visited && !narrow_after(needed)) ++needed;
   if (needed >= all_visited) {
-    const auto more = std::views::iota(needed, cap);
-    const auto first = std::ranges::partition_point(more, [&](int n) { return !narrow_after(n); });
-    needed += static_cast<int>(first - more.begin());
+    // The smallest number that is enough; the cap if none is.
+    for (int enough = cap; needed < enough;) {
+      const int middle = needed + (enough - needed) / 2;
+      if (narrow_after(middle)) {
+        enough = middle;
+      } else {
+        needed = middle + 1;
+      }
+    }
   }
   if (narrow_after(needed)) point.uncertainty_percent = 100 * std::expm1(asked);
 }
