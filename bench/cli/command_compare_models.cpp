@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bench/cli/effect_decisions.h"
-#include "bench/cli/scene_files.h"
+#include "bench/cli/result_folder.h"
 #include "bench/enhance/decidable.h"
 #include "bench/judgement/verdict.h"
 #include "bench/model_comparison/model_comparison_page.h"

@@ -22,6 +22,7 @@
 #include "bench/plan/descriptions.h"
 #include "bench/report/tod_figures.h"
 #include "bench/studies/identification_study.h"
+#include "bench/studies/pictured_scenes.h"
 #include "bench/text/spread_text.h"
 #include "bench/text/text.h"
 #include "sim_devices/prediction/identification_passes.h"
@@ -71,7 +72,7 @@ double pixels_per_frame(const IdentificationStudyTask& task) {
 
 Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, const Program& program) {
   IdentificationStudyTask task;
-  TODBENCH_TRY(auto set, load_target_set(a.set));
+  TODBENCH_TRY(auto set, target_set_with_pictures(a.set));
   TODBENCH_TRY(auto chain, a.chain.load());
   task.set = std::move(set);
   task.sensor = std::move(chain.sensor);
@@ -174,6 +175,7 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
                  {"reason", study.predicted->reason.empty() ? Json() : Json(study.predicted->reason)}};
     add_spread(predicted, "r75_spread_m", study.predicted_spread_m);
   }
+  const auto elements = element_range_m(task.set);
   const bool both = study.predicted && study.predicted->r75_m && study.r75_m.value;
   Json json{{"set", task.set.name},
             {"sensor", task.sensor.name},
@@ -191,6 +193,7 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
             {"planned", effort_json(effort)},
             {"targets", names},
             {"azimuths_deg", task.set.azimuths_deg},
+            {"target_pixel_m", elements ? Json{json_number(elements->first), json_number(elements->second)} : Json()},
             {"chance", study.chance},
             {"size_m", json_number(study.size_m)},
             {"dt_rss_k", json_number(study.dt_rss_k)},

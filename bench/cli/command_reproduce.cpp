@@ -5,7 +5,7 @@
 
 #include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/scene_files.h"
+#include "bench/cli/result_folder.h"
 #include "bench/judgement/verdict.h"
 #include "bench/picture_files/encoded_picture.h"
 #include "bench/plan/descriptions.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <set>
 
 #include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
@@ -15,8 +14,6 @@
 namespace todbench {
 namespace {
 
-const NumberRange kelvin_range = NumberRange::between(1, 99999);
-const NumberRange share_range = NumberRange::between(0, 1);
 const NumberRange scene_place_range = NumberRange::between(-1e6, 1e6);
 
 /// Builds the outline from two lists of coordinates, y as in the file.
@@ -41,8 +38,8 @@ SceneRegion read_region(TomlReader& table, std::size_t number) {
   SceneRegion region;
   region.name = table.text("name", fmt::format("{}", number));
   region.outline_m = flipped(outline_of(table, "x_m", "y_m"));
-  region.temperature_k = table.number("temperature_k", kelvin_range, std::nullopt);
-  region.emissivity = table.number("emissivity", share_range, region.emissivity);
+  region.temperature_k = table.number("temperature_k", scene_kelvin_range, std::nullopt);
+  region.emissivity = table.number("emissivity", scene_share_range, region.emissivity);
   region.target = table.flag("target", region.target);
   return region;
 }
@@ -64,8 +61,8 @@ Result<TargetModel> parse_target(const Resource& resource) {
     part.profile_m = outline_of(table, "x_m", "z_m");
     part.width_m = table.number("width_m", NumberRange::between(1e-6, 9999), std::nullopt);
     part.side_m = table.number("side_m", scene_place_range, part.side_m);
-    part.temperature_k = table.number("temperature_k", kelvin_range, std::nullopt);
-    part.emissivity = table.number("emissivity", share_range, part.emissivity);
+    part.temperature_k = table.number("temperature_k", scene_kelvin_range, std::nullopt);
+    part.emissivity = table.number("emissivity", scene_share_range, part.emissivity);
     const bool both = table.flag("both_sides", false);
     model.parts.push_back(part);
     if (both) {
@@ -114,17 +111,15 @@ Result<void> add_picture(TomlReader table, const std::filesystem::path& folder, 
   if (!table.present()) return {};
   const std::string file = table.text("file", ""), mask = table.text("mask", "");
   ScenePicture picture;
-  picture.pixel_mrad = table.number("pixel_mrad", NumberRange::between(1e-6, 1000), std::nullopt);
-  picture.range_m = table.number("range_m", NumberRange::between(1e-3, 1e6), std::nullopt);
+  const double pixel_mrad = table.number("pixel_mrad", NumberRange::between(1e-6, 1000), std::nullopt);
+  picture.element_m = 1e-3 * pixel_mrad * table.number("range_m", NumberRange::between(1e-3, 1e6), std::nullopt);
   const auto kelvin_per_count = table.optional_number("kelvin_per_count", NumberRange::between(1e-9, 1000));
   const auto offset_k = table.optional_number("offset_k", NumberRange::between(-1000, 99999));
   if (file.empty()) {
     table.reject("file", "expected a TIFF file");
     return {};
   }
-  const auto path_of = [&](const std::string& name) {
-    return (std::filesystem::path(name).is_absolute() ? std::filesystem::path(name) : folder / name).string();
-  };
+  const auto path_of = [&](const std::string& name) { return (folder / name).string(); };
   TODBENCH_TRY(auto stored, read(path_of(file)));
   if (stored.kind == StoredPicture::Kind::counts && (!kelvin_per_count || !offset_k)) {
     return fail(ErrorCode::invalid_input,
@@ -154,9 +149,9 @@ Result<FieldScene> load_scene(std::string_view reference, const PictureReader& r
   FieldScene scene;
   scene.name = reader.text("name", std::nullopt);
   scene.description = reader.text("description", "");
-  scene.background_k = reader.number("background_k", kelvin_range, std::nullopt);
-  scene.background_emissivity = reader.number("background_emissivity", share_range, scene.background_emissivity);
-  scene.surround_k = reader.number("surround_k", kelvin_range, scene.background_k);
+  scene.background_k = reader.number("background_k", scene_kelvin_range, std::nullopt);
+  scene.background_emissivity = reader.number("background_emissivity", scene_share_range, scene.background_emissivity);
+  scene.surround_k = reader.number("surround_k", scene_kelvin_range, scene.background_k);
   const auto folder = folder_of(resource);
   auto regions = reader.sections("region");
   for (std::size_t i = 0; i < regions.size(); ++i) scene.regions.push_back(read_region(regions[i], i + 1));
@@ -175,56 +170,6 @@ Result<FieldScene> load_scene(std::string_view reference, const PictureReader& r
 Result<TargetModel> load_target(std::string_view reference) {
   TODBENCH_TRY(const auto resource, find_resource(ResourceKind::target, reference));
   return parse_target(resource);
-}
-
-Result<TargetSet> load_target_set(std::string_view reference) {
-  TODBENCH_TRY(const auto resource, find_resource(ResourceKind::target_set, reference));
-  TODBENCH_TRY(TomlReader reader, TomlReader::parse(resource.text, resource.origin));
-  TargetSet set;
-  set.name = reader.text("name", std::nullopt);
-  set.description = reader.text("description", "");
-  const auto names = reader.texts("targets", std::nullopt);
-  set.azimuths_deg = reader.numbers("azimuths_deg", NumberRange::between(-360, 360), std::nullopt);
-  set.background_k = reader.number("background_k", kelvin_range, std::nullopt);
-  set.background_emissivity = reader.number("background_emissivity", share_range, set.background_emissivity);
-  set.surround_k = reader.number("surround_k", kelvin_range, set.background_k);
-  if (names.size() < 2 || names.size() > 64) reader.reject("targets", "expected 2 to 64 targets");
-  if (set.azimuths_deg.empty() || set.azimuths_deg.size() > 16)
-    reader.reject("azimuths_deg", "expected 1 to 16 azimuths");
-  std::set<double> sides;
-  for (const double azimuth_deg : set.azimuths_deg) {
-    // A duplicate aspect would count twice in every mean; 90 and -270 degrees are the same aspect.
-    if (!sides.insert(azimuth_deg - 360 * std::floor(azimuth_deg / 360)).second)
-      reader.reject("azimuths_deg", fmt::format("expected every side once, found {:g} degrees twice", azimuth_deg));
-  }
-  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
-  std::set<std::string> known;
-  for (const auto& name : names) {
-    auto model = load_target(absolute_reference(name, folder_of(resource)));
-    if (!model) return fail(resource.origin, model.error());
-    if (!known.insert(model->name).second)
-      return fail(ErrorCode::invalid_input, resource.origin + ": target '" + model->name + "' is listed twice");
-    set.targets.push_back(*std::move(model));
-  }
-  return set;
-}
-
-FieldScene scene_of(const TargetSet& set, std::size_t target, double azimuth_deg) {
-  FieldScene scene;
-  scene.name = set.targets[target].name;
-  scene.background_k = set.background_k;
-  scene.background_emissivity = set.background_emissivity;
-  scene.surround_k = set.surround_k;
-  scene.regions = view_of(set.targets[target], azimuth_deg);
-  cv::Point2d low(1e300, 1e300), high(-1e300, -1e300);
-  for (const auto& region : scene.regions) {
-    for (const auto& v : region.outline_m) {
-      low = {std::min(low.x, v.x), std::min(low.y, v.y)};
-      high = {std::max(high.x, v.x), std::max(high.y, v.y)};
-    }
-  }
-  for (auto& region : scene.regions) region.outline_m = placed(region.outline_m, 1, -(low + high) / 2);
-  return scene;
 }
 
 }  // namespace todbench

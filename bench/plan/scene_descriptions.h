@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes, targets and target sets from their TOML files.
+// Scenes and targets from their TOML files.
 #pragma once
 
 #include <functional>
@@ -7,12 +7,17 @@
 #include <string_view>
 #include <vector>
 
+#include "acquisition/base/number_range.h"
 #include "acquisition/base/result.h"
 #include "bench/plan/resources.h"
 #include "sim_devices/scene/field_scene.h"
 #include "sim_devices/scene/target_model.h"
 
 namespace todbench {
+
+/// Keys that scenes, targets and sets share.
+inline const NumberRange scene_kelvin_range = NumberRange::between(1, 99999);
+inline const NumberRange scene_share_range = NumberRange::between(0, 1);
 
 /// Picture as stored in its file: whole counts or numbers.
 struct StoredPicture {
@@ -26,17 +31,5 @@ using PictureReader = std::function<Result<StoredPicture>(const std::string& pat
 /// Errors: `invalid_input` with file and line (key unknown, missing or out of range; contradictory scene).
 [[nodiscard]] Result<FieldScene> load_scene(std::string_view reference, const PictureReader& read_picture);
 [[nodiscard]] Result<TargetModel> load_target(std::string_view reference);
-
-/// Targets to be discriminated, from the same aspects in front of the same background.
-struct TargetSet {
-  std::string name, description;
-  std::vector<TargetModel> targets;  ///< at least two
-  std::vector<double> azimuths_deg;  ///< aspects, at least one
-  double background_k = 300, background_emissivity = 1, surround_k = 300;
-};
-/// Loads a target set by name ("small-craft") or file. Errors: as load_scene().
-[[nodiscard]] Result<TargetSet> load_target_set(std::string_view reference);
-/// Returns a scene with one target at one aspect, centred in front of the background of the set.
-[[nodiscard]] FieldScene scene_of(const TargetSet& set, std::size_t target, double azimuth_deg);
 
 }  // namespace todbench

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "acquisition/base/try.h"
 #include "bench/range/turbulent_ranges.h"
@@ -267,21 +269,38 @@ Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task) {
   experiment.decisions = task.decisions;
   experiment.seed = task.seed;
   experiment.stop = task.stop;
-  for (std::size_t t = 0; t < task.set.targets.size(); ++t) {
-    auto& target = experiment.targets.emplace_back(IdentificationTarget{task.set.targets[t].name, {}});
-    for (const double azimuth_deg : task.set.azimuths_deg) target.aspects.push_back(scene_of(task.set, t, azimuth_deg));
-  }
+  experiment.targets = task.set.targets;
   for (const double range_m : task.ranges_m) experiment.ranges.push_back({range_m, *task.air.air.at(range_m)});
   return experiment;
 }
 
 namespace {
 
+/// States the detail of a set of pictures; empty for models.
+std::string note_of_detail(const IdentificationStudyTask& task) {
+  const auto elements_m = element_range_m(task.set);
+  if (!elements_m) return "";
+  const double pixel_mrad = task.sensor.ifov_mrad() / task.sensor.samples_per_pitch();
+  const double pixel_m = 1e-3 * pixel_mrad * task.ranges_m.front();
+  std::string note = fmt::format(
+      "the pictures of the set have pixels of {:.3g} to {:.3g} m and show no finer detail; at {:g} m a sample of the "
+      "sensor is {:.3g} m",
+      elements_m->first, elements_m->second, task.ranges_m.front(), pixel_m);
+  if (elements_m->second > pixel_m)
+    note += fmt::format(
+        ". The coarsest pixel is larger than a sample up to {:.4g} m: there the sensor would show detail of the real "
+        "targets that the pictures lack, so the proportions are those of the pictures only",
+        1e3 * elements_m->second / pixel_mrad);
+  return note;
+}
+
 /// A study with the means over the views of the set.
 IdentificationStudy described(const IdentificationStudyTask& task, const IdentificationTask& experiment) {
   const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
                             task.sensor.scene_temperature_k};
   IdentificationStudy study;
+  study.notes = task.set.notes;
+  if (std::string note = note_of_detail(task); !note.empty()) study.notes.push_back(std::move(note));
   double views = 0;
   for (const auto& target : experiment.targets) {
     for (const auto& aspect : target.aspects) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/plan/atmospheres.h"
-#include "bench/plan/scene_descriptions.h"
+#include "bench/plan/target_sets.h"
 #include "sim_devices/prediction/identification.h"
 #include "tod/range/range_prediction.h"
 

@@ -28,10 +28,31 @@ constexpr std::size_t phases_of_bars = 16;
 constexpr int gap_samples = 4;
 constexpr int resamples_of_answers = 1000;
 
-/// Draws the target alone, hot white and cold black, as large as fits.
-cv::Mat1d icon_of(const FieldScene& scene) {
-  constexpr int fine = 4;
-  cv::Mat1d icon(icon_height * fine, icon_width * fine, 0.5);
+/// Grey level of a part of a target. One as warm as the background is still part of the shape.
+double grey_of_part(double above_background_k, double most_k) {
+  const double relative = above_background_k / most_k;
+  return 0.5 + 0.35 * relative + (relative < 0 ? -0.15 : 0.15);
+}
+
+/// Draws the target of a picture as large as fits.
+void draw_picture(cv::Mat1d& icon, const FieldScene& scene) {
+  const ScenePicture& picture = *scene.picture;
+  const cv::Mat1d above_k = picture.kelvin - scene.background_k;
+  const double most_k = cv::norm(above_k, cv::NORM_INF, picture.target);
+  const double scale =
+      0.9 * std::min(static_cast<double>(icon.cols) / above_k.cols, static_cast<double>(icon.rows) / above_k.rows);
+  for (int y = 0; y < icon.rows; ++y) {
+    for (int x = 0; x < icon.cols; ++x) {
+      const int column = cvFloor((x + 0.5 - icon.cols / 2.0) / scale + above_k.cols / 2.0);
+      const int row = cvFloor((y + 0.5 - icon.rows / 2.0) / scale + above_k.rows / 2.0);
+      const bool inside = column >= 0 && row >= 0 && column < above_k.cols && row < above_k.rows;
+      if (inside && picture.target(row, column) != 0) icon(y, x) = grey_of_part(above_k(row, column), most_k);
+    }
+  }
+}
+
+/// Draws the target of polygons as large as fits.
+void draw_regions(cv::Mat1d& icon, const FieldScene& scene) {
   cv::Rect2d box;
   double most_k = 0;
   for (const SceneRegion& region : scene.regions) {
@@ -42,7 +63,7 @@ cv::Mat1d icon_of(const FieldScene& scene) {
     }
     most_k = std::max(most_k, std::abs(region.temperature_k - scene.background_k));
   }
-  if (!(most_k > 0)) return icon;
+  if (!(most_k > 0)) return;
   const double scale = 0.9 * std::min(icon.cols / box.width, icon.rows / box.height);
   const cv::Point2d middle(box.x + box.width / 2, box.y + box.height / 2);
   for (const SceneRegion& region : scene.regions) {
@@ -51,10 +72,18 @@ cv::Mat1d icon_of(const FieldScene& scene) {
     for (const cv::Point2d& corner : region.outline_m)
       outline.emplace_back(cvRound((corner.x - middle.x) * scale + icon.cols / 2.0),
                            cvRound((corner.y - middle.y) * scale + icon.rows / 2.0));
-    // A region as warm as the background is still part of the shape.
-    const double relative = (region.temperature_k - scene.background_k) / most_k;
-    cv::fillPoly(icon, std::vector{outline}, 0.5 + 0.35 * relative + (relative < 0 ? -0.15 : 0.15));
+    cv::fillPoly(icon, std::vector{outline}, grey_of_part(region.temperature_k - scene.background_k, most_k));
   }
+}
+
+/// Draws the target alone, hot white and cold black.
+cv::Mat1d icon_of(const FieldScene& scene) {
+  constexpr int fine = 4;
+  cv::Mat1d icon(icon_height * fine, icon_width * fine, 0.5);
+  if (scene.picture)
+    draw_picture(icon, scene);
+  else
+    draw_regions(icon, scene);
   cv::Mat1d small;
   cv::resize(icon, small, {icon_width, icon_height}, 0, 0, cv::INTER_AREA);
   return small;
@@ -111,10 +140,10 @@ Result<PersonExperiment> PersonExperiment::of_set(const IdentificationStudyTask&
   TODBENCH_TRY(auto frames, IdentificationFrames::of(experiment));
   PersonExperiment out;
   out.task_ = PersonTask::identify;
-  const std::size_t aspects = task.set.azimuths_deg.size(), targets = experiment.targets.size();
-  // People know the targets from their broadest aspect, the one nearest to 90 degrees.
+  const std::size_t aspects = experiment.targets.front().aspects.size(), targets = experiment.targets.size();
+  // People know models from their broadest aspect, the one nearest to 90 degrees, and others from their first picture.
   std::size_t known = 0;
-  for (std::size_t a = 1; a < aspects; ++a) {
+  for (std::size_t a = 1; a < task.set.azimuths_deg.size(); ++a) {
     if (std::abs(task.set.azimuths_deg[a] - 90) < std::abs(task.set.azimuths_deg[known] - 90)) known = a;
   }
   for (const auto& target : experiment.targets) {

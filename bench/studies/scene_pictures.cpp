@@ -54,8 +54,8 @@ cv::Mat1d bare_scene(const ScenePicturesTask& task, const SensorSpec& fine, cons
                      const SceneView& view, cv::Size size) {
   if (!task.scene.picture) return SceneImager::means(edges_in_samples(task.scene, scale, fine, view, size), size);
   const cv::Mat1d levels = picture_levels_k(task.scene, scale);
-  const double samples_per_element = task.scene.picture->pixel_mrad * task.scene.picture->range_m /
-                                     (view.range_m * fine.ifov_mrad()) * fine.samples_per_pitch();
+  const double samples_per_element =
+      task.scene.picture->element_m * 1e3 / (view.range_m * fine.ifov_mrad()) * fine.samples_per_pitch();
   cv::Mat1d out(size, 0.0);
   for (int j = 0; j < size.height; ++j) {
     for (int i = 0; i < size.width; ++i) {

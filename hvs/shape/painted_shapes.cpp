@@ -170,6 +170,30 @@ std::vector<StepEdge> visible_edges(std::span<const PaintedPolygon> painted) {
   return visible;
 }
 
+std::vector<StepEdge> element_edges(const cv::Mat1d& levels, double side, cv::Point2d corner) {
+  const auto level = [&](int y, int x) {
+    return x >= 0 && y >= 0 && x < levels.cols && y < levels.rows ? levels(y, x) : 0.0;
+  };
+  const auto node = [&](int y, int x) { return corner + side * cv::Point2d(x, y); };
+  std::vector<StepEdge> edges;
+  // Joins the steps along one line of the lattice: `step` and `place` of its parts and nodes.
+  const auto add_line = [&](int parts, const auto& step, const auto& place) {
+    for (int from = 0; from < parts;) {
+      int to = from + 1;
+      while (to < parts && step(to) == step(from)) ++to;
+      if (step(from) != 0) edges.push_back({place(from), place(to), step(from)});
+      from = to;
+    }
+  };
+  for (int y = 0; y <= levels.rows; ++y)
+    add_line(
+        levels.cols, [&](int x) { return level(y - 1, x) - level(y, x); }, [&](int x) { return node(y, x); });
+  for (int x = 0; x <= levels.cols; ++x)
+    add_line(
+        levels.rows, [&](int y) { return level(y, x) - level(y, x - 1); }, [&](int y) { return node(y, x); });
+  return edges;
+}
+
 double integral(std::span<const StepEdge> edges) {
   double sum = 0;
   for (const auto& edge : edges) sum -= edge.step * (edge.a.x + edge.b.x) / 2 * (edge.b.y - edge.a.y);

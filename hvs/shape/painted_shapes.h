@@ -2,6 +2,7 @@
 // Shapes of uniform level painted over each other, represented by the edges at which the level steps.
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,10 @@ struct StepEdge {
 /// others; covered edges and edges with the same level on both sides are omitted; edges shared by two polygons count
 /// once. Features below 1e-9 of the whole extent are lost. Cost: the square of the number of edges.
 [[nodiscard]] std::vector<StepEdge> visible_edges(std::span<const PaintedPolygon> painted);
+
+/// Returns the edges between the square elements of a picture, over level 0 outside. The corner of element (0, 0) lies
+/// at `corner`; `side` is that of an element. Edges of one step that continue each other are joined.
+[[nodiscard]] std::vector<StepEdge> element_edges(const cv::Mat1d& levels, double side, cv::Point2d corner);
 
 /// Integral of the level over the plane.
 [[nodiscard]] double integral(std::span<const StepEdge> edges);

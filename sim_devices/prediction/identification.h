@@ -22,12 +22,6 @@
 
 namespace todbench {
 
-/// One alternative with its views. All have the same background; the middle of the visible target is the origin.
-struct IdentificationTarget {
-  std::string name;
-  std::vector<FieldScene> aspects;
-};
-
 struct IdentificationRange {
   double range_m = 100;
   double transmittance = 1;

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
 
 #include "sim_devices/sensor/effect_readout.h"
 
@@ -32,6 +35,21 @@ void make_alike_in_size(SeenTargets& targets) {
   }
 }
 
+/// Edges of a view in metres, at uniform level if one is stated. Of a picture, those of the elements of the target.
+std::vector<StepEdge> edges_of(const FieldScene& scene, const RadianceScale& scale, std::optional<double> uniform_k) {
+  if (scene.picture) {
+    const ScenePicture& picture = *scene.picture;
+    cv::Mat1d levels = uniform_k ? cv::Mat1d(picture.kelvin.size(), *uniform_k) : picture_levels_k(scene, scale);
+    levels.setTo(0, picture.target == 0);
+    return element_edges(levels, picture.element_m, cv::Point2d(levels.cols, levels.rows) * (-0.5 * picture.element_m));
+  }
+  auto painted = levels_k(scene, scale);
+  if (uniform_k) {
+    for (auto& region : painted) region.level = *uniform_k;
+  }
+  return visible_edges(painted);
+}
+
 }  // namespace
 
 Result<SeenTargets> seen_targets(const IdentificationTask& task) {
@@ -41,6 +59,8 @@ Result<SeenTargets> seen_targets(const IdentificationTask& task) {
   for (const auto& target : task.targets) {
     if (target.aspects.empty() || target.aspects.size() != task.targets.front().aspects.size())
       return fail(ErrorCode::invalid_input, "every target must have the same number of aspects, at least one");
+    if (target.aspects.size() > most_aspects)
+      return fail(ErrorCode::invalid_input, "a target has at most " + std::to_string(most_aspects) + " aspects");
   }
   for (const auto& target : task.targets) {
     auto& own = out.emplace_back();
@@ -49,11 +69,8 @@ Result<SeenTargets> seen_targets(const IdentificationTask& task) {
       const auto signature = target_signature(scene, scale);
       if (!signature || !(signature->dt_rss_k() > 0))
         return fail(ErrorCode::invalid_input, "target " + target.name + " has no contrast against its background");
-      auto painted = levels_k(scene, scale);
-      if (task.cues == TargetCues::shape) {
-        for (auto& region : painted) region.level = signature->dt_rss_k();
-      }
-      own.push_back({visible_edges(painted), signature->dt_rss_k(), signature->size_m()});
+      const auto uniform_k = task.cues == TargetCues::shape ? std::optional(signature->dt_rss_k()) : std::nullopt;
+      own.push_back({edges_of(scene, scale, uniform_k), signature->dt_rss_k(), signature->size_m()});
     }
   }
   if (out.size() < 2) return fail(ErrorCode::invalid_input, "identification needs at least two targets");

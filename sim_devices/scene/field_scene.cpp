@@ -35,8 +35,8 @@ Result<void> check_region(const SceneRegion& region) {
 
 Result<void> check_picture(const ScenePicture& picture) {
   if (picture.kelvin.empty()) return refuse_scene("the picture is empty");
-  if (!(picture.pixel_mrad > 0 && picture.pixel_mrad < 1000 && picture.range_m > 0 && picture.range_m < 1e7))
-    return refuse_scene("the picture has no valid scale: pixel_mrad and range_m must state the size of its elements");
+  if (!(picture.element_m > 0 && picture.element_m < 1e7))
+    return refuse_scene("the picture has no valid scale: the size of its elements in metres must be known");
   for (const double value : picture.kelvin) {
     if (auto fine = check_temperature("the picture", value); !fine) return fine;
   }
@@ -125,8 +125,7 @@ std::optional<TargetSignature> signature_of_picture(const FieldScene& scene, con
     }
   }
   TargetSignature out;
-  const double element_m = picture.pixel_mrad * 1e-3 * picture.range_m;
-  out.area_m2 = cv::countNonZero(picture.target) * element_m * element_m;
+  out.area_m2 = cv::countNonZero(picture.target) * picture.element_m * picture.element_m;
   out.mean_dt_k = mean[0] - (count > 0 ? beside / count : 0);
   out.sd_k = sd[0];
   return out;
@@ -211,7 +210,7 @@ std::optional<TargetSignature> target_signature(const FieldScene& scene, const R
 
 cv::Size2d extent_m(const FieldScene& scene) {
   if (scene.picture) {
-    const double element_m = scene.picture->pixel_mrad * 1e-3 * scene.picture->range_m;
+    const double element_m = scene.picture->element_m;
     return {scene.picture->kelvin.cols * element_m, scene.picture->kelvin.rows * element_m};
   }
   double left = 1e300, right = -1e300, top = 1e300, bottom = -1e300;

@@ -2,6 +2,7 @@
 // Scene in the field: polygons in metres with temperature and emissivity, or a radiometric picture.
 #pragma once
 
+#include <cstddef>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <span>
@@ -25,10 +26,9 @@ struct SceneRegion {
 
 /// A calibrated picture, taken by a finer camera at a shorter range. Its middle is the scene's origin.
 struct ScenePicture {
-  cv::Mat1d kelvin;       ///< radiation temperatures
-  cv::Mat1b target;       ///< not 0: part of the target; empty: no target
-  double pixel_mrad = 0;  ///< angle of a picture element
-  double range_m = 0;     ///< range at which it was taken
+  cv::Mat1d kelvin;      ///< radiation temperatures
+  cv::Mat1b target;      ///< not 0: part of the target; empty: no target
+  double element_m = 0;  ///< side of a picture element at the scene
 };
 
 /// Regions in the order of painting (later ones cover earlier ones), or a picture. A value.
@@ -39,6 +39,14 @@ struct FieldScene {
   double surround_k = 300;  ///< radiation temperature of the reflected surround
   std::vector<SceneRegion> regions;
   std::optional<ScenePicture> picture{};
+};
+
+/// Largest number of views of a target.
+inline constexpr std::size_t most_aspects = 16;
+/// One target of a set with its views; the middle of the visible target is the origin.
+struct IdentificationTarget {
+  std::string name;
+  std::vector<FieldScene> aspects;
 };
 
 /// `invalid_input` in one sentence: an empty scene, temperatures of 0 K or below, emissivities outside 0 to 1, outlines

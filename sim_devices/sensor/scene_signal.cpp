@@ -20,7 +20,7 @@ Result<void> check_view(const SensorSpec& spec, const FieldScene& scene, const S
                             std::max(extent.width, extent.height), pitch_m, view.range_m));
   }
   if (!scene.picture) return {};
-  const double element_m = scene.picture->pixel_mrad * 1e-3 * scene.picture->range_m;
+  const double element_m = scene.picture->element_m;
   if (element_m > 0.25 * pitch_m * (1 + 1e-9)) {
     return fail(ErrorCode::invalid_input,
                 fmt::format("elements of the picture, {:.3g} m, are larger than a quarter of a pixel, {:.3g} m at {:g} "
@@ -57,7 +57,7 @@ Result<cv::Mat1d> scene_signal_k(const SceneImager& imager, const SensorSpec& sp
   if (auto fine = check_view(spec, scene, view); !fine) return tl::unexpected(fine.error());
   if (!scene.picture) return imager.image(edges_in_samples(scene, scale, spec, view, size), size);
   const cv::Mat1d levels = picture_levels_k(scene, scale);
-  const double element = scene.picture->pixel_mrad * 1e-3 * scene.picture->range_m * samples_per_metre(spec, view);
+  const double element = scene.picture->element_m * samples_per_metre(spec, view);
   const cv::Point2d first = middle_of(spec, view, size) - cv::Point2d(levels.cols - 1, levels.rows - 1) * (element / 2);
   return imager.image(levels, element, first, size);
 }

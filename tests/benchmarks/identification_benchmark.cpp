@@ -2,7 +2,7 @@
 // An identification experiment: 24 targets in three aspects at 8 ranges, 2000 decisions each.
 #include <benchmark/benchmark.h>
 
-#include "bench/plan/scene_descriptions.h"
+#include "bench/plan/target_sets.h"
 #include "sim_devices/prediction/identification.h"
 #include "tests/sim_devices/reference.h"
 

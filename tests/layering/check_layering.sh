@@ -70,7 +70,7 @@ BEGIN {
   may["bench/twin"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/devices"
   may["bench/forecast"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin"
   may["bench/run"] = core " " science " acquisition/recording bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast"
-  may["bench/studies"] = core " " science " sim_devices/lab bench/text bench/plan bench/range bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
+  may["bench/studies"] = core " " science " acquisition/recording sim_devices/lab bench/text bench/plan bench/range bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
   may["bench/history"] = core " bench/text bench/plan bench/judgement bench/session"
   may["bench/serve"] = core " " science " bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
   may["bench/run_control"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/serve"

@@ -10,8 +10,8 @@
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/plan/atmospheres.h"
 #include "bench/plan/descriptions.h"
-#include "bench/plan/scene_descriptions.h"
 #include "bench/session/session_folder.h"
+#include "bench/studies/pictured_scenes.h"
 #include "bench/text/files.h"
 
 namespace todbench {
@@ -56,7 +56,7 @@ Result<PersonExperiment> person_experiment(const PersonQuestion& question) {
     for (const double share : question.of_nyquist) task.frequencies_per_mrad.push_back(share * nyquist);
     return PersonExperiment::of_bars(task, question.each);
   }
-  TODBENCH_TRY(auto set, load_target_set(question.set));
+  TODBENCH_TRY(auto set, target_set_with_pictures(question.set));
   auto air = load_atmosphere(question.atmosphere, {.band = {sensor.wavelength_min_um, sensor.wavelength_max_um},
                                                    .weight_temperature_k = sensor.scene_temperature_k});
   if (!air) return tl::unexpected(air.error());

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "bench/plan/target_sets.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -34,10 +35,10 @@ TEST(Scenes, TargetsAndSetsThatAreShippedReadAndAreCalledAsTheirFiles) {
     const auto set = load_target_set(name);
     ASSERT_TRUE(set) << set.error().message;
     EXPECT_EQ(set->name, name);
-    for (std::size_t t = 0; t < set->targets.size(); ++t) {
-      for (const double azimuth_deg : set->azimuths_deg) {
-        const FieldScene scene = scene_of(*set, t, azimuth_deg);
-        EXPECT_TRUE(validate(scene)) << set->targets[t].name << " at " << azimuth_deg;
+    for (const auto& target : set->targets) {
+      ASSERT_EQ(target.aspects.size(), set->azimuths_deg.size());
+      for (const FieldScene& scene : target.aspects) {
+        EXPECT_TRUE(validate(scene)) << target.name;
         EXPECT_GT(target_signature(scene, {})->size_m(), 0.3);
       }
     }

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "bench/plan/descriptions.h"
+#include "bench/plan/target_sets.h"
 #include "bench/text/text.h"
 #include "tests/support/temporary_folder.h"
 
@@ -22,6 +23,7 @@ IdentificationStudyTask three_craft() {
   task.set = load_target_set("small-craft").value();
   task.set.targets.resize(3);
   task.set.azimuths_deg = {90, 45};
+  for (auto& target : task.set.targets) target.aspects.resize(2);
   task.sensor = load_sensor("sc2000").value();
   task.accuracy = Accuracy::draft();
   task.ranges_m = {500, 1000};

@@ -16,6 +16,7 @@
 #include "hvs/observer/template_bank.h"
 #include "hvs/shape/step_image.h"
 #include "sim_devices/sensor/image_chain.h"
+#include "sim_devices/sensor/scene_image.h"
 #include "tests/sim_devices/reference.h"
 #include "tod/plate/test_pattern.h"
 
@@ -37,6 +38,19 @@ TEST(StepImage, IsTheSumOfTheImagesOfPolygons) {
   const cv::Mat1d expected = 1.5 * PolygonImage(a, filter).fine_image(4) - 0.5 * PolygonImage(b, filter).fine_image(4);
 
   EXPECT_LT(cv::norm(found, expected, cv::NORM_INF), 1e-12);
+}
+
+TEST(ElementEdges, HaveTheMeansOfTheElementsAndJoinEqualSteps) {
+  cv::Mat1d levels(3, 4, 0.0);
+  levels(cv::Rect(1, 0, 2, 2)) = 2.5;
+  levels(1, 2) = -1;
+  levels(2, 3) = 4;
+  const cv::Mat1d means = SceneImager::means(element_edges(levels, 1, {1.5, 2.5}), {8, 7});
+  cv::Mat1d expected(7, 8, 0.0);
+  levels.copyTo(expected(cv::Rect(2, 3, 4, 3)));
+  EXPECT_LT(cv::norm(means, expected, cv::NORM_INF), 1e-12);
+  // A block of any number of elements has four edges.
+  EXPECT_EQ(element_edges(cv::Mat1d(5, 9, 3.0), 0.1, {0, 0}).size(), 4u);
 }
 
 TEST(IdentificationBank, ScoresTrianglesAsTheTemplateObserverDoes) {

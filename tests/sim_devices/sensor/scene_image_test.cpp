@@ -154,7 +154,7 @@ TEST(TargetSignature, IsMeanAndSpreadOverTheVisibleTarget) {
 TEST(TargetSignature, OfAPictureIsThatOfItsMask) {
   const RadianceScale scale{{7.5, 13}, 302};
   FieldScene scene;
-  scene.picture = ScenePicture{cv::Mat1d(10, 10, 300.0), cv::Mat1b::zeros(10, 10), 0.1, 1000};
+  scene.picture = ScenePicture{cv::Mat1d(10, 10, 300.0), cv::Mat1b::zeros(10, 10), 0.1};
   scene.picture->kelvin(cv::Rect(2, 3, 4, 2)) = 303;
   scene.picture->target(cv::Rect(2, 3, 4, 2)) = 255;
 
@@ -180,7 +180,7 @@ TEST(Scenes, ThatCannotBeAreRefused) {
   EXPECT_TRUE(refused([](FieldScene& s) { s.regions.clear(); }));
   EXPECT_TRUE(refused([](FieldScene& s) {
     s.regions.clear();
-    s.picture = ScenePicture{cv::Mat1d(4, 4, 300.0), {}, 0, 100};
+    s.picture = ScenePicture{cv::Mat1d(4, 4, 300.0), {}, 0};
   }));
 }
 
@@ -189,7 +189,7 @@ TEST(Scenes, SmallerThanAPixelAndPicturesTooCoarseAreRefused) {
   const SceneImager imager(spec, full_plan(spec, {}, {}), Accuracy::draft());
   const RadianceScale scale{};
   FieldScene picture;
-  picture.picture = ScenePicture{cv::Mat1d(100, 100, 301.0), {}, 0.1, 400};  // 0.04 m, a quarter at 122.27 m
+  picture.picture = ScenePicture{cv::Mat1d(100, 100, 301.0), {}, 0.04};  // 0.04 m, a quarter at 122.27 m
   const auto at = [&](const FieldScene& scene, double range_m, double rotation_deg = 0) {
     return scene_signal_k(imager, spec, scene, scale, {.range_m = range_m, .rotation_deg = rotation_deg}, {16, 16})
         .has_value();

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/cli/scene_files.h"
+#include "bench/cli/result_folder.h"
 
-#include "acquisition/base/try.h"
-#include "acquisition/recording/picture_file.h"
 #include "bench/text/folders.h"
 
 namespace todbench {
-
-Result<FieldScene> scene_with_pictures(std::string_view reference) {
-  return load_scene(reference, [](const std::string& path) -> Result<StoredPicture> {
-    TODBENCH_TRY(auto file, read_picture(path));
-    return StoredPicture{file.picture, file.counts ? StoredPicture::Kind::counts : StoredPicture::Kind::numbers};
-  });
-}
 
 Result<void> check_result_folder(const std::filesystem::path& folder, ExistingResults existing) {
   std::error_code error;

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sets of targets to be discriminated, from their TOML files: models seen from several sides, or radiometric pictures.
+#pragma once
+
+#include <functional>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "bench/plan/scene_descriptions.h"
+#include "sim_devices/scene/field_scene.h"
+
+namespace todbench {
+
+/// Reads the mean of the first `frames` pictures of a recording in kelvin. `file` is its path, with "?QUERY" behind it
+/// if the file needs one. Errors: those of the recording; `calibration` if it has no temperatures.
+using TemperatureReader = std::function<Result<cv::Mat1d>(const std::string& file, int frames)>;
+/// Readers of the files that a set names. They are not part of this library.
+struct SetReaders {
+  TemperatureReader temperatures;
+  PictureReader mask;
+};
+
+/// Targets in front of a uniform background; all have the same number of views.
+struct TargetSet {
+  std::string name, description;
+  std::vector<IdentificationTarget> targets;  ///< at least two
+  std::vector<double> azimuths_deg;           ///< sides from which models are seen; empty: the views are pictures
+  std::vector<std::string> notes;             ///< for people: backgrounds of the pictures that are not uniform
+};
+/// Loads a target set by name ("small-craft") or file. Files that it names are relative to its folder. Without readers
+/// a set of pictures is refused. Errors: `invalid_input` with the file (as load_scene(); a picture without a target, a
+/// target that touches the edge of its region, pixels without temperature, a mask of another size), those of readers.
+[[nodiscard]] Result<TargetSet> load_target_set(std::string_view reference, const SetReaders& readers = {});
+
+/// Region of a picture and its target, as a set describes them.
+struct PictureCut {
+  cv::Rect region{};  ///< in pixels; empty: the whole picture
+  std::optional<double> above_k{}, below_k{};
+  cv::Mat1b mask{};  ///< of the whole picture, instead of thresholds
+  std::optional<double> background_k{};
+};
+/// A target of a picture in front of its background.
+struct CutTarget {
+  ScenePicture picture;  ///< without a scale; other elements have the background's temperature
+  cv::Size target_px;    ///< extent of the target
+  double background_k = 0;
+  std::optional<double> background_sd_k{};  ///< of the pixels beside the target; empty if too few are there
+};
+/// Cuts the target. The background is that of the cut, or the mean of the pixels 3 to 5 pixels beside the target:
+/// nearer ones contain the blur of the camera that took the picture. Errors: `invalid_input` in one sentence.
+[[nodiscard]] Result<CutTarget> cut_target(const cv::Mat1d& kelvin, const PictureCut& cut);
+
+/// Smallest and largest element of the pictures of a set in metres; empty for models.
+[[nodiscard]] std::optional<std::pair<double, double>> element_range_m(const TargetSet& set);
+
+}  // namespace todbench
