@@ -98,7 +98,7 @@ cv::Point2d view_offset(std::size_t phase) {
 }
 
 std::uint64_t presentation_of(std::size_t phase, std::size_t target, std::size_t aspect) {
-  return phase + identification_phases * (aspect + 8 * target);
+  return phase + identification_phases * (aspect + most_aspects * target);
 }
 
 double samples_per_metre(const SensorSpec& spec, const IdentificationRange& range) {

@@ -9,12 +9,14 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "acquisition/base/rng.h"
 #include "hvs/observer/eye_noise.h"
 #include "hvs/observer/identification_bank.h"
 #include "hvs/observer/template_bank.h"
 #include "hvs/shape/step_image.h"
+#include "sim_devices/prediction/identification_views.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/scene_image.h"
 #include "tests/sim_devices/reference.h"
@@ -51,6 +53,16 @@ TEST(ElementEdges, HaveTheMeansOfTheElementsAndJoinEqualSteps) {
   EXPECT_LT(cv::norm(means, expected, cv::NORM_INF), 1e-12);
   // A block of any number of elements has four edges.
   EXPECT_EQ(element_edges(cv::Mat1d(5, 9, 3.0), 0.1, {0, 0}).size(), 4u);
+}
+
+TEST(Identification, NumbersEveryPictureOfTheLargestSetDifferently) {
+  std::set<std::uint64_t> numbers;
+  for (std::size_t target = 0; target < 64; ++target) {
+    for (std::size_t aspect = 0; aspect < most_aspects; ++aspect) {
+      for (std::size_t phase = 0; phase < identification_phases; ++phase)
+        EXPECT_TRUE(numbers.insert(presentation_of(phase, target, aspect)).second) << target << " " << aspect;
+    }
+  }
 }
 
 TEST(IdentificationBank, ScoresTrianglesAsTheTemplateObserverDoes) {
