@@ -15,6 +15,7 @@
 #include "bench/cli/session_argument.h"
 #include "bench/enhance/decidable.h"
 #include "bench/enhance/enhancement_page.h"
+#include "bench/enhance/package_spread.h"
 #include "bench/enhance/stage_scan.h"
 #include "bench/judgement/verdict.h"
 #include "bench/picture_files/encoded_picture.h"
@@ -23,6 +24,7 @@
 #include "bench/session/fit_record.h"
 #include "bench/session/trials_csv.h"
 #include "bench/text/files.h"
+#include "bench/text/spread_text.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 
@@ -45,16 +47,20 @@ Json enhanced_points_json(const PackageResult& result) {
                                     [&](const auto& r) { return same_contrast(r.set_delta_t_k, point.set_delta_t_k); });
     const bool any = ratio != result.ratios.end();
     const auto judged = judged_point(result, point.set_delta_t_k);
-    points.push_back({{"set_delta_t_k", point.set_delta_t_k},
-                      {"acuity_per_mrad", json_number(identified_acuity_per_mrad(point))},
-                      {"acuity_ci95_per_mrad", json_interval(acuity_interval(point.fit.ci95))},
-                      {"ratio", any ? json_number(ratio->ratio) : Json()},
-                      {"ratio_ci95", any ? json_interval(ratio->ci95) : Json()},
-                      {"withheld", any && !ratio->withheld.empty() ? Json(ratio->withheld) : Json()},
-                      {"verdict", to_string(point.fit.verdict)},
-                      {"adequacy", adequacy_json(point.adequacy)},
-                      {"judged_gain", judged ? json_number(judged->gain) : Json()},
-                      {"judged_noise_k", judged ? json_number(judged->noise_k) : Json()}});
+    Json row{{"set_delta_t_k", point.set_delta_t_k},
+             {"acuity_per_mrad", json_number(identified_acuity_per_mrad(point))},
+             {"acuity_ci95_per_mrad", json_interval(acuity_interval(point.fit.ci95))},
+             {"ratio", any ? json_number(ratio->ratio) : Json()},
+             {"ratio_ci95", any ? json_interval(ratio->ci95) : Json()},
+             {"withheld", any && !ratio->withheld.empty() ? Json(ratio->withheld) : Json()},
+             {"verdict", to_string(point.fit.verdict)},
+             {"adequacy", adequacy_json(point.adequacy)},
+             {"judged_gain", judged ? json_number(judged->gain) : Json()},
+             {"judged_noise_k", judged ? json_number(judged->noise_k) : Json()}};
+    if (const auto acuity = acuity_spread_per_mrad(point.s75_spread_mrad))
+      row["acuity_spread_per_mrad"] = json_interval(*acuity);
+    if (any) add_spread(row, "ratio_spread", ratio->spread);
+    points.push_back(std::move(row));
   }
   return points;
 }
@@ -103,22 +109,29 @@ Result<void> write_folder(const std::filesystem::path& folder, const LoadedPlan&
 }
 
 void say_enhancement(Console& console, const Enhancement& enhancement) {
+  const bool with_spread = any_spread(enhancement);
   std::vector<TableRow> rows;
   for (const auto& result : enhancement.results) {
     for (const auto& point : result.curve.points) {
       std::optional<double> ratio;
-      Interval interval;
+      Interval interval, spread;
       for (const auto& r : result.ratios) {
         if (!same_contrast(r.set_delta_t_k, point.set_delta_t_k)) continue;
         ratio = r.ratio;
         interval = r.ci95;
+        if (r.spread) spread = {r.spread->first, r.spread->second};
       }
       rows.push_back({result.name, fmt::format("{:g}", point.set_delta_t_k),
                       fixed(identified_acuity_per_mrad(point), 3), fixed(ratio, 3), range(interval, 3),
                       fmt::format("{:.3g}", result.frame_ms)});
+      if (!with_spread) continue;
+      rows.back().push_back(range(acuity_spread_per_mrad(point.s75_spread_mrad).value_or(Interval{}), 3));
+      rows.back().push_back(range(spread, 3));
     }
   }
-  console.table({"package", "set contrast (K)", "acuity (1/mrad)", "ratio", "95 %", "ms/frame"}, rows);
+  TableRow header{"package", "set contrast (K)", "acuity (1/mrad)", "ratio", "95 %", "ms/frame"};
+  if (with_spread) header.insert(header.end(), {"acuity, open parameters", "ratio, open parameters"});
+  console.table(header, rows);
   for (const auto& result : enhancement.results) {
     for (const auto& point : result.curve.points)
       print_findings(console, point.adequacy, fmt::format("{} at {:g} K: ", result.name, point.set_delta_t_k));

@@ -31,6 +31,7 @@ void withhold_undecided(std::vector<PairedRatio>& ratios, const PackageResult& w
     if (ratio.withheld.empty()) continue;
     ratio.ratio.reset();
     ratio.ci95 = {};
+    ratio.spread.reset();
   }
 }
 

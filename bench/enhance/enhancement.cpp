@@ -15,6 +15,7 @@
 #include "acquisition/base/try.h"
 #include "bench/devices/processed_source.h"
 #include "bench/enhance/decidable.h"
+#include "bench/enhance/package_spread.h"
 #include "bench/enhance/stage_scan.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/recorded_bench.h"
@@ -50,10 +51,40 @@ void keep_line(PackageResult& result, std::string_view line) {
   if (result.error_lines.size() < most_error_lines) result.error_lines.emplace_back(line);
 }
 
+/// Plan and judges that all chains of a comparison share.
+struct Chains {
+  const LoadedPlan& loaded;
+  const ExperimentInputs& inputs;
+  const EnhancementOptions& options;
+  Observer& observer;
+  OpenEnds& ends;
+  std::stop_token stop;
+  [[nodiscard]] const Plan& plan() const { return loaded.plan(); }
+};
+
+/// Fits the curve of the trials, with what the measurement says about each point.
+Result<TodCurve> curve_of(const Chains& chains, const PackageResult& result, const MeasurementResult* measured) {
+  const Plan& plan = chains.plan();
+  TODBENCH_TRY(TodCurve curve, tod_curve(result.trials, fit_options(plan)));
+  curve.sensor = chains.inputs.sensor.name;
+  curve.observer = observer_name(plan, chains.inputs);
+  if (measured != nullptr) keep_noise(*measured, curve);
+  for (TodPoint& point : curve.points) {
+    // Successive frames differ by their places within a pixel, which is no memory of the noise.
+    if (chains.options.dither > 1) point.lag1_correlation.reset();
+    point.estimator_reason =
+        plan.fit.estimator == EstimatorChoice::automatic ? EstimatorReason::package : EstimatorReason::plan;
+    point.answers =
+        AnswersTaken{AnswerKind::binary, 1,
+                     plan.schedule.answers == AnswersChoice::automatic ? AnswersReason::package : AnswersReason::plan};
+  }
+  examine(curve, fit_options(plan));
+  return curve;
+}
+
 /// Runs one chain on a bench and stores the outcome, including its error, in `result`.
-void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& inputs,
-             const std::vector<ModulePlan>& modules, const EnhancementPackage* package,
-             const EnhancementOptions& options, PackageResult& result, std::stop_token stop) {
+void run_one(const Chains& chains, SimulatedSetUp set_up, const std::vector<ModulePlan>& modules,
+             const EnhancementPackage* package, PackageResult& result) {
   // Plate and contrast are located in the pictures of the camera itself, because a package may change the scale.
   const auto record = std::make_shared<ProcessingRecord>();
   const auto on_error_line = [&result](std::string_view line) { keep_line(result, line); };
@@ -62,9 +93,8 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
   result.samples_per_pixel = set_up.options.judged_samples_per_pixel = samples_per_pixel(stages);
   const auto camera =
       processed_source(std::move(set_up.bench.camera), std::move(stages), ProcessedAs::judged, picture_frame, record);
-  const auto observer = observer_of(plan, inputs, on_error_line);
   MeasurementListener listener;
-  listener.on_progress = options.on_progress;
+  listener.on_progress = chains.options.on_progress;
   listener.on_trial = [&, simulated = set_up.bench.simulated](Trial trial) {
     // A simulated exposure has no host time.
     if (simulated) trial.host_time_ns = trial.device_time_ns;
@@ -72,48 +102,32 @@ void run_one(SimulatedSetUp set_up, const Plan& plan, const ExperimentInputs& in
     trial.frames = 1;
     result.trials.push_back(std::move(trial));
   };
-  const auto measured = measure(*camera, *set_up.bench.target, *observer, *set_up.schedule, set_up.options,
-                                *set_up.bench.host, listener, std::move(stop));
-  if (!measured)
-    result.error = measured.error();
-  else
-    result.error = measured->ended_by;
+  listener.on_patch = [&](const Trial& trial, const Patch& patch) {
+    chains.ends.judge(trial, patch, set_up.options, result.at_ends);
+  };
+  const auto measured = measure(*camera, *set_up.bench.target, chains.observer, *set_up.schedule, set_up.options,
+                                *set_up.bench.host, listener, chains.stop);
+  result.error = measured ? measured->ended_by : measured.error();
   if (measured) result.judged = measured->judged_contrasts;
   result.frame_ms = median_of(record->frame_ms);
   result.frames = record->frame_ms.size();
   result.clipped_pixels = record->clipped;
   result.picture = record->picture;
   if (result.trials.empty()) return;
-  if (auto curve = tod_curve(result.trials, fit_options(plan))) {
+  if (auto curve = curve_of(chains, result, measured ? &*measured : nullptr)) {
     result.curve = std::move(*curve);
-    examine(result.curve, fit_options(plan));
-    result.curve.sensor = inputs.sensor.name;
-    result.curve.observer = observer_name(plan, inputs);
-    if (measured) keep_noise(*measured, result.curve);
-    if (options.dither > 1) {
-      // Successive frames differ by their places within a pixel, which is no memory of the noise.
-      for (TodPoint& point : result.curve.points) point.lag1_correlation.reset();
-    }
-    for (TodPoint& point : result.curve.points) {
-      point.estimator_reason =
-          plan.fit.estimator == EstimatorChoice::automatic ? EstimatorReason::package : EstimatorReason::plan;
-      point.answers = AnswersTaken{
-          AnswerKind::binary, 1,
-          plan.schedule.answers == AnswersChoice::automatic ? AnswersReason::package : AnswersReason::plan};
-    }
-    examine(result.curve, fit_options(plan));
   } else if (!result.error) {
     result.error = curve.error();
   }
 }
 
 /// The same with a new simulated sensor.
-void run_simulated_one(const LoadedPlan& loaded, const ExperimentInputs& inputs, const EnhancementPackage* package,
-                       int settle_frames, const EnhancementOptions& options, PackageResult& result,
-                       const std::stop_token& stop) {
+void run_simulated_one(const Chains& chains, const EnhancementPackage* package, int settle_frames,
+                       PackageResult& result) {
   const auto on_error_line = [&result](std::string_view line) { keep_line(result, line); };
-  auto set_up =
-      simulated_set_up(loaded.plan(), inputs, {}, stop, {.on_error_line = on_error_line, .dither = options.dither});
+  const auto& modules = chains.inputs.sensor.modules;
+  auto set_up = simulated_set_up(chains.plan(), chains.inputs, {}, chains.stop,
+                                 {.on_error_line = on_error_line, .dither = chains.options.dither});
   if (!set_up) {
     result.error = set_up.error();
     return;
@@ -122,14 +136,14 @@ void run_simulated_one(const LoadedPlan& loaded, const ExperimentInputs& inputs,
   set_up->options.answers = AnswerKind::binary;
   set_up->options.frames_per_presentation = 1;
   set_up->options.frames_at_contrast.clear();
-  run_one(*std::move(set_up), loaded.plan(), inputs, inputs.sensor.modules, package, options, result, stop);
+  run_one(chains, *std::move(set_up), modules, package, result);
 }
 
 /// The same with the recorded bench of a session: the measurement has to ask the recorded questions.
-void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& loaded, const ExperimentInputs& inputs,
-                      const EnhancementPackage* package, const EnhancementOptions& options, PackageResult& result,
-                      const std::stop_token& stop) {
-  const Plan& plan = loaded.plan();
+void run_recorded_one(const Chains& chains, const std::filesystem::path& session, const EnhancementPackage* package,
+                      PackageResult& result) {
+  const Plan& plan = chains.plan();
+  const ExperimentInputs& inputs = chains.inputs;
   if (plan.camera.contrast == ContrastUnit::grey_levels) {
     result.error = Error{ErrorCode::invalid_input,
                          "packages cannot process frames in grey levels, because the gain control "
@@ -144,7 +158,7 @@ void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& lo
   MeasurementOptions measuring = measurement_options(plan, inputs.plates, plan.camera.ifov_mrad);
   take_answers(measuring, plan, inputs);  // the recorded number of frames; only answers to the first frame count
   const SensorModel model(inputs.sensor, inputs.effects, inputs.accuracy, plan.seed);
-  auto response = simulated_responses(model, plan, inputs.plates, measuring, stop);
+  auto response = simulated_responses(model, plan, inputs.plates, measuring, chains.stop);
   if (!response) {
     result.error = response.error();
     return;
@@ -153,8 +167,7 @@ void run_recorded_one(const std::filesystem::path& session, const LoadedPlan& lo
   measuring.free_running = !recording->bench.simulated;
   auto schedule =
       make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(plan.seed, "schedule"));
-  run_one({std::move(measuring), std::move(recording->bench), std::move(schedule)}, plan, inputs, {}, package, options,
-          result, stop);
+  run_one(chains, {std::move(measuring), std::move(recording->bench), std::move(schedule)}, {}, package, result);
   if (auto agreed = recording->answers->agreed(); !agreed && !result.error) result.error = agreed.error();
 }
 
@@ -262,7 +275,9 @@ PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackag
     result.error = fits.error();
     return result;
   }
-  run_simulated_one(loaded, *inputs, package, settle_frames, options, result, stop);
+  const auto observer = observer_of(loaded.plan(), *inputs, [&](std::string_view line) { keep_line(result, line); });
+  OpenEnds nobody{TemplateObserverSpec{}};
+  run_simulated_one({loaded, *inputs, options, *observer, nobody, std::move(stop)}, package, settle_frames, result);
   return result;
 }
 
@@ -303,20 +318,30 @@ namespace {
 
 /// Runs without a package first, then every package, with the ratios to the first.
 Result<Enhancement> through_all(
-    const Plan& plan, const std::vector<EnhancementPackage>& packages, const EnhancementOptions& options,
-    const std::stop_token& stop,
-    const std::function<void(const EnhancementPackage* package, PackageResult& result)>& run) {
+    const LoadedPlan& loaded, const ExperimentInputs& inputs, const std::vector<EnhancementPackage>& packages,
+    const EnhancementOptions& options, const std::stop_token& stop,
+    const std::function<void(const Chains& chains, const EnhancementPackage* package, PackageResult& result)>& run) {
+  const bool noise_known = options.dither == 1;
+  TemplateObserver observer(inputs.observer, triangle_alternatives());
+  OpenEnds ends(noise_known ? inputs.observer : TemplateObserverSpec{});
+  const Chains chains{loaded, inputs, options, observer, ends, stop};
+  const FitOptions fit = fit_options(loaded.plan());
   Enhancement enhancement;
+  if (!noise_known && inputs.observer.eye)
+    enhancement.warnings.emplace_back(
+        "no spread over the open parameters of the observer: at an end of their range its noise is proportional to "
+        "the sensor noise, which dithered frames do not show");
   for (std::size_t i = 0; i <= packages.size() && !stop.stop_requested(); ++i) {
     const EnhancementPackage* package = i == 0 ? nullptr : &packages[i - 1];
     PackageResult result;
     result.name = package == nullptr ? "none" : package->name;
     if (options.on_package) options.on_package(result.name);
-    run(package, result);
+    run(chains, package, result);
     if (package == nullptr && result.error) return tl::unexpected(*result.error);
-    if (package != nullptr)
-      result.ratios = paired_ratios(result.trials, enhancement.results.front().trials, fit_options(plan));
-    if (package != nullptr) withhold_undecided(result.ratios, result, enhancement.results.front());
+    const PackageResult* none = package == nullptr ? nullptr : &enhancement.results.front();
+    if (none != nullptr) result.ratios = paired_ratios(result.trials, none->trials, fit);
+    std::ranges::move(add_spreads(fit, none, result), std::back_inserter(enhancement.warnings));
+    if (none != nullptr) withhold_undecided(result.ratios, result, *none);
     if (auto note = why_not_linear(result); !note.empty()) enhancement.warnings.push_back(std::move(note));
     enhancement.results.push_back(std::move(result));
   }
@@ -339,9 +364,10 @@ Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector
   TODBENCH_TRY(const auto inputs, full_inputs(loaded));
   if (auto fits = check_simulated_geometry(plan, inputs); !fits) return tl::unexpected(fits.error());
   const int settle = longest_memory(packages);
-  auto enhancement = through_all(plan, packages, options, stop, [&](const auto* package, PackageResult& result) {
-    run_simulated_one(loaded, inputs, package, settle, options, result, stop);
-  });
+  auto enhancement = through_all(loaded, inputs, packages, options, stop,
+                                 [&](const Chains& chains, const auto* package, PackageResult& result) {
+                                   run_simulated_one(chains, package, settle, result);
+                                 });
   if (!enhancement) return enhancement;
   enhancement->settle_frames = settle;
   enhancement->dither = options.dither;
@@ -360,9 +386,10 @@ Result<Enhancement> compare_packages_recorded(const std::filesystem::path& sessi
   TODBENCH_TRY(const auto inputs, experiment_inputs(loaded, planner));
   TODBENCH_TRY(const auto recording, open_recorded_bench(session, nullptr));
   const SourceInfo& info = recording.bench.camera->info();
-  auto enhancement = through_all(plan, packages, options, stop, [&](const auto* package, PackageResult& result) {
-    run_recorded_one(session, loaded, inputs, package, options, result, stop);
-  });
+  auto enhancement = through_all(loaded, inputs, packages, options, stop,
+                                 [&](const Chains& chains, const auto* package, PackageResult& result) {
+                                   run_recorded_one(chains, session, package, result);
+                                 });
   if (!enhancement) return enhancement;
   enhancement->settle_frames = plan.measurement.frames_after_change;
   enhancement->dither = options.dither;

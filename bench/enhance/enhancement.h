@@ -7,9 +7,11 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/enhance/package_file.h"
+#include "bench/enhance/package_spread.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/session/open_session.h"
 #include "bench/twin/experiment_inputs.h"
@@ -25,12 +27,16 @@ struct PairedRatio {
   /// Jackknife of ln ratio over at most 20 groups of whole presentations, left out of both runs, with Student's t.
   /// Common variation cancels, above all the noise of the frames.
   Interval ci95;
+  /// Lowest and highest ratio by the observer and by those at both ends of its open parameters, each for both runs. It
+  /// is not a confidence interval. Empty: no open parameters, or a threshold is missing.
+  std::optional<std::pair<double, double>> spread{};
   std::string withheld{};  ///< reason of a missing ratio if a point may not be used
 };
 /// Result of one package, or without a package.
 struct PackageResult {
   std::string name;
   std::vector<Trial> trials;
+  EndTrials at_ends{};              ///< with an eye, by compare_packages() and compare_packages_recorded()
   TodCurve curve;                   ///< empty if no fit was possible
   std::vector<PairedRatio> ratios;  ///< to the result without a package; empty for that result itself
   double frame_ms = 0;              ///< median processing time of its stages per frame
@@ -58,8 +64,9 @@ struct EnhancementOptions {
 /// Simulates the plan's sensor with every effect, once without and once with each package, with the same random
 /// numbers: the exposures are identical bit for bit. After a change of the target, as many exposures as the longest
 /// memory of all packages are discarded. Place of the plate and contrast come from the pictures of the camera itself. A
-/// package that fails has its error; the others continue. Errors: `invalid_input` for a plan whose schedule depends on
-/// the answers; those of the simulation without a package.
+/// package that fails has its error; the others continue. With an eye, the observers at both ends of its open
+/// parameters judge the same patches: thresholds and ratios have a spread, or a warning says why not. Errors:
+/// `invalid_input` for a plan whose schedule depends on the answers; those of the simulation without a package.
 [[nodiscard]] Result<Enhancement> compare_packages(const LoadedPlan& loaded,
                                                    const std::vector<EnhancementPackage>& packages,
                                                    const EnhancementOptions& options, std::stop_token stop);

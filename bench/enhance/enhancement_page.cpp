@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bench/enhance/decidable.h"
+#include "bench/enhance/package_spread.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
@@ -17,10 +18,21 @@
 namespace todbench {
 namespace {
 
+RichText spread_cell(double low, double high) {
+  return plain(significant(low, 3) + " to " + significant(high, 3));
+}
+
 Section ratios_section(const Enhancement& enhancement) {
   Table table{.caption = "Acuity with each package and its ratio to the acuity without package, paired 95 % intervals",
               .header = {"Package", "Set contrast (K)", "Acuity (1/mrad), 95 %", "Ratio, 95 %"},
               .rows = {}};
+  const bool with_spread = any_spread(enhancement);
+  if (with_spread) {
+    table.caption +=
+        ". The last two columns are ranges over the open parameters of the observer and no confidence "
+        "intervals: no probability belongs to them";
+    table.header.insert(table.header.end(), {"Acuity, open parameters", "Ratio, open parameters"});
+  }
   for (const auto& result : enhancement.results) {
     for (const auto& point : result.curve.points) {
       const auto ratio = std::find_if(result.ratios.begin(), result.ratios.end(), [&](const auto& r) {
@@ -35,6 +47,11 @@ Section ratios_section(const Enhancement& enhancement) {
                       ? missing("reference")
                       : missing(ratio != result.ratios.end() && !ratio->withheld.empty() ? ratio->withheld
                                                                                          : "a threshold is missing"))});
+      if (!with_spread) continue;
+      const auto acuity = acuity_spread_per_mrad(point.s75_spread_mrad);
+      table.rows.back().push_back(acuity ? spread_cell(*acuity->low, *acuity->high) : missing("no spread"));
+      table.rows.back().push_back(any && ratio->spread ? spread_cell(ratio->spread->first, ratio->spread->second)
+                                                       : missing(result.ratios.empty() ? "reference" : "no spread"));
     }
   }
   return {"Acuity and ratio", {std::move(table)}};

@@ -22,6 +22,11 @@ std::optional<OpenParameterRange> open_parameter_range(const TemplateObserverSpe
   return range;
 }
 
+std::vector<TemplateObserverSpec> open_ends(const TemplateObserverSpec& spec) {
+  const auto range = open_parameter_range(spec);
+  return range ? std::vector{range->best, range->worst} : std::vector<TemplateObserverSpec>();
+}
+
 std::optional<std::pair<double, double>> spread_of(std::initializer_list<std::optional<double>> values) {
   std::optional<std::pair<double, double>> spread;
   for (const std::optional<double>& value : values) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "acquisition/base/result.h"
 #include "hvs/observer/template_observer.h"
@@ -22,6 +23,8 @@ struct OpenParameterRange {
 
 /// Empty for an observer without an eye.
 [[nodiscard]] std::optional<OpenParameterRange> open_parameter_range(const TemplateObserverSpec& spec);
+/// The best and then the worst observer of the range; empty without an eye.
+[[nodiscard]] std::vector<TemplateObserverSpec> open_ends(const TemplateObserverSpec& spec);
 
 /// Results of `find`, which returns a Result, for the best and then the worst observer of the range; empty without an
 /// eye. Errors: those of `find`.
@@ -29,13 +32,14 @@ template <typename Find>
 [[nodiscard]] auto at_open_ends(const TemplateObserverSpec& spec, const Find& find) -> Result<
     std::optional<std::array<typename std::invoke_result_t<const Find&, const TemplateObserverSpec&>::value_type, 2>>> {
   using Found = typename std::invoke_result_t<const Find&, const TemplateObserverSpec&>::value_type;
-  const auto range = open_parameter_range(spec);
-  if (!range) return std::optional<std::array<Found, 2>>();
-  auto best = find(range->best);
-  if (!best) return tl::unexpected(best.error());
-  auto worst = find(range->worst);
-  if (!worst) return tl::unexpected(worst.error());
-  return std::optional(std::array<Found, 2>{*std::move(best), *std::move(worst)});
+  std::vector<Found> found;
+  for (const TemplateObserverSpec& end : open_ends(spec)) {
+    auto at_end = find(end);
+    if (!at_end) return tl::unexpected(at_end.error());
+    found.push_back(*std::move(at_end));
+  }
+  if (found.empty()) return std::optional<std::array<Found, 2>>();
+  return std::optional(std::array<Found, 2>{std::move(found[0]), std::move(found[1])});
 }
 
 /// Spread of a quantity: the smallest and the largest of its values at both ends and, if it is not monotone in the

@@ -34,8 +34,7 @@ class Run {
         listener_(listener),
         stop_(std::move(stop)),
         taker_(source, taker_options(options, source.info(), listener.on_rejected)),
-        step_(options_, source, taker_, [this](const std::string& sentence) { note(sentence); }),
-        answers_(options.seed, "observer") {
+        step_(options_, source, taker_, [this](const std::string& sentence) { note(sentence); }) {
     options_.registration.expected_scale_px_per_mm = 1 / (options.distance_m * options.ifov_mrad);
     places_ = PlaceWatch({.max_shift_error_px = target.capabilities().sets_shift ? options.max_shift_error_px : 0,
                           .registration = options_.registration});
@@ -481,7 +480,7 @@ class Run {
   /// own stream below that of the trial.
   [[nodiscard]] GradedChoice judge(const PreparedObserver& observer, const Patch& patch, std::size_t triangle,
                                    int frame) const {
-    RandomStream noise = answers_.sub(static_cast<std::uint64_t>(presentation_)).sub(triangle);
+    RandomStream noise = answer_noise(options_.seed, presentation_, triangle);
     if (options_.answers == AnswerKind::binary) return {observer.choose(patch, seen_.contrast_k, noise), {}};
     if (frame > 0) noise = noise.sub(further_frames_stream + static_cast<std::uint64_t>(frame));
     return observer.judge(patch, seen_.contrast_k, noise, MeasurementOptions::graded_draws);
@@ -525,7 +524,6 @@ class Run {
   FrameTaker taker_;
   PlaceWatch places_{{}};
   SetUpStep step_;
-  RandomStream answers_;
   std::vector<PreparedPlate> plates_;
   std::map<SetUp, Registration> registered_;  ///< at shift 0
   std::optional<SetUp> current_set_up_;
@@ -548,6 +546,10 @@ class Run {
 };
 
 }  // namespace
+
+RandomStream answer_noise(std::uint64_t seed, std::int64_t presentation, std::size_t triangle) {
+  return RandomStream(seed, "observer").sub(static_cast<std::uint64_t>(presentation)).sub(triangle);
+}
 
 Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
                                   const MeasurementOptions& options, RunController& host,

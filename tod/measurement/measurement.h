@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "acquisition/base/rng.h"
 #include "acquisition/core/frame_source.h"
 #include "acquisition/core/integrity_gate.h"
 #include "hvs/observer/observer.h"
@@ -134,6 +135,10 @@ struct MeasurementResult {
   std::optional<Error> ended_by;       ///< reason of an early end; the trials so far are valid
   RunConstancy constancy{};            ///< of the averages; empty for contrasts in grey levels
 };
+
+/// Returns the random stream of the observer's answer to a triangle of a presentation, counted in the order of the
+/// plate.
+[[nodiscard]] RandomStream answer_noise(std::uint64_t seed, std::int64_t presentation, std::size_t triangle);
 
 /// Runs a schedule. Fails only if nothing could be measured (plate not found, uncalibrated camera, sizes that do not
 /// fit). A run that ended early returns its trials with `ended_by`. `host` and `listener` are used during the call

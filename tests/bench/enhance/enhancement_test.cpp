@@ -10,7 +10,9 @@
 #include <cmath>
 
 #include "bench/enhance/enhancement_page.h"
+#include "bench/enhance/package_spread.h"
 #include "bench/report/html.h"
+#include "hvs/observer/open_parameters.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tests/bench/enhance/enhancement_support.h"
 #include "tests/bench/enhance/paired_ratio_coverage.h"
@@ -135,6 +137,41 @@ TEST(Enhancement, IsSeenByAnObserverWithAnEyeAtTheDisplayOfThePlan) {
   ASSERT_EQ(found->results[2].ratios.size(), 1u);
   // Few answers have no interval; the ratio is about a half.
   EXPECT_LT(found->results[2].ratios[0].ratio.value_or(1), 0.8) << "a blurred picture shows less";
+  EXPECT_TRUE(any_spread(*found));
+  for (const PackageResult& result : found->results) {
+    const TodPoint& point = result.curve.points.at(0);
+    ASSERT_TRUE(point.s75_spread_mrad) << result.name;
+    EXPECT_LE(point.s75_spread_mrad->first, point.fit.threshold.value());
+    EXPECT_GE(point.s75_spread_mrad->second, point.fit.threshold.value());
+    EXPECT_LT(point.s75_spread_mrad->first, point.s75_spread_mrad->second) << result.name;
+  }
+  EXPECT_EQ(found->results[1].curve.points[0].s75_spread_mrad, found->results[0].curve.points[0].s75_spread_mrad);
+  EXPECT_EQ(found->results[1].ratios[0].spread, std::pair(1.0, 1.0));
+  // Both thresholds move together: the ratio moves less than either.
+  const auto& [low, high] = found->results[2].curve.points[0].s75_spread_mrad.value();
+  const auto& ratios = found->results[2].ratios[0].spread.value();
+  EXPECT_LT(ratios.second / ratios.first, high / low);
+  EXPECT_THAT(render_html(enhancement_page(plan, {}, *found)), HasSubstr("Ratio, open parameters"));
+  EXPECT_FALSE(any_spread(compare_packages(small_plan("16.9", 1), {}, {}, {}).value())) << "hvs-1 has no eye";
+}
+
+TEST(Enhancement, AsksAnEndOfTheOpenParametersAsIfItWereTheObserver) {
+  const auto plan = small_plan("0.6", 2,
+                               "[observer]\nname = \"hvs-2\"\n[display]\npixel_pitch_mm = 0.27\nviewing_distance_m = "
+                               "0.5\nzoom = 3\nluminance_white_cd_m2 = 200\n");
+  const auto found = compare_packages(plan, {}, {}, {});
+  PlanParts parts = plan.parts();
+  parts.observer = open_parameter_range(plan.observer())->worst;
+  const auto alone = compare_packages(LoadedPlan::of(plan.plan(), parts).value(), {}, {}, {});
+
+  ASSERT_TRUE(found && alone);
+  const auto &asked = found->results[0].at_ends.trials[1], &expected = alone->results[0].trials;
+  ASSERT_EQ(asked.size(), 40u);
+  ASSERT_EQ(expected.size(), 40u);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    EXPECT_EQ(asked[i].scores, expected[i].scores) << i;
+    EXPECT_EQ(asked[i].answer, expected[i].answer) << i;
+  }
 }
 
 TEST(Enhancement, KeepsTheTrialsOfAPackageThatFailsAndGoesOn) {

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Thresholds and ratios of packages over the open parameters of an observer with an eye, from the same patches.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "hvs/observer/template_observer.h"
+#include "tod/measurement/measurement.h"
+#include "tod/presentation/trial.h"
+
+namespace todbench {
+
+struct Enhancement;
+struct PackageResult;
+struct FitOptions;
+
+/// Trials of the same patches by the best and then the worst observer of the open parameters.
+struct EndTrials {
+  std::array<std::vector<Trial>, 2> trials;  ///< empty: not asked
+  std::optional<Error> failure;              ///< why an observer could not answer; the trials are then incomplete
+};
+
+/// The observers at both ends of the open parameters. They judge the patches of a run after the observer itself, so
+/// that frames, modules and packages are asked once. Reusable for all packages, which share the templates.
+class OpenEnds {
+ public:
+  /// Asks nobody if the observer has no eye.
+  explicit OpenEnds(const TemplateObserverSpec& observer);
+  /// Adds the answers to the patch of a trial, with the random numbers of the observer itself. `options`: of the run.
+  void judge(const Trial& trial, const Patch& patch, const MeasurementOptions& options, EndTrials& into);
+
+ private:
+  std::vector<std::unique_ptr<TemplateObserver>> ends_;
+};
+
+/// Adds the spreads to the thresholds of one result and to its ratios to `none` (null for that result itself). Returns
+/// one sentence for each threshold that has no spread although the observer has an eye.
+[[nodiscard]] std::vector<std::string> add_spreads(const FitOptions& options, const PackageResult* none,
+                                                   PackageResult& result);
+
+/// Returns whether a threshold or a ratio has a spread.
+[[nodiscard]] bool any_spread(const Enhancement& enhancement);
+
+}  // namespace todbench
