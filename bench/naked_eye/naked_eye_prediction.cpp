@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <vector>
 
 #include "acquisition/base/rng.h"
 #include "acquisition/base/try.h"
@@ -98,51 +101,56 @@ Result<std::optional<FoundSize>> threshold_of(ShareOverSize& shares, int start, 
       FoundSize{samples, samples * found->standard_error, static_cast<int>(std::lround(std::log(samples) / ratio))});
 }
 
-/// Observers of a prediction: the model, and both ends of its open parameters.
-struct ModelRange {
-  TemplateObserverSpec model, best, worst;
+/// Threshold of an observer, and its proportions correct at the sizes around `middle` or, without it, the threshold.
+struct ObserverOverSize {
+  std::optional<FoundSize> threshold;
+  std::vector<double> shares;  ///< naked_eye_sizes; empty without a middle
 };
-ModelRange models_of(const NakedEyeTask& task) {
-  const TemplateObserverSpec model = model_at_linear_display(task);
-  const auto range = open_parameter_range(model);
-  return {model, range ? range->best : model, range ? range->worst : model};
+constexpr int steps_below_middle = 3;
+
+Result<ObserverOverSize> over_size(const NakedEyeTask& task, const TemplateObserverSpec& spec, double contrast,
+                                   int pictures, std::optional<int> middle, const std::stop_token& stop) {
+  ShareOverSize shares(task, spec, contrast, pictures);
+  ObserverOverSize out;
+  TODBENCH_TRY(out.threshold, threshold_of(shares, middle.value_or(5), stop));
+  if (!middle && out.threshold) middle = out.threshold->step;
+  for (int k = 0; middle && k < naked_eye_sizes; ++k) {
+    TODBENCH_TRY(const Proportion share, shares.at(*middle - steps_below_middle + k));
+    out.shares.push_back(share.mean);
+  }
+  return out;
 }
 
-Result<NakedEyeContrast> predicted_contrast(const NakedEyeTask& task, const ModelRange& models, double contrast,
+Result<NakedEyeContrast> predicted_contrast(const NakedEyeTask& task, const TemplateObserverSpec& spec, double contrast,
                                             int pictures, const std::stop_token& stop) {
   const double mrad = mrad_per_sample(*task.model.display);
-  ShareOverSize model(task, models.model, contrast, pictures), best(task, models.best, contrast, pictures),
-      worst(task, models.worst, contrast, pictures);
-  TODBENCH_TRY(const auto found, threshold_of(model, 5, stop));
-  if (!found) {
+  TODBENCH_TRY(const ObserverOverSize model, over_size(task, spec, contrast, pictures, {}, stop));
+  if (!model.threshold) {
     return fail(ErrorCode::not_identifiable,
                 fmt::format("at a contrast of {:g} the model has no threshold between {:g} and {:g} displayed samples: "
                             "choose another contrast, zoom or viewing distance",
                             contrast, smallest_samples, largest_samples));
   }
-  const int middle = found->step;
-  const auto low = threshold_of(best, middle - 1, stop), high = threshold_of(worst, middle + 1, stop);
-  if (!low) return tl::unexpected(low.error());
-  if (!high) return tl::unexpected(high.error());
+  const int middle = model.threshold->step;
+  TODBENCH_TRY(const auto ends, at_open_ends(spec, [&](const TemplateObserverSpec& end) {
+                 return over_size(task, end, contrast, pictures, middle, stop);
+               }));
+  const auto [best, worst] = ends.value_or(std::array{model, model});
   NakedEyeContrast out{.contrast = contrast,
-                       .s75_mrad = mrad * found->samples,
-                       .s75_se_mrad = mrad * found->se_samples,
+                       .s75_mrad = mrad * model.threshold->samples,
+                       .s75_se_mrad = mrad * model.threshold->se_samples,
                        .spread_low_mrad = {},
                        .spread_high_mrad = {},
                        .sizes = {}};
-  if (*low) out.spread_low_mrad = mrad * (*low)->samples;
-  if (*high) out.spread_high_mrad = mrad * (*high)->samples;
-  for (int k = 0; k < naked_eye_sizes; ++k) {
-    const int step = middle - 3 + k;
-    const auto share = model.at(step), upper = best.at(step), lower = worst.at(step);
-    for (const auto* one : {&share, &upper, &lower})
-      if (!*one) return tl::unexpected(one->error());
-    const double samples = ShareOverSize::size_at(step);
+  if (best.threshold) out.spread_low_mrad = mrad * best.threshold->samples;
+  if (worst.threshold) out.spread_high_mrad = mrad * worst.threshold->samples;
+  for (std::size_t k = 0; k < model.shares.size(); ++k) {
+    const double samples = ShareOverSize::size_at(middle - steps_below_middle + static_cast<int>(k));
     out.sizes.push_back({.size_samples = samples,
                          .size_mrad = mrad * samples,
-                         .share = share->mean,
-                         .share_low = lower->mean,
-                         .share_high = upper->mean});
+                         .share = model.shares[k],
+                         .share_low = worst.shares[k],
+                         .share_high = best.shares[k]});
   }
   return out;
 }
@@ -186,9 +194,9 @@ Result<NakedEyePrediction> predict_naked_eye(const NakedEyeTask& task, int pictu
   NakedEyePrediction out{.arcmin_per_sample = arcmin_per_sample(*task.model.display),
                          .adaptation_luminance_cd_m2 = adaptation_luminance_cd_m2(*task.model.display),
                          .contrasts = {}};
-  const ModelRange models = models_of(task);
+  const TemplateObserverSpec model = model_at_linear_display(task);
   for (const double contrast : task.contrasts) {
-    TODBENCH_TRY(auto predicted, predicted_contrast(task, models, contrast, pictures, stop));
+    TODBENCH_TRY(auto predicted, predicted_contrast(task, model, contrast, pictures, stop));
     out.contrasts.push_back(std::move(predicted));
   }
   return out;

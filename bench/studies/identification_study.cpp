@@ -200,10 +200,13 @@ Result<IdentificationStudy> study_at_end(const IdentificationStudyTask& task, do
 /// Adds the spreads over the open parameters; none without an eye. M75 is not monotone in them, because better eyes see
 /// the triangles better as well.
 Result<void> add_spreads(const IdentificationStudyTask& task, double least_tau, IdentificationStudy& study) {
-  const auto range = open_parameter_range(task.observer);
-  if (!range) return {};
-  TODBENCH_TRY(const auto best, study_at_end(task, least_tau, study, range->best, &std::pair<double, double>::second));
-  TODBENCH_TRY(const auto worst, study_at_end(task, least_tau, study, range->worst, &std::pair<double, double>::first));
+  auto proportions = &std::pair<double, double>::second;  // the best observer comes first
+  TODBENCH_TRY(const auto ends, at_open_ends(task.observer, [&](const TemplateObserverSpec& observer) {
+                 return study_at_end(task, least_tau, study, observer,
+                                     std::exchange(proportions, &std::pair<double, double>::first));
+               }));
+  if (!ends) return {};
+  const auto& [best, worst] = *ends;
   for (SetCriterion IdentificationStudy::*criterion :
        {&IdentificationStudy::r75_m, &IdentificationStudy::m75, &IdentificationStudy::v50}) {
     (study.*criterion).spread =

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "acquisition/base/try.h"
 #include "hvs/observer/identification_bank.h"
@@ -61,10 +62,7 @@ class RangeTrial {
                                       .by_draw = std::vector<double>(draws, 0.0)};
     // The observer of the task, and both ends of its open parameters.
     std::vector<Seeing> all{{task_.observer, nothing}};
-    if (const auto ends = open_parameter_range(task_.observer)) {
-      all.push_back({ends->best, nothing});
-      all.push_back({ends->worst, nothing});
-    }
+    for (TemplateObserverSpec& end : open_ends(task_.observer)) all.push_back({std::move(end), nothing});
     if (judges_passes()) {
       if (auto answered = answer_passes(targets, all); !answered) return tl::unexpected(answered.error());
     } else {

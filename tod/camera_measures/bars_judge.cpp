@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -107,10 +108,7 @@ struct BarsJudge::Thresholds {
 
 BarsJudge::BarsJudge(const MrtdOptions& options)
     : options_(options), observers_{options.observer}, keeper_(options.kept_frames) {
-  if (const auto range = open_parameter_range(options.observer)) {
-    observers_.push_back(range->best);
-    observers_.push_back(range->worst);
-  }
+  std::ranges::move(open_ends(options.observer), std::back_inserter(observers_));
 }
 
 Result<void> BarsJudge::add_place(const PlateRectangle& target, const PlateRectangle& other, Place place,

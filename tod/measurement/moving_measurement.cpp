@@ -94,10 +94,8 @@ class MovingRun {
     places_ = PlaceWatch({.max_shift_error_px = options.measurement.max_shift_error_px,
                           .registration = options_.measurement.registration});
     result_.frame_rate_hz = source.info().frame_rate_hz;
-    if (const auto range = open_parameter_range(observer.spec())) {
-      ends_ = {std::make_unique<TemplateObserver>(range->best, triangle_alternatives()),
-               std::make_unique<TemplateObserver>(range->worst, triangle_alternatives())};
-    }
+    for (const TemplateObserverSpec& end : open_ends(observer.spec()))
+      ends_.push_back(std::make_unique<TemplateObserver>(end, triangle_alternatives()));
   }
 
   Result<MovingMeasurement> operator()() {
@@ -194,7 +192,6 @@ class MovingRun {
     if (!judge) return fail("plate " + set_up.name, judge.error());
     std::vector<SequenceJudge> at_ends;
     for (const auto& end : ends_) {
-      if (!end) continue;
       auto other = SequenceJudge::prepare(*end, sizes);
       if (!other) return fail("plate " + set_up.name, other.error());
       at_ends.push_back(*std::move(other));
@@ -436,8 +433,7 @@ class MovingRun {
   FrameSource& source_;
   Target& target_;
   TemplateObserver& observer_;
-  /// Observers at the ends of the open parameters; null without an eye.
-  std::array<std::unique_ptr<TemplateObserver>, 2> ends_;
+  std::vector<std::unique_ptr<TemplateObserver>> ends_;  ///< at the ends of the open parameters; empty without an eye
   MovingMeasurementOptions options_;
   RunController& host_;
   const MovingListener& listener_;
