@@ -110,8 +110,8 @@ std::string spread_text(const std::optional<std::pair<double, double>>& spread, 
   return spread ? fixed(spread->first, digits) + " to " + fixed(spread->second, digits) : std::string("-");
 }
 
-Json criterion_json_of(const SetCriterion& criterion) {
-  Json json{{"value", json_number(criterion.value)}, {"ci95", json_interval(criterion.ci95)}};
+Json criterion_with_spread(const SetCriterion& criterion, const IdentificationStudy& study) {
+  Json json = criterion_json(criterion, study.no_m75_because);
   add_spread(json, "spread", criterion.spread);
   return json;
 }
@@ -200,8 +200,8 @@ Json identification_json(const IdentificationStudyTask& task, const Identificati
             {"ranges", ranges},
             {"r75_m", json_number(study.r75_m.value)},
             {"r75_ci95_m", json_interval(study.r75_m.ci95)},
-            {"m75", criterion_json_of(study.m75)},
-            {"v50", criterion_json_of(study.v50)},
+            {"m75", criterion_with_spread(study.m75, study)},
+            {"v50", criterion_with_spread(study.v50, study)},
             {"tod", tod},
             {"predicted", predicted},
             {"measured_over_predicted", both ? Json(*study.r75_m.value / *study.predicted->r75_m) : Json()},
@@ -236,9 +236,8 @@ void print_identification(Console& console, const IdentificationStudyTask& task,
   }
   console.table(header, rows);
   console.text("");
-  console.text("75 % correct at " + fixed(study.r75_m.value, 1) + " m, 95 %: " + range(study.r75_m.ci95, 1) + " m");
-  console.text("criteria of the set: M75 " + fixed(study.m75.value, 2) + " (" + range(study.m75.ci95, 2) + "), V50 " +
-               fixed(study.v50.value, 2) + " (" + range(study.v50.ci95, 2) + ")");
+  console.text(range_text(study.r75_m, no_r75));
+  console.text("criteria of the set: " + criteria_text(study));
   if (task.observer.eye) {
     console.text("over the open parameters of observer " + task.observer.name +
                  " (no confidence interval): " + spread_text(study.r75_m.spread, 1) + " m, M75 " +

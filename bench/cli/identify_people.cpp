@@ -52,9 +52,6 @@ Json people_json(const PersonExperiment& experiment, const IdentificationStudyTa
   }
   for (const PersonResult& person : people.persons)
     persons.push_back({{"r75_m", json_number(person.r75_m.value)}, {"r75_ci95_m", json_interval(person.r75_m.ci95)}});
-  const auto criterion = [](const SetCriterion& one) {
-    return Json{{"value", json_number(one.value)}, {"ci95", json_interval(one.ci95)}};
-  };
   return {{"set", task.set.name},
           {"sensor", task.sensor.name},
           {"observer", "human"},
@@ -65,8 +62,8 @@ Json people_json(const PersonExperiment& experiment, const IdentificationStudyTa
           {"r75_ci95_m", json_interval(people.r75_m.ci95)},
           {"between_sd", json_number(people.between_sd)},
           {"curve_of", task.observer.name},
-          {"m75", criterion(rated.m75)},
-          {"v50", criterion(rated.v50)},
+          {"m75", criterion_json(rated.m75, rated.no_m75_because)},
+          {"v50", criterion_json(rated.v50, rated.no_m75_because)},
           {"notes", rated.notes}};
 }
 
@@ -83,10 +80,11 @@ void print_people(Console& console, const PersonExperiment& experiment, const Id
   }
   console.table({"range [m]", "transmittance", "answers", "P correct", "95 %"}, rows);
   console.text("");
-  console.text("75 % correct at " + fixed(people.r75_m.value, 1) + " m, 95 %: " + range(people.r75_m.ci95, 1) + " m");
-  console.text("criteria of the set for people, on the TOD curve of " + task.observer.name + ": M75 " +
-               fixed(rated.m75.value, 2) + " (" + range(rated.m75.ci95, 2) + "), V50 " + fixed(rated.v50.value, 2) +
-               " (" + range(rated.v50.ci95, 2) + ")");
+  console.text(range_text(people.r75_m, people.persons.size() == 1
+                                            ? no_r75
+                                            : "fewer than two people have a range of 75 % correct with an interval"));
+  console.text("criteria of the set for people, on the TOD curve of " + task.observer.name + ": " +
+               criteria_text(rated));
 }
 
 int read_answers(Console& console, const PeopleOptions& options, const IdentificationStudyTask& task,
@@ -121,6 +119,23 @@ int read_answers(Console& console, const PeopleOptions& options, const Identific
 }
 
 }  // namespace
+
+std::string range_text(const SetCriterion& r75_m, std::string_view none_because) {
+  if (!r75_m.value) return "no range of 75 % correct, because " + std::string(none_because);
+  return "75 % correct at " + fixed(r75_m.value, 1) + " m, 95 %: " + range(r75_m.ci95, 1) + " m";
+}
+
+std::string criteria_text(const IdentificationStudy& study) {
+  if (!study.m75.value) return "no M75 and no V50, because " + study.no_m75_because;
+  return "M75 " + fixed(study.m75.value, 2) + " (" + range(study.m75.ci95, 2) + "), V50 " + fixed(study.v50.value, 2) +
+         " (" + range(study.v50.ci95, 2) + ")";
+}
+
+Json criterion_json(const SetCriterion& criterion, const std::string& none_because) {
+  Json json{{"value", json_number(criterion.value)}, {"ci95", json_interval(criterion.ci95)}};
+  if (!criterion.value) json["reason"] = none_because;
+  return json;
+}
 
 void PeopleOptions::add_to(CLI::App& command) {
   auto* write = command.add_option("--people", folder,

@@ -161,10 +161,14 @@ std::string no_curve_because(const IdentificationStudyTask& task) {
 Result<void> rate_by_curve(const IdentificationStudyTask& task, double least_tau, IdentificationStudy& study) {
   if (const std::string reason = no_curve_because(task); !reason.empty()) {
     study.notes.push_back("no M75, no V50 and no predicted range: " + reason);
+    study.no_m75_because = reason;
     return {};
   }
   TODBENCH_TRY(study.tod, tod_curve_for(task, study.dt_rss_k, least_tau, study.notes));
-  if (study.tod.empty()) return {};
+  if (study.tod.empty()) {
+    study.no_m75_because = "no triangle has a threshold at the contrasts of the set, so there is no TOD curve";
+    return {};
+  }
   const RangeTask question{.size_m = study.size_m, .delta_t_k = study.dt_rss_k, .m75 = task.m75, .air = task.air.air};
   std::optional<TurbulentSources> turbulent;
   if (task.cn2_m_minus_2_3 > 0) {
@@ -173,6 +177,9 @@ Result<void> rate_by_curve(const IdentificationStudyTask& task, double least_tau
   study.m75 = {
       m_at(task, study, turbulent, study.r75_m.value),
       {m_at(task, study, turbulent, study.r75_m.ci95.high), m_at(task, study, turbulent, study.r75_m.ci95.low)}};
+  if (!study.m75.value)
+    study.no_m75_because = study.r75_m.value ? "the TOD curve does not reach the contrast of the set at the range found"
+                                             : std::string(no_r75);
   const auto v50 = [](std::optional<double> m) { return m ? std::optional(*m / m75_from_v50(1)) : std::nullopt; };
   study.v50 = {v50(study.m75.value), {v50(study.m75.ci95.low), v50(study.m75.ci95.high)}};
   auto predicted =

@@ -5,6 +5,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,6 +39,7 @@ struct IdentificationStudyTask {
   std::stop_token stop{};
 };
 
+inline constexpr std::string_view no_r75 = "the ranges do not enclose 75 % correct";
 /// A value with its interval; empty if the ranges of the experiment do not enclose 75 %.
 struct SetCriterion {
   std::optional<double> value;
@@ -61,6 +64,7 @@ struct IdentificationStudy {
   double dt_rss_k = 0;            ///< mean over targets and aspects, before the air
   SetCriterion r75_m;             ///< range with 75 % right; the interval by resampling the draws of noise
   SetCriterion m75, v50;          ///< of the set: M at r75_m on the TOD curve; M75 / 0.6
+  std::string no_m75_because;     ///< empty with an M75
   std::vector<TodThreshold> tod;  ///< of the same sensor and observer
   /// S75 of each point of `tod` over the open parameters of an observer with an eye; empty where an end has none.
   std::vector<std::optional<std::pair<double, double>>> tod_spread_mrad;
