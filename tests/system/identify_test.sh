@@ -33,7 +33,7 @@ printf 'time_constant_ms = 10\nrow_time_us = 50\n' >>slow.toml
 printf 'name = "gain"\n[[stage]]\nkind = "kernel"\nvalues = [0, 0, 0, 0, 4, 0, 0, 0, 0]\n' >gain.toml
 printf 'name = "none"\n[[stage]]\nkind = "kernel"\nvalues = [0, 0, 0, 0, 1, 0, 0, 0, 0]\n' >one.toml
 printf 'name = "zero"\n[[stage]]\nkind = "kernel"\nvalues = [0, 0, 0, 0, 0, 0, 0, 0, 0]\n' >zero.toml
-chain="identify ./set.toml --sensor ./slow.toml --ranges 1200,2400,4800 --decisions 48 --accuracy draft --json"
+chain="identify ./set.toml --sensor ./slow.toml --ranges 1200,2400,4800 --decisions 32 --accuracy draft --json"
 
 # Motion: a still picture is the same with and without the option; speed costs range.
 runs 0 still.json $chain
@@ -43,7 +43,7 @@ check 'a == b' still.json zero-speed.json
 check 'b["r75_m"] < a["r75_m"]' still.json moving.json
 check 'b["motion_mrad_s"] == [150, 40] and b["frames"] == 1 and b["sequence"] == "single-frame"' still.json moving.json
 check 'b["m75"]["value"] > 0' still.json moving.json
-runs 0 sum.json $chain --motion-mrad-s 150 40 --sequence tracking-sum --frames 4
+runs 0 sum.json $chain --motion-mrad-s 150 40 --sequence tracking-sum --frames 3
 check 'b["r75_m"] > a["r75_m"] and b["tod"] == [] and "single frame" in " ".join(b["notes"])' moving.json sum.json
 runs 2 refused $chain --motion-mrad-s nan 0
 runs 2 refused $chain --motion-mrad-s 5000 0
@@ -53,13 +53,13 @@ says "5 pixels per frame"
 runs 0 one.json $chain --package one.toml
 runs 0 gain.json $chain --package gain.toml
 check '[r["confusion"] for r in a["ranges"]] == [r["confusion"] for r in b["ranges"]]' one.json gain.json
-check 'abs(b["ranges"][0]["judged"]["gain"] - 4) < 0.02 and b["package"] == "gain.toml" and b["m75"]["value"] is None' one.json gain.json
+check 'abs(b["ranges"][0]["judged"]["gain"] - 4) < 0.02 and b["package"] == "gain.toml" and b["m75"]["value"] is None and "package" in b["m75"]["reason"]' one.json gain.json
 runs 3 refused $chain --package zero.toml
 says "no contrast"
 runs 2 refused $chain --package missing.toml
 
 # Pictures: the frame behind the package, in units of its contrast; rows that are read one after the other.
-pictures="picture craft-at-sea --range-m 400 --accuracy draft --json --motion-mrad-s 150 0 --tolerance-percent 0.1"
+pictures="picture craft-at-sea --range-m 1200 --accuracy draft --json --motion-mrad-s 150 0 --tolerance-percent 0.1"
 grep -v row_time_us slow.toml >at-once.toml
 runs 0 at-once.json $pictures --sensor ./at-once.toml --out at-once
 runs 0 rows.json $pictures --sensor ./slow.toml --out rows --package gain.toml
@@ -117,7 +117,7 @@ ifov_mrad = 1.3085
 [target]
 kind = "scene"
 distance_m = 2
-plates = ["tcat-a", "tcat-b"]
+plates = ["tcat-a"]
 mountings = ["identity"]
 delta_t_k = [16.9]
 phases = 4
@@ -125,7 +125,7 @@ phases = 4
 accuracy = "draft"
 phases = 4
 PLAN
-runs 0 said.txt measure plan.toml --out session --quiet
+runs 0 said.txt simulate ./plan.toml --out session --quiet
 runs 0 range.json range --tod session --size-m 3 --delta-t-k 16.9 --m75-of m75.json --json
 check 'abs(a["m75"] / b["m75"] - 1) < 1e-9 and "one person" in a["m75_origin"] and "hvs-1" in a["m75_origin"] and a["m75_ci95"][0] <= b["m75_ci95"][0] * 1.000001' range.json m75.json
 check 'not any("criterion of people" in n for n in a["notes"])' range.json range.json
