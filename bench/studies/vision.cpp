@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numbers>
 #include <string_view>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/studies/people_figures.h"
+#include "bench/studies/vision_ratios.h"
 #include "hvs/eye/compact_patterns.h"
 #include "hvs/observer/naked_eye.h"
 #include "sim_devices/prediction/direct_estimate.h"
@@ -19,11 +22,8 @@
 namespace todbench {
 namespace {
 
-// d' at threshold by the procedure of a study: 84 % of two-alternative and about 75 % of four-alternative forced
-// choice.
-constexpr double two_alternatives = 1.41, four_alternatives = 1.68;
-/// Share of correct answers in tests of acuity with four alternatives: half way from chance.
-constexpr double acuity_share = 0.625;
+/// d' at about 75 % of four-alternative forced choice.
+constexpr double four_alternatives = 1.68;
 /// Luminance contrast of printed optotypes.
 constexpr double printed_contrast = 0.95;
 
@@ -114,7 +114,6 @@ VisionKind reading(const NakedEye& eye) {
                       "The model reads a Landolt ring. The luminance is not stated; 100 cd/m2 is assumed, and "
                       "the ratios hardly depend on it.",
                   .points = {}};
-  constexpr double assumed_cd_m2 = 100;
   const double full = eye.acuity(assumed_cd_m2, 1);
   for (const auto& [contrast, loss] : people::reading_losses)
     kind.points.push_back(
@@ -245,7 +244,7 @@ VisionKind acuity_of_130(const NakedEye& eye) {
                   .source = "optikum.at, Landolt rings of four directions, both eyes; standard errors 0.03",
                   .remark = "The luminance is not stated; 100 cd/m2 and a contrast of 95 % are assumed.",
                   .points = {}};
-  const double model = eye.acuity(100, printed_contrast);
+  const double model = eye.acuity(assumed_cd_m2, printed_contrast);
   kind.points.push_back({"Landolt chart", 1.82, model});
   kind.points.push_back({"Freiburg test", 1.93, model});
   return kind;
@@ -325,8 +324,10 @@ Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer,
     if (options.stop.stop_requested()) return fail(ErrorCode::interrupted, "the comparison was interrupted");
     out.kinds.push_back(kind(eye));
   }
+  std::ranges::move(vision_ratios(*observer.eye, eye.acuity(much_light_cd_m2, 1)), std::back_inserter(out.kinds));
   TODBENCH_TRY(auto gains, microscan_gains_of_a_person(observer, options));
   out.kinds.push_back(std::move(gains));
+  std::ranges::stable_partition(out.kinds, [](const VisionKind& kind) { return !kind.failure.empty(); });
   return out;
 }
 

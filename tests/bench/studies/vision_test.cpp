@@ -58,7 +58,7 @@ TEST(Vision, StatesFailuresFirst) {
   const auto failed = [](const VisionKind& kind) { return !kind.failure.empty(); };
 
   EXPECT_TRUE(std::is_partitioned(kinds.begin(), kinds.end(), failed));
-  EXPECT_EQ(std::count_if(kinds.begin(), kinds.end(), failed), 4);
+  EXPECT_EQ(std::count_if(kinds.begin(), kinds.end(), failed), 6);
   for (const VisionKind& kind : kinds) {
     EXPECT_FALSE(kind.points.empty()) << kind.name;
     EXPECT_FALSE(kind.source.empty()) << kind.name;
@@ -76,6 +76,20 @@ TEST(Vision, AcuityFallsTooSteeplyWithContrastAndLight) {
   const auto& light = kind_named("light");
   EXPECT_NEAR(light.points[0].model, 3.5, 0.1);
   EXPECT_NEAR(std::log10(light.points[2].model) / std::log2(15), 0.047, 0.005);
+}
+
+TEST(Vision, HasTheRatiosOfTwoTasks) {
+  // Small increments seen by a linear observer: 2 e z phi(z) where Phi(z) = 1 - 1 / (2 e), z = 0.9003.
+  const double z = 0.90027, linear = 2 * std::exp(1) * z * std::exp(-z * z / 2) / std::sqrt(2 * std::acos(-1));
+  EXPECT_NEAR(linear, 1.302, 1e-3);
+  const VisionPoint& slope = kind_named("discrimination_slope").points.at(0);
+  EXPECT_LT(slope.model, linear) << "the noise grows with the increment";
+  EXPECT_NEAR(slope.model, 1.277, 2e-3);
+  const VisionPoint& letter = kind_named("detection_over_recognition").points.at(0);
+  EXPECT_GT(letter.model, 1) << "recognition below the contrast of detection";
+  EXPECT_LT(letter.people, 1 / 3.0);
+  const VisionKind& gratings = kind_named("grating_over_ring");
+  EXPECT_GT(error_of(gratings, gratings.points.at(0)), 0.1);
 }
 
 TEST(Vision, ReadsALandoltRingAtDaylightLikePeople) {
