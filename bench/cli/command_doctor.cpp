@@ -29,13 +29,14 @@ struct PlanLimits {
   std::optional<ViewingProposal> viewing;
   std::optional<ViewedDisplay> display;
 };
-Result<PlanLimits> limits_of_plan(const std::string& plan, const std::stop_token& stop) {
-  const auto loaded = simulation_plan({.plan = plan, .seed = {}, .keys = {}}, stop);
+Result<PlanLimits> limits_of_plan(const std::string& file, const std::stop_token& stop) {
+  const auto loaded = simulation_plan({.plan = file, .seed = {}, .keys = {}}, stop);
   if (!loaded) return tl::unexpected(loaded.error());
   EffectPlanner planner;
   TODBENCH_TRY(const auto inputs, experiment_inputs(*loaded, planner));
-  TODBENCH_TRY(auto viewing, viewing_of(loaded->plan().target.delta_t_k, inputs, stop));
-  TODBENCH_TRY(auto acuity, acuity_limits(inputs, loaded->plan().target.delta_t_k, stop));
+  const Plan& plan = loaded->plan();
+  TODBENCH_TRY(auto acuity, acuity_limits(plan, inputs, plan.target.delta_t_k, stop));
+  TODBENCH_TRY(auto viewing, viewing_of(plan.target.delta_t_k, inputs, stop));
   return PlanLimits{std::move(acuity), std::move(viewing), inputs.observer.display};
 }
 

@@ -150,7 +150,7 @@ int run_plan(Console& console, const PlanArguments& asked, const Program& progra
   if (!measure_limits) return report_error(console, measure_limits.error());
   std::vector<AcuityLimits> acuity;
   if (asked.what_limits || inputs->observer.eye) {
-    auto found = acuity_limits(*inputs, plan.target.delta_t_k, program.stop->token());
+    auto found = acuity_limits(plan, *inputs, plan.target.delta_t_k, program.stop->token());
     if (!found) return report_error(console, found.error());
     acuity = *std::move(found);
   }

@@ -106,8 +106,12 @@ Result<double> s75_of(const ViewedSensor& viewed, double delta_t_k) {
 
 }  // namespace
 
-Result<std::vector<AcuityLimits>> acuity_limits(const ExperimentInputs& inputs, const std::vector<double>& delta_t_k,
-                                                std::stop_token stop) {
+Result<std::vector<AcuityLimits>> acuity_limits(const Plan& plan, const ExperimentInputs& inputs,
+                                                const std::vector<double>& delta_t_k, std::stop_token stop) {
+  if (has_modules(plan, inputs.sensor))
+    return fail(ErrorCode::invalid_input,
+                "What limits the acuity is not known, because the estimates do not include the modules of the plan or "
+                "of its sensor");
   ViewedSensor all{inputs.sensor, inputs.effects, inputs.observer, {}};
   all.options.motion = inputs.motion;
   all.options.accuracy = Accuracy::draft();
@@ -151,7 +155,7 @@ Result<std::optional<DisplayRecord>> at_display(const TodCurve& curve, const Exp
   record.observer = viewed.observer.name;
   std::vector<double> contrasts;
   for (const TodPoint& point : curve.points) contrasts.push_back(point.delta_t_k);
-  TODBENCH_TRY(record.limits, acuity_limits(viewed, contrasts, std::move(stop)));
+  TODBENCH_TRY(record.limits, acuity_limits(plan, viewed, contrasts, std::move(stop)));
   return record;
 }
 

@@ -15,8 +15,8 @@ namespace todbench {
 /// Leaves out one factor after the other, by direct estimates of draft accuracy (error about 1 %): sampling: twice as
 /// many samples at the same size on the display; noise: none; display: no spot, veil or interpolation, black of 0 and
 /// the largest contrast; eye: no noise of its own; light: a hundred times the luminance. Contrasts without a threshold
-/// are left out. Errors: `interrupted`.
-[[nodiscard]] Result<std::vector<AcuityLimits>> acuity_limits(const ExperimentInputs& inputs,
+/// are left out. Errors: `interrupted`; `invalid_input` if the plan or its sensor has modules.
+[[nodiscard]] Result<std::vector<AcuityLimits>> acuity_limits(const Plan& plan, const ExperimentInputs& inputs,
                                                               const std::vector<double>& delta_t_k,
                                                               std::stop_token stop);
 

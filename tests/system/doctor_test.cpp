@@ -75,6 +75,24 @@ TEST(DoctorCommand, WarnsWhereTheDisplayOfAPlanLimitsTheAcuity) {
   EXPECT_EQ(near["acuity_limits"][0]["limited_by"], "sampling");
 }
 
+TEST(DoctorCommand, RefusesAPlanWithAModuleWhoseLimitsItDoesNotKnow) {
+  const TemporaryFolder folder;
+  const std::string scene =
+      "[target]\nkind = \"scene\"\ndistance_m = 2\nplates = [\"tcat-a\"]\ndelta_t_k = [16.9]\n[simulation]\nsensor = "
+      "\"sc2000\"\n";
+  folder.write("module.toml", scene + "[[module]]\ncommand = \"cat\"\n");
+  folder.write("seen.toml", scene + "[[module]]\ncommand = \"cat\"\n[observer]\nname = \"hvs-2\"\n[display]\n" +
+                                "pixel_pitch_mm = 0.25\nluminance_white_cd_m2 = 100\nviewing_distance_m = 0.5\n");
+  const auto run = [&](const std::vector<std::string>& arguments) {
+    return todbench(arguments, {.folder = folder.path()});
+  };
+
+  for (const char* plan : {"module.toml", "seen.toml"}) {
+    expect_refused(run({"doctor", "--root", folder.path().string(), "--plan", plan}), 2, "do not include the modules");
+    expect_refused(run({"plan", plan, "--what-limits"}), 2, "[[module]]");
+  }
+}
+
 TEST(DoctorCommand, RefusesAFolderThatIsNotThere) {
   const TemporaryFolder folder;
 

@@ -62,6 +62,7 @@ QString heading_of(const ExperimentInputs& inputs) {
 Result<QString> viewing_advice(const Plan& plan, const std::stop_token& stop) {
   if (!has_display(plan)) return fail(ErrorCode::invalid_input, no_display_sentence);
   TODBENCH_TRY(const LoadedPlan loaded, LoadedPlan::load(plan));
+  if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
   TODBENCH_TRY(const auto observer, load_observer_at("hvs-2", plan.display));
   const double largest = std::abs(largest_contrast_k(plan.target.delta_t_k));
   TODBENCH_TRY(const ViewingProposal viewing,
@@ -71,15 +72,12 @@ Result<QString> viewing_advice(const Plan& plan, const std::stop_token& stop) {
 
 Result<QString> limits_advice(const Plan& plan, const std::stop_token& stop) {
   TODBENCH_TRY(const LoadedPlan loaded, LoadedPlan::load(plan));
-  if (has_modules(plan, loaded.sensor()))
-    return fail(ErrorCode::invalid_input,
-                "What limits the acuity is not known, because the estimates do not include modules.");
   EffectPlanner planner;
   TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
   if (has_display(plan) && !inputs.observer.eye) {
     TODBENCH_TRY(inputs.observer, load_observer_at("hvs-2", plan.display));
   }
-  TODBENCH_TRY(const auto limits, acuity_limits(inputs, plan.target.delta_t_k, stop));
+  TODBENCH_TRY(const auto limits, acuity_limits(plan, inputs, plan.target.delta_t_k, stop));
   QStringList headings{"Contrast"}, lost;
   for (const LimitingFactor factor : all_limiting_factors) headings << heading_of(factor);
   QString rows = cells(headings, "th");

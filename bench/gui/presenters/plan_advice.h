@@ -17,12 +17,12 @@ inline constexpr const char* no_display_sentence =
     "The plan has no section [display]: state the pixel pitch, distance and luminances.";
 
 /// Compares zooms and viewing distances for hvs-2 at the display and at the largest contrast of the plan. Errors:
-/// `invalid_input` without a display, those of the loaders and of propose_viewing().
+/// `invalid_input` without a display or with modules, those of the loaders and of propose_viewing().
 [[nodiscard]] Result<QString> viewing_advice(const Plan& plan, const std::stop_token& stop);
 
 /// Table of the costs of acuity_limits() at each contrast of the plan, as HTML. At a display the observer is that of
 /// the plan if it has an eye, otherwise hvs-2. Without a display it is the observer of the plan. Errors:
-/// `invalid_input` if the plan has modules, and those of the loaders and of acuity_limits().
+/// those of the loaders and of acuity_limits().
 [[nodiscard]] Result<QString> limits_advice(const Plan& plan, const std::stop_token& stop);
 
 /// An estimate on a thread of its own. Used in the thread of the window.

@@ -499,7 +499,7 @@ TEST(HumanObserver, PageStatesWhatLimitsTheAcuityBeforeTheFirstAnswer) {
   EffectPlanner planner;
   ExperimentInputs inputs = experiment_inputs(loaded, planner).value();
   inputs.observer = load_observer_at("hvs-2", plan.display).value();
-  const auto stated = acuity_limits(inputs, plan.target.delta_t_k, {}).value();
+  const auto stated = acuity_limits(plan, inputs, plan.target.delta_t_k, {}).value();
   ASSERT_EQ(stated.size(), 1u);
   for (const FactorCost& cost : stated[0].costs)
     EXPECT_THAT(said(), HasSubstr(std::to_string(std::lround(cost.percent)) + " %"));
