@@ -36,8 +36,8 @@ Result<PlanLimits> limits_of_plan(const std::string& file, const std::stop_token
   TODBENCH_TRY(const auto inputs, experiment_inputs(*loaded, planner));
   const Plan& plan = loaded->plan();
   TODBENCH_TRY(auto acuity, acuity_limits(plan, inputs, plan.target.delta_t_k, stop));
-  TODBENCH_TRY(auto viewing, viewing_of(plan.target.delta_t_k, inputs, stop));
-  return PlanLimits{std::move(acuity), std::move(viewing), inputs.observer.display};
+  TODBENCH_TRY(const auto viewing, viewing_of(plan.target.delta_t_k, inputs, stop));
+  return PlanLimits{std::move(acuity), viewing, inputs.observer.display};
 }
 
 /// A warning if a larger picture would gain more acuity than the error of the estimate.
