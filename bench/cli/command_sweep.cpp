@@ -290,7 +290,9 @@ int run_collect(Console& console, const SweepArguments& a) {
   if (auto written = write_file_atomically(csv, to_csv(*table)); !written)
     return report_error(console, written.error());
   if (auto written = write_sqlite(*table, sqlite); !written) return report_error(console, written.error());
-  const auto effects = sweep_effects(runnable->sweep, *table, a.response);
+  const bool identifies = runnable->sweep.file().kind == TaskKind::identify;
+  const std::string usual = identifies ? "r75_m" : "acuity_per_mrad";
+  const auto effects = sweep_effects(runnable->sweep, *table, a.response.empty() ? usual : a.response);
   if (!a.page.empty()) {
     const std::string page = render_html(sweep_page(runnable->sweep, *table, effects));
     if (auto written = write_file_atomically(a.page, page); !written) return report_error(console, written.error());
@@ -308,7 +310,8 @@ int run_collect(Console& console, const SweepArguments& a) {
     for (const auto& effect : response.parameters)
       rows.push_back({effect.key, fixed(effect.first_order, 3), range(effect.first_order_ci95, 3),
                       fixed(effect.total, 3), range(effect.total_ci95, 3)});
-    console.text(fmt::format("variance of {} at a contrast of {:g} K", response.response, response.delta_t_k));
+    console.text("variance of " + response.response +
+                 (identifies ? "" : fmt::format(" at a contrast of {:g} K", response.delta_t_k)));
     console.table({"parameter", "first-order index", "95 %", "total-effect index", "95 %"}, rows);
   }
   return 0;
@@ -373,8 +376,9 @@ void add_sweep_command(CLI::App& app, Program& program) {
   collect->add_option("--csv", a->csv, "file for the table; default: table.csv beside the results");
   collect->add_option("--sqlite", a->sqlite, "file for the database; default: table.sqlite beside the results");
   collect->add_option("--page", a->page, "file for a page with tables and figures of the response; default: no page");
-  collect->add_option("--response", a->response, "column whose dependence on the parameters is computed")
-      ->capture_default_str();
+  collect->add_option("--response", a->response,
+                      "column whose dependence on the parameters is computed; default: acuity_per_mrad, or r75_m of "
+                      "sweeps of kind identify");
   collect->add_flag("--partial", a->partial, "skips tasks without a result; by default they are an error");
   finish_command(*collect, program, [a](Console& console) { return run_collect(console, *a); });
 }

@@ -12,8 +12,7 @@ namespace todbench {
 
 /// Arguments of the parts of `todbench sweep`.
 struct SweepArguments {
-  std::string file, scheduler = "parallel", engine = "local", options_file, csv, sqlite, page,
-                    response = "acuity_per_mrad";
+  std::string file, scheduler = "parallel", engine = "local", options_file, csv, sqlite, page, response;
   std::optional<std::size_t> index, jobs;
   std::string range;
   std::size_t chunk = 0;  ///< 0: not given

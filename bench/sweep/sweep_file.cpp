@@ -221,8 +221,9 @@ void read_entry(const std::string& key, const toml::node& node, Reading& reading
     sweep.paired = node.value_or(false);
   } else if (key == "kind") {
     const std::string kind = word();
-    if (kind != "simulate" && kind != "estimate") reading.wrong(node, "expected 'simulate' or 'estimate'");
-    sweep.kind = kind == "estimate" ? TaskKind::estimate : TaskKind::simulate;
+    if (kind != "simulate" && kind != "estimate" && kind != "identify")
+      reading.wrong(node, "expected 'simulate', 'estimate' or 'identify'");
+    sweep.kind = kind == "estimate" ? TaskKind::estimate : kind == "identify" ? TaskKind::identify : TaskKind::simulate;
   } else if (key == "where") {
     read_where(node, reading, sweep);
   } else if (key == "base" || key == "grid" || key == "zip" || key == "sample" || key == "repeat") {

@@ -36,6 +36,7 @@ enum class SampleKind { latin_hypercube, sobol };
 enum class TaskKind {
   simulate,  ///< trials and fit, as `todbench simulate`
   estimate,  ///< the direct estimate without trials
+  identify,  ///< an observer identifies the targets of a set, as `todbench identify`
 };
 
 struct SweepFile {

@@ -52,7 +52,11 @@ Section response_section(const Sweep& sweep, const SweepTable& table, const Resp
                          std::size_t number) {
   const std::string id = fmt::format("contrast-{}", number);
   const bool drawn_sample = !sweep.file().sample.empty();
-  Section section{fmt::format("{} at {} K", effects.response, stated(effects.delta_t_k)), {}};
+  // Sets have their own contrasts, which are a column of the table.
+  Section section{sweep.file().kind == TaskKind::identify
+                      ? effects.response
+                      : fmt::format("{} at {} K", effects.response, stated(effects.delta_t_k)),
+                  {}};
   section.blocks.emplace_back(index_table(effects, drawn_sample));
   section.blocks.emplace_back(
       Figure{tornado(effects, id + "-tornado"),
@@ -85,9 +89,23 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+/// How the numbers of a sweep are computed.
+std::string computation(TaskKind kind) {
+  switch (kind) {
+    case TaskKind::simulate:
+      return "simulated trials and a fit";
+    case TaskKind::estimate:
+      return "direct estimate without trials";
+    case TaskKind::identify:
+      return "an observer identifies the targets of a set; every effect that is not neutral in the sensor is simulated";
+  }
+  return "";
+}
+
 Section identity_section(const Sweep& sweep, const SweepTable& table) {
   ValueTable values{.caption = "Origin of the numbers", .values = {}};
   values.values = {{"Program", plain("todbench " + table.version + " (" + table.commit + ")")},
+                   {"Computation", plain(computation(sweep.file().kind))},
                    {"Sweep (SHA-256)", plain(sweep.hash())},
                    {"Tasks with a result", plain(fmt::format("{} of {}", table.tasks - table.missing, table.tasks))},
                    {"Combinations rejected by a condition", plain(std::to_string(sweep.refused()))},

@@ -14,6 +14,7 @@
 #include "bench/plan/plan_options.h"
 #include "bench/run/experiment.h"
 #include "bench/session/json_output.h"
+#include "bench/sweep/identify_task.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "bench/twin/experiment_inputs.h"
@@ -109,16 +110,26 @@ Result<void> set_plan(const SweepParameter& parameter, const std::string& path, 
   return {};
 }
 
-/// Applies the parameters in order: those of the plan, then, for the resulting sensor, those of the sensor.
-Result<LoadedPlan> applied(const LoadedPlan& base, const std::vector<SweepParameter>& parameters,
-                           const std::filesystem::path& folder, std::uint64_t seed) {
+std::vector<SweepAxis> axes_of(const SweepFile& file) {
+  std::vector<SweepAxis> axes = file.grid;
+  axes.insert(axes.end(), file.zip.begin(), file.zip.end());
+  for (const auto& [key, low, high] : file.sample) axes.push_back({key, {number_text(low), number_text(high)}});
+  return axes;
+}
+
+/// Applies the parameters in order: those of the plan, then, for the resulting sensor, those of the sensor. Those of an
+/// identification are left out.
+Result<LoadedPlan> applied(const LoadedPlan& base, std::vector<SweepParameter> parameters, const SweepFile& file,
+                           std::uint64_t seed) {
+  if (file.kind == TaskKind::identify)
+    std::erase_if(parameters, [](const auto& parameter) { return is_identification_key(parameter.key); });
   Plan plan = base.plan();
   plan.seed = seed;
   bool new_sensor = false, new_microscan = false;
   for (const auto& parameter : parameters) {
     const auto path = plan_path(parameter.key);
     if (!path) continue;
-    if (auto set = set_plan(parameter, *path, folder, plan); !set) return tl::unexpected(set.error());
+    if (auto set = set_plan(parameter, *path, file.folder, plan); !set) return tl::unexpected(set.error());
     new_sensor |= *path == "simulation.sensor";
     new_microscan |= *path == "simulation.microscan";
   }
@@ -150,18 +161,20 @@ std::optional<std::string> taken(std::vector<SweepParameter>& base, std::string_
 
 /// Checks every value of every axis with the base: a value that is invalid alone is always invalid.
 Result<void> check_values(const LoadedPlan& initial, const std::vector<SweepParameter>& base, const SweepFile& file) {
+  const bool identifies = file.kind == TaskKind::identify;
   const auto check = [&](const std::string& key, const std::string& value) -> Result<void> {
     std::vector<SweepParameter> parameters = base;
     parameters.push_back({key, value});
-    const auto loaded = applied(initial, parameters, file.folder, 1);
+    const auto loaded = applied(initial, parameters, file, 1);
+    if (loaded && identifies && is_identification_key(key)) {
+      if (auto task = identification_task(parameters, file.folder, *loaded, {}); !task)
+        return tl::unexpected(task.error());
+    }
     // Two values that limit each other may change together; the tasks report invalid combinations.
     if (loaded || (plan_path(key) == std::nullopt && sensor_key(key) && loaded.error().key == std::nullopt)) return {};
     return tl::unexpected(loaded.error());
   };
-  std::vector<SweepAxis> axes = file.grid;
-  axes.insert(axes.end(), file.zip.begin(), file.zip.end());
-  for (const auto& [key, low, high] : file.sample) axes.push_back({key, {number_text(low), number_text(high)}});
-  for (const auto& axis : axes) {
+  for (const auto& axis : axes_of(file)) {
     constexpr std::size_t enough = 200;
     for (std::size_t i = 0; i < std::min(axis.values.size(), enough); ++i) {
       if (auto fine = check(axis.key, axis.values[i]); !fine) return fine;
@@ -215,6 +228,30 @@ Result<Json> estimated(const RunnableSweep& runnable, const SweepTask& task, con
   return estimate_json(plan, points);
 }
 
+/// Everything that the sets and airs of the base and of all axes have in their files.
+Result<std::string> fingerprint_of_sets(const std::vector<SweepParameter>& base, const SweepFile& file) {
+  TODBENCH_TRY(std::string text, identification_fingerprint(base, file.folder));
+  for (const auto& axis : axes_of(file)) {
+    if (axis.key != "set" && axis.key != "atmosphere") continue;
+    for (const auto& value : axis.values) {
+      std::vector<SweepParameter> parameters = base;
+      parameters.push_back({axis.key, value});
+      TODBENCH_TRY(const auto content, identification_fingerprint(parameters, file.folder));
+      text += content;
+    }
+  }
+  return text;
+}
+
+/// The study of a task of kind `identify`.
+Result<IdentificationStudyTask> study_of(const RunnableSweep& runnable, const SweepTask& task, const LoadedPlan& plan,
+                                         std::stop_token stop) {
+  if (auto none = refuse_modules(plan.plan(), plan.sensor()); !none) return tl::unexpected(none.error());
+  std::vector<SweepParameter> parameters = runnable.base;
+  parameters.insert(parameters.end(), task.parameters.begin(), task.parameters.end());
+  return identification_task(parameters, runnable.sweep.file().folder, plan, std::move(stop));
+}
+
 Result<Json> simulated(const LoadedPlan& plan, const std::filesystem::path& scratch, std::stop_token stop) {
   const auto outcome = simulate_plan(plan, {.folder = scratch, .existing = ExistingFolder::overwrite}, {}, stop);
   std::error_code ignored;
@@ -242,7 +279,7 @@ Result<RunnableSweep> load_sweep(const std::filesystem::path& path) {
   auto initial = read_plan(reference);
   if (initial && !plan) initial = initial->with(plan_of_nobody(initial->plan()));
   if (!initial) return fail(path.string(), initial.error());
-  const auto loaded = applied(*initial, base, file.folder, initial->plan().seed);
+  const auto loaded = applied(*initial, base, file, initial->plan().seed);
   if (!loaded) return fail(path.string(), loaded.error());
   if (auto fine = check_values(*initial, base, file); !fine) return fail(path.string(), fine.error());
   // The contents of named files affect results as well.
@@ -250,6 +287,10 @@ Result<RunnableSweep> load_sweep(const std::filesystem::path& path) {
   for (const auto& [name, source] : loaded->parts().sources) fingerprint += sha256_of(source.text) + "\n";
   for (const auto* modules : {&loaded->plan().modules, &loaded->sensor().modules}) {
     for (const ModulePlan& module : *modules) fingerprint += text_of(module_record(module)) + "\n";
+  }
+  if (file.kind == TaskKind::identify) {
+    TODBENCH_TRY(const auto content, fingerprint_of_sets(base, file));
+    fingerprint += content;
   }
   const SensorSpec sensor = loaded->sensor();
   const auto number_of = [&sensor](std::string_view name) -> std::optional<double> {
@@ -261,15 +302,23 @@ Result<RunnableSweep> load_sweep(const std::filesystem::path& path) {
   };
   auto sweep = Sweep::expand(std::move(file), std::move(fingerprint), number_of);
   if (!sweep) return fail(path.string(), sweep.error());
-  return RunnableSweep{*std::move(sweep), *std::move(initial), std::move(base)};
+  RunnableSweep runnable{*std::move(sweep), *std::move(initial), std::move(base)};
+  if (runnable.sweep.file().kind == TaskKind::identify) {
+    // The base alone may lack what an axis states; the first task has everything.
+    const SweepTask first = runnable.sweep.task(0);
+    const auto first_plan = task_plan(runnable, first, {});
+    if (!first_plan) return fail(path.string(), first_plan.error());
+    if (auto study = study_of(runnable, first, *first_plan, {}); !study) return fail(path.string(), study.error());
+  }
+  return runnable;
 }
 
 Result<LoadedPlan> task_plan(const RunnableSweep& runnable, const SweepTask& task, std::stop_token stop) {
   const SweepFile& file = runnable.sweep.file();
   std::vector<SweepParameter> parameters = runnable.base;
   parameters.insert(parameters.end(), task.parameters.begin(), task.parameters.end());
-  auto plan = applied(runnable.initial, parameters, file.folder, task.seed);
-  if (!plan || file.kind == TaskKind::estimate) return plan;
+  auto plan = applied(runnable.initial, parameters, file, task.seed);
+  if (!plan || file.kind != TaskKind::simulate) return plan;
   const bool own_plan =
       std::any_of(file.base.begin(), file.base.end(), [](const auto& parameter) { return parameter.key == "plan"; });
   return own_plan ? plan : with_suitable_distance(*plan, std::move(stop));
@@ -278,8 +327,17 @@ Result<LoadedPlan> task_plan(const RunnableSweep& runnable, const SweepTask& tas
 Result<Json> run_task(const RunnableSweep& runnable, const SweepTask& task, const std::filesystem::path& scratch,
                       std::stop_token stop) {
   TODBENCH_TRY(const auto plan, task_plan(runnable, task, stop));
-  return runnable.sweep.file().kind == TaskKind::estimate ? estimated(runnable, task, plan, stop)
-                                                          : simulated(plan, scratch, stop);
+  switch (runnable.sweep.file().kind) {
+    case TaskKind::estimate:
+      return estimated(runnable, task, plan, stop);
+    case TaskKind::identify: {
+      TODBENCH_TRY(const auto study, study_of(runnable, task, plan, stop));
+      return identified(study);
+    }
+    case TaskKind::simulate:
+      break;
+  }
+  return simulated(plan, scratch, stop);
 }
 
 Result<double> predicted_task_s(const RunnableSweep& runnable, const SweepTask& task, std::stop_token stop) {
@@ -287,6 +345,15 @@ Result<double> predicted_task_s(const RunnableSweep& runnable, const SweepTask& 
   if (runnable.sweep.file().kind == TaskKind::estimate) {
     TODBENCH_TRY(const auto estimate, estimate_inputs(runnable, task, plan));
     return predict_estimate_s(estimate, stop);
+  }
+  if (runnable.sweep.file().kind == TaskKind::identify) {
+    // The TOD curve for M75 takes about as long as a direct estimate.
+    TODBENCH_TRY(const auto study, study_of(runnable, task, plan, stop));
+    TODBENCH_TRY(const auto experiment, experiment_of(study));
+    TODBENCH_TRY(const auto effort, planned_effort(experiment));
+    TODBENCH_TRY(const auto estimate, estimate_inputs(runnable, task, plan));
+    TODBENCH_TRY(const double curve_s, predict_estimate_s(estimate, stop));
+    return effort.processor_s + curve_s;
   }
   EffectPlanner planner;
   TODBENCH_TRY(const auto inputs, experiment_inputs(plan, planner));

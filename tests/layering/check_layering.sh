@@ -74,7 +74,7 @@ BEGIN {
   may["bench/history"] = core " bench/text bench/plan bench/judgement bench/session"
   may["bench/serve"] = core " " science " bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
   may["bench/run_control"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/serve"
-  may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
+  may["bench/sweep"] = science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/studies"
   may["bench/doctor"] = base " bench/text"
   may["bench/enhance"] = core " " science " bench/text bench/picture_files bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run"
   may["bench/moving_target"] = core " " science " bench/text bench/plan bench/judgement bench/session bench/report bench/devices bench/twin bench/forecast bench/run bench/enhance"

@@ -13,6 +13,8 @@
 #include <stop_token>
 #include <thread>
 
+#include "bench/plan/descriptions.h"
+#include "bench/studies/identification_study.h"
 #include "bench/sweep/processes.h"
 #include "bench/sweep/result_store.h"
 #include "bench/sweep/sweep_table.h"
@@ -180,6 +182,49 @@ TEST(SweepCollect, RefusesResultsOfSeveralVersions) {
 
   ASSERT_FALSE(table);
   EXPECT_THAT(table.error().message, HasSubstr("several versions"));
+}
+
+TEST(SweepRun, OfAnIdentificationIsTheStudyOfEachSensorAndAir) {
+  const TemporaryFolder folder;
+  folder.write("three.toml",
+               "name = \"three\"\ntargets = [\"craft-01\", \"craft-07\"]\nazimuths_deg = [90]\nbackground_k = 288\n");
+  folder.write("thick.csv", "range_km,transmittance\n5,0.3\n10,0.09\n");
+  const auto loaded = [&](const std::string& more) {
+    folder.write("s.toml",
+                 "kind = \"identify\"\npaired = true\n[base]\nset = \"./three.toml\"\nranges_m = [1000, 2500, 6000]\n"
+                 "decisions = 16\naccuracy = \"draft\"\nsensor = \"sc2000\"\n" +
+                     more);
+    return load_sweep(folder.path() / "s.toml");
+  };
+  const auto runnable = loaded("[grid]\nnetd_k = [0.05, 0.3]\natmosphere = [\"clear\", \"./thick.csv\"]\n");
+  ASSERT_TRUE(runnable) << runnable.error().message;
+  std::vector<double> r75_m;
+  for (std::size_t i = 0; i < runnable->sweep.count(); ++i) {
+    const auto result = run_task(*runnable, runnable->sweep.task(i), folder.path() / "scratch", {});
+    ASSERT_TRUE(result) << result.error().message;
+    r75_m.push_back((*result)["points"][0]["r75_m"].get<double>());
+  }
+  ASSERT_EQ(r75_m.size(), 4u);
+  EXPECT_GT(r75_m[0], r75_m[2]) << "noise";
+  EXPECT_GT(r75_m[2], r75_m[3]) << "air";
+
+  IdentificationStudyTask task;
+  task.set = load_target_set((folder.path() / "three.toml").string()).value();
+  task.sensor = load_sensor("sc2000").value();
+  task.sensor.netd_k = 0.3;
+  task.observer = parse_observer(find_resource(ResourceKind::observer, "hvs-1").value()).value();
+  task.accuracy = Accuracy::draft();
+  task.ranges_m = {1000, 2500, 6000};
+  task.decisions = 16;
+  task.seed = runnable->sweep.task(2).seed;
+  EXPECT_EQ(study_identification(task)->r75_m.value, r75_m[2]);
+
+  const std::string before = runnable->sweep.hash();
+  folder.write("thick.csv", "range_km,transmittance\n5,0.3\n10,0.08\n");
+  EXPECT_NE(loaded("[grid]\nnetd_k = [0.05, 0.3]\natmosphere = [\"clear\", \"./thick.csv\"]\n")->sweep.hash(), before);
+  EXPECT_THAT(loaded("[grid]\natmosphere = [\"fog\"]\n").error().message, HasSubstr("fog"));
+  EXPECT_THAT(loaded("[grid]\ncues = [\"none\"]\n").error().message, HasSubstr("all or shape"));
+  EXPECT_THAT(loaded("[grid]\nm75 = [0]\n").error().message, HasSubstr("m75: expected"));
 }
 
 TEST(ShippedSweeps, GiveATableInTheirShortForm) {
