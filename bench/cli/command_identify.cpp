@@ -94,10 +94,9 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
       *std::ranges::find(all_sequence_observers, a.sequence, [](SequenceObserver s) { return to_string(s); });
   task.frames = a.frames;
   if (!a.package.empty()) {
-    TODBENCH_TRY(auto package, read_package(a.package));
-    if (auto same = refuse_finer_pictures(package, "identification"); !same) return tl::unexpected(same.error());
-    task.stage_reach_px = reach_px(package);
-    task.stages = [package = std::move(package)] { return made_stages(package, {}); };
+    TODBENCH_TRY(auto package, read_package_stages(a.package, "identification"));
+    task.stage_reach_px = package.reach_px;
+    task.stages = std::move(package.stages);
   }
   task.cues = a.cues == "shape" ? TargetCues::shape : TargetCues::all;
   task.m75 = a.m75;

@@ -221,8 +221,7 @@ int run_sfr(Console& console, const SfrArguments& arguments) {
 /// Returns the column of the first name in the header.
 std::optional<std::size_t> column_of(const CsvTable& table, std::initializer_list<std::string_view> names) {
   for (const std::string_view name : names) {
-    const auto found = std::find(table.header.begin(), table.header.end(), name);
-    if (found != table.header.end()) return static_cast<std::size_t>(found - table.header.begin());
+    if (const auto found = table.column(name)) return found;
   }
   return std::nullopt;
 }

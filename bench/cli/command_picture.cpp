@@ -51,10 +51,8 @@ Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t 
   task.view = {.range_m = a.range_m, .rotation_deg = a.rotation_deg, .centre_pitch = {a.x_pitch, a.y_pitch}};
   if (!a.motion_mrad_s.empty()) task.motion = {.x_mrad_s = a.motion_mrad_s[0], .y_mrad_s = a.motion_mrad_s[1]};
   if (!a.package.empty()) {
-    TODBENCH_TRY(auto package, read_package(a.package));
-    if (auto same = refuse_finer_pictures(package, "the pictures of the stages"); !same)
-      return tl::unexpected(same.error());
-    task.stages = [package = std::move(package)] { return made_stages(package, {}); };
+    TODBENCH_TRY(auto package, read_package_stages(a.package, "the pictures of the stages"));
+    task.stages = std::move(package.stages);
   }
   task.effects.tolerance_percent = a.tolerance_percent;
   task.seed = seed;

@@ -52,9 +52,7 @@ Result<LogLinearCurve> curve_from(const std::string& file, const std::string& co
   constexpr NumberRange frequency_range = NumberRange::between(0, 1e5), value_range = NumberRange::between(1e-9, 1e6);
   TODBENCH_TRY(const auto text, read_text_file(file));
   TODBENCH_TRY(const auto table, parse_csv(text, file));
-  const auto place = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::find(table.header.begin(), table.header.end(), name) - table.header.begin());
-  };
+  const auto place = [&](const std::string& name) { return table.column(name).value_or(table.header.size()); };
   const std::size_t frequency = place("frequency_per_mrad"), value = place(column);
   if (std::max(frequency, value) >= table.header.size()) {
     return table.wrong(

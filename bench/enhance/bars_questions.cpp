@@ -72,10 +72,6 @@ std::set<std::size_t> places_of(const KeptBars& kept, const BarsRequest& request
   return places;
 }
 
-std::string picture_name(std::size_t number) {
-  return fmt::format("{:04}.png", number);
-}
-
 }  // namespace
 
 Result<std::vector<BarsQuestion>> bars_questions(const KeptBars& kept, const BarsRequest& request) {

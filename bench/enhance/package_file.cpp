@@ -168,4 +168,11 @@ std::vector<std::unique_ptr<ChainStage>> made_stages(const EnhancementPackage& p
   return stages;
 }
 
+Result<PackageStages> read_package_stages(const std::filesystem::path& file, std::string_view what) {
+  TODBENCH_TRY(auto package, read_package(file));
+  if (auto same = refuse_finer_pictures(package, what); !same) return tl::unexpected(same.error());
+  const auto reach = reach_px(package);
+  return PackageStages{[package = std::move(package)] { return made_stages(package, {}); }, reach};
+}
+
 }  // namespace todbench

@@ -61,6 +61,15 @@ struct EnhancementPackage {
 /// does.
 [[nodiscard]] std::optional<int> reach_px(const EnhancementPackage& package);
 
+/// Stages of a package, made anew for every use, and their reach.
+struct PackageStages {
+  std::function<std::vector<std::unique_ptr<ChainStage>>()> stages;
+  std::optional<int> reach_px{};  ///< as reach_px()
+};
+/// Reads a package whose pictures must have the camera's own pixels. Errors: those of read_package() and
+/// refuse_finer_pictures().
+[[nodiscard]] Result<PackageStages> read_package_stages(const std::filesystem::path& file, std::string_view what);
+
 /// Creates the stages, ready for the first picture.
 [[nodiscard]] std::vector<std::unique_ptr<ChainStage>> made_stages(
     const EnhancementPackage& package, const std::function<void(std::string_view line)>& on_error_line);

@@ -96,9 +96,7 @@ Result<void> add_acuities(HistorySession& session, const std::filesystem::path& 
   TODBENCH_TRY(const auto table, parse_csv(text, (folder / "curve.csv").string()));
   TODBENCH_TRY(const auto stated, stated_uncertainties(folder));
   TODBENCH_TRY(const auto unfit, unfit_contrasts(folder));
-  const auto column = [&](const char* name) {
-    return static_cast<std::size_t>(std::find(table.header.begin(), table.header.end(), name) - table.header.begin());
-  };
+  const auto column = [&](const char* name) { return table.column(name).value_or(table.header.size()); };
   const std::size_t of_side = column("side"), contrast = column("set_delta_t_k"), acuity = column("acuity_per_mrad"),
                     low = column("acuity_ci95_low_per_mrad"), high = column("acuity_ci95_high_per_mrad"),
                     verdict = column("verdict");

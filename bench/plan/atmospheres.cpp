@@ -124,12 +124,6 @@ Result<double> number_at(const CsvTable& table, const CsvRow& row, std::size_t c
       row.line, "column " + table.header[column] + ": expected a number, found '" + one_line(row.fields[column]) + "'");
 }
 
-std::optional<std::size_t> column_of(const CsvTable& table, std::string_view name) {
-  const auto found = std::find(table.header.begin(), table.header.end(), name);
-  if (found == table.header.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - table.header.begin());
-}
-
 /// Returns the rows of two columns.
 Result<std::vector<std::pair<double, double>>> pairs_of(const CsvTable& table, std::size_t a, std::size_t b) {
   std::vector<std::pair<double, double>> pairs;
@@ -156,9 +150,9 @@ std::optional<std::string> spectrum_note(const std::vector<SpectralExtinction>& 
 
 Result<Transmittance> air_of_csv(const CsvTable& table, const AtmosphereRequest& request,
                                  std::vector<std::string>& notes) {
-  const auto kilometres = column_of(table, "range_km"), metres = column_of(table, "range_m");
-  const auto transmittance = column_of(table, "transmittance"), tau = column_of(table, "tau");
-  const auto wavelength = column_of(table, "wavelength_um"), extinction = column_of(table, "extinction_per_km");
+  const auto kilometres = table.column("range_km"), metres = table.column("range_m");
+  const auto transmittance = table.column("transmittance"), tau = table.column("tau");
+  const auto wavelength = table.column("wavelength_um"), extinction = table.column("extinction_per_km");
   if (const auto range = kilometres ? kilometres : metres; range && (transmittance || tau)) {
     TODBENCH_TRY(const auto pairs, pairs_of(table, *range, transmittance ? *transmittance : *tau));
     std::vector<TransmittancePoint> points;

@@ -31,9 +31,9 @@ class NamedColumns {
   }
   [[nodiscard]] const std::vector<CsvRow>& rows() const { return table_.rows; }
   [[nodiscard]] Result<std::string> text(const CsvRow& row, const std::string& name) const {
-    const auto found = std::find(table_.header.begin(), table_.header.end(), name);
-    if (found == table_.header.end()) return table_.wrong(1, "missing column '" + name + "'");
-    return row.fields[static_cast<std::size_t>(found - table_.header.begin())];
+    const auto found = table_.column(name);
+    if (!found) return table_.wrong(1, "missing column '" + name + "'");
+    return row.fields[*found];
   }
   [[nodiscard]] Result<double> number(const CsvRow& row, const std::string& name, double low, double high) const {
     TODBENCH_TRY(const std::string field, text(row, name));

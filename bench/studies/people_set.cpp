@@ -23,10 +23,6 @@ namespace {
 constexpr const char* m75_schema = "todbench-m75-1";
 constexpr int least_side_px = 512;
 
-std::string picture_name(std::size_t number) {
-  return fmt::format("{:04}.png", number);
-}
-
 /// A name whose other characters than letters, digits, "-" and "_" are "_".
 std::string file_name_of(std::string name) {
   for (char& c : name) {
@@ -61,13 +57,6 @@ void m75_fields(JsonFields& json, StatedM75& m75) {
   json.value("curve_of", m75.curve_of);
   json.value("m75", m75.m75);
   json.value("m75_ci95", m75.ci95);
-}
-
-/// Number of the column of a table.
-Result<std::size_t> column_of(const CsvTable& table, const char* name) {
-  const auto at = std::ranges::find(table.header, name);
-  if (at == table.header.end()) return table.wrong(1, fmt::format("expected a column {}", name));
-  return static_cast<std::size_t>(at - table.header.begin());
 }
 
 PeopleShare share_of_people(const std::vector<PersonResult>& persons, std::size_t condition) {
@@ -146,24 +135,25 @@ Result<std::vector<ExperimentAnswer>> read_people_answers(const std::filesystem:
                                                           const PersonExperiment& experiment) {
   TODBENCH_TRY(const auto text, read_text_file(file));
   TODBENCH_TRY(const auto table, parse_csv(text, file.string()));
-  TODBENCH_TRY(const auto number_column, column_of(table, "number"));
-  TODBENCH_TRY(const auto experiment_column, column_of(table, "experiment"));
-  TODBENCH_TRY(const auto answer_column, column_of(table, "answer"));
+  const auto number_column = table.column("number"), experiment_column = table.column("experiment"),
+             answer_column = table.column("answer");
+  if (!number_column || !experiment_column || !answer_column)
+    return table.wrong(1, "expected the columns number, experiment and answer");
   TODBENCH_TRY(const auto number, people_set_number(experiment));
   const std::size_t count = experiment.trials().size();
   std::vector<std::optional<std::size_t>> found(count);
   for (const CsvRow& row : table.rows) {
-    if (row.fields[experiment_column] != number) {
+    if (row.fields[*experiment_column] != number) {
       return table.wrong(row.line, fmt::format("the answers belong to experiment '{}', and these options describe {}: "
                                                "repeat the options and the seed with which the set was written",
-                                               one_line(row.fields[experiment_column]), number));
+                                               one_line(row.fields[*experiment_column]), number));
     }
-    const auto picture = parse_number(row.fields[number_column]);
+    const auto picture = parse_number(row.fields[*number_column]);
     if (!picture || !(*picture >= 1 && *picture <= static_cast<double>(count)) || *picture != std::floor(*picture))
       return table.wrong(row.line, fmt::format("expected the number of a picture, 1 to {}", count));
     auto& answer = found[static_cast<std::size_t>(*picture) - 1];
     if (answer) return table.wrong(row.line, fmt::format("picture {:g} is answered twice", *picture));
-    const std::string& name = row.fields[answer_column];
+    const std::string& name = row.fields[*answer_column];
     if (name.empty()) return table.wrong(row.line, "an answer is missing; a person who is not sure guesses");
     const auto at = std::ranges::find(experiment.alternatives(), name);
     if (at == experiment.alternatives().end()) {

@@ -4,19 +4,9 @@
 #include <cmath>
 
 #include "acquisition/base/try.h"
+#include "sim_devices/prediction/identification_passes.h"
 
 namespace todbench {
-namespace {
-
-/// Values of a field without their mean.
-cv::Mat1d without_field_mean(const cv::Mat& picture) {
-  cv::Mat1d out;
-  picture.convertTo(out, CV_64F);
-  return out - cv::mean(out)[0];
-}
-
-}  // namespace
-
 Result<StagedFrame> behind_stages(const SensorModel& model,
                                   const std::function<std::vector<std::unique_ptr<ChainStage>>()>& stages,
                                   const std::vector<cv::Mat1f>& signals, double background_k, const cv::Rect& field) {
@@ -38,9 +28,9 @@ Result<StagedFrame> behind_stages(const SensorModel& model,
   TODBENCH_TRY(const auto moving, last_of([&](std::size_t k) { return signals[k]; }));
   TODBENCH_TRY(const auto still, last_of([&](std::size_t) { return signals.back(); }));
   TODBENCH_TRY(const auto empty, last_of([&](std::size_t) { return cv::Mat1f::zeros(model.size()); }));
-  const cv::Mat1d in_front = without_field_mean(signals.back()(field));
+  const cv::Mat1d in_front = without_mean(signals.back()(field));
   StagedFrame out;
-  out.gain = without_field_mean(still(field) - empty(field)).dot(in_front) / in_front.dot(in_front);
+  out.gain = without_mean(still(field) - empty(field)).dot(in_front) / in_front.dot(in_front);
   if (!std::isfinite(out.gain) || out.gain == 0)
     return fail(ErrorCode::not_identifiable, "behind the processing stages the scene has no contrast");
   moving.convertTo(out.kelvin, CV_32F, 1 / out.gain, -cv::mean(empty)[0] / out.gain);

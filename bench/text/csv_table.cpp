@@ -17,6 +17,12 @@ std::string_view without_blanks(std::string_view text) {
 
 }  // namespace
 
+std::optional<std::size_t> CsvTable::column(std::string_view of) const {
+  const auto found = std::ranges::find(header, of);
+  if (found == header.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - header.begin());
+}
+
 tl::unexpected<Error> CsvTable::wrong(int line, const std::string& sentence) const {
   return fail(ErrorCode::invalid_input, name + ":" + std::to_string(line) + ": " + sentence);
 }

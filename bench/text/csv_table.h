@@ -2,6 +2,8 @@
 // CSV file as rows of fields with line numbers.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +22,8 @@ struct CsvTable {
   std::vector<std::string> header;
   std::vector<CsvRow> rows;
 
+  /// Position of the first column of this name.
+  [[nodiscard]] std::optional<std::size_t> column(std::string_view of) const;
   /// Returns the error `invalid_input` "NAME:LINE: SENTENCE".
   [[nodiscard]] tl::unexpected<Error> wrong(int line, const std::string& sentence) const;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/text/folders.h"
 
+#include <fmt/format.h>
+
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -42,6 +44,10 @@ Result<std::shared_ptr<const FolderClaim>> claim_folder(const std::filesystem::p
   if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     return fail(ErrorCode::invalid_input, folder.string() + ": another program is writing into this folder");
   return claim;
+}
+
+std::string picture_name(std::size_t number) {
+  return fmt::format("{:04}.png", number);
 }
 
 }  // namespace todbench

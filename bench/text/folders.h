@@ -2,8 +2,10 @@
 // Folders for output.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <system_error>
 
 #include "acquisition/base/result.h"
@@ -22,5 +24,8 @@ class FolderClaim;
 /// Claims a folder until the last copy of the claim is destroyed. Writes no file into the folder. On file systems
 /// without locks the claim always succeeds. Errors: `invalid_input` (held by another program).
 [[nodiscard]] Result<std::shared_ptr<const FolderClaim>> claim_folder(const std::filesystem::path& folder);
+
+/// Name of a numbered picture, "0001.png".
+[[nodiscard]] std::string picture_name(std::size_t number);
 
 }  // namespace todbench

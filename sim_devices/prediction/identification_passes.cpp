@@ -39,12 +39,6 @@ SensorPlan without_quantisation(SensorPlan plan) {
   return plan;
 }
 
-cv::Mat1d without_mean(const cv::Mat1f& window) {
-  cv::Mat1d out;
-  window.convertTo(out, CV_64F);
-  return out - cv::mean(out)[0];
-}
-
 /// Copies whose values are their own.
 std::vector<cv::Mat1f> copies_of(const std::vector<cv::Mat1f>& frames) {
   std::vector<cv::Mat1f> out;
@@ -63,6 +57,12 @@ struct SearchSteps {
 };
 
 }  // namespace
+
+cv::Mat1d without_mean(const cv::Mat& picture) {
+  cv::Mat1d out;
+  picture.convertTo(out, CV_64F);
+  return out - cv::mean(out)[0];
+}
 
 cv::Point2d step_of_pass(const SensorSpec& spec, SceneMotion motion) {
   return cv::Point2d(motion.x_mrad_s, motion.y_mrad_s) *

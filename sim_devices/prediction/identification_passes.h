@@ -19,6 +19,9 @@
 
 namespace todbench {
 
+/// The picture without its mean.
+[[nodiscard]] cv::Mat1d without_mean(const cv::Mat& picture);
+
 /// Displacement of the target from frame to frame, in displayed samples.
 [[nodiscard]] cv::Point2d step_of_pass(const SensorSpec& spec, SceneMotion motion);
 /// Error: `invalid_input` in one sentence for a motion or a sequence of frames that the experiment does not simulate.
