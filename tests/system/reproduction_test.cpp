@@ -74,7 +74,7 @@ TEST(ReproduceCommand, HoldsTheObserverWithAnEyeAgainstPeopleFailuresFirst) {
   const Json json = one_object(ended);
   EXPECT_THAT(keys_of(json), UnorderedElementsAre("experiment", "observer", "statement", "failures", "kinds",
                                                   "not_comparable", "settings"));
-  ASSERT_EQ(json["failures"].size(), 4u);
+  ASSERT_EQ(json["failures"].size(), 6u);
   for (std::size_t i = 0; i < json["failures"].size(); ++i) EXPECT_EQ(json["kinds"][i]["name"], json["failures"][i]);
   for (const auto& kind : json["kinds"]) {
     EXPECT_TRUE(kind["rms_error"].is_number()) << kind["name"];
