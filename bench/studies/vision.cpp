@@ -327,7 +327,8 @@ Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer,
   std::ranges::move(vision_ratios(*observer.eye, eye.acuity(much_light_cd_m2, 1)), std::back_inserter(out.kinds));
   TODBENCH_TRY(auto gains, microscan_gains_of_a_person(observer, options));
   out.kinds.push_back(std::move(gains));
-  std::ranges::stable_partition(out.kinds, [](const VisionKind& kind) { return !kind.failure.empty(); });
+  std::stable_partition(out.kinds.begin(), out.kinds.end(),
+                        [](const VisionKind& kind) { return !kind.failure.empty(); });
   return out;
 }
 
