@@ -181,10 +181,11 @@ int run_star(Console& console, const PictureFile& file, const SlantedEdgeOptions
              const SfrArguments& arguments) {
   auto edges = slanted_star(file.picture, {{arguments.star[0], arguments.star[1]}, arguments.star[2]}, options);
   if (!edges) return report_error(console, with_context(arguments.picture, edges.error()));
+  const bool at_end = reaches_end(file);
   std::vector<std::string> said;
   for (StarEdge& edge : *edges) {
     if (!edge.measured) continue;
-    add_notes(*edge.measured, reaches_end(file), arguments);
+    add_notes(*edge.measured, at_end, arguments);
     for (const auto& note : edge.measured->notes)
       if (std::ranges::find(said, note) == said.end()) said.push_back(note);
   }

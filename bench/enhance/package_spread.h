@@ -31,7 +31,8 @@ class OpenEnds {
  public:
   /// Asks nobody if the observer has no eye.
   explicit OpenEnds(const TemplateObserverSpec& observer);
-  /// Adds the answers to the patch of a trial, with the random numbers of the observer itself. `options`: of the run.
+  /// Appends the answers of both ends to the patch of a trial. They use the random numbers of the observer itself.
+  /// `options` are those of the run.
   void judge(const Trial& trial, const Patch& patch, const MeasurementOptions& options, EndTrials& into);
 
  private:

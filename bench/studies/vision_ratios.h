@@ -11,13 +11,14 @@ namespace todbench {
 
 /// d' at 84 % correct of two-alternative forced choice.
 inline constexpr double two_alternatives = 1.41;
-/// Share of correct answers in tests with four alternatives: half way from chance.
+/// Share of correct answers at the threshold of four alternatives: the middle between chance and 1.
 inline constexpr double acuity_share = 0.625;
 /// Luminances of sources that do not state theirs, and of "high illuminance".
 inline constexpr double assumed_cd_m2 = 100, much_light_cd_m2 = 3000;
 
-/// Contrast that detects a block E over that which tells its orientation; acuity for gratings over that for Landolt
-/// rings; slope of contrast discrimination. `ring_acuity_per_arcmin`: of the eye, at much light and full contrast.
+/// Returns three figures: the contrast at which a block E is detected over that at which its orientation is told; the
+/// acuity for gratings over that for Landolt rings; the slope of contrast discrimination. `ring_acuity_per_arcmin` is
+/// the acuity of the same eye for rings at `much_light_cd_m2` and full contrast.
 [[nodiscard]] std::vector<VisionKind> vision_ratios(const EyeParameters& eye, double ring_acuity_per_arcmin);
 
 }  // namespace todbench
