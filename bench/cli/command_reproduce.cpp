@@ -26,6 +26,8 @@ struct ReproduceArguments {
   std::string experiment;
   std::string out{};  ///< empty: reproduction-EXPERIMENT
   std::string accuracy = "normal";
+  std::string observer = "hvs-2";
+  std::string figures{};  ///< empty: the quoted figures alone
   bool overwrite = false;
 };
 
@@ -204,15 +206,23 @@ void print_vision(const Console& console, const VisionComparison& comparison, co
 int run_vision(Console& console, const ReproduceArguments& arguments, const Program& program) {
   const auto accuracy = Accuracy::named(arguments.accuracy);
   if (!accuracy) return report_error(console, accuracy.error());
-  const auto resource = find_resource(ResourceKind::observer, "hvs-2");
+  const auto resource = find_resource(ResourceKind::observer, arguments.observer);
   if (!resource) return report_error(console, resource.error());
   const auto observer = parse_observer(*resource);
   if (!observer) return report_error(console, observer.error());
+  if (!observer->eye) {
+    return report_error(console, {ErrorCode::invalid_input,
+                                  "--observer: '" + one_line(arguments.observer) +
+                                      "' has no eye, and figures of people need one: choose hvs-2 or a file made "
+                                      "from it"});
+  }
   const auto folder = folder_for(arguments);
   if (!folder) return report_error(console, folder.error());
   console.phase("comparing the observer with figures of people");
-  const auto found =
-      vision_comparison(*observer, {.accuracy = *accuracy, .seed = program.common.seed, .stop = program.stop->token()});
+  const auto found = vision_comparison(*observer, {.accuracy = *accuracy,
+                                                   .seed = program.common.seed,
+                                                   .figures = arguments.figures,
+                                                   .stop = program.stop->token()});
   console.end_progress();
   if (!found) return report_error(console, found.error());
   const Json json = vision_json(*found);
@@ -230,6 +240,10 @@ int run_vision(Console& console, const ReproduceArguments& arguments, const Prog
 }
 
 int run_reproduce(Console& console, const ReproduceArguments& arguments, const Program& program) {
+  if (arguments.experiment == "eo-vista" && (!arguments.figures.empty() || arguments.observer != "hvs-2")) {
+    return report_error(console, {ErrorCode::invalid_input,
+                                  "reproduce eo-vista: --figures and --observer belong to 'reproduce vision'"});
+  }
   if (arguments.experiment == "eo-vista") return run_eo_vista(console, arguments, program);
   if (arguments.experiment == "vision") return run_vision(console, arguments, program);
   return report_error(
@@ -247,6 +261,10 @@ void add_reproduce_command(CLI::App& app, Program& program) {
   command->add_option("EXPERIMENT", a->experiment, "experiment: eo-vista or vision")->required();
   command->add_option("--out", a->out, "folder for the page (default: reproduction-EXPERIMENT)");
   command->add_option("--accuracy", a->accuracy, "numerical accuracy: draft, normal or reference")
+      ->capture_default_str();
+  command->add_option("--figures", a->figures,
+                      "CSV file of people's figures that 'vision' compares, too: contrast sensitivity or acuity");
+  command->add_option("--observer", a->observer, "observer with an eye that 'vision' compares: name or file")
       ->capture_default_str();
   command->add_flag("--force", a->overwrite, "overwrites the page in an existing folder");
   finish_command(*command, program, [a, &program](Console& console) { return run_reproduce(console, *a, program); });

@@ -96,6 +96,8 @@ std::string_view to_string(VisionRole role) {
       return "chosen";
     case VisionRole::predicted:
       return "predicted";
+    case VisionRole::from_file:
+      return "from file";
   }
   return "";
 }

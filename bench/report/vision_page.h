@@ -15,6 +15,7 @@ enum class VisionRole {
   fitted,     ///< some or all of them were in the fit of its parameters
   chosen,     ///< a parameter was chosen with these figures in sight
   predicted,  ///< nothing was adjusted to them
+  from_file,  ///< figures of a user, the relation is not known
 };
 [[nodiscard]] std::string_view to_string(VisionRole role);
 

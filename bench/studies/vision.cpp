@@ -5,25 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
 #include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
+#include "bench/studies/measured_eye.h"
 #include "bench/studies/people_figures.h"
+#include "bench/studies/vision_figures.h"
 #include "bench/studies/vision_ratios.h"
 #include "hvs/eye/compact_patterns.h"
-#include "hvs/observer/naked_eye.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {
 
-/// d' at about 75 % of four-alternative forced choice.
-constexpr double four_alternatives = 1.68;
 /// Luminance contrast of printed optotypes.
 constexpr double printed_contrast = 0.95;
 
@@ -33,30 +31,7 @@ constexpr const char* castle_source =
 constexpr const char* modelfest_source =
     "ModelFest (Carney et al. 1999): mean of 16 people, 30 cd/m2, 84 % of two-alternative forced choice";
 
-/// The eye that a kind of figures is compared with.
-class NakedEye {
- public:
-  explicit NakedEye(const EyeParameters& eye) : eye_(eye) {}
-  [[nodiscard]] EyeFilter at(double luminance_cd_m2) const { return {eye_, luminance_cd_m2}; }
-  /// 1/arcmin of the gap of a Landolt ring.
-  [[nodiscard]] double acuity(double luminance_cd_m2, double contrast) const {
-    const auto size = ring_.threshold_deg(at(luminance_cd_m2), eye_.contrast_noise, contrast, acuity_share);
-    return size ? sqrt_area_ / (60 * *size) : std::numeric_limits<double>::quiet_NaN();
-  }
-  /// Contrast of a Landolt ring whose gap is `gap_arcmin`.
-  [[nodiscard]] double threshold_contrast(double luminance_cd_m2, double gap_arcmin) const {
-    return ring_
-        .threshold_contrast(at(luminance_cd_m2), eye_.contrast_noise, gap_arcmin / 60 * sqrt_area_, acuity_share)
-        .value_or(std::numeric_limits<double>::quiet_NaN());
-  }
-
- private:
-  EyeParameters eye_;
-  NakedEyeShape ring_{landolt_ring()};
-  double sqrt_area_ = std::sqrt(area(landolt_ring()));
-};
-
-VisionPoint grating_point(const NakedEye& eye, const people::Grating& grating) {
+VisionPoint grating_point(const MeasuredEye& eye, const people::Grating& grating) {
   const std::string_view study = grating.study;
   const bool four = study == "Wuerger 2020" || study == "Mantiuk 2011";
   return {fmt::format("{}: {:g} cd/m2, {:g} 1/deg, sigma {:.2g} deg", study, grating.luminance_cd_m2,
@@ -66,7 +41,7 @@ VisionPoint grating_point(const NakedEye& eye, const people::Grating& grating) {
               (four ? four_alternatives : two_alternatives)};
 }
 
-VisionKind small_discs(const NakedEye& eye) {
+VisionKind small_discs(const MeasuredEye& eye) {
   VisionKind kind{.name = "small_discs",
                   .title = "Small discs",
                   .quantity = "sensitivity (1 / contrast)",
@@ -87,7 +62,7 @@ VisionKind small_discs(const NakedEye& eye) {
   return kind;
 }
 
-VisionKind other_laboratories(const NakedEye& eye) {
+VisionKind other_laboratories(const MeasuredEye& eye) {
   VisionKind kind{.name = "other_laboratories",
                   .title = "Laboratories outside the fit",
                   .quantity = "sensitivity (1 / contrast)",
@@ -103,7 +78,7 @@ VisionKind other_laboratories(const NakedEye& eye) {
   return kind;
 }
 
-VisionKind reading(const NakedEye& eye) {
+VisionKind reading(const MeasuredEye& eye) {
   VisionKind kind{.name = "reading",
                   .title = "Reading at low contrast",
                   .quantity = "acuity relative to full contrast",
@@ -123,7 +98,7 @@ VisionKind reading(const NakedEye& eye) {
   return kind;
 }
 
-VisionKind light(const NakedEye& eye) {
+VisionKind light(const MeasuredEye& eye) {
   VisionKind kind{.name = "light",
                   .title = "Acuity and contrast threshold over luminance",
                   .quantity = "ratio",
@@ -152,7 +127,7 @@ VisionKind light(const NakedEye& eye) {
   return kind;
 }
 
-VisionKind gratings(const NakedEye& eye) {
+VisionKind gratings(const MeasuredEye& eye) {
   VisionKind kind{.name = "contrast_sensitivity",
                   .title = "Contrast sensitivity",
                   .quantity = "sensitivity (1 / contrast)",
@@ -168,7 +143,7 @@ VisionKind gratings(const NakedEye& eye) {
   return kind;
 }
 
-VisionKind modelfest_gabors(const NakedEye& eye) {
+VisionKind modelfest_gabors(const MeasuredEye& eye) {
   VisionKind kind{.name = "modelfest_gabors",
                   .title = "ModelFest, Gabor patterns",
                   .quantity = "sensitivity (1 / contrast)",
@@ -186,7 +161,7 @@ VisionKind modelfest_gabors(const NakedEye& eye) {
   return kind;
 }
 
-VisionKind modelfest_compact(const NakedEye& eye) {
+VisionKind modelfest_compact(const MeasuredEye& eye) {
   VisionKind kind{.name = "compact_patterns",
                   .title = "ModelFest, compact patterns",
                   .quantity = "sensitivity (1 / contrast)",
@@ -212,7 +187,7 @@ VisionKind modelfest_compact(const NakedEye& eye) {
   return kind;
 }
 
-VisionKind landolt(const NakedEye& eye) {
+VisionKind landolt(const MeasuredEye& eye) {
   VisionKind kind{.name = "landolt",
                   .title = "Landolt ring over luminance and contrast",
                   .quantity = "acuity (1/arcmin)",
@@ -235,7 +210,7 @@ VisionKind landolt(const NakedEye& eye) {
   return kind;
 }
 
-VisionKind acuity_of_130(const NakedEye& eye) {
+VisionKind acuity_of_130(const MeasuredEye& eye) {
   VisionKind kind{.name = "acuity_130_people",
                   .title = "Acuity of 130 people",
                   .quantity = "acuity (1/arcmin)",
@@ -308,7 +283,7 @@ double landolt_acuity_of_people(double luminance_cd_m2, double contrast_percent)
 }
 
 Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer, const VisionOptions& options) {
-  const NakedEye eye(*observer.eye);
+  const MeasuredEye eye(*observer.eye);
   VisionComparison out{
       .observer = observer.name,
       .statement = observer.name +
@@ -327,6 +302,11 @@ Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer,
   std::ranges::move(vision_ratios(*observer.eye, eye.acuity(much_light_cd_m2, 1)), std::back_inserter(out.kinds));
   TODBENCH_TRY(auto gains, microscan_gains_of_a_person(observer, options));
   out.kinds.push_back(std::move(gains));
+  if (!options.figures.empty()) {
+    TODBENCH_TRY(auto figures, figures_of_people(options.figures, eye));
+    std::ranges::move(figures, std::back_inserter(out.kinds));
+    out.settings.emplace_back("Figures", options.figures.filename().string());
+  }
   std::stable_partition(out.kinds.begin(), out.kinds.end(),
                         [](const VisionKind& kind) { return !kind.failure.empty(); });
   return out;

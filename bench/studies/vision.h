@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <stop_token>
 
 #include "acquisition/base/accuracy.h"
@@ -14,10 +15,11 @@ namespace todbench {
 struct VisionOptions {
   Accuracy accuracy;  ///< of the thresholds behind a simulated sensor
   std::uint64_t seed = 1;
+  std::filesystem::path figures{};  ///< further figures of people, see figures_of_people(); empty: none
   std::stop_token stop{};
 };
 
-/// Precondition: the observer has an eye. Errors: `interrupted`, and those of its parts.
+/// Precondition: the observer has an eye. Errors: `interrupted`, those of figures_of_people(), and those of its parts.
 [[nodiscard]] Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer,
                                                          const VisionOptions& options);
 

@@ -11,6 +11,8 @@ namespace todbench {
 
 /// d' at 84 % correct of two-alternative forced choice.
 inline constexpr double two_alternatives = 1.41;
+/// d' at about 75 % of four-alternative forced choice.
+inline constexpr double four_alternatives = 1.68;
 /// Share of correct answers at the threshold of four alternatives: the middle between chance and 1.
 inline constexpr double acuity_share = 0.625;
 /// Luminances of sources that do not state theirs, and of "high illuminance".

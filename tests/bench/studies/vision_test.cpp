@@ -5,10 +5,16 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
 
 #include "bench/plan/descriptions.h"
 #include "bench/plan/resources.h"
 #include "bench/report/html.h"
+#include "bench/studies/vision_figures.h"
+#include "bench/text/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace todbench {
 namespace {
@@ -96,6 +102,79 @@ TEST(Vision, ReadsALandoltRingAtDaylightLikePeople) {
   // The formula of people at two points, computed by hand.
   EXPECT_NEAR(landolt_acuity_of_people(1, 10), 0.241, 5e-4);
   EXPECT_NEAR(landolt_acuity_of_people(3000, 95), 2.234, 5e-4);
+}
+
+const MeasuredEye& eye_of_hvs_2() {
+  static const MeasuredEye eye(*parse_observer(find_resource(ResourceKind::observer, "hvs-2").value()).value().eye);
+  return eye;
+}
+
+Result<std::vector<VisionKind>> figures_in(const std::string& csv) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "people.csv";
+  EXPECT_TRUE(write_file_atomically(file, csv));
+  return figures_of_people(file, eye_of_hvs_2());
+}
+
+TEST(VisionFigures, OfAFileAreThoseOfTheQuotedPoint) {
+  // The point of the quoted collection with the same pattern: same people, same model.
+  const VisionPoint& quoted = kind_named("modelfest_gabors").points.front();
+  double frequency = 0, sigma = 0;
+  ASSERT_EQ(std::sscanf(quoted.condition.c_str(), "%lf 1/deg, sigma %lf deg", &frequency, &sigma), 2);
+  const auto kinds = figures_in("dataset,luminance_cd_m2,frequency_cpd,sigma_deg,sensitivity,remark\nMine,30," +
+                                std::to_string(frequency) + "," + std::to_string(sigma) + "," +
+                                std::to_string(quoted.people) + ",any\n");
+  ASSERT_TRUE(kinds) << kinds.error().message;
+  ASSERT_EQ(kinds->size(), 1U);
+  EXPECT_EQ(kinds->front().title, "Mine");
+  EXPECT_EQ(kinds->front().role, VisionRole::from_file);
+  EXPECT_NEAR(error_of(kinds->front(), kinds->front().points.at(0)), error_of(kind_named("modelfest_gabors"), quoted),
+              1e-3);
+}
+
+TEST(VisionFigures, HaveTheirOwnCriterionAndArea) {
+  const auto kinds = figures_in(
+      "dataset,stimulus,luminance_cd_m2,frequency_cpd,area_deg2,sensitivity,d_prime\n"
+      "a,gabor,20,4,0.785398163397,50,1.41\na,gabor,20,4,0.785398163397,50,2.82\n"
+      "b,disc,20,0,0.785398163397,50,1.41\n");
+  ASSERT_TRUE(kinds) << kinds.error().message;
+  ASSERT_EQ(kinds->size(), 2U);
+  const auto& points = kinds->front().points;
+  EXPECT_NEAR(points[0].model / points[1].model, 2, 1e-9) << "twice the d' at threshold";
+  EXPECT_NE(points[0].condition.find("sigma 0.5 deg"), std::string::npos) << points[0].condition;
+  EXPECT_NE(kinds->back().points[0].condition.find("disc, radius 0.5 deg"), std::string::npos);
+}
+
+TEST(VisionFigures, ReadRingsOverLuminanceAndContrast) {
+  const auto kinds = figures_in("luminance_cd_m2,contrast_percent,decimal_acuity\n1,10,0.241\n3000,95,2.234\n");
+  ASSERT_TRUE(kinds) << kinds.error().message;
+  const VisionKind& landolt = kind_named("landolt");
+  for (const VisionPoint& point : kinds->front().points) {
+    const auto same = std::ranges::find(landolt.points, point.condition, &VisionPoint::condition);
+    ASSERT_NE(same, landolt.points.end()) << point.condition;
+    EXPECT_DOUBLE_EQ(same->model, point.model);
+  }
+}
+
+TEST(VisionFigures, NameTheLineAndTheColumnOfAWrongValue) {
+  const std::string columns = "stimulus,luminance_cd_m2,frequency_cpd,sigma_deg,sensitivity\n";
+  const struct {
+    std::string csv, words;
+  } cases[] = {
+      {columns + "gabor,20,4,0.5,50\ngabor,20,4,0.5,-50\n", "people.csv:3: sensitivity: expected"},
+      {columns + "gabor,0,4,0.5,50\n", ":2: luminance_cd_m2: expected"},
+      {columns + "gabor,20,nan,0.5,50\n", ":2: frequency_cpd: expected"},
+      {columns + "plaid,20,4,0.5,50\n", ":2: stimulus: expected gabor, grating or disc, found 'plaid'"},
+      {columns, "the file has no row"},
+      {"name,mean_log10_sensitivity\nGabor,1.8\n", ":1: expected the columns luminance_cd_m2"},
+      {"luminance_cd_m2,contrast_percent,decimal_acuity\n100,0.001,1\n", "does not see 100 cd/m2, 0.001 %"},
+  };
+  for (const auto& [csv, words] : cases) {
+    const auto kinds = figures_in(csv);
+    ASSERT_FALSE(kinds) << csv;
+    EXPECT_EQ(kinds.error().code, ErrorCode::invalid_input);
+    EXPECT_NE(kinds.error().message.find(words), std::string::npos) << kinds.error().message;
+  }
 }
 
 TEST(Vision, LeavesThePapersModelOutOfComparison) {
