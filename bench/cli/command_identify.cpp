@@ -61,7 +61,7 @@ std::string_view templates_name(TemplateKnowledge knowledge) {
 /// Names of the uses of the frames of a pass.
 std::vector<std::string> sequence_names() {
   std::vector<std::string> names;
-  for (const SequenceObserver observer : all_sequence_observers) names.emplace_back(to_string(observer));
+  for (const SequenceObserver observer : identification_sequences) names.emplace_back(to_string(observer));
   return names;
 }
 
@@ -91,7 +91,7 @@ Result<IdentificationStudyTask> identification_task(const IdentifyArguments& a, 
   task.knowledge = knowledge_from(a.templates);
   if (!a.motion_mrad_s.empty()) task.motion = {.x_mrad_s = a.motion_mrad_s[0], .y_mrad_s = a.motion_mrad_s[1]};
   task.sequence =
-      *std::ranges::find(all_sequence_observers, a.sequence, [](SequenceObserver s) { return to_string(s); });
+      *std::ranges::find(identification_sequences, a.sequence, [](SequenceObserver s) { return to_string(s); });
   task.frames = a.frames;
   if (!a.package.empty()) {
     TODBENCH_TRY(auto package, read_package_stages(a.package, "identification"));

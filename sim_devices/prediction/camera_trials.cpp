@@ -9,8 +9,8 @@
 #include "sim_devices/prediction/trial_plate.h"
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/sensor_model.h"
-#include "sim_devices/sensor/super_resolution.h"
 #include "tod/registration/patch_windows.h"
+#include "tod/registration/super_resolution.h"
 
 namespace todbench {
 namespace {

@@ -2,6 +2,7 @@
 // Identification experiment: an observer distinguishes the targets of a set behind a simulated camera.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -39,6 +40,10 @@ enum class TargetCues {
   shape  ///< every view has its dT_RSS uniformly, and the mean size of the set
 };
 
+/// Uses of the frames of a pass that identify() has.
+inline constexpr std::array identification_sequences{SequenceObserver::single_frame, SequenceObserver::tracking_sum,
+                                                     SequenceObserver::static_sum};
+
 struct IdentificationTask {
   SensorSpec sensor;
   SensorPlan plan;  ///< of effects
@@ -52,8 +57,8 @@ struct IdentificationTask {
   /// Of the targets in the picture: they move, or the camera turns. The plan must be made for it.
   SceneMotion motion{};
   /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
-  SequenceObserver sequence = SequenceObserver::single_frame;
-  int frames = 8;  ///< of a pass; a single frame ignores them
+  SequenceObserver sequence = SequenceObserver::single_frame;  ///< one of `identification_sequences`
+  int frames = 8;                                              ///< of a pass; a single frame ignores them
   /// Stages behind the camera, made anew for every pass if they have a memory; empty: none. Before the first frame of a
   /// pass they receive as many frames of the same motion as they remember. Their lag is not removed.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};

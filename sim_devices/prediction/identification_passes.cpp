@@ -76,6 +76,8 @@ Result<void> check_passes(const IdentificationTask& task) {
     return refuse("identification needs a motion of at most 5 pixels per frame");
   if (task.motion.moving() && task.sensor.samples_per_pitch() != 1)
     return refuse("identification of targets in motion needs a camera without microscan and super-resolution");
+  if (std::ranges::find(identification_sequences, task.sequence) == identification_sequences.end())
+    return refuse("identification has no super-resolution of a pass");
   if (task.sequence == SequenceObserver::single_frame) return {};
   if (task.frames < 1) return refuse("a pass needs at least one frame");
   if (task.plan.simulates(Effect::image_dance))

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim_devices/sensor/super_resolution.h"
+#include "tod/registration/super_resolution.h"
 
 namespace todbench {
 namespace {

@@ -40,7 +40,7 @@ BEGIN {
   may["sim_devices/scene"] = hvs " tod/plate sim_devices/atmosphere"
   may["sim_devices/atmosphere"] = base " tod/range"
   may["sim_devices/module"] = hvs
-  may["sim_devices/sensor"] = core " " hvs " tod/plate tod/presentation sim_devices/atmosphere sim_devices/scene sim_devices/module"
+  may["sim_devices/sensor"] = core " " hvs " tod/plate tod/presentation tod/registration sim_devices/atmosphere sim_devices/scene sim_devices/module"
   may["sim_devices/prediction"] = core " " tod " sim_devices/scene sim_devices/module sim_devices/sensor"
   may["sim_devices/lab/device_nodes"] = base
   may["sim_devices/lab/instruments"] = base " tod/plate tod/presentation tod/instruments"

@@ -8,12 +8,21 @@
 #include "hvs/observer/eye_noise.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/registration/patch_windows.h"
+#include "tod/registration/super_resolution.h"
 
 namespace todbench {
 namespace {
 
 /// Substream of a trial for the noise of the eye.
 constexpr std::uint64_t eye_sub_stream = 2;
+/// Samples of the finer picture for each sample of a frame and axis.
+constexpr int finer = 2;
+
+/// Side of the windows in the frames that a finer window needs: half of it, the step to the finer grid, and the rows
+/// and columns at the ends that a frame displaced by a pixel does not reach.
+int side_behind(int finer_window) {
+  return finer_window / finer + finer_window / finer % 2 + 6;
+}
 
 cv::Mat1d seen_in(const cv::Mat1f& frame, const PatchWindow& window) {
   cv::Mat1d kelvin;
@@ -25,7 +34,7 @@ cv::Mat1d seen_in(const cv::Mat1f& frame, const PatchWindow& window) {
 
 std::string_view to_string(SequenceObserver observer) {
   constexpr std::array<std::string_view, all_sequence_observers.size()> names{"single-frame", "tracking-sum",
-                                                                              "static-sum"};
+                                                                              "static-sum", "super-resolution"};
   return names[static_cast<std::size_t>(observer)];
 }
 
@@ -42,19 +51,22 @@ Result<SequenceJudge> SequenceJudge::prepare(TemplateObserver& observer, std::sp
   for (const double size : sizes) {
     TODBENCH_TRY(auto prepared, observer.prepare(size, 1));
     TODBENCH_TRY(auto bank, TemplateBank::build(wider, triangle_alternatives(), size, 1));
-    judge.sizes_.push_back({prepared, std::make_shared<const TemplateBank>(std::move(bank))});
+    TODBENCH_TRY(auto in_finer, observer.prepare(finer * size, finer));
+    judge.sizes_.push_back({prepared, in_finer, std::make_shared<const TemplateBank>(std::move(bank))});
   }
   return judge;
 }
 
 int SequenceJudge::window_samples(std::size_t size) const {
-  return std::max(sizes_[size].observer->window_samples(), sizes_[size].bank->window_samples());
+  return std::max({sizes_[size].observer->window_samples(), sizes_[size].bank->window_samples(),
+                   side_behind(sizes_[size].finer->window_samples())});
 }
 
 int SequenceJudge::choose(SequenceObserver kind, std::size_t size, const SeenSequence& seen,
                           const RandomStream& noise) const {
   if (kind == SequenceObserver::tracking_sum) return tracked(sizes_[size], seen, noise);
   if (kind == SequenceObserver::static_sum) return averaged(sizes_[size], seen, noise);
+  if (kind == SequenceObserver::super_resolution) return resolved(sizes_[size], seen, noise);
   const PatchWindow window = patch_window(seen.places.front(), sizes_[size].observer->window_samples());
   const Patch patch{.kelvin = seen_in(seen.frames.front(), window), .phase = window.phase, .noise_k = seen.noise_k};
   return sizes_[size].observer->choose(patch, seen.contrast_k, noise).alternative;
@@ -68,6 +80,27 @@ int SequenceJudge::averaged(const PreparedSize& size, const SeenSequence& seen, 
   patch.kelvin /= static_cast<double>(seen.frames.size());
   patch.noise_k = seen.noise_k / std::sqrt(static_cast<double>(seen.frames.size()));
   return size.observer->choose(patch, seen.contrast_k, noise).alternative;
+}
+
+int SequenceJudge::resolved(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const {
+  const int side = side_behind(size.finer->window_samples());
+  std::vector<cv::Mat1f> windows;
+  std::vector<cv::Point2d> shifts;
+  cv::Point2d place;  // of the target in the first window
+  for (std::size_t k = 0; k < seen.frames.size(); ++k) {
+    const PatchWindow window = patch_window(seen.places[k], side);
+    const cv::Point2d inside = seen.places[k] - cv::Point2d(window.pixels.tl());
+    if (k == 0) place = inside;
+    windows.push_back(seen.frames[k](window.pixels));
+    shifts.push_back(inside - place);
+  }
+  const SuperResolved picture = super_resolve(windows, shifts, finer, EmptyCells::interpolated).value();
+  const PatchWindow window = patch_window((place - picture.first_px) * finer, size.finer->window_samples());
+  Patch patch{.kelvin = seen_in(picture.picture, window), .phase = window.phase};
+  // Of a sample that is the mean of frames / finer^2 frames. Cells without a frame repeat neighbours, which have more
+  // frames: the noise of a template is then the same, or slightly less.
+  patch.noise_k = seen.noise_k * finer / std::sqrt(static_cast<double>(seen.frames.size()));
+  return size.finer->choose(patch, seen.contrast_k, noise).alternative;
 }
 
 /// Mean of the scores over the frames, each with the template at the target's place, plus the observer's own noise

@@ -19,9 +19,12 @@ enum class SequenceObserver {
   single_frame,  ///< judges the first frame only
   tracking_sum,  ///< adds the scores of all frames, each at the true place of the target: pursuit, an upper bound
   static_sum,    ///< averages all frames at the target's place in the middle of the pass: persistence without pursuit
+  /// Judges one picture on a grid twice as fine, in which every frame lies where the target is in it: dynamic
+  /// super-resolution of a known motion (super_resolve()).
+  super_resolution,
 };
 inline constexpr std::array all_sequence_observers{SequenceObserver::single_frame, SequenceObserver::tracking_sum,
-                                                   SequenceObserver::static_sum};
+                                                   SequenceObserver::static_sum, SequenceObserver::super_resolution};
 [[nodiscard]] std::string_view to_string(SequenceObserver observer);
 
 /// One triangle in the frames of a pass.
@@ -40,7 +43,7 @@ class SequenceJudge {
   [[nodiscard]] static Result<SequenceJudge> prepare(TemplateObserver& observer, std::span<const double> sizes);
 
   [[nodiscard]] std::size_t sizes() const { return sizes_.size(); }
-  /// Side of the window for size `size`, including the search of the sum, in samples.
+  /// Side of the window for size `size`, including the search of the sum and the finer picture, in samples.
   [[nodiscard]] int window_samples(std::size_t size) const;
   /// Returns the chosen alternative. Precondition: the windows round all places are in the frames.
   [[nodiscard]] int choose(SequenceObserver kind, std::size_t size, const SeenSequence& seen,
@@ -51,10 +54,12 @@ class SequenceJudge {
   /// search can be centred on any true place between two samples.
   struct PreparedSize {
     std::shared_ptr<const PreparedObserver> observer;
+    std::shared_ptr<const PreparedObserver> finer;  ///< of a picture on the grid twice as fine
     std::shared_ptr<const TemplateBank> bank;
   };
   [[nodiscard]] int tracked(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const;
   [[nodiscard]] int averaged(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const;
+  [[nodiscard]] int resolved(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const;
 
   TemplateObserverSpec spec_;
   int steps_ = 8, reach_ = 8, wide_reach_ = 12;

@@ -9,7 +9,7 @@
 
 #include "acquisition/base/rng.h"
 #include "bench/enhance/enhancement.h"
-#include "sim_devices/sensor/super_resolution.h"
+#include "tod/registration/super_resolution.h"
 
 namespace todbench {
 namespace {

@@ -118,6 +118,36 @@ TEST(MovingMeasurement, OfASimulatedSensorFindsItsTimeConstantAndLosesAcuityWith
   EXPECT_GT(right(0), right(90));
 }
 
+TEST(MovingMeasurement, ResolvesMoreWhereTheFramesOfAPassShowOtherPlaces) {
+  // Half a pixel from frame to frame: the finer picture is full along the motion. The simulation of the same passes
+  // knows the places; here they are those of the large triangles in each frame.
+  const LoadedPlan plan =
+      small_plan("16.9", 2, "[motion]\nspeeds_mrad_s = [32.7]\npasses = 12\nframes = 4\nlead_frames = 1\n");
+
+  const auto found = measure_dynamic(plan, {}, {});
+  TemplateObserver observer(plan.observer(), triangle_alternatives());
+  const auto simulated = dynamic_acuity(plan.sensor(), observer,
+                                        {.delta_t_k = 16.9,
+                                         .sizes_pitch = {},
+                                         .speeds_mrad_s = {32.7},
+                                         .passes = 48,
+                                         .frames = 4,
+                                         .accuracy = Accuracy::draft()});
+
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(simulated) << simulated.error().message;
+  constexpr auto kind = static_cast<std::size_t>(SequenceObserver::super_resolution);
+  const DynamicPoint& seen = found->contrasts.at(0).speeds.at(1).points.at(kind);
+  const DynamicPoint& expected = simulated->speeds.at(1).points.at(kind);
+  EXPECT_EQ(seen.observer, SequenceObserver::super_resolution);
+  ASSERT_TRUE(seen.ratio_ci95.low && expected.ratio_ci95.low);
+  EXPECT_GT(*seen.ratio_ci95.low, 1);
+  EXPECT_GT(*expected.ratio_ci95.low, 1);
+  const auto half_width = [](const DynamicPoint& p) { return std::log(*p.ratio_ci95.high / *p.ratio_ci95.low) / 2; };
+  EXPECT_LT(std::abs(std::log(*seen.ratio / *expected.ratio)), std::hypot(half_width(seen), half_width(expected)))
+      << *seen.ratio << " " << *expected.ratio;
+}
+
 /// A sample of 2.9 arcmin.
 ViewedDisplay bench_display() {
   return {.pixel_pitch_mm = 0.25,

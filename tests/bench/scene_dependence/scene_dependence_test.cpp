@@ -229,8 +229,8 @@ TEST(DynamicSession, ThatIsStoppedKeepsItsTrialsAndSaysSo) {
   ASSERT_TRUE(kept) << kept.error().message;
   EXPECT_EQ(kept->provenance.state, SessionState::interrupted);
   EXPECT_EQ(kept->trials.size(), 2u * 20) << "two passes at rest before the fourth pass of all";
-  // Twenty triangles and three observers a pass, on the disk when the pass is over; at rest every second pass.
-  EXPECT_THAT(moving_rows, ::testing::ElementsAre(60, 120, 180, 240));
+  // Twenty triangles and four observers a pass, on the disk when the pass is over; at rest every second pass.
+  EXPECT_THAT(moving_rows, ::testing::ElementsAre(80, 160, 240, 320));
   EXPECT_THAT(rows, ::testing::ElementsAre(20, 20, 40, 40));
 }
 

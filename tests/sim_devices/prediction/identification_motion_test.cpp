@@ -195,7 +195,9 @@ TEST(IdentificationInMotion, RefusesWhatItDoesNotSimulate) {
   IdentificationTask microscan = two_in_motion({.x_mrad_s = 10, .y_mrad_s = 0});
   microscan.sensor.microscan = 2;
   microscan.plan = full_plan(microscan.sensor, {}, {}, microscan.motion);
-  for (const IdentificationTask& task : {fast, nan, microscan}) {
+  IdentificationTask resolved = two_in_motion({.x_mrad_s = 10, .y_mrad_s = 0});
+  resolved.sequence = SequenceObserver::super_resolution;
+  for (const IdentificationTask& task : {fast, nan, microscan, resolved}) {
     const auto found = identify(task);
     ASSERT_FALSE(found);
     EXPECT_EQ(found.error().code, ErrorCode::invalid_input);

@@ -9,9 +9,9 @@
 #include "sim_devices/sensor/effect_exposure.h"
 #include "sim_devices/sensor/effect_readout.h"
 #include "sim_devices/sensor/sensor_model.h"
-#include "sim_devices/sensor/super_resolution.h"
 #include "tests/sim_devices/prediction/effect_grid.h"
 #include "tests/sim_devices/sensor/effect_scene.h"
+#include "tod/registration/super_resolution.h"
 
 namespace todbench {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim_devices/sensor/super_resolution.h"
+#include "tod/registration/super_resolution.h"
 
 #include <gmock/gmock.h>
 
@@ -55,6 +55,25 @@ TEST(SuperResolution, FourFramesHalfAPixelApartEqualTheFinelySampledPicture) {
   const cv::Mat1f fine = exposure({0, 0}, 6, 0.5, result->first_px);
   // The same exact picture, sampled once in four parts and once as a whole: single precision.
   EXPECT_LT(cv::norm(result->picture(cv::Rect(8, 8, 80, 80)), fine(cv::Rect(8, 8, 80, 80)), cv::NORM_INF), 1e-6);
+}
+
+TEST(SuperResolution, OneFrameIsInterpolatedBetweenItsPixelsOnRequest) {
+  cv::Mat1f ramp(16, 16);
+  for (int row = 0; row < 16; ++row) {
+    for (int column = 0; column < 16; ++column) ramp(row, column) = static_cast<float>(3 * column - 2 * row);
+  }
+
+  const auto result = super_resolve({ramp}, {{0, 0}}, 2, EmptyCells::interpolated);
+
+  ASSERT_TRUE(result.has_value()) << result.error().message;
+  EXPECT_FALSE(super_resolve({ramp}, {{0, 0}}, 2).has_value());
+  // A plane is shown as a plane, also where only the mean of two or four pixels is known.
+  for (int row = 1; row < 30; ++row) {
+    for (int column = 1; column < 30; ++column) {
+      const cv::Point2d px = result->first_px + cv::Point2d(column, row) / 2;
+      EXPECT_NEAR(result->picture(row, column), 3 * px.x - 2 * px.y, 1e-5) << row << " " << column;
+    }
+  }
 }
 
 TEST(SuperResolution, OneFrameAtFactorOneIsThatFrame) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim_devices/sensor/super_resolution.h"
+#include "tod/registration/super_resolution.h"
 
 #include <algorithm>
 #include <array>
@@ -110,23 +110,29 @@ Axis placed_on_grid(const std::vector<double>& places, int factor) {
   return axis;
 }
 
-/// Fills cells without a sample with the nearest cell that has one, searching in growing squares.
-void fill_edges(cv::Mat1f& picture, const cv::Mat1i& counts) {
+/// Fills samples that no frame reaches with the mean of the nearest ones that a frame reaches, or with the first of
+/// them, searching in growing squares.
+void fill_empty(cv::Mat1f& picture, const cv::Mat1i& counts, bool mean_of_nearest) {
+  constexpr double same = 1e-9;
   const cv::Mat1f source = picture.clone();
   for (int row = 0; row < picture.rows; ++row) {
     for (int column = 0; column < picture.cols; ++column) {
       if (counts(row, column) > 0) continue;
-      double nearest = 1e300;
+      double nearest = 1e300, sum = 0;
+      int found = 0;
       for (int reach = 1; nearest > 1e299 && reach < std::max(picture.rows, picture.cols); ++reach) {
         for (int j = std::max(0, row - reach); j <= std::min(picture.rows - 1, row + reach); ++j) {
           for (int i = std::max(0, column - reach); i <= std::min(picture.cols - 1, column + reach); ++i) {
             const double distance = std::hypot(j - row, i - column);
-            if (counts(j, i) == 0 || distance >= nearest) continue;
-            nearest = distance;
-            picture(row, column) = source(j, i);
+            if (counts(j, i) == 0 || distance > nearest + same) continue;
+            if (distance < nearest - same) nearest = distance, sum = found = 0;
+            if (found > 0 && !mean_of_nearest) continue;
+            sum += static_cast<double>(source(j, i));
+            ++found;
           }
         }
       }
+      picture(row, column) = static_cast<float>(sum / std::max(1, found));
     }
   }
 }
@@ -202,7 +208,7 @@ Result<std::vector<cv::Point2d>> frame_shifts(const std::vector<cv::Mat1f>& fram
 }
 
 Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames, const std::vector<cv::Point2d>& shifts_px,
-                                    int factor) {
+                                    int factor, EmptyCells empty) {
   if (auto checked = check(frames, shifts_px.size()); !checked) return tl::unexpected(checked.error());
   if (factor < 1 || factor > 8) return fail(ErrorCode::invalid_input, "the factor of super-resolution must be 1 to 8");
   std::vector<double> xs, ys;
@@ -219,7 +225,7 @@ Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames, const 
   out.frames_per_cell = cv::Mat1i::zeros(factor, factor);
   const auto cell = [factor](int index) { return ((index % factor) + factor) % factor; };
   for (std::size_t k = 0; k < frames.size(); ++k) ++out.frames_per_cell(cell(y.first_cell[k]), cell(x.first_cell[k]));
-  if (cv::countNonZero(out.frames_per_cell) < factor * factor) {
+  if (empty == EmptyCells::refused && cv::countNonZero(out.frames_per_cell) < factor * factor) {
     return fail(ErrorCode::invalid_input, "the shifts of " + std::to_string(frames.size()) + " frames fill only " +
                                               std::to_string(cv::countNonZero(out.frames_per_cell)) + " of the " +
                                               std::to_string(factor * factor) + " cells of a pixel");
@@ -244,7 +250,7 @@ Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames, const 
     for (int column = 0; column < size.width; ++column)
       out.picture(row, column) = static_cast<float>(sums(row, column) / std::max(1, counts(row, column)));
   }
-  fill_edges(out.picture, counts);
+  fill_empty(out.picture, counts, empty == EmptyCells::interpolated);
   out.first_px = {x.first_px, y.first_px};
   out.placement_rms_px = std::sqrt((x.squares + y.squares) / (2 * static_cast<double>(frames.size())));
   return out;

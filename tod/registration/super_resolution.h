@@ -34,12 +34,19 @@ struct SuperResolved {
   cv::Mat1i frames_per_cell;
 };
 
+/// A cell of the pixel that no frame reaches.
+enum class EmptyCells {
+  refused,
+  interpolated  ///< shows the mean of the nearest ones: no finer picture along an axis without displacement
+};
+
 /// Puts every sample of every frame into the nearest cell of the finer grid and averages there. The grid is placed to
 /// fit the shifts best (circular mean). Cells beyond a frame's edge that no frame reaches repeat their nearest
-/// neighbour. `invalid_input`: no frame, different sizes, a missing or non-finite shift, or a cell of the pixel that no
-/// frame reaches (at least factor^2 frames with different sub-pixel shifts are needed). Pure.
+/// neighbour. `invalid_input`: no frame, different sizes, a missing or non-finite shift, or a refused empty cell (at
+/// least factor^2 frames with different sub-pixel shifts fill all of them). Pure.
 [[nodiscard]] Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames,
-                                                  const std::vector<cv::Point2d>& shifts_px, int factor = 2);
+                                                  const std::vector<cv::Point2d>& shifts_px, int factor = 2,
+                                                  EmptyCells empty = EmptyCells::refused);
 
 /// Uses the shifts of frame_shifts().
 [[nodiscard]] Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames);
