@@ -121,7 +121,7 @@ int read_answers(Console& console, const PeopleOptions& options, const Identific
 }  // namespace
 
 std::string range_text(const SetCriterion& r75_m, std::string_view none_because) {
-  if (!r75_m.value) return "no range of 75 % correct, because " + std::string(none_because);
+  if (!r75_m.value) return "no range found, because " + std::string(none_because);
   return "75 % correct at " + fixed(r75_m.value, 1) + " m, 95 %: " + range(r75_m.ci95, 1) + " m";
 }
 

@@ -70,6 +70,7 @@ progress { width: 100%; height: 1.2rem; }
 table { border-collapse: collapse; margin: 0.6rem 0; }
 caption { text-align: left; color: var(--muted); }
 th, td { text-align: left; padding: 0.15rem 0.8rem 0.15rem 0; border-bottom: 1px solid var(--line); }
+#points td { white-space: nowrap; }
 figure { margin: 1rem 0; }
 img { max-width: 100%; height: auto; display: block; background: #ffffff; }
 #picture { image-rendering: pixelated; width: 100%; max-width: 40rem; }
