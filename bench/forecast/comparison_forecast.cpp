@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/normal.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 
@@ -13,7 +14,7 @@ namespace {
 /// Standard error of ln S75 from the interval; empty if a side is open.
 std::optional<double> standard_error(const PsychometricFit& fit) {
   if (!fit.ci95.low || !fit.ci95.high || !(*fit.ci95.low > 0)) return std::nullopt;
-  return std::log(*fit.ci95.high / *fit.ci95.low) / (2 * 1.96);
+  return std::log(*fit.ci95.high / *fit.ci95.low) / (2 * normal_z95);
 }
 
 /// From here on a probability would round to 100 %, which is never correct.
@@ -40,7 +41,7 @@ ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& p
       return {std::nullopt, "the comparison with the twin cannot be decided at " + number_text(contrast.delta_t_k) +
                                 " K: the expected threshold is outside the sizes of the plates"};
     }
-    const double unpaired = std::log1p(*contrast.uncertainty_percent / 100) / 1.96;
+    const double unpaired = std::log1p(*contrast.uncertainty_percent / 100) / normal_z95;
     // The twin sees the presentations of the camera: the whole ratio depends on their number.
     const double half_of_pair = contrast.paired_se_ln_ratio.value_or(0) / std::sqrt(2 * share);
     const bool paired = contrast.paired_se_ln_ratio.has_value();

@@ -138,9 +138,9 @@ void predict_binary(ContrastPrediction& point, const Plan& plan, const Experimen
   const double of_shape = by_twin ? se_of_shape(inputs.accuracy, outlook.q_eff, binary_se) : 0;
   const double inflation = pattern_inflation(graded_design(plan, inputs, outlook, 1));
   const double se = std::hypot(binary_se * std::sqrt(inflation), of_shape);
-  point.uncertainty_percent = 100 * std::expm1(likely_excess * 1.96 * se);
+  point.uncertainty_percent = 100 * std::expm1(likely_excess * normal_z95 * se);
   point.se_ln_s75 = se;
-  point.interval_factor = mean_excess * 1.96;
+  point.interval_factor = mean_excess * normal_z95;
 }
 
 /// Largest number of presentations per contrast of an adaptive schedule.

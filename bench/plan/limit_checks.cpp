@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "acquisition/base/normal.h"
 #include "bench/plan/quantity.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/tod_curve.h"
@@ -118,7 +119,7 @@ ValueMistakes check_measure_limits(const Plan& plan, std::size_t row) {
   if (*limits.at_least >= *limits.at_most)
     return {{std::nullopt, "no unit can pass: the lower limit of " + name + " is not below the upper limit"}};
   if (plan.limits.rule == ConformityRule::simple) return {};
-  const double expanded = 1.96 * relative_u(plan, quantity->stated) * 0.5 * (*limits.at_least + *limits.at_most);
+  const double expanded = normal_z95 * relative_u(plan, quantity->stated) * 0.5 * (*limits.at_least + *limits.at_most);
   if (2 * expanded < *limits.at_most - *limits.at_least) return {};
   return {{std::nullopt, "no unit can pass: the budget alone gives " + name + " an expanded uncertainty of " +
                              number_text(std::round(1e6 * expanded) / 1e6) + ", but the tolerance is " +

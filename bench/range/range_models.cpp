@@ -229,7 +229,7 @@ std::optional<double> range_at(const Prepared& model, const Transmittance& air, 
 /// Both ends of an interval combined with those of the air, in logarithms.
 Interval joined_with_air(const Prepared& model, const RangeQuestion& question, double r75, const Interval& of_curve) {
   if (question.extinction_u_percent <= 0) return of_curve;
-  const double reach = 1.96 * question.extinction_u_percent / 100;
+  const double reach = normal_z95 * question.extinction_u_percent / 100;
   const auto side = [&](double factor, const std::optional<double>& bound) -> std::optional<double> {
     const auto changed = range_at(model, question.air.air.with_depth_times(std::max(0.0, factor)), 0.75);
     if (!changed || !bound) return std::nullopt;

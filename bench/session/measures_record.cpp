@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/normal.h"
 #include "bench/plan/quantity.h"
 #include "bench/session/measure_row.h"
 #include "bench/text/base64.h"
@@ -37,7 +38,7 @@ void add_picture(MeasureLines& out, const PlatePicture& picture) {
       "fitted: contrast ({:.4g} K), level, rotation, scale and position (shift {:.3f} pixels)",
       picture.seen.frames, picture.seen.kelvin.cols, picture.seen.kelvin.rows, picture.seen.set_delta_t_k,
       picture.contrast_k, picture.moved_px);
-  const double relative = 1.96 / std::sqrt(2.0 * static_cast<double>(picture.seen.kelvin.total()));
+  const double relative = normal_z95 / std::sqrt(2.0 * static_cast<double>(picture.seen.kelvin.total()));
   const auto line = [&](const char* name, double value) {
     out.lines.push_back(measure_line(name, value, {value * (1 - relative), value * (1 + relative)}, conditions));
   };

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/base/normal.h"
 #include "bench/session/measure_row.h"
 #include "tod/measures/pixel_noise.h"
 
@@ -38,7 +39,7 @@ Interval shading_interval(const NoiseMeasure& noise) {
   if (noise.pattern_k.empty()) return {};
   cv::Scalar mean, sd;
   cv::meanStdDev(noise.pattern_k, mean, sd);
-  const double half = 1.96 * sd[0] * std::sqrt(52 / static_cast<double>(noise.pattern_k.total()));
+  const double half = normal_z95 * sd[0] * std::sqrt(52 / static_cast<double>(noise.pattern_k.total()));
   return {.low = std::max(0.0, noise.shading_range_k - half), .high = noise.shading_range_k + half};
 }
 

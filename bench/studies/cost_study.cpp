@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/normal.h"
 #include "acquisition/base/try.h"
 #include "bench/devices/devices.h"
 #include "bench/forecast/prediction.h"
@@ -21,7 +22,7 @@ namespace {
 /// Standard error for a 95 % interval of a threshold, assumed normal in the logarithm.
 std::optional<double> standard_error(const PsychometricFit& fit) {
   if (!fit.threshold || !fit.ci95.low || !fit.ci95.high || !(*fit.ci95.low > 0)) return std::nullopt;
-  return *fit.threshold * std::log(*fit.ci95.high / *fit.ci95.low) / (2 * 1.96);
+  return *fit.threshold * std::log(*fit.ci95.high / *fit.ci95.low) / (2 * normal_z95);
 }
 
 /// Measures the plan on its simulated sensor from the start, like `simulate`.

@@ -7,6 +7,7 @@
 #include <functional>
 #include <thread>
 
+#include "acquisition/base/normal.h"
 #include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "bench/session/json_output.h"
@@ -59,7 +60,7 @@ Result<std::vector<ReproducedThreshold>> simulated(const SensorSpec& sensor, con
   std::vector<ReproducedThreshold> thresholds;
   for (const auto& point : points) {
     const double acuity = 1 / (point.s75_pitch * sensor.ifov_mrad());
-    const double reach = 1.96 * point.standard_error_pitch / point.s75_pitch;
+    const double reach = normal_z95 * point.standard_error_pitch / point.s75_pitch;
     thresholds.push_back({sensor.microscan == 1 ? normal : microscan,
                           spec.name,
                           point.delta_t_k,

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/base/normal.h"
 #include "acquisition/base/try.h"
 #include "bench/range/turbulent_ranges.h"
 #include "hvs/observer/open_parameters.h"
@@ -93,7 +94,7 @@ Result<std::vector<TodThreshold>> tod_curve_for(const IdentificationStudyTask& t
       continue;
     }
     const double s75 = points->front().s75_pitch * task.sensor.ifov_mrad();
-    const double reach = 1.96 * points->front().standard_error_pitch / points->front().s75_pitch;
+    const double reach = normal_z95 * points->front().standard_error_pitch / points->front().s75_pitch;
     curve.push_back({contrast_k, s75, {s75 * std::exp(-reach), s75 * std::exp(reach)}});
   }
   return curve;

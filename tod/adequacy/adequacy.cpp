@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "acquisition/base/normal.h"
 #include "tod/adequacy/alternatives.h"
 #include "tod/adequacy/guessing.h"
 #include "tod/adequacy/model_test.h"
@@ -200,9 +201,9 @@ class Examination {
     const double difference = std::log(*fit_.threshold / *point_.direct_s75_mrad);
     const auto half = half_width(fit_, -difference);
     if (!half) return;
-    constexpr double interval_quantile = 1.96, claimed_errors = 3;
+    constexpr double claimed_errors = 3;
     const double standard_error =
-        std::hypot(*half / interval_quantile, point_.direct_s75_se_mrad.value_or(0) / *point_.direct_s75_mrad);
+        std::hypot(*half / normal_z95, point_.direct_s75_se_mrad.value_or(0) / *point_.direct_s75_mrad);
     const double allowed = direct_estimate_tolerance + claimed_errors * standard_error;
     if (std::abs(difference) <= allowed) return;
     add(FindingKind::direct_estimate, 100 * std::expm1(difference), 100 * allowed,

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/normal.h"
 #include "tod/camera_measures/camera_measures.h"
 #include "tod/measures/pixel_noise.h"
 
@@ -77,7 +78,7 @@ double TransferMeasure::slope_half_width() const {
 
 Estimate SourceSizeMeasure::slope() const {
   const double slope = effect.reference_k / said_delta_t_k;
-  const double half = std::abs(1.96 * effect.reference_u_k / said_delta_t_k);
+  const double half = std::abs(normal_z95 * effect.reference_u_k / said_delta_t_k);
   return {slope, slope - half, slope + half};
 }
 

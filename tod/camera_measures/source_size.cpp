@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/normal.h"
 #include "acquisition/base/try.h"
 #include "tod/camera_measures/plate_offset.h"
 #include "tod/camera_measures/plate_tails.h"
@@ -19,7 +20,6 @@ constexpr int largest_window_px = 5;
 constexpr double least_curve_px = 4;
 constexpr double curve_ratio = 1.15;
 constexpr double least_p = 0.001;
-constexpr double two_sided = 1.96;
 constexpr double method =
     0.001;  // of a ratio: sigmas of halos in steps, the core of the blur, pixels beside the middle
 
@@ -184,7 +184,7 @@ void compare_points(SourceSize& found, const PlateTails& tails, const std::vecto
     point.fitted = lit(x, columns_at(tails, places[i])) / reference;
     const double apart = point.ratio.value - point.fitted;
     const Estimate of_fit = found.loss(point.size_px);
-    const double fit_u = 0.5 * (of_fit.high - of_fit.low) / two_sided;
+    const double fit_u = 0.5 * (of_fit.high - of_fit.low) / normal_z95;
     found.chi2 += apart * apart / (u[i] * u[i] + fit_u * fit_u);
     farthest = std::max(farthest, std::abs(apart));
   }
@@ -278,7 +278,7 @@ Result<SourceSize> source_size(const SourcePictures& pictures, const TargetPlate
     const double ratio = cv::mean(signal(window(place)))[0] / level_k;
     u.push_back(std::hypot(relative_u(place, ratio), ratio * reference_u, drift * (1 - ratio)));
     found.points.push_back(
-        {place.name, place.spot, place.size_px, {ratio, ratio - two_sided * u.back(), ratio + two_sided * u.back()}});
+        {place.name, place.spot, place.size_px, {ratio, ratio - normal_z95 * u.back(), ratio + normal_z95 * u.back()}});
   }
   for (double side = least_curve_px; side < reference.size_px; side *= curve_ratio) found.size_px.push_back(side);
   found.size_px.push_back(reference.size_px);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/normal.h"
 #include "tod/measures/shading.h"
 
 namespace todbench {
@@ -179,10 +180,9 @@ DriftFit level_fit(const GroupTimes& groups, const cv::Mat1d& levels, double pat
   const cv::Mat1d gradient = design.row(last) - design.row(0);
   const cv::Mat1d of_change = gradient * covariance * gradient.t();
   fit.change_k = solution(1, 0) * (f(last, 0) - f(0, 0));
-  constexpr double k95 = 1.96;
   const double half = std::hypot(
       quantile(distribution::StudentsT(freedom), 0.975) * std::sqrt(std::max(0.0, variance * of_change(0, 0))),
-      k95 * pattern_u_k);
+      normal_z95 * pattern_u_k);
   fit.change_ci95 = {.low = fit.change_k - half, .high = fit.change_k + half};
   for (int k = 0; k <= last; ++k) {
     fit.seen_k.push_back(levels(k, 0));

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/base/normal.h"
 #include "tod/observer_fit/person_likelihood.h"
 
 namespace todbench {
@@ -14,9 +15,6 @@ namespace {
 
 using Top = Maximum<observer_key_count>;
 using Matrix = std::array<std::array<double, observer_key_count>, observer_key_count>;
-
-/// sqrt of the 95 % quantile of chi-squared with one degree of freedom.
-constexpr double root_95 = 1.959964;
 
 ParameterBox<observer_key_count> domain(const PersonFitOptions& options, FittedKind kind) {
   const ObserverPlace start = place_of(options.start, kind);
@@ -47,14 +45,14 @@ class Profile {
     const Top found =
         climb([&](const ObserverPlace& place) { return person_likelihood(lattice_, answers_, place); }, start, held);
     last_ = found.place;
-    return std::sqrt(2 * std::max(0.0, top_.expansion.value - found.expansion.value)) - root_95;
+    return std::sqrt(2 * std::max(0.0, top_.expansion.value - found.expansion.value)) - normal_z95;
   }
 
   /// The bound in a direction (-1, 1); empty if the domain ends before. `step`: step of the search.
   std::optional<double> bound(double direction, double step) {
     last_ = top_.place;
     const double end = direction < 0 ? box_.lower[key_] : box_.upper[key_];
-    double inner = top_.place[key_], inner_drop = -root_95;
+    double inner = top_.place[key_], inner_drop = -normal_z95;
     while (inner != end) {
       const double outer = direction < 0 ? std::max(end, inner - step) : std::min(end, inner + step);
       const double outer_drop = (*this)(outer);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/presenters/history_presenter.h"
+#include "acquisition/base/normal.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +10,6 @@
 
 namespace todbench {
 namespace {
-
-constexpr double two_sided_95 = 1.959964;
 
 /// Returns an axis that contains these numbers with a margin; never empty.
 PlotAxis axis_around(std::string label, std::vector<double> numbers) {
@@ -30,7 +29,7 @@ Plot values_plot(const HistorySeries& series, const std::optional<ControlChart>&
   PlotSeries values{.label = "value, 95 % interval", .line = PlotLine::solid, .points = {}};
   std::vector<double> numbers;
   for (const ChartValue& value : series.values) {
-    const double half = two_sided_95 * value.u;
+    const double half = normal_z95 * value.u;
     const double low = shown_value(series, value.value - half), high = shown_value(series, value.value + half);
     values.points.push_back(
         {.x = value.days, .y = shown_value(series, value.value), .x_interval = {}, .y_interval = {low, high}});
