@@ -341,10 +341,10 @@ TEST(DynamicCommand, MeasuresAPlanThatMovesAndRefusesInASentence) {
   const auto at = [&](const char* name) { return folder.path() / "moved" / name; };
   EXPECT_EQ(Json::parse(content_of(at("dynamic.json")))["contrasts"], json["contrasts"]);
   EXPECT_EQ(Json::parse(content_of(at("provenance.json")))["state"], "complete");
-  // Trials of the plate at rest: twenty triangles in each of four passes a contrast; of all, two speeds, three
+  // Trials of the plate at rest: twenty triangles in each of four passes a contrast; of all, two speeds, four
   // observers.
   EXPECT_EQ(rows_in(at("trials.csv")), 80 * json["contrasts"].size());
-  EXPECT_EQ(rows_in(at("moving-trials.csv")), 6 * 80 * json["contrasts"].size());
+  EXPECT_EQ(rows_in(at("moving-trials.csv")), 8 * 80 * json["contrasts"].size());
   EXPECT_EQ(run({"verify", "moved"}).code, 0);
   EXPECT_EQ(run({"report", "moved"}).code, 0);
   expect_refused(run({"dynamic", "./moving.toml", "--out", "moved"}), 2, "");
