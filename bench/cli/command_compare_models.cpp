@@ -16,6 +16,7 @@
 #include "bench/report/html.h"
 #include "bench/session/fit_record.h"
 #include "bench/text/files.h"
+#include "bench/text/spread_text.h"
 #include "bench/text/text.h"
 #include "tod/psychometric/acuity.h"
 
@@ -60,6 +61,7 @@ Json comparison_of_models_json(const ModelComparison& comparison, const std::str
     add_acuity(point, "b", comparison.result_b, ratio.set_delta_t_k);
     point["ratio"] = json_number(ratio.ratio);
     point["ratio_ci95"] = json_interval(ratio.ci95);
+    add_spread(point, "ratio_spread", ratio.spread);
     point["withheld"] = ratio.withheld.empty() ? Json() : Json(ratio.withheld);
     const auto apart = parts(ratio);
     point["parts"] = apart ? Json(*apart) : Json();
@@ -116,6 +118,11 @@ void say_models(Console& console, const ModelComparison& comparison) {
                       "not a confidence interval)",
                       side, point.set_delta_t_k, range(*spread, 3)));
     }
+  }
+  for (const PairedRatio& ratio : comparison.ratios) {
+    if (!ratio.spread) continue;
+    console.text(fmt::format("B / A: {:g} K: {} over the open parameters of the observer", ratio.set_delta_t_k,
+                             range({ratio.spread->first, ratio.spread->second}, 3)));
   }
   if (comparison.parts_at_per_mrad)
     console.text(fmt::format("the MTFs of A and B differ by more than 0.01 from {:.3g} cycles/mrad upwards",

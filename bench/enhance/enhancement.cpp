@@ -276,8 +276,10 @@ PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackag
     return result;
   }
   const auto observer = observer_of(loaded.plan(), *inputs, [&](std::string_view line) { keep_line(result, line); });
-  OpenEnds nobody{TemplateObserverSpec{}};
-  run_simulated_one({loaded, *inputs, options, *observer, nobody, std::move(stop)}, package, settle_frames, result);
+  // Only a template observer is the one whose parameters are open; a program is not.
+  const bool known = dynamic_cast<const TemplateObserver*>(observer.get()) != nullptr;
+  OpenEnds ends(known ? inputs->observer : TemplateObserverSpec{});
+  run_simulated_one({loaded, *inputs, options, *observer, ends, std::move(stop)}, package, settle_frames, result);
   return result;
 }
 

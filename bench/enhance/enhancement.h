@@ -36,7 +36,7 @@ struct PairedRatio {
 struct PackageResult {
   std::string name;
   std::vector<Trial> trials;
-  EndTrials at_ends{};              ///< with an eye, by compare_packages() and compare_packages_recorded()
+  EndTrials at_ends{};              ///< with an eye
   TodCurve curve;                   ///< empty if no fit was possible
   std::vector<PairedRatio> ratios;  ///< to the result without a package; empty for that result itself
   double frame_ms = 0;              ///< median processing time of its stages per frame
@@ -84,8 +84,8 @@ struct EnhancementOptions {
 /// Returns the inputs with every effect simulated: one that is negligible for the sensor alone may matter behind a
 /// package. Errors: `invalid_input`.
 [[nodiscard]] Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded);
-/// Simulates one chain with every effect: sensor, its own modules, the stages of the package (null: none). Errors are
-/// in the result.
+/// Simulates one chain with every effect: sensor, its own modules, the stages of the package (null: none), and asks
+/// both ends of the open parameters of an observer with an eye, for add_spreads(). Errors are in the result.
 [[nodiscard]] PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackage* package,
                                              int settle_frames, const EnhancementOptions& options,
                                              std::stop_token stop);

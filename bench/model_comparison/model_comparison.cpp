@@ -6,17 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "acquisition/base/try.h"
 #include "bench/enhance/decidable.h"
+#include "bench/enhance/package_spread.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/files.h"
 #include "bench/text/text.h"
-#include "bench/twin/direct_results.h"
 #include "bench/twin/module_chain.h"
 #include "hvs/eye/contrast_sensitivity.h"
 #include "hvs/eye/eye_optics.h"
@@ -323,22 +324,16 @@ Result<void> compare_pictures(ModelComparison& comparison, const LoadedPlan& pla
   return {};
 }
 
-/// Adds S75 over the open parameters of an observer with an eye to the curve of one side.
-void add_spread(const LoadedPlan& loaded, const ComparedModel& model, PackageResult& result,
-                std::vector<std::string>& notes, std::stop_token stop) {
-  if (!loaded.observer().eye || result.curve.points.empty()) return;
-  const bool package = model.kind == ModelKind::package && !model.package.stages.empty();
-  if (package || has_modules(loaded.plan(), loaded.sensor())) {
-    notes.push_back(model.name +
-                    ": no spread over the open parameters of the observer, because the direct estimate does not "
-                    "include a package or a module");
-    return;
-  }
-  const auto inputs = full_inputs(loaded);
-  if (!inputs) return;
-  const DirectResults direct = direct_results(result.curve, *inputs, {}, loaded.plan().seed, std::move(stop));
-  keep_direct(direct, inputs->sensor.ifov_mrad(), result.curve);
-  for (const std::string& sentence : direct.notes) notes.push_back(model.name + ": " + sentence);
+/// Adds the ratios of B to A, and the spreads over the open parameters of an observer with an eye. Two observers have
+/// no spread of their ratio: its ends would pair the best of both.
+void add_ratios(const FitOptions& fit, ModelComparison& comparison) {
+  PackageResult &of_a = comparison.result_a, &of_b = comparison.result_b;
+  of_b.ratios = paired_ratios(of_b.trials, of_a.trials, fit);
+  std::ranges::move(add_spreads(fit, nullptr, of_a), std::back_inserter(comparison.notes));
+  std::ranges::move(add_spreads(fit, comparison.a.kind == ModelKind::observer ? nullptr : &of_a, of_b),
+                    std::back_inserter(comparison.notes));
+  withhold_undecided(of_b.ratios, of_b, of_a);
+  comparison.ratios = of_b.ratios;
 }
 
 }  // namespace
@@ -415,11 +410,8 @@ Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, 
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
     const bool programs = package || has_modules(loaded->plan(), loaded->sensor());
     if (result->error && !programs) return fail(model->name, *result->error);
-    add_spread(*loaded, *model, *result, comparison.notes, stop);
-    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
   }
-  comparison.ratios = paired_ratios(comparison.result_b.trials, comparison.result_a.trials, fit_options(plan.plan()));
-  withhold_undecided(comparison.ratios, comparison.result_b, comparison.result_a);
+  add_ratios(fit_options(plan.plan()), comparison);
   if (comparison.result_a.error || comparison.result_b.error) {
     comparison.notes.push_back("no pictures and no transfer functions: a module failed");
   } else if (auto compared = compare_pictures(comparison, *plan_a, *plan_b); !compared) {

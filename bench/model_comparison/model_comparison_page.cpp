@@ -53,10 +53,15 @@ Section acuity_comparison(const ModelComparison& comparison) {
                                     " per mrad"));
     }
   }
+  for (const PairedRatio& ratio : comparison.ratios) {
+    if (!ratio.spread) continue;
+    spreads.items.push_back(plain("B / A at " + stated(ratio.set_delta_t_k) + " K: " +
+                                  significant(ratio.spread->first, 3) + " to " + significant(ratio.spread->second, 3)));
+  }
   if (!spreads.items.empty()) {
     section.blocks.emplace_back(Paragraph{strong("Acuity over the open parameters of the observer")});
     section.blocks.emplace_back(
-        Paragraph{plain("These are the acuities at the ends of the ranges of all open parameters together. They are "
+        Paragraph{plain("These are the values at the ends of the ranges of all open parameters together. They are "
                         "not confidence intervals: no probability belongs to them.")});
     section.blocks.emplace_back(std::move(spreads));
   }

@@ -138,9 +138,30 @@ TEST(ModelComparison, StatesTheSpreadOfAnObserverWithAnEye) {
   ASSERT_TRUE(found) << found.error().message;
   const TodPoint &of_blind = found->result_a.curve.points.at(0), &of_seeing = found->result_b.curve.points.at(0);
   EXPECT_FALSE(of_blind.s75_spread_mrad);
-  ASSERT_TRUE(of_seeing.s75_spread_mrad && of_seeing.direct_s75_mrad);
-  EXPECT_LT(of_seeing.s75_spread_mrad->first, *of_seeing.direct_s75_mrad);
-  EXPECT_GT(of_seeing.s75_spread_mrad->second, *of_seeing.direct_s75_mrad);
+  ASSERT_TRUE(of_seeing.s75_spread_mrad && of_seeing.fit.threshold);
+  EXPECT_LT(of_seeing.s75_spread_mrad->first, *of_seeing.fit.threshold);
+  EXPECT_GT(of_seeing.s75_spread_mrad->second, *of_seeing.fit.threshold);
+  EXPECT_FALSE(found->ratios.at(0).spread) << "of two observers";
+}
+
+TEST(ModelComparison, OfPackagesHasTheSpreadOfTheirRatioFromTheSameFrames) {
+  auto plan = small_plan("1.93", 6,
+                         "[display]\npixel_pitch_mm = 0.27\nviewing_distance_m = 0.5\nzoom = 3\n"
+                         "luminance_white_cd_m2 = 200\n[observer]\nname = \"hvs-2\"\n");
+  const TemporaryFolder folder;
+  const auto sharp =
+      read_compared_model(folder.write("sharp.toml", "name = \"sharp\"\n[[stage]]\nkind = \"sharpen\"\n").string());
+  const auto none = read_compared_model("none");
+  ASSERT_TRUE(none && sharp) << sharp.error().message;
+
+  const auto found = compare_models(plan, *none, *sharp, {}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  const PairedRatio& ratio = found->ratios.at(0);
+  ASSERT_TRUE(ratio.spread && found->result_b.curve.points.at(0).s75_spread_mrad);
+  EXPECT_LE(ratio.spread->first, *ratio.ratio);
+  EXPECT_GE(ratio.spread->second, *ratio.ratio);
+  EXPECT_THAT(render_html(model_comparison_page(plan, *found)), HasSubstr("over the open parameters"));
 }
 
 }  // namespace
