@@ -59,7 +59,7 @@ Section acuity_comparison(const ModelComparison& comparison) {
                                   significant(ratio.spread->first, 3) + " to " + significant(ratio.spread->second, 3)));
   }
   if (!spreads.items.empty()) {
-    section.blocks.emplace_back(Paragraph{strong("Acuity over the open parameters of the observer")});
+    section.blocks.emplace_back(Paragraph{strong("Acuity and ratio over the open parameters of the observer")});
     section.blocks.emplace_back(
         Paragraph{plain("These are the values at the ends of the ranges of all open parameters together. They are "
                         "not confidence intervals: no probability belongs to them.")});
