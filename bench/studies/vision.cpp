@@ -284,6 +284,11 @@ double landolt_acuity_of_people(double luminance_cd_m2, double contrast_percent)
 
 Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer, const VisionOptions& options) {
   const MeasuredEye eye(*observer.eye);
+  // A file that cannot be read ends the work before it begins.
+  std::vector<VisionKind> of_file;
+  if (!options.figures.empty()) {
+    TODBENCH_TRY(of_file, figures_of_people(options.figures, eye));
+  }
   VisionComparison out{
       .observer = observer.name,
       .statement = observer.name +
@@ -303,8 +308,7 @@ Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer,
   TODBENCH_TRY(auto gains, microscan_gains_of_a_person(observer, options));
   out.kinds.push_back(std::move(gains));
   if (!options.figures.empty()) {
-    TODBENCH_TRY(auto figures, figures_of_people(options.figures, eye));
-    std::ranges::move(figures, std::back_inserter(out.kinds));
+    std::ranges::move(of_file, std::back_inserter(out.kinds));
     out.settings.emplace_back("Figures", options.figures.filename().string());
   }
   std::stable_partition(out.kinds.begin(), out.kinds.end(),

@@ -11,16 +11,19 @@
 
 namespace todbench {
 
-/// Reads a CSV file of people's figures, a row each, and returns one kind for each `dataset` of the file (one for all
-/// rows without this column), with the figure of the eye beside each.
+/// Reads figures of people from a CSV file and computes the figure of the eye for each row. Returns one kind for each
+/// `dataset`, or a single kind if the file has no such column.
 ///
-/// Contrast sensitivity: `luminance_cd_m2`, `sensitivity` (1 / luminance contrast), `stimulus` (`gabor`, `grating`,
-/// `disc`; gabor without this column), `frequency_cpd`, and `sigma_deg` or `area_deg2` (area pi sigma^2 of a Gabor
-/// pattern or grating, pi radius^2 of a disc); `d_prime` at threshold, 1.41 without this column.
-/// Acuity for Landolt rings: `luminance_cd_m2`, `contrast_percent`, `decimal_acuity` (1 / arcmin of the gap).
+/// Columns of contrast sensitivities:
+/// - `luminance_cd_m2`, `sensitivity` (1 / luminance contrast), `frequency_cpd`
+/// - `sigma_deg` or `area_deg2`. The area is pi sigma^2 of a Gabor pattern or grating, pi radius^2 of a disc.
+/// - optional: `stimulus` (`gabor`, `grating` or `disc`; default `gabor`), `d_prime` at threshold (default 1.41)
 ///
-/// Further columns are ignored. Errors: `io_error`; `invalid_input` with the line for a value that is no number, lies
-/// outside its physical range, or belongs to a stimulus without a model, and for a file without one of both sets.
+/// Columns of acuities for Landolt rings: `luminance_cd_m2`, `contrast_percent`, `decimal_acuity` (1 / arcmin of the
+/// gap).
+///
+/// Further columns are ignored. Errors: those of read_text_file(); `invalid_input` with the line (a value that is no
+/// number or outside its range, a stimulus without a model, neither set of columns).
 [[nodiscard]] Result<std::vector<VisionKind>> figures_of_people(const std::filesystem::path& file,
                                                                 const MeasuredEye& eye);
 

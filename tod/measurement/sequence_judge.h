@@ -19,7 +19,7 @@ enum class SequenceObserver {
   single_frame,  ///< judges the first frame only
   tracking_sum,  ///< adds the scores of all frames, each at the true place of the target: pursuit, an upper bound
   static_sum,    ///< averages all frames at the target's place in the middle of the pass: persistence without pursuit
-  /// Judges one picture on a grid twice as fine, in which every frame lies where the target is in it: dynamic
+  /// Judges one picture on a grid twice as fine, which joins all frames by the place of the target in each: dynamic
   /// super-resolution of a known motion (super_resolve()).
   super_resolution,
 };
@@ -43,7 +43,7 @@ class SequenceJudge {
   [[nodiscard]] static Result<SequenceJudge> prepare(TemplateObserver& observer, std::span<const double> sizes);
 
   [[nodiscard]] std::size_t sizes() const { return sizes_.size(); }
-  /// Side of the window for size `size`, including the search of the sum and the finer picture, in samples.
+  /// Side in samples of the window that every observer of this size finds enough, its search included.
   [[nodiscard]] int window_samples(std::size_t size) const;
   /// Returns the chosen alternative. Precondition: the windows round all places are in the frames.
   [[nodiscard]] int choose(SequenceObserver kind, std::size_t size, const SeenSequence& seen,

@@ -110,24 +110,23 @@ Axis placed_on_grid(const std::vector<double>& places, int factor) {
   return axis;
 }
 
-/// Fills samples that no frame reaches with the mean of the nearest ones that a frame reaches, or with the first of
-/// them, searching in growing squares.
+/// Fills each sample that no frame reaches: with the mean of the nearest samples that have a value, or with the first
+/// of these. Searches in growing squares.
 void fill_empty(cv::Mat1f& picture, const cv::Mat1i& counts, bool mean_of_nearest) {
-  constexpr double same = 1e-9;
-  const cv::Mat1f source = picture.clone();
   for (int row = 0; row < picture.rows; ++row) {
     for (int column = 0; column < picture.cols; ++column) {
       if (counts(row, column) > 0) continue;
-      double nearest = 1e300, sum = 0;
-      int found = 0;
-      for (int reach = 1; nearest > 1e299 && reach < std::max(picture.rows, picture.cols); ++reach) {
+      double sum = 0;
+      int nearest = 0, found = 0;  // squared distance in samples, number of samples at it
+      for (int reach = 1; found == 0 && reach < std::max(picture.rows, picture.cols); ++reach) {
         for (int j = std::max(0, row - reach); j <= std::min(picture.rows - 1, row + reach); ++j) {
           for (int i = std::max(0, column - reach); i <= std::min(picture.cols - 1, column + reach); ++i) {
-            const double distance = std::hypot(j - row, i - column);
-            if (counts(j, i) == 0 || distance > nearest + same) continue;
-            if (distance < nearest - same) nearest = distance, sum = found = 0;
+            const int distance = (j - row) * (j - row) + (i - column) * (i - column);
+            if (counts(j, i) == 0 || (found > 0 && distance > nearest)) continue;
+            if (distance < nearest) sum = found = 0;
             if (found > 0 && !mean_of_nearest) continue;
-            sum += static_cast<double>(source(j, i));
+            nearest = distance;
+            sum += static_cast<double>(picture(j, i));
             ++found;
           }
         }

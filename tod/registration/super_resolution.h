@@ -42,8 +42,8 @@ enum class EmptyCells {
 
 /// Puts every sample of every frame into the nearest cell of the finer grid and averages there. The grid is placed to
 /// fit the shifts best (circular mean). Cells beyond a frame's edge that no frame reaches repeat their nearest
-/// neighbour. `invalid_input`: no frame, different sizes, a missing or non-finite shift, or a refused empty cell (at
-/// least factor^2 frames with different sub-pixel shifts fill all of them). Pure.
+/// neighbour. `invalid_input`: no frame, different sizes, a missing or non-finite shift, or an empty cell if these are
+/// refused: factor^2 frames or more with different sub-pixel shifts fill every cell. Pure.
 [[nodiscard]] Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames,
                                                   const std::vector<cv::Point2d>& shifts_px, int factor = 2,
                                                   EmptyCells empty = EmptyCells::refused);

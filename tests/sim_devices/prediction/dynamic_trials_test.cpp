@@ -89,6 +89,30 @@ TEST(DynamicTrials, OfADetectorWithoutMemoryAreTheSameInASingleFrameAtEverySpeed
   EXPECT_LT(share(of((*found)[2], SequenceObserver::static_sum)), share(of(rests, SequenceObserver::static_sum)) - 0.2);
 }
 
+TEST(DynamicTrials, NeedMotionForSuperResolution) {
+  TemplateObserver observer({}, triangle_alternatives());
+  const SensorSpec sensor = test::sc2000();
+  const double rate_mrad_s = sensor.ifov_mrad() * sensor.frame_rate_hz;
+
+  const auto found = dynamic_trials(sensor, observer,
+                                    {.delta_t_k = 16.9,
+                                     .sizes_pitch = {1.3, 1.6, 1.9},
+                                     .speeds_mrad_s = {0, 0.5 * rate_mrad_s, rate_mrad_s},
+                                     .passes = 30,
+                                     .frames = 4,
+                                     .accuracy = Accuracy::draft()});
+
+  ASSERT_TRUE(found) << found.error().message;
+  const double single = share(of((*found)[0], SequenceObserver::single_frame));
+  const double rests = share(of((*found)[0], SequenceObserver::super_resolution));
+  const double halves = share(of((*found)[1], SequenceObserver::super_resolution));
+  const double whole = share(of((*found)[2], SequenceObserver::super_resolution));
+  // 360 answers each: a difference has a standard error below sqrt(2 / 4 / 360) = 3.7 %.
+  EXPECT_GT(halves, single + 0.08) << "half a pixel from frame to frame";
+  EXPECT_NEAR(whole, rests, 0.08) << "a whole pixel shows no new place";
+  EXPECT_LT(rests, halves - 0.08);
+}
+
 TEST(DynamicTrials, TrackedOverIdenticalFramesHaveTheNoiseOverTheRootOfTheirNumber) {
   TemplateObserverSpec spec;
   spec.internal_noise = 0;

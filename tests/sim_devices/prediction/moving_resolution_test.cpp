@@ -3,7 +3,6 @@
 // model forms in another way.
 #include <gtest/gtest.h>
 #include <cmath>
-#include <numeric>
 
 #include "sim_devices/prediction/dynamic_trials.h"
 #include "sim_devices/prediction/trial_plate.h"
@@ -74,38 +73,6 @@ TEST(MovingResolution, OfFourPlacesJudgesThePictureOfACameraWithMicroscan) {
   // Both pictures agree to 1e-5 of the contrast; a decision differs where two scores are nearer than that.
   EXPECT_EQ(decisions, 600);
   EXPECT_GE(same, decisions - 2);
-}
-
-double share_of(const DynamicTrials& trials, SequenceObserver kind) {
-  const auto& levels = trials.levels[static_cast<std::size_t>(kind)];
-  const auto sum = [&](auto member) {
-    return std::accumulate(levels.begin(), levels.end(), 0.0, [&](double s, const Level& l) { return s + l.*member; });
-  };
-  return sum(&Level::correct) / sum(&Level::total);
-}
-
-TEST(MovingResolution, NeedsMotion) {
-  TemplateObserver observer({}, triangle_alternatives());
-  const SensorSpec sensor = test::sc2000();
-  const double rate_mrad_s = sensor.ifov_mrad() * sensor.frame_rate_hz;
-
-  const auto found = dynamic_trials(sensor, observer,
-                                    {.delta_t_k = 16.9,
-                                     .sizes_pitch = {1.3, 1.6, 1.9},
-                                     .speeds_mrad_s = {0, 0.5 * rate_mrad_s, rate_mrad_s},
-                                     .passes = 30,
-                                     .frames = 4,
-                                     .accuracy = Accuracy::draft()});
-
-  ASSERT_TRUE(found) << found.error().message;
-  const double single = share_of((*found)[0], SequenceObserver::single_frame);
-  const double rests = share_of((*found)[0], SequenceObserver::super_resolution);
-  const double halves = share_of((*found)[1], SequenceObserver::super_resolution);
-  const double whole = share_of((*found)[2], SequenceObserver::super_resolution);
-  // 360 answers each: a difference has a standard error below sqrt(2 / 4 / 360) = 3.7 %.
-  EXPECT_GT(halves, single + 0.08) << "half a pixel from frame to frame";
-  EXPECT_NEAR(whole, rests, 0.08) << "a whole pixel shows no new place";
-  EXPECT_LT(rests, halves - 0.08);
 }
 
 }  // namespace
