@@ -51,35 +51,7 @@ RandomStream named(const RandomStream& stream, std::uint64_t draw, std::string_v
   return {stream.sub((std::uint64_t{1} << 41) + draw).stream(), name};
 }
 
-/// Exchanges rows and columns of a square with `side` rows.
-template <typename T>
-void transpose(const T* values, int side, T* out) {
-  for (int row = 0; row < side; ++row)
-    for (int column = 0; column < side; ++column) out[row * side + column] = values[column * side + row];
-}
-
-/// Reverses the order of rows, columns or both of a square with `side` rows.
-template <typename T>
-void reverse(const T* values, int side, bool rows, bool columns, T* out) {
-  if (rows == columns) {
-    if (rows) {
-      std::reverse_copy(values, values + side * side, out);
-    } else {
-      std::copy_n(values, side * side, out);
-    }
-    return;
-  }
-  for (int row = 0; row < side; ++row) {
-    const T* from = values + (rows ? side - 1 - row : row) * side;
-    if (rows) {
-      std::copy_n(from, side, out + row * side);
-    } else {
-      std::reverse_copy(from, from + side, out + row * side);
-    }
-  }
-}
-
-/// Map of dead detectors for the noise in way `turn` (of turns_): T(turned) . w is T . (w turned back).
+/// Map of dead detectors for the noise in way `turn` (of ScoreTurns): T(turned) . w is T . (w turned back).
 cv::Mat1b dead_turned_back(const cv::Mat1b& map, std::size_t turn) {
   cv::Mat1b back = map;
   if (turn >= 4) cv::flip(map, back, 1);
@@ -95,7 +67,7 @@ cv::Mat1b dead_turned_back(const cv::Mat1b& map, std::size_t turn) {
 
 SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
                      const TrialConditions& conditions, RandomStream stream)
-    : bank_(std::move(bank)), conditions_(conditions), stream_(stream) {
+    : bank_(std::move(bank)), conditions_(conditions), stream_(stream), turns_(*bank_) {
   const SensorSpec& sensor = conditions_.sensor;
   bool turns_alike = sensor.square_detector();
   for (const Effect effect : all_effects) {
@@ -138,55 +110,6 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   }
   every_response_.resize(responses_.size());
   std::iota(every_response_.begin(), every_response_.end(), 0U);
-  find_turns();
-}
-
-/// Template (o, p) turned by a quarter is (o + 1, p turned about the middle); a reflection exchanges right and left. If
-/// the bank does not have this symmetry (that of the four triangles always does), only the identity remains.
-void SizeTrial::find_turns() {
-  turns_ = {Turn{}};
-  const int side = static_cast<int>(std::lround(std::sqrt(bank_->places())));
-  if (bank_->alternatives() != 4 || side * side != bank_->places()) return;
-  const auto turn_of = [](int quarters, bool mirrored) {
-    Turn turn;
-    for (int o = 0; o < 4; ++o) {
-      const int turned = (o + quarters) % 4;
-      turn.from[static_cast<std::size_t>(o)] = mirrored && turned % 2 == 1 ? 4 - turned : turned;
-    }
-    turn.transposed = quarters % 2 == 1;
-    turn.rows_reversed = quarters == 1 || quarters == 2;
-    turn.columns_reversed = quarters >= 2;
-    // The reflection exchanges the columns of the turned picture, which are rows if it is transposed.
-    if (mirrored && turn.transposed) turn.rows_reversed = !turn.rows_reversed;
-    if (mirrored && !turn.transposed) turn.columns_reversed = !turn.columns_reversed;
-    return turn;
-  };
-  const int window = bank_->window_samples();
-  const auto is_symmetry = [&](const Turn& turn, auto change) {
-    cv::Mat1f values(window, window), changed, expected(window, window);
-    const int places = bank_->places();
-    std::vector<int> upright(static_cast<std::size_t>(places)), across(upright), found(upright);
-    std::iota(upright.begin(), upright.end(), 0);
-    transpose(upright.data(), side, across.data());
-    reverse((turn.transposed ? across : upright).data(), side, turn.rows_reversed, turn.columns_reversed, found.data());
-    const int templates = bank_->templates();
-    for (int t = 0; t < templates; t += 1 + templates / 32) {
-      const int other =
-          turn.from[static_cast<std::size_t>(t / places)] * places + found[static_cast<std::size_t>(t % places)];
-      bank_->copy_template(static_cast<std::size_t>(t), std::span(values.ptr<float>(), values.total()));
-      bank_->copy_template(static_cast<std::size_t>(other), std::span(expected.ptr<float>(), expected.total()));
-      change(values, changed);
-      if (cv::norm(changed, expected, cv::NORM_INF) > 1e-4) return false;
-    }
-    return true;
-  };
-  if (!is_symmetry(turn_of(1, false),
-                   [](const cv::Mat1f& a, cv::Mat1f& b) { cv::rotate(a, b, cv::ROTATE_90_CLOCKWISE); }) ||
-      !is_symmetry(turn_of(0, true), [](const cv::Mat1f& a, cv::Mat1f& b) { cv::flip(a, b, 1); }))
-    return;
-  turns_.clear();
-  for (const bool mirrored : {false, true})
-    for (int quarters = 0; quarters < 4; ++quarters) turns_.push_back(turn_of(quarters, mirrored));
 }
 
 /// Without noise a rounded picture changes in steps with the phase, so there are twice as many phases.
@@ -428,24 +351,6 @@ Proportion SizeTrial::proportion(const WhiteNoise& white, double contrast_k, int
   return {mean, std::max(0.0, squares / draws - mean * mean) / std::max(1, draws - 1)};
 }
 
-void SizeTrial::turn_noise(const std::vector<float>& noise, const std::vector<float>& across, std::size_t turn,
-                           float own) {
-  const auto places = static_cast<std::size_t>(bank_->places());
-  if (turns_.size() == 1) {
-    std::ranges::copy(noise, turned_.begin());
-  } else {
-    const Turn& way = turns_[turn];
-    const int side = static_cast<int>(std::lround(std::sqrt(bank_->places())));
-    const float* from = way.transposed ? across.data() : noise.data();
-    for (std::size_t o = 0; o < way.from.size(); ++o)
-      reverse(from + static_cast<std::size_t>(way.from[o]) * places, side, way.rows_reversed, way.columns_reversed,
-              turned_.data() + o * places);
-  }
-  if (own != 1) {
-    for (float& value : turned_) value *= own;
-  }
-}
-
 double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, float ratio, float eye) {
   turned_.resize(bank_->padded_templates());
   // The noise of the eye is as probable turned or mirrored as white noise.
@@ -454,13 +359,7 @@ double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, fl
     for (std::size_t t = 0; t < mixed_.size(); ++t) mixed_[t] = own * noise_[draw][t] + eye * eye_[draw][t];
     own = 1;
   }
-  const std::vector<float>& drawn = eye > 0 ? mixed_ : noise_[draw];
-  if (turns_.size() > 1) {
-    across_.resize(turned_.size());
-    const int places = bank_->places(), side = static_cast<int>(std::lround(std::sqrt(places)));
-    for (int from = 0; from < bank_->templates(); from += places)
-      transpose(drawn.data() + from, side, across_.data() + from);
-  }
+  turns_.begin(eye > 0 ? mixed_ : noise_[draw]);
   const cv::Mat1b defects = dead(draw, bank_->window_samples());
   const bool has_coloured = !coloured_stages_.empty();
   // Coloured noise has a direction, and dead detectors were replaced at fixed places.
@@ -470,7 +369,8 @@ double SizeTrial::share_in_all_ways(std::size_t draw, float own, float scale, fl
   const std::size_t ways = 2 * turns;
   std::size_t seen = 0, way = places_of_dance_ > 1 ? draw * ways + draw * ways / phase_group_.size() : draw;
   for (std::size_t turn = 0; turn < turns; ++turn) {
-    turn_noise(drawn, across_, turn, own);
+    turns_.turned(turn, turned_);
+    for (std::size_t t = 0; own != 1 && t < turned_.size(); ++t) turned_[t] *= own;
     for (std::size_t t = 0; has_coloured && t < turned_.size(); ++t) turned_[t] += ratio * coloured_[draw][t];
     const cv::Mat1b map = defects.empty() ? defects : dead_turned_back(defects, turn);
     for (const float sign : {1.0F, -1.0F}) {

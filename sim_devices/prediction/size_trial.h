@@ -11,6 +11,7 @@
 
 #include "acquisition/base/rng.h"
 #include "hvs/observer/template_bank.h"
+#include "sim_devices/prediction/score_turns.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/image_chain.h"
 
@@ -115,9 +116,6 @@ class SizeTrial {
   [[nodiscard]] double share_in_all_ways(std::size_t draw, float own, float scale, float ratio, float eye);
   /// Scores of a response whose picture has `defects` replaced.
   [[nodiscard]] std::vector<float> with_defects(const Response& response, const cv::Mat1b& defects) const;
-  void find_turns();
-  /// Sets turned_ to the noise of a draw in this turn. `across` holds the transposed noise if a turn needs it.
-  void turn_noise(const std::vector<float>& noise, const std::vector<float>& across, std::size_t turn, float own);
 
   std::shared_ptr<const TemplateBank> bank_;
   TrialConditions conditions_;
@@ -128,15 +126,10 @@ class SizeTrial {
   double white_ratio_ = -1;          ///< ratio to which white_taps_ belong
   int places_of_dance_ = 1;          ///< per phase
   std::vector<Response> responses_;  ///< by orientation shown, place of the dance and phase
-  /// For each template, the template whose score it gets: that of alternative from[o] at the turned place.
-  struct Turn {
-    std::array<int, 4> from{0, 1, 2, 3};
-    bool transposed = false, rows_reversed = false, columns_reversed = false;  ///< in this order
-  };
-  std::vector<Turn> turns_;                              ///< the identity first
+  ScoreTurns turns_;
   std::vector<std::vector<std::uint32_t>> phase_group_;  ///< responses by group; its phases lie evenly in the pixel
   std::vector<std::uint32_t> every_response_;
-  std::vector<float> turned_, across_;                 ///< scratch
+  std::vector<float> turned_;                          ///< scratch
   std::vector<std::vector<float>> noise_;              ///< per draw: projected unit white noise
   std::vector<std::vector<float>> eye_;                ///< per draw: scores of the eye's noise of sd 1
   std::vector<float> mixed_;                           ///< scratch
