@@ -32,7 +32,7 @@ struct DynamicArguments {
   double delta_t_k = 16.9;
   std::vector<double> speeds_mrad_s, sizes_pitch;
   int passes = 48, frames = 8;
-  double time_constant_ms = -1, exposure_ms = -1, row_time_us = -1;
+  double time_constant_ms = -1, exposure_ms = -1, row_time_us = -1, field_delay_ms = -1;
   std::optional<double> tolerance_percent;
   EffectDecisionOptions decisions;
 };
@@ -120,6 +120,7 @@ Json dynamic_json(const DynamicAcuities& found, const SensorSpec& sensor, const 
           {"time_constant_ms", sensor.time_constant_ms},
           {"exposure_ms", sensor.exposure_ms},
           {"row_time_us", sensor.row_time_us},
+          {"field_delay_ms", sensor.field_delay_ms},
           {"frame_rate_hz", sensor.frame_rate_hz},
           {"frames", a.frames},
           {"passes", a.passes},
@@ -182,6 +183,7 @@ int run_dynamic(Console& console, const DynamicArguments& a, const Program& prog
   if (a.time_constant_ms >= 0) sensor->time_constant_ms = a.time_constant_ms;
   if (a.exposure_ms >= 0) sensor->exposure_ms = a.exposure_ms;
   if (a.row_time_us >= 0) sensor->row_time_us = a.row_time_us;
+  if (a.field_delay_ms >= 0) sensor->field_delay_ms = a.field_delay_ms;
   if (auto valid = validate(*sensor); !valid) return report_error(console, valid.error());
   const auto spec = load_observer_at(a.observer, a.display);
   if (!spec) return report_error(console, spec.error());
@@ -262,6 +264,10 @@ void add_dynamic_command(CLI::App& app, Program& program) {
       ->check(number_in(0, 1000));
   command->add_option("--row-time-us", a->row_time_us, "readout time per row in us; default: the value of the sensor")
       ->check(number_in(0, 1e4));
+  command
+      ->add_option("--field-delay-ms", a->field_delay_ms,
+                   "time from the even to the odd rows of an interlaced frame in ms; default: the value of the sensor")
+      ->check(number_in(0, 1000));
   command->add_option("--package", a->package,
                       "package of stages behind the camera, a file; the lag of the stages is not removed");
   command

@@ -39,6 +39,7 @@ py::class_<SensorSpec> sensor_spec(py::module_& module) {
       TODBENCH_WRITE(SensorSpec, time_constant_ms)
       TODBENCH_WRITE(SensorSpec, exposure_ms)
       TODBENCH_WRITE(SensorSpec, row_time_us)
+      TODBENCH_WRITE(SensorSpec, field_delay_ms)
       TODBENCH_WRITE(SensorSpec, row_noise_k)
       TODBENCH_WRITE(SensorSpec, column_noise_k)
       TODBENCH_WRITE(SensorSpec, dead_pixel_share)

@@ -11,6 +11,7 @@
 #include "acquisition/base/rng.h"
 #include "acquisition/base/try.h"
 #include "sim_devices/sensor/effect_display.h"
+#include "sim_devices/sensor/effect_readout.h"
 #include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/plate/test_pattern.h"
@@ -138,7 +139,11 @@ class PairedTwin {
       // The middle of the window is a corner between four samples; the triangle is displaced from it by `phase`.
       const double first = -0.5 * (window.width - 1) - margin_;
       const cv::Point2d corner((first - shown[i].phase_x_px) * sample, (first - shown[i].phase_y_px) * sample);
-      image_of(shown[i], rotation_deg).sample(corner, sample, whole.size()).convertTo(unit(whole), CV_32F);
+      const PolygonImage& image = image_of(shown[i], rotation_deg);
+      const cv::Mat1d samples = in_fields(
+          way_between_fields(sensor_, options_.motion), sensor_.samples_per_pitch(),
+          [&](cv::Point2d displacement) { return image.sample(corner - displacement, sample, whole.size()); });
+      samples.convertTo(unit(whole), CV_32F);
     }
     return unit;
   }

@@ -15,6 +15,7 @@
 #include "sim_devices/sensor/effect_display.h"
 #include "sim_devices/sensor/effect_image_dance.h"
 #include "sim_devices/sensor/effect_quantisation.h"
+#include "sim_devices/sensor/effect_readout.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
@@ -65,6 +66,18 @@ cv::Mat1b dead_turned_back(const cv::Mat1b& map, std::size_t turn) {
 
 }  // namespace
 
+/// Picture of a shape for the even and the odd rows of detectors; `odd` is empty if they sample together.
+struct SizeTrial::FineFields {
+  cv::Mat1d even, odd;
+
+  /// For a row of samples of the window. Neighbouring phases differ in the field of the first row: in a session both
+  /// fields are as frequent.
+  [[nodiscard]] const cv::Mat1d& of_row(int row, int samples_per_pitch, cv::Point phase) const {
+    const int detector_row = (row + 64 * samples_per_pitch) / samples_per_pitch;
+    return odd.empty() || (detector_row + phase.x + phase.y) % 2 == 0 ? even : odd;
+  }
+};
+
 SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
                      const TrialConditions& conditions, RandomStream stream)
     : bank_(std::move(bank)), conditions_(conditions), stream_(stream), turns_(*bank_) {
@@ -88,9 +101,13 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
                     static_cast<int>(std::ceil(4 * dance_sd_pitch(sensor)));
   places_of_dance_ = dances_per_phase(sensor, conditions_.phases_per_axis);
   const int truths = alike ? 1 : bank_->alternatives();
+  const cv::Point2d way = way_between_fields(sensor, conditions_.motion);
   for (int truth = 0; truth < truths; ++truth) {
-    const cv::Mat1d fine =
-        chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)])).fine_image(per_pitch, reach);
+    const auto fine_at = [&](cv::Point2d place) {
+      return chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)], place))
+          .fine_image(per_pitch, reach);
+    };
+    const FineFields fine{fine_at(-0.5 * way), way == cv::Point2d(0, 0) ? cv::Mat1d() : fine_at(0.5 * way)};
     for (int danced = 0; danced < places_of_dance_; ++danced) {
       for (int phase = 0; phase < per_axis * per_axis; ++phase) {
         const auto number = static_cast<std::uint64_t>((danced * truths + truth) * per_axis * per_axis + phase);
@@ -117,11 +134,10 @@ int SizeTrial::phases_per_sample() const {
   return std::max(1, conditions_.phases_per_axis / conditions_.samples_per_pitch) * (conditions_.by_pixels ? 2 : 1);
 }
 
-SizeTrial::Response SizeTrial::response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis,
+SizeTrial::Response SizeTrial::response(const FineFields& fields, int per_pitch, cv::Point phase, int per_axis,
                                         std::uint64_t number) const {
   const int window = bank_->window_samples();
   const int stride = per_pitch / conditions_.samples_per_pitch;
-  const int n = fine.rows;
   const int margin = static_cast<int>(display_taps_.size()) / 2;
   // Window centre relative to the centroid: -1/2 + (i + 1/2) / per_axis samples; samples at k + 1/2 from it.
   const auto first = [&](int p) { return (2 * p + 1) * stride / (2 * per_axis) - (window / 2 + margin) * stride; };
@@ -135,6 +151,8 @@ SizeTrial::Response SizeTrial::response(const cv::Mat1d& fine, int per_pitch, cv
                           static_cast<int>(std::lround(displacement.y * per_pitch)));
     displaced += static_cast<double>(weight) / stride * cv::Point2d(moved);
     for (int row = 0; row < samples.rows; ++row) {
+      const cv::Mat1d& fine = fields.of_row(row - margin, conditions_.samples_per_pitch, phase);
+      const int n = fine.rows;  // the period of a field follows from its displacement
       const int y = ((first(phase.y) + row * stride - moved.y) % n + n) % n;
       for (int column = 0; column < samples.cols; ++column) {
         const int x = ((first(phase.x) + column * stride - moved.x) % n + n) % n;

@@ -97,7 +97,8 @@ class SizeTrial {
   };
   /// Result of one trial of pixel_proportion(): 1, 0, or the fair share of a tie.
   [[nodiscard]] double pixel_trial(const Response& response, const PixelContrast& contrast, std::uint64_t index) const;
-  [[nodiscard]] Response response(const cv::Mat1d& fine, int per_pitch, cv::Point phase, int per_axis,
+  struct FineFields;
+  [[nodiscard]] Response response(const FineFields& fields, int per_pitch, cv::Point phase, int per_axis,
                                   std::uint64_t number) const;
   [[nodiscard]] int phases_per_sample() const;  ///< per axis
   /// Draws noise until there are `draws` draws.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sequential readout: rows of detectors sample one after the other, while the target moves.
+// Readout in time: rows of detectors sample one after the other, or in two fields, while the target moves.
 #pragma once
 
-#include <opencv2/core/types.hpp>
+#include <opencv2/core.hpp>
 
 #include "sim_devices/sensor/sensor_spec.h"
 
@@ -14,5 +14,22 @@ namespace todbench {
 /// Place with sequential readout of a point that lies at `place` if all rows sample with `middle_row`: a shear along
 /// the rows and a stretch across them. In pitches or samples. A slope of 0 returns the place bit for bit.
 [[nodiscard]] cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row);
+
+/// Motion of the target from the first field of an interlaced frame, the even rows of detectors, to the second, in
+/// pitches. 0 if the frame is progressive or the target still.
+[[nodiscard]] cv::Point2d way_between_fields(const SensorSpec& spec, SceneMotion motion);
+
+/// Copies the odd rows of detectors of `later` into `picture`. Row 0 of the samples belongs to an even row.
+void take_odd_rows(cv::Mat& picture, const cv::Mat& later, int samples_per_pitch);
+
+/// A picture in two fields, half of their delay before and after the time of the picture. `draw` (displacement of the
+/// target in pitches) returns the picture of all rows at one time. Without a way: draw({0, 0}).
+template <typename Draw>
+[[nodiscard]] auto in_fields(cv::Point2d way_pitch, int samples_per_pitch, Draw draw) {
+  if (way_pitch == cv::Point2d(0, 0)) return draw(cv::Point2d(0, 0));
+  auto picture = draw(-0.5 * way_pitch);
+  take_odd_rows(picture, draw(0.5 * way_pitch), samples_per_pitch);
+  return picture;
+}
 
 }  // namespace todbench

@@ -8,6 +8,7 @@
 
 #include "hvs/shape/gauss_legendre.h"
 #include "sim_devices/sensor/cell_responses.h"
+#include "sim_devices/sensor/effect_readout.h"
 
 namespace todbench {
 namespace {
@@ -54,7 +55,8 @@ struct SceneImager::Tables {
   SensorSpec spec;
   SensorPlan plan;
   SampleTransfer transfer;
-  int margin;  ///< samples
+  cv::Point2d way_pitch;  ///< between the fields of an interlaced frame
+  int margin;             ///< samples
   int degree;
   std::vector<std::pair<int, int>> pairs;
   cv::Mat1f responses;
@@ -63,6 +65,7 @@ struct SceneImager::Tables {
       : spec(std::move(s)),
         plan(std::move(p)),
         transfer({.spec = spec, .plan = plan, .wavelengths = accuracy.wavelengths, .motion = motion}, accuracy),
+        way_pitch(plan.simulates(Effect::readout) ? way_between_fields(spec, motion) : cv::Point2d(0, 0)),
         margin((margin_pitches + halo_margin_pitches(spec, plan)) * spec.samples_per_pitch()),
         degree(std::clamp(static_cast<int>(std::ceil(2.4 * transfer.band_per_sample())) + 3, 4, largest_degree)),
         pairs(legendre_pairs(degree)),
@@ -249,13 +252,24 @@ cv::Size SceneImager::padded(cv::Size size) const {
 }
 
 cv::Mat1d SceneImager::image(std::span<const StepEdge> edges, cv::Size size) const {
-  Cells cells(padded(size), tables_->pairs.size(), tables_->degree);
-  const cv::Point2d shift(tables_->margin + 0.5, tables_->margin + 0.5);
-  for (const auto& edge : edges) cells.add({edge.a + shift, edge.b + shift, edge.step});
-  return imaged(cells, size);
+  const int n = tables_->spec.samples_per_pitch();
+  return in_fields(tables_->way_pitch, n, [&](cv::Point2d displacement_pitch) {
+    Cells cells(padded(size), tables_->pairs.size(), tables_->degree);
+    const cv::Point2d shift = cv::Point2d(tables_->margin + 0.5, tables_->margin + 0.5) + displacement_pitch * n;
+    for (const auto& edge : edges) cells.add({edge.a + shift, edge.b + shift, edge.step});
+    return imaged(cells, size);
+  });
 }
 
 cv::Mat1d SceneImager::image(const cv::Mat1d& picture, double pixel_samples, cv::Point2d first, cv::Size size) const {
+  const int n = tables_->spec.samples_per_pitch();
+  return in_fields(tables_->way_pitch, n, [&](cv::Point2d displacement_pitch) {
+    return at_one_time(picture, pixel_samples, first + displacement_pitch * n, size);
+  });
+}
+
+cv::Mat1d SceneImager::at_one_time(const cv::Mat1d& picture, double pixel_samples, cv::Point2d first,
+                                   cv::Size size) const {
   CV_Assert(pixel_samples > 0 && pixel_samples <= 1 && !picture.empty());
   const int degree = tables_->degree;
   const cv::Size whole = padded(size);

@@ -25,6 +25,8 @@ namespace todbench {
 /// Green). Each polynomial has its own response, which falls as r^-4 and is kept for 6 samples. The degree follows from
 /// the band: the result equals ImageChain to 3e-5 of a contrast (test SceneImager.EqualsTheImageOfThePolygonAlone).
 ///
+/// Of an interlaced sensor, each field shows a moving scene at its time (effect_readout.h).
+///
 /// The plane outside the frame and a margin of 48 pitches, with a halo that and its reach, has level 0. The frame is
 /// periodic with that margin: a contrast that reaches the frame's edge has an error of up to 3e-4 of itself there.
 class SceneImager {
@@ -53,6 +55,8 @@ class SceneImager {
   [[nodiscard]] cv::Size padded(cv::Size size) const;
   struct Cells;
   [[nodiscard]] cv::Mat1d imaged(const Cells& cells, cv::Size size) const;
+  [[nodiscard]] cv::Mat1d at_one_time(const cv::Mat1d& picture, double pixel_samples, cv::Point2d first,
+                                      cv::Size size) const;
 };
 
 }  // namespace todbench

@@ -179,6 +179,18 @@ struct SensorModel::State {
   }
 
   [[nodiscard]] cv::Mat1f draw(const PlateScene& scene, cv::Size size) const {
+    const int n = spec.samples_per_pitch();
+    cv::Mat1f picture = in_fields(way_between_fields(spec, scene.motion), n, [&](cv::Point2d displacement_pitch) {
+      PlateScene field = scene;
+      field.centre_px += displacement_pitch * n;
+      return triangles_of(field, size);
+    });
+    draw_rectangles(scene, picture);
+    return picture;
+  }
+
+  /// All rows at one time.
+  [[nodiscard]] cv::Mat1f triangles_of(const PlateScene& scene, cv::Size size) const {
     const double sample_pitch = 1.0 / spec.samples_per_pitch();
     const std::vector<PlateTriangle>& triangles = scene.plate.triangles;
     // Sampled size by size, so that their common spectrum stays in the cache; added in the order of the plate.
@@ -201,7 +213,6 @@ struct SensorModel::State {
     }
     cv::Mat1f picture(size, 0.0F);
     for (const auto& [values, origin] : samples) add_clipped(picture, values, origin);
-    draw_rectangles(scene, picture);
     return picture;
   }
 };

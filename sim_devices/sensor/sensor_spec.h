@@ -48,6 +48,7 @@ struct SensorSpec {
   double time_constant_ms = 0;        ///< of the bolometer; 0: no memory
   double exposure_ms = 0;             ///< of a detector that integrates and holds; 0: instantaneous
   double row_time_us = 0;             ///< between successive rows of detectors; 0: all rows at once
+  double field_delay_ms = 0;          ///< from the even to the odd rows of an interlaced frame; 0: progressive
   double row_noise_k = 0;             ///< sd of an offset per detector row, new in every exposure
   double column_noise_k = 0;          ///< sd of an offset per detector column, new in every exposure
   double dead_pixel_share = 0;        ///< of the detectors; the camera shows the mean of their live neighbours

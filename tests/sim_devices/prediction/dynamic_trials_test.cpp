@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 
 #include "hvs/observer/known_position.h"
 #include "sim_devices/prediction/camera_trials.h"
+#include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/effect_exposure.h"
 #include "sim_devices/sensor/effect_motion.h"
 #include "sim_devices/sensor/image_chain.h"
@@ -400,6 +402,44 @@ TEST(DynamicTrials, OfRowsThatAreReadOneAfterTheOtherAreJudgedWhereTheRowsAre) {
   // 288 answers each, the same noise: far below sqrt(2 / 4 / 288) = 4 %.
   EXPECT_NEAR(share(of(by_rows->front(), SequenceObserver::single_frame)),
               share(of(at_once->front(), SequenceObserver::single_frame)), 0.04);
+}
+
+/// Frames of the sensor model against the estimate without frames, which shares only the response to a triangle.
+TEST(DynamicTrials, OfAnInterlacedFrameAreTheDirectEstimate) {
+  TemplateObserver observer({}, triangle_alternatives());
+  SensorSpec sensor = test::sc2000();
+  sensor.field_delay_ms = 10;
+  const double speed_mrad_s = 3 * sensor.ifov_mrad() * sensor.frame_rate_hz;  // 1.5 pitches between the fields
+  const std::vector<double> sizes{1.8, 2.4, 3.2};
+  const auto trials = dynamic_trials(sensor, observer,
+                                     {.delta_t_k = 4,
+                                      .sizes_pitch = sizes,
+                                      .speeds_mrad_s = {speed_mrad_s},
+                                      .passes = 96,
+                                      .frames = 1,
+                                      .accuracy = Accuracy::draft()});
+  ASSERT_TRUE(trials);
+  const auto expected = [&](const SensorSpec& spec) {
+    DirectEstimateOptions options{.motion = {.x_mrad_s = speed_mrad_s, .y_mrad_s = 0}, .accuracy = Accuracy::draft()};
+    options.accuracy.noise_draws = 400;
+    const SensorPlan plan = full_plan(spec, {}, {}, options.motion);
+    const ProportionCurve curve = proportion_curves(spec, plan, observer, {4}, options).value().front();
+    double sum = 0;
+    for (const double size : sizes) {
+      const auto above =
+          static_cast<std::size_t>(std::ranges::upper_bound(curve.sizes_pitch, size) - curve.sizes_pitch.begin());
+      const double part = std::log(size / curve.sizes_pitch[above - 1]) /
+                          std::log(curve.sizes_pitch[above] / curve.sizes_pitch[above - 1]);
+      sum += std::lerp(curve.proportion_correct[above - 1], curve.proportion_correct[above], part);
+    }
+    return sum / static_cast<double>(sizes.size());
+  };
+  const double interlaced = expected(sensor);
+  sensor.field_delay_ms = 0;
+
+  // 1152 answers: four standard errors of at most 1.5 %, and 1 % for phases and draws.
+  EXPECT_NEAR(share(of(trials->front(), SequenceObserver::single_frame)), interlaced, 0.07);
+  EXPECT_GT(expected(sensor), interlaced + 0.1) << "fields cost acuity";
 }
 
 TEST(DynamicTrials, AreRefusedInASentence) {

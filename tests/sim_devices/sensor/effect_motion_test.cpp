@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Motion, exposure, readout by rows and displaced exposures against brute force.
+// Motion, exposure, readout by rows and in fields, and displaced exposures against brute force.
 #include "sim_devices/sensor/effect_motion.h"
 
 #include <gmock/gmock.h>
@@ -105,6 +105,37 @@ TEST(Effects, AnEdgeThatIsReadRowByRowLeansByTheSlope) {
   }
 }
 
+TEST(Effects, FieldsShowTheTargetWhereItIsThen) {
+  for (const int microscan : {1, 2}) {
+    MovingPair pair;
+    pair.moving.plate.rectangles = {{.name = "bar", .position_mm = {0, 0}, .size_mm = {40, 40}, .angle_deg = 5}};
+    pair.spec.microscan = microscan;
+    pair.spec.field_delay_ms = 10;
+    const cv::Point2d way = way_between_fields(pair.spec, pair.moving.motion);
+    ASSERT_NEAR(way.x, 0.458, 1e-3) << "pitches";
+    SensorSpec plain = pair.spec;
+    plain.field_delay_ms = 0;
+    const SensorModel still(plain, full_plan(plain, {}, {}), Accuracy::reference(), 1);
+
+    const cv::Mat1f interlaced = pair.signal(pair.moving);
+
+    const auto early = still.unit_signal(pair.still_at(-0.5 * microscan * way));
+    const auto late = still.unit_signal(pair.still_at(0.5 * microscan * way));
+    for (int row = 0; row < interlaced.rows; ++row) {
+      const cv::Mat1f& then = row / microscan % 2 == 0 ? *early : *late;
+      EXPECT_LT(cv::norm(interlaced.row(row), then.row(row), cv::NORM_INF), 1e-5) << row;
+    }
+    EXPECT_GT(cv::norm(interlaced, *early, cv::NORM_INF), 0.1);
+  }
+}
+
+TEST(Effects, FieldsOfATargetAtRestAreTheProgressiveFrameBitForBit) {
+  MovingPair pair;
+  const cv::Mat1f progressive = pair.signal(pair.still_at({0, 0}));
+  pair.spec.field_delay_ms = 10;
+  EXPECT_EQ(cv::norm(pair.signal(pair.still_at({0, 0})), progressive, cv::NORM_INF), 0);
+}
+
 TEST(Effects, TheLagOfTimeConstantAndExposureIsTheirMean) {
   SensorSpec spec = test::sc2000();
   spec.time_constant_ms = 12;
@@ -121,6 +152,11 @@ TEST(Effects, SensorsThatExposeOrReadLongerThanAFrameAreRefused) {
   EXPECT_FALSE(validate(spec));
   spec.exposure_ms = 0;
   spec.row_time_us = 84;
+  EXPECT_FALSE(validate(spec));
+  spec.row_time_us = 41;
+  spec.field_delay_ms = 10;
+  EXPECT_TRUE(validate(spec));
+  spec.row_time_us = 42;
   EXPECT_FALSE(validate(spec));
 }
 
