@@ -9,12 +9,12 @@
 #include <tuple>
 
 #include "acquisition/base/try.h"
-#include "acquisition/core/judged_picture.h"
 #include "tod/measurement/frame_taker.h"
 #include "tod/measurement/place_watch.h"
 #include "tod/measurement/prepared_plate.h"
 #include "tod/measurement/set_up_step.h"
 #include "tod/measurement/target_change.h"
+#include "tod/measurement/trial_judge.h"
 #include "tod/presentation/target_failure.h"
 #include "tod/registration/patch_windows.h"
 
@@ -34,7 +34,8 @@ class Run {
         listener_(listener),
         stop_(std::move(stop)),
         taker_(source, taker_options(options, source.info(), listener.on_rejected)),
-        step_(options_, source, taker_, [this](const std::string& sentence) { note(sentence); }) {
+        step_(options_, source, taker_, [this](const std::string& sentence) { note(sentence); }),
+        judge_(options_, observer, taker_, step_) {
     options_.registration.expected_scale_px_per_mm = 1 / (options.distance_m * options.ifov_mrad);
     places_ = PlaceWatch({.max_shift_error_px = target.capabilities().sets_shift ? options.max_shift_error_px : 0,
                           .registration = options_.registration});
@@ -274,7 +275,7 @@ class Run {
                          const TargetState& state) {
     Exposed exposed{.registration = asked.moved(places_.off_px()), .frames = {}};
     std::vector<int> sides = plate.sides();
-    for (int& side : sides) side = in_pixels(side);
+    for (int& side : sides) side = judge_.in_pixels(side);
     const auto problems = windows_out_of_picture(mounted_plate, exposed.registration, sides,
                                                  {source_.info().width, source_.info().height});
     if (!problems.empty()) {
@@ -407,109 +408,25 @@ class Run {
   /// Every triangle is a trial. No trial of a presentation is reported before its last frame has arrived.
   Result<void> answer(const PreparedPlate& plate, const TargetPlate& mounted_plate, const Exposed& exposed,
                       const TargetState& state) {
-    const Registration& registration = exposed.registration;
-    const std::size_t count = mounted_plate.triangles.size();
-    std::vector<Trial> trials;
-    std::vector<Patch> patches;
-    std::vector<double> probabilities(count);
-    const int frames = frames_at(state);
-    for (int k = 0; k < frames; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      TODBENCH_TRY(auto taken, at < exposed.frames.size() ? exposed.frames[at] : taker_.next(stop_));
-      if (taken.judged != nullptr && taken.judged->none) return tl::unexpected(*taken.judged->none);
-      if (judged_samples_per_pixel(taken) != options_.judged_samples_per_pixel)
-        return fail(ErrorCode::internal,
-                    "the frames have another number of samples per pixel than the options of the run state");
-      const Frame frame = as_judged(taken);
-      TODBENCH_TRY(const auto unit_per_k, of_a_kelvin(taken, mounted_plate, registration, state));
-      for (std::size_t i = 0; i < count; ++i) {
-        const PlateTriangle& t = mounted_plate.triangles[i];
-        const cv::Point2d place = registration.pixel(t.position_mm);
-        const int side = plate.observers[i]->window_samples();
-        const auto window = patch_window(judged_place(taken, place), side);
-        if ((window.pixels & cv::Rect({0, 0}, frame.counts.size())) != window.pixels)
-          return fail(ErrorCode::calibration, "the plate is too close to the edge of the picture: " + t.name);
-        auto kelvin = window_kelvin(frame, window.pixels);
-        if (!kelvin) return tl::unexpected(kelvin.error());
-        if (unit_per_k != 1) *kelvin /= unit_per_k;
-        Patch patch{.kelvin = *std::move(kelvin), .phase = window.phase, .noise_k = seen_.noise_k};
-        const GradedChoice judged = judge(*plate.observers[i], patch, i, k);
-        const int saturated = std::max(step_.saturated_samples(taken, window.pixels),
-                                       step_.saturated_pixels(taken, patch_window(place, in_pixels(side)).pixels));
-        probabilities[i] += judged.answers.probability[static_cast<std::size_t>(t.apex)];
-        if (k == 0) {
-          Trial trial = first_answer(t, state, frame, judged.choice, window.phase);
-          trial.centroid = PlaceInPicture{place.x, place.y};
-          trial.size_px = plate.size_px[i] / options_.judged_samples_per_pixel;
-          trials.push_back(std::move(trial));
-          patches.push_back(std::move(patch));
-        }
-        trials[i].saturated_pixels = std::max(trials[i].saturated_pixels, saturated);
-      }
-    }
-    if (const auto failure = observer_.failure()) return fail("the observer", *failure);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (options_.answers == AnswerKind::graded) {
-        trials[i].probability_correct = std::min(1.0, probabilities[i] / frames);
-        trials[i].frames = frames;
-      }
-      result_.trials.push_back(trials[i]);
-      if (listener_.on_trial) listener_.on_trial(trials[i]);
-      if (listener_.on_patch) listener_.on_patch(trials[i], patches[i]);
+    TODBENCH_TRY(const auto answered, judge_.answers({.plate = plate,
+                                                      .mounted_plate = mounted_plate,
+                                                      .registration = exposed.registration,
+                                                      .state = state,
+                                                      .point_delta_t_k = point_of(state),
+                                                      .seen = seen_,
+                                                      .presentation = presentation_,
+                                                      .first_frames = exposed.frames,
+                                                      .frames = frames_at(state)},
+                                                     stop_));
+    result_.grey_frames.insert(result_.grey_frames.end(), answered.greys.begin(), answered.greys.end());
+    for (std::size_t i = 0; i < answered.trials.size(); ++i) {
+      result_.trials.push_back(answered.trials[i]);
+      if (listener_.on_trial) listener_.on_trial(answered.trials[i]);
+      if (listener_.on_patch) listener_.on_patch(answered.trials[i], answered.patches[i]);
     }
     return {};
   }
 
-  /// Side of a window of the judged picture, in whole pixels, even as patch_window() requires.
-  [[nodiscard]] int in_pixels(int side) const {
-    const int finer = options_.judged_samples_per_pixel;
-    return finer == 1 ? side : 2 * ((side + 2 * finer - 1) / (2 * finer) + 1);
-  }
-
-  /// Judged units per kelvin in this frame: 1, the gain of stages, or grey levels, which are recorded.
-  Result<double> of_a_kelvin(const Frame& frame, const TargetPlate& mounted_plate, const Registration& registration,
-                             const TargetState& state) {
-    if (options_.contrast_unit == ContrastUnit::kelvin) return step_.gain_of(frame, mounted_plate, registration, seen_);
-    TODBENCH_TRY(auto grey, step_.grey_frame(as_judged(frame), mounted_plate, registration, state, seen_));
-    grey.presentation = presentation_;
-    result_.grey_frames.push_back(std::move(grey));
-    return result_.grey_frames.back().levels_per_k;
-  }
-
-  /// The answer is that to the first frame, with the same draw as without probabilities; every further frame has its
-  /// own stream below that of the trial.
-  [[nodiscard]] GradedChoice judge(const PreparedObserver& observer, const Patch& patch, std::size_t triangle,
-                                   int frame) const {
-    RandomStream noise = answer_noise(options_.seed, presentation_, triangle);
-    if (options_.answers == AnswerKind::binary) return {observer.choose(patch, seen_.contrast_k, noise), {}};
-    if (frame > 0) noise = noise.sub(further_frames_stream + static_cast<std::uint64_t>(frame));
-    return observer.judge(patch, seen_.contrast_k, noise, MeasurementOptions::graded_draws);
-  }
-
-  [[nodiscard]] Trial first_answer(const PlateTriangle& t, const TargetState& state, const Frame& frame,
-                                   const Choice& choice, cv::Point2d phase) const {
-    Trial trial;
-    trial.presentation = presentation_;
-    trial.plate = state.plate;
-    trial.mounting = state.mounting;
-    trial.triangle = t.name;
-    trial.set_delta_t_k = point_of(state);
-    trial.delta_t_k = seen_.contrast_k;
-    trial.size_mm = t.size_mm;
-    trial.size_mrad = t.size_mm / options_.distance_m;
-    trial.truth = t.apex;
-    trial.answer = static_cast<Apex>(choice.alternative);
-    for (std::size_t o = 0; o < trial.scores.size(); ++o) trial.scores[o] = choice.scores[o];
-    trial.phase_x_px = phase.x;
-    trial.phase_y_px = phase.y;
-    trial.frame = frame.sequence;
-    trial.device_time_ns = frame.device_time_ns;
-    trial.host_time_ns = frame.host_time_ns;
-    trial.since_nuc_s = taker_.since_nuc_s(frame);
-    return trial;
-  }
-
-  static constexpr std::uint64_t further_frames_stream = 1'000'000;
   static constexpr int most_frames_looked_at = 16;  ///< for the place of the plate: they are kept until judged
   static constexpr double search_px = 6;  ///< furthest movement of the plate by hand between two presentations
 
@@ -524,6 +441,7 @@ class Run {
   FrameTaker taker_;
   PlaceWatch places_{{}};
   SetUpStep step_;
+  TrialJudge judge_;
   std::vector<PreparedPlate> plates_;
   std::map<SetUp, Registration> registered_;  ///< at shift 0
   std::optional<SetUp> current_set_up_;
@@ -546,10 +464,6 @@ class Run {
 };
 
 }  // namespace
-
-RandomStream answer_noise(std::uint64_t seed, std::int64_t presentation, std::size_t triangle) {
-  return RandomStream(seed, "observer").sub(static_cast<std::uint64_t>(presentation)).sub(triangle);
-}
 
 Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
                                   const MeasurementOptions& options, RunController& host,

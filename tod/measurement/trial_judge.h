@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The trials of one presentation: the observer judges the window of every triangle in each frame.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "acquisition/base/result.h"
+#include "acquisition/core/frame.h"
+#include "hvs/observer/observer.h"
+#include "tod/measurement/frame_taker.h"
+#include "tod/measurement/measurement.h"
+#include "tod/measurement/prepared_plate.h"
+#include "tod/measurement/set_up_step.h"
+
+namespace todbench {
+
+/// A presentation as the judge needs it. Borrowed for the call.
+struct PresentationShown {
+  const PreparedPlate& plate;
+  const TargetPlate& mounted_plate;
+  const Registration& registration;
+  const TargetState& state;
+  double point_delta_t_k = 0;  ///< set contrast of the point of the curve
+  const SeenContrast& seen;
+  std::int64_t presentation = 0;
+  std::span<const Frame> first_frames;  ///< already taken; the others are taken from the camera
+  int frames = 1;                       ///< in all
+};
+
+struct PresentationAnswers {
+  std::vector<Trial> trials;     ///< one per triangle of the plate
+  std::vector<Patch> patches;    ///< of the first frame, one per trial
+  std::vector<GreyFrame> greys;  ///< one per frame if contrasts are in grey levels
+};
+
+/// Lets an observer answer. One thread at a time; everything borrowed outlives it.
+class TrialJudge {
+ public:
+  TrialJudge(const MeasurementOptions& options, Observer& observer, FrameTaker& taker, SetUpStep& step)
+      : options_(options), observer_(observer), taker_(taker), step_(step) {}
+
+  /// Returns the answers to all triangles. Errors: those of the camera; `calibration` (a window leaves the picture);
+  /// `internal` (frames of another sampling than the options state); that of the observer.
+  [[nodiscard]] Result<PresentationAnswers> answers(const PresentationShown& shown, const std::stop_token& stop);
+
+  /// Side of a window of the judged picture, in whole pixels, even as patch_window() requires.
+  [[nodiscard]] int in_pixels(int side) const;
+
+ private:
+  Result<double> of_a_kelvin(const Frame& frame, const PresentationShown& shown, std::vector<GreyFrame>& greys);
+  Result<void> judge_frame(const Frame& taken, int number, const PresentationShown& shown, PresentationAnswers& out,
+                           std::vector<double>& probabilities);
+  [[nodiscard]] GradedChoice judge(const PresentationShown& shown, const Patch& patch, std::size_t triangle,
+                                   int frame) const;
+  [[nodiscard]] Trial first_answer(std::size_t triangle, const PresentationShown& shown, const Frame& frame,
+                                   const Choice& choice, cv::Point2d phase) const;
+
+  const MeasurementOptions& options_;
+  Observer& observer_;
+  FrameTaker& taker_;
+  SetUpStep& step_;
+};
+
+}  // namespace todbench
