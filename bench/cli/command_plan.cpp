@@ -2,6 +2,7 @@
 // todbench plan
 #include <memory>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/effect_decisions.h"
 #include "bench/cli/findings.h"
@@ -121,6 +122,84 @@ int run_optimise(Console& console, const PlanArguments& asked, const Plan& plan,
   return 0;
 }
 
+/// What `plan` forecasts of a run.
+struct RunForecast {
+  PlanPrediction prediction;
+  std::optional<std::vector<PrecisionChoice>>
+      frontier{};  ///< empty if no time can be predicted, which a warning states
+  std::vector<LimitForecast> limits{};
+  std::vector<MeasureForecast> measure_limits{};
+  std::vector<AcuityLimits> acuity{};
+  std::optional<ViewingProposal> viewing{};
+  std::optional<AccuracyBill> bill{};
+  std::vector<DecisionForecast> decisions{};
+};
+
+Result<RunForecast> run_forecast(const PlanArguments& asked, const Plan& plan, const ExperimentInputs& inputs,
+                                 const std::stop_token& stop) {
+  TODBENCH_TRY(auto prediction, predict_plan(plan, inputs));
+  RunForecast out{.prediction = std::move(prediction)};
+  if (auto timed = predict_times(plan, inputs, out.prediction, stop); !timed) {
+    if (timed.error().code == ErrorCode::interrupted) return tl::unexpected(timed.error());
+    out.prediction.warnings.push_back("the time cannot be predicted: " + timed.error().message);
+  }
+  auto frontier = precision_frontier(plan, inputs, stop);
+  if (!frontier && frontier.error().code == ErrorCode::interrupted) return tl::unexpected(frontier.error());
+  if (frontier) out.frontier = *std::move(frontier);
+  TODBENCH_TRY(const auto of_camera, predict_plan(as_measured(plan), inputs));
+  TODBENCH_TRY(out.limits, limit_forecasts(plan, of_camera));
+  TODBENCH_TRY(out.measure_limits, measure_forecasts(plan.limits));
+  if (asked.what_limits || inputs.observer.eye) {
+    TODBENCH_TRY(out.acuity, acuity_limits(plan, inputs, plan.target.delta_t_k, stop));
+  }
+  TODBENCH_TRY(out.viewing, viewing_of(plan.target.delta_t_k, inputs, stop));
+  if (!plan.camera.id.empty() && plan.target.kind != TargetKind::scene) {
+    TODBENCH_TRY(out.bill, bill_forecast(plan, inputs));
+  }
+  if (asked.decide) {
+    TODBENCH_TRY(out.decisions, decision_forecasts(plan, inputs));
+  }
+  return out;
+}
+
+Json forecast_json(const RunForecast& forecast, const PlanArguments& asked, const ExperimentInputs& inputs) {
+  Json json = plan_json(inputs.effects, forecast.prediction.figures);
+  if (!forecast.limits.empty()) json["limits"] = limits_json(forecast.limits);
+  if (!forecast.measure_limits.empty()) json["measure_limits"] = measure_limits_json(forecast.measure_limits);
+  if (!forecast.acuity.empty()) json["acuity_limits"] = acuity_limits_json(forecast.acuity);
+  if (forecast.viewing) json["viewing_proposal"] = viewing_json(*forecast.viewing);
+  if (forecast.frontier) json["frontier"] = frontier_json(*forecast.frontier);
+  if (forecast.bill) json["bill"] = bill_json(*forecast.bill);
+  if (asked.decide) json["decide"] = decisions_json(forecast.decisions);
+  return json;
+}
+
+void print_forecast(const Console& console, const RunForecast& forecast, const PlanArguments& asked, const Plan& plan,
+                    const ExperimentInputs& inputs) {
+  print_plan(console, plan, inputs, forecast.prediction, asked.why);
+  if (forecast.frontier) print_frontier(console, *forecast.frontier);
+  if (forecast.bill) print_bill_forecast(console, *forecast.bill);
+  for (const AcuityLimits& at : forecast.acuity) console.text(in_words(at));
+  if (forecast.viewing) console.text(in_words(*forecast.viewing, *inputs.observer.display));
+  for (const LimitForecast& limit : forecast.limits) console.text("limit at " + in_words(limit));
+  for (const MeasureForecast& limit : forecast.measure_limits) console.text("limit on " + in_words(limit));
+  if (asked.decide) print_decisions(console, forecast.decisions);
+}
+
+/// Warnings and remarks, on standard error.
+void note_remarks(Console& console, const RunForecast& forecast, const Plan& plan, const ExperimentInputs& inputs) {
+  for (const auto& warning : forecast.prediction.warnings) console.note(warning);
+  if (const std::string remark = resume_remark(plan, forecast.bill ? forecast.bill->total_s : 0); !remark.empty())
+    console.note(remark);
+  if (inputs.observer.display) {
+    if (const auto warning = small_sample_warning(*inputs.observer.display)) console.note(*warning);
+  }
+  // Without a camera there is no comparison.
+  if (plan.camera.id.empty()) return;
+  const std::string comparison = comparison_forecast(plan, forecast.prediction).sentence;
+  if (!comparison.empty()) console.note(comparison);
+}
+
 int run_plan(Console& console, const PlanArguments& asked, const Program& program) {
   SimulationOverrides overrides = asked.overrides;
   if (program.common.seed_given) overrides.seed = program.common.seed;
@@ -133,73 +212,16 @@ int run_plan(Console& console, const PlanArguments& asked, const Program& progra
   if (auto refined = refine_thresholds(*inputs, plan.seed, program.stop->token()); !refined)
     return report_error(console, refined.error());
   if (asked.optimise) return run_optimise(console, asked, plan, *inputs, program);
-  auto prediction = predict_plan(plan, *inputs);
-  if (!prediction) return report_error(console, prediction.error());
-  if (auto timed = predict_times(plan, *inputs, *prediction, program.stop->token()); !timed) {
-    if (timed.error().code == ErrorCode::interrupted) return report_error(console, timed.error());
-    prediction->warnings.push_back("the time cannot be predicted: " + timed.error().message);
-  }
-  // If no time can be predicted, a warning already says so.
-  const auto frontier = precision_frontier(plan, *inputs, program.stop->token());
-  if (!frontier && frontier.error().code == ErrorCode::interrupted) return report_error(console, frontier.error());
-  const auto of_camera = predict_plan(as_measured(plan), *inputs);
-  if (!of_camera) return report_error(console, of_camera.error());
-  const auto limits = limit_forecasts(plan, *of_camera);
-  if (!limits) return report_error(console, limits.error());
-  const auto measure_limits = measure_forecasts(plan.limits);
-  if (!measure_limits) return report_error(console, measure_limits.error());
-  std::vector<AcuityLimits> acuity;
-  if (asked.what_limits || inputs->observer.eye) {
-    auto found = acuity_limits(plan, *inputs, plan.target.delta_t_k, program.stop->token());
-    if (!found) return report_error(console, found.error());
-    acuity = *std::move(found);
-  }
-  const auto viewing = viewing_of(plan.target.delta_t_k, *inputs, program.stop->token());
-  if (!viewing) return report_error(console, viewing.error());
-  std::optional<AccuracyBill> bill;
-  if (!plan.camera.id.empty() && plan.target.kind != TargetKind::scene) {
-    auto found = bill_forecast(plan, *inputs);
-    if (!found) return report_error(console, found.error());
-    bill = *std::move(found);
-  }
-  std::vector<DecisionForecast> decisions;
-  if (asked.decide) {
-    auto found = decision_forecasts(plan, *inputs);
-    if (!found) return report_error(console, found.error());
-    decisions = *std::move(found);
-  }
+  const auto forecast = run_forecast(asked, plan, *inputs, program.stop->token());
+  if (!forecast) return report_error(console, forecast.error());
   if (console.json()) {
-    Json json = plan_json(inputs->effects, prediction->figures);
-    if (!plan.limits.acuity.empty()) json["limits"] = limits_json(*limits);
-    if (!measure_limits->empty()) json["measure_limits"] = measure_limits_json(*measure_limits);
-    if (!acuity.empty()) json["acuity_limits"] = acuity_limits_json(acuity);
-    if (*viewing) json["viewing_proposal"] = viewing_json(**viewing);
-    if (frontier) json["frontier"] = frontier_json(*frontier);
-    if (bill) json["bill"] = bill_json(*bill);
-    if (asked.decide) json["decide"] = decisions_json(decisions);
-    console.object(json);
+    console.object(forecast_json(*forecast, asked, *inputs));
   } else {
-    print_plan(console, plan, *inputs, *prediction, asked.why);
-    if (frontier) print_frontier(console, *frontier);
-    if (bill) print_bill_forecast(console, *bill);
-    for (const AcuityLimits& at : acuity) console.text(in_words(at));
-    if (*viewing) console.text(in_words(**viewing, *inputs->observer.display));
-    for (const LimitForecast& limit : *limits) console.text("limit at " + in_words(limit));
-    for (const MeasureForecast& limit : *measure_limits) console.text("limit on " + in_words(limit));
-    if (asked.decide) print_decisions(console, decisions);
+    print_forecast(console, *forecast, asked, plan, *inputs);
   }
-  for (const auto& warning : prediction->warnings) console.note(warning);
-  if (const std::string remark = resume_remark(plan, bill ? bill->total_s : 0); !remark.empty()) console.note(remark);
-  if (inputs->observer.display) {
-    if (const auto warning = small_sample_warning(*inputs->observer.display)) console.note(*warning);
-  }
-  // Without a camera there is no comparison.
-  if (!plan.camera.id.empty()) {
-    const std::string forecast = comparison_forecast(plan, *prediction).sentence;
-    if (!forecast.empty()) console.note(forecast);
-  }
+  note_remarks(console, *forecast, plan, *inputs);
   // A plan that cannot find one of its thresholds is inconclusive before it starts.
-  return prediction->figures.predicted_uncertainty_percent ? 0 : exit_code(VerdictKind::inconclusive);
+  return forecast->prediction.figures.predicted_uncertainty_percent ? 0 : exit_code(VerdictKind::inconclusive);
 }
 
 }  // namespace

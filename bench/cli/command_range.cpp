@@ -260,103 +260,129 @@ Result<void> take_m75(const std::string& file, const std::string& curve_observer
   return {};
 }
 
-int run_range(Console& console, const RangeArguments& arguments) {
-  RangeTask task = arguments.task;
-  RangeOptions options = arguments.more;
-  options.asked_delta_t_k = task.delta_t_k;
-  if (options.transfer && !options.asks(RangeModel::mtdp)) {
-    return report_error(
-        console, {ErrorCode::invalid_input, "range: --tod-transfer changes the mtdp model only: add it to --models"});
-  }
-  if (arguments.v50) task.m75 = m75_from_v50(*arguments.v50);
-  if (arguments.m75) task.m75 = *arguments.m75;
-  options.criterion_source = arguments.v50   ? CriterionSource::v50_stated
-                             : arguments.m75 ? CriterionSource::m75_stated
-                                             : CriterionSource::published;
-  const auto session = session_of(console, arguments);
-  if (!session) return report_error(console, session.error());
-  if (options.transfer && *session &&
-      (!(*session)->plan.modules.empty() || !(*session)->parts.sensor.modules.empty())) {
-    return report_error(console, {ErrorCode::invalid_input,
-                                  "range: --tod-transfer was not studied for pictures or answers of modules"});
-  }
-  const auto sensor = options.sensor_of(*session);
-  if (!sensor) return report_error(console, sensor.error());
-  const auto air = into_task(task, options, *sensor);
-  if (!air) return report_error(console, air.error());
-  for (const auto& sentence : air->notes) console.note(sentence);
-  if (!arguments.m75_of.empty()) {
-    if (!*session || !(*session)->curve)
-      return report_error(console, {ErrorCode::invalid_input, "--m75-of needs the TOD curve of a session (--tod)"});
-    if (auto taken = take_m75(arguments.m75_of, (*session)->curve->observer, task, options); !taken)
-      return report_error(console, taken.error());
-  }
+/// What is asked, with the session, the sensor and the air that it names.
+struct RangeInputs {
+  RangeTask task;
+  RangeOptions options;
+  std::optional<double> v50{};
+  std::optional<Session> session{};
+  std::optional<SensorSpec> sensor{};
+  Atmosphere air{};
+
+  /// The session's TOD curve; null without one.
+  [[nodiscard]] const TodCurve* curve() const { return session && session->curve ? &*session->curve : nullptr; }
+};
+
+Result<RangeInputs> inputs_of(Console& console, const RangeArguments& arguments) {
+  RangeInputs in{.task = arguments.task, .options = arguments.more, .v50 = arguments.v50};
+  in.options.asked_delta_t_k = in.task.delta_t_k;
+  if (in.options.transfer && !in.options.asks(RangeModel::mtdp))
+    return fail(ErrorCode::invalid_input, "range: --tod-transfer changes the mtdp model only: add it to --models");
+  if (arguments.v50) in.task.m75 = m75_from_v50(*arguments.v50);
+  if (arguments.m75) in.task.m75 = *arguments.m75;
+  in.options.criterion_source = arguments.v50   ? CriterionSource::v50_stated
+                                : arguments.m75 ? CriterionSource::m75_stated
+                                                : CriterionSource::published;
+  TODBENCH_TRY(in.session, session_of(console, arguments));
+  if (in.options.transfer && in.session &&
+      (!in.session->plan.modules.empty() || !in.session->parts.sensor.modules.empty()))
+    return fail(ErrorCode::invalid_input, "range: --tod-transfer was not studied for pictures or answers of modules");
+  TODBENCH_TRY(in.sensor, in.options.sensor_of(in.session));
+  TODBENCH_TRY(in.air, into_task(in.task, in.options, in.sensor));
+  for (const auto& sentence : in.air.notes) console.note(sentence);
+  if (arguments.m75_of.empty()) return in;
+  if (in.curve() == nullptr) return fail(ErrorCode::invalid_input, "--m75-of needs the TOD curve of a session (--tod)");
+  if (auto taken = take_m75(arguments.m75_of, in.curve()->observer, in.task, in.options); !taken)
+    return tl::unexpected(taken.error());
+  return in;
+}
+
+struct RangeAnswers {
   TodAnswer tod;
-  ThresholdSelection selection;
-  if (*session && (*session)->curve) {
-    selection = thresholds_of(*(*session)->curve, task.delta_t_k);
-    auto answer = tod_answer(**session, selection, task);
-    if (!answer) return report_error(console, answer.error());
-    tod = *std::move(answer);
-  } else {
-    tod.prediction.reason = "no TOD curve is given (--tod)";
-  }
-  for (const auto& sentence : tod.prediction.notes) console.note(sentence);
-  options.curve_observer = tod.observer;
-  RangeQuestion question = options.question(task, arguments.v50, *air);
-  if (tod.prediction.r75_m) {
-    tod.prediction.r75_ci95_m = joined_with_m75(selection.thresholds, task, *tod.prediction.r75_m,
-                                                tod.prediction.r75_ci95_m, question.m75_u_percent);
-  }
-  const std::string observers = options.asks(RangeModel::tod) ? observers_differ(question) : "";
-  if (!observers.empty()) console.note(observers);
-  if (*session && (*session)->uncertainty) {
-    const CurveUncertainty& budget = *(*session)->uncertainty;
-    question.scale_u_percent = 100 * std::hypot(budget.u_scale, budget.u_camera_scale);
-    question.ifov_u_percent = 100 * relative_u_of_ifov((*session)->plan);
-  }
-  auto sources = options.sources(selection.thresholds, *sensor);
-  if (!sources) return report_error(console, sources.error());
+  RangeQuestion question;
+  RangeSources sources;
   std::optional<TurbulentAnswers> turbulent;
-  if (options.cn2 > 0) {
-    auto answers = through_turbulence(options, task, question, *sources, *session, tod);
-    if (!answers) return report_error(console, answers.error());
-    turbulent = *std::move(answers);
-    if (options.asks(RangeModel::tod)) console.note("turbulence: " + turbulent->decision.reason);
+  std::vector<ModelRange> models;
+  Json grid;
+  std::string observers;  ///< how the observers of the criterion and of the curve differ; may be empty
+};
+
+Result<RangeAnswers> answers_of(Console& console, RangeInputs& in) {
+  RangeAnswers out;
+  ThresholdSelection selection;
+  if (in.curve() != nullptr) {
+    selection = thresholds_of(*in.curve(), in.task.delta_t_k);
+    TODBENCH_TRY(out.tod, tod_answer(*in.session, selection, in.task));
+  } else {
+    out.tod.prediction.reason = "no TOD curve is given (--tod)";
   }
-  const auto models =
-      turbulent ? Result<std::vector<ModelRange>>(turbulent->models) : range_models(options.models, *sources, question);
-  if (!models) return report_error(console, models.error());
-  const auto grid = options.grid_json(*sources, question, *sensor);
-  if (!grid) return report_error(console, grid.error());
-  auto said = sentences_of(tod.prediction, turbulent ? &turbulent->decision : nullptr, options);
+  RangePrediction& prediction = out.tod.prediction;
+  for (const auto& sentence : prediction.notes) console.note(sentence);
+  in.options.curve_observer = out.tod.observer;
+  out.question = in.options.question(in.task, in.v50, in.air);
+  if (prediction.r75_m) {
+    prediction.r75_ci95_m = joined_with_m75(selection.thresholds, in.task, *prediction.r75_m, prediction.r75_ci95_m,
+                                            out.question.m75_u_percent);
+  }
+  if (in.options.asks(RangeModel::tod)) out.observers = observers_differ(out.question);
+  if (!out.observers.empty()) console.note(out.observers);
+  if (in.session && in.session->uncertainty) {
+    const CurveUncertainty& budget = *in.session->uncertainty;
+    out.question.scale_u_percent = 100 * std::hypot(budget.u_scale, budget.u_camera_scale);
+    out.question.ifov_u_percent = 100 * relative_u_of_ifov(in.session->plan);
+  }
+  TODBENCH_TRY(out.sources, in.options.sources(selection.thresholds, in.sensor));
+  if (in.options.cn2 > 0) {
+    TODBENCH_TRY(out.turbulent,
+                 through_turbulence(in.options, in.task, out.question, out.sources, in.session, out.tod));
+    if (in.options.asks(RangeModel::tod)) console.note("turbulence: " + out.turbulent->decision.reason);
+    out.models = out.turbulent->models;
+  } else {
+    TODBENCH_TRY(out.models, range_models(in.options.models, out.sources, out.question));
+  }
+  TODBENCH_TRY(out.grid, in.options.grid_json(out.sources, out.question, in.sensor));
+  return out;
+}
+
+Json answers_json(const RangeInputs& in, const RangeAnswers& answers) {
+  Json json = range_json(answers.tod, in.task, answers.question);
+  json["delta_t_k"] = in.options.asked_delta_t_k;
+  json["atmosphere"] = atmosphere_json(in.air, in.task, answers.tod.prediction.r75_m, in.options, in.sensor);
+  json["models"] = models_json(answers.models, answers.sources, answers.question, answers.tod.twin_r75_m);
+  if (answers.turbulent) {
+    json["turbulence"] = turbulence_json(*answers.turbulent, *answers.sources.sensor, in.options.cn2);
+    // Both forms of P are those of the curve without turbulence.
+    if (json["models"].contains("ttp")) json["models"]["ttp"].erase("forms");
+  }
+  if (!answers.grid.is_null()) json["grid"] = answers.grid;
+  return json;
+}
+
+int run_range(Console& console, const RangeArguments& arguments) {
+  auto in = inputs_of(console, arguments);
+  if (!in) return report_error(console, in.error());
+  auto answers = answers_of(console, *in);
+  if (!answers) return report_error(console, answers.error());
+  RangePrediction& tod = answers->tod.prediction;
+  auto said = sentences_of(tod, answers->turbulent ? &answers->turbulent->decision : nullptr, in->options);
   // The page has it among the notes of the model.
-  if (!observers.empty()) tod.prediction.notes.push_back(observers);
-  const std::string accepted = *session ? accepted_sentence(arguments.tod, **session) : "";
+  if (!answers->observers.empty()) tod.notes.push_back(answers->observers);
+  const std::string accepted = in->session ? accepted_sentence(arguments.tod, *in->session) : "";
   if (!accepted.empty()) said.push_back(accepted);
-  if (auto written = options.write(*models, question, said, *grid); !written)
+  if (auto written = in->options.write(answers->models, answers->question, said, answers->grid); !written)
     return report_error(console, written.error());
   if (console.json()) {
-    Json json = range_json(tod, task, question);
-    json["delta_t_k"] = options.asked_delta_t_k;
-    json["atmosphere"] = atmosphere_json(*air, task, tod.prediction.r75_m, options, *sensor);
-    json["models"] = models_json(*models, *sources, question, tod.twin_r75_m);
-    if (turbulent) {
-      json["turbulence"] = turbulence_json(*turbulent, *sources->sensor, options.cn2);
-      // Both forms of P are those of the curve without turbulence.
-      if (json["models"].contains("ttp")) json["models"]["ttp"].erase("forms");
-    }
-    if (!grid->is_null()) json["grid"] = *grid;
-    if (*session) add_accepted_changes(json, arguments.opening, (*session)->accepted_changes);
+    Json json = answers_json(*in, *answers);
+    if (in->session) add_accepted_changes(json, arguments.opening, in->session->accepted_changes);
     console.object(json);
   } else {
-    if (arguments.more.asks(RangeModel::tod)) print_range(console, tod, task, question, *air);
-    if (arguments.more.models.size() > 1 || !arguments.more.asks(RangeModel::tod)) print_models(console, *models);
-    if (!grid->is_null()) print_grid(console, *grid);
+    if (in->options.asks(RangeModel::tod)) print_range(console, answers->tod, in->task, answers->question, in->air);
+    if (in->options.models.size() > 1 || !in->options.asks(RangeModel::tod)) print_models(console, answers->models);
+    if (!answers->grid.is_null()) print_grid(console, answers->grid);
     if (!accepted.empty()) console.text(accepted);
   }
-  const bool all = std::all_of(models->begin(), models->end(), [](const auto& model) { return model.r75_m; });
-  const bool fit = !tod.prediction.adequacy || tod.prediction.adequacy->adequate();
+  const bool all = std::ranges::all_of(answers->models, [](const auto& model) { return model.r75_m.has_value(); });
+  const bool fit = !tod.adequacy || tod.adequacy->adequate();
   return exit_code(all && fit ? VerdictKind::pass : VerdictKind::inconclusive);
 }
 

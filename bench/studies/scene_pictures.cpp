@@ -182,11 +182,9 @@ std::string optics_note(const SensorPlan& plan) {
   return note;
 }
 
-}  // namespace
-
-Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
-  const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
-                            task.sensor.scene_temperature_k};
+/// Air and signature of the scene, and the effects planned for the contrast behind the air. The scene itself is imaged
+/// with every planned effect.
+Result<ScenePictures> behind_air(const ScenePicturesTask& task, const RadianceScale& scale) {
   if (auto fine = validate(task.scene); !fine) return tl::unexpected(fine.error());
   if (!(task.view.range_m > 0)) return fail(ErrorCode::invalid_input, "the range must be above 0 m");
   const auto tau = task.air.air.at(task.view.range_m);
@@ -201,8 +199,6 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   const double air_k = task.air.air_k.value_or(task.scene.background_k);
   const double seen = *tau * radiance + path_radiance(scale.band, air_k, *tau);
   out.background_k = scale.calibration_k + scale.kelvin(seen - band_radiance(scale.band, scale.calibration_k));
-
-  // Planned for the contrast behind the air; the scene is imaged with every planned effect.
   cv::Mat1d levels;
   if (task.scene.picture) {
     levels = picture_levels_k(task.scene, scale);
@@ -212,90 +208,154 @@ Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
   out.apparent_dt_k = *tau * contrast_of(out.signature, levels);
   out.effects = planned(task, out.apparent_dt_k);
   if (distorts(task.sensor)) out.effects.warnings.emplace_back("the pictures do not show the distortion of the lens");
-  if (out.effects.plan.simulates(Effect::readout) && task.scene.picture)
+  if (out.effects.plan.simulates(Effect::readout) && task.sensor.row_time_us > 0 && task.scene.picture)
     out.effects.warnings.emplace_back(
         "the pictures of a radiometric picture do not show that rows are read one after another while it moves");
   out.air = air_decisions(task, out, scale.kelvin(seen - radiance));
   out.turbulence = turbulence_seen(task.sensor);
-  const SensorPlan& plan = out.effects.plan;
-  const SensorModel model(task.sensor, plan, task.accuracy, task.seed);
-  const SensorSpec& spec = model.spec();
+  return out;
+}
 
-  const SceneImager imager(spec, plan, task.accuracy, task.motion);
-  std::vector<cv::Point2d> displacements_pitch = model.displacements_px(0);
-  for (cv::Point2d& displacement : displacements_pitch) displacement /= spec.samples_per_pitch();
+/// A scene in front of a camera. Borrowed for the call.
+struct ImagedScene {
+  const ScenePicturesTask& task;
+  const RadianceScale& scale;
+  const SensorPlan& plan;
+  const SensorModel& model;
+  double transmittance, background_k;
+  std::vector<cv::Point2d> displacements_pitch;  ///< by the air, of each exposure
+  int field;                                     ///< side of the displayed square, in pitches
+};
+
+/// Pictures on a grid that is finer than the detectors.
+struct FinePictures {
+  cv::Mat1f scene, optics, detector;
+  double pixels_per_pitch = 1;
+};
+
+Result<FinePictures> fine_pictures(const ImagedScene& shown) {
+  const ScenePicturesTask& task = shown.task;
+  const SensorSpec& spec = shown.model.spec();
+  // An even number of cells per pitch.
+  const int per_pitch = std::clamp(1024 / shown.field / 2 * 2, 2, 16);
+  SensorSpec fine = spec;
+  fine.microscan = per_pitch;
+  fine.super_resolution_frames = 0;
+  fine.field_delay_ms = 0;  // fields are a matter of the samples
+  const cv::Size size(shown.field * per_pitch, shown.field * per_pitch);
+  SceneView view = task.view;
+  // Centre of the displayed field relative to that of the frame.
+  view.centre_pitch += cv::Point2d((spec.width - shown.field) % 2, (spec.height - shown.field) % 2) / 2;
+  SceneView read_out = view;
+  read_out.readout_slope = readout_slope(spec, task.motion);
+  const auto filtered = [&](const SensorPlan& filters) {
+    return danced_signal_k(SceneImager(fine, filters, task.accuracy, task.motion), fine, task, shown.scale, read_out,
+                           size, shown.displacements_pitch);
+  };
+  TODBENCH_TRY(const auto behind_optics, filtered(with_decision(shown.plan, Effect::detector, Decision::skip)));
+  TODBENCH_TRY(const auto behind_detector, filtered(shown.plan));
+  return FinePictures{as_float(bare_scene(task, fine, shown.scale, view, size), shown.transmittance),
+                      as_float(behind_optics, shown.transmittance), as_float(behind_detector, shown.transmittance),
+                      static_cast<double>(per_pitch)};
+}
+
+/// Pictures of the samples of the whole frame.
+struct SampledPictures {
+  cv::Mat1f signal, noisy, frame, judged;  ///< `judged`: behind the stages, the frame without them
+  std::optional<double> gain;              ///< of the stages
+};
+
+Result<SampledPictures> sampled_pictures(const ImagedScene& shown, cv::Rect samples) {
+  const ScenePicturesTask& task = shown.task;
+  const SensorModel& model = shown.model;
+  const SensorSpec& spec = model.spec();
+  const SceneImager imager(spec, shown.plan, task.accuracy, task.motion);
   SceneView view = task.view;
   view.readout_slope = readout_slope(spec, task.motion);
-  TODBENCH_TRY(const auto signal, danced_signal_k(imager, spec, task, scale, view, model.size(), displacements_pitch));
-  const cv::Mat1f unit = as_float(signal, *tau);
-
-  const int field = field_of(task, spec);
-  const int n = spec.samples_per_pitch();
-  const cv::Rect samples = field_rect(spec, field, n);
-  // The same place on a fine grid, with an even number of cells per pitch.
-  const int fine_per_pitch = std::clamp(1024 / field / 2 * 2, 2, 16);
-  SensorSpec fine = spec;
-  fine.microscan = fine_per_pitch;
-  fine.super_resolution_frames = 0;
-  const cv::Size fine_size(field * fine_per_pitch, field * fine_per_pitch);
-  SceneView fine_view = task.view;
-  // Centre of the displayed field relative to that of the frame.
-  fine_view.centre_pitch += cv::Point2d((spec.width - field) % 2, (spec.height - field) % 2) / 2;
-  SceneView read_out = fine_view;
-  read_out.readout_slope = view.readout_slope;
-  const auto filtered_scene = [&](const SensorPlan& filters) {
-    return danced_signal_k(SceneImager(fine, filters, task.accuracy, task.motion), fine, task, scale, read_out,
-                           fine_size, displacements_pitch);
-  };
-  TODBENCH_TRY(const auto behind_optics, filtered_scene(with_decision(plan, Effect::detector, Decision::skip)));
-  TODBENCH_TRY(const auto behind_detector, filtered_scene(plan));
-
+  TODBENCH_TRY(const auto signal,
+               danced_signal_k(imager, spec, task, shown.scale, view, model.size(), shown.displacements_pitch));
   const SensorModel undisplayed(
       task.sensor,
-      with_decision(with_decision(plan, Effect::display, Decision::skip), Effect::quantisation, Decision::skip),
+      with_decision(with_decision(shown.plan, Effect::display, Decision::skip), Effect::quantisation, Decision::skip),
       task.accuracy, task.seed);
-  const cv::Mat1f noisy = undisplayed.picture(unit, 1, out.background_k, 0);
-  out.frame = model.picture(unit, 1, out.background_k, 0);
-  cv::Mat1f in_front_of_stages = out.frame;
-  if (task.stages) {
-    TODBENCH_TRY(const auto signals,
-                 signals_for_stages(imager, spec, task, scale, view, unit, *tau, displacements_pitch));
-    TODBENCH_TRY(const auto staged, behind_stages(model, task.stages, signals, out.background_k, samples));
-    out.frame = staged.kelvin;
-    out.judged_gain = staged.gain;
-  }
-  cv::Mat1f shown, judged, seen_by_observer;
-  cv::resize(in_front_of_stages(samples), shown, {}, display_factor, display_factor, cv::INTER_NEAREST);
-  cv::resize(out.frame(samples), judged, {}, display_factor, display_factor, cv::INTER_NEAREST);
+  SampledPictures out;
+  out.signal = as_float(signal, shown.transmittance);
+  out.noisy = undisplayed.picture(out.signal, 1, shown.background_k, 0);
+  out.frame = out.judged = model.picture(out.signal, 1, shown.background_k, 0);
+  if (!task.stages) return out;
+  TODBENCH_TRY(const auto signals, signals_for_stages(imager, spec, task, shown.scale, view, out.signal,
+                                                      shown.transmittance, shown.displacements_pitch));
+  TODBENCH_TRY(const auto staged, behind_stages(model, task.stages, signals, shown.background_k, samples));
+  out.judged = staged.kelvin;
+  out.gain = staged.gain;
+  return out;
+}
+
+/// The stages of the page.
+std::vector<SceneStage> listed(const ImagedScene& shown, const FinePictures& fine, const SampledPictures& sampled,
+                               cv::Rect samples) {
+  const ScenePicturesTask& task = shown.task;
+  const SensorSpec& spec = shown.model.spec();
+  const int n = spec.samples_per_pitch();
+  const auto displayed = [&](const cv::Mat1f& picture) {
+    cv::Mat1f larger;
+    cv::resize(picture(samples), larger, {}, display_factor, display_factor, cv::INTER_NEAREST);
+    return larger;
+  };
+  const cv::Mat1f judged = displayed(sampled.judged);
+  cv::Mat1f seen_by_observer;
   cv::GaussianBlur(judged, seen_by_observer, {}, task.observer.blur_sigma_samples * display_factor, 0,
                    cv::BORDER_REFLECT_101);
-  const std::string air_note = fmt::format("after {:.0f} m of air, transmittance {:.3f}", task.view.range_m, *tau);
-  out.stages = {
-      {"1-scene", "At the sensor", air_note, as_float(bare_scene(task, fine, scale, fine_view, fine_size), *tau),
-       static_cast<double>(fine_per_pitch)},
-      {"2-optics", "Behind the optics", optics_note(plan), as_float(behind_optics, *tau),
-       static_cast<double>(fine_per_pitch)},
-      {"3-detector", "On the detectors", "mean over the sensitive area around each position",
-       as_float(behind_detector, *tau), static_cast<double>(fine_per_pitch)},
+  const double displayed_per_pitch = n * display_factor;
+  const std::string air_note =
+      fmt::format("after {:.0f} m of air, transmittance {:.3f}", task.view.range_m, shown.transmittance);
+  std::vector<SceneStage> stages{
+      {"1-scene", "At the sensor", air_note, fine.scene, fine.pixels_per_pitch},
+      {"2-optics", "Behind the optics", optics_note(shown.plan), fine.optics, fine.pixels_per_pitch},
+      {"3-detector", "On the detectors", "mean over the sensitive area around each position", fine.detector,
+       fine.pixels_per_pitch},
       {"4-sampled", "Sampled", fmt::format("{} {} per pitch and axis", n, n == 1 ? "sample" : "samples"),
-       unit(samples).clone(), static_cast<double>(n)},
+       sampled.signal(samples).clone(), static_cast<double>(n)},
       {"5-noise", "With noise",
        fmt::format("temporal noise of {:.3g} K per sample and the other noise of the sensor", spec.netd_k),
-       noisy(samples).clone(), static_cast<double>(n)},
-      {"6-display", "On the display", "in whole counts, samples reconstructed by the display", shown,
-       static_cast<double>(n * display_factor)},
-      {"7-observer", "After the observer's filter",
-       fmt::format("blur of display and eye, sigma {:g} samples", task.observer.blur_sigma_samples), seen_by_observer,
-       static_cast<double>(n * display_factor)}};
-  if (out.judged_gain) {
-    out.stages.back().name = "8-observer";
-    out.stages.insert(out.stages.end() - 1,
-                      {"7-package", "Behind the package",
-                       fmt::format("divided by the gain of the contrast, {:.3g}", *out.judged_gain), judged,
-                       static_cast<double>(n * display_factor)});
-  }
+       sampled.noisy(samples).clone(), static_cast<double>(n)},
+      {"6-display", "On the display", "in whole counts, samples reconstructed by the display", displayed(sampled.frame),
+       displayed_per_pitch}};
+  if (sampled.gain)
+    stages.push_back({"7-package", "Behind the package",
+                      fmt::format("divided by the gain of the contrast, {:.3g}", *sampled.gain), judged,
+                      displayed_per_pitch});
+  stages.push_back({sampled.gain ? "8-observer" : "7-observer", "After the observer's filter",
+                    fmt::format("blur of display and eye, sigma {:g} samples", task.observer.blur_sigma_samples),
+                    seen_by_observer, displayed_per_pitch});
+  return stages;
+}
+
+}  // namespace
+
+Result<ScenePictures> scene_pictures(const ScenePicturesTask& task) {
+  const RadianceScale scale{{task.sensor.wavelength_min_um, task.sensor.wavelength_max_um},
+                            task.sensor.scene_temperature_k};
+  TODBENCH_TRY(ScenePictures out, behind_air(task, scale));
+  const SensorModel model(task.sensor, out.effects.plan, task.accuracy, task.seed);
+  const SensorSpec& spec = model.spec();
+  ImagedScene shown{.task = task,
+                    .scale = scale,
+                    .plan = out.effects.plan,
+                    .model = model,
+                    .transmittance = out.transmittance,
+                    .background_k = out.background_k,
+                    .displacements_pitch = model.displacements_px(0),
+                    .field = field_of(task, spec)};
+  for (cv::Point2d& displacement : shown.displacements_pitch) displacement /= spec.samples_per_pitch();
+  const cv::Rect samples = field_rect(spec, shown.field, spec.samples_per_pitch());
+  TODBENCH_TRY(const auto sampled, sampled_pictures(shown, samples));
+  TODBENCH_TRY(const auto fine, fine_pictures(shown));
+  out.stages = listed(shown, fine, sampled, samples);
+  out.frame = sampled.judged;
+  out.judged_gain = sampled.gain;
   double low = 0, high = 0;
-  cv::minMaxLoc(noisy(samples), &low, &high);
+  cv::minMaxLoc(sampled.noisy(samples), &low, &high);
   out.grey_low_k = low;
   out.grey_high_k = high > low ? high : low + 1;
   return out;
