@@ -25,7 +25,7 @@ struct NakedEyeArguments {
 
 Result<TemplateObserverSpec> observer_at(const std::string& name, const ViewedDisplay& display) {
   TODBENCH_TRY(auto spec, load_observer_at(name, display));
-  if (!spec.eye) return fail(ErrorCode::invalid_input, name + ": the observer has no eye; choose hvs-2");
+  if (auto eye = require_eye(spec, name); !eye) return tl::unexpected(eye.error());
   return spec;
 }
 

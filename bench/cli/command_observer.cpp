@@ -194,9 +194,7 @@ struct SensitivityArguments {
 Result<std::vector<double>> sensitivities(const SensitivityArguments& arguments) {
   TODBENCH_TRY(const auto resource, find_resource(ResourceKind::observer, arguments.observer));
   TODBENCH_TRY(const auto spec, parse_observer(resource));
-  if (!spec.eye)
-    return fail_at(ErrorCode::invalid_input, arguments.observer,
-                   "the observer has no eye, so it has no contrast sensitivity in absolute units");
+  if (auto eye = require_eye(spec, arguments.observer); !eye) return tl::unexpected(eye.error());
   EyeParameters eye = *spec.eye;
   if (arguments.age_years) eye.age_years = *arguments.age_years;
   if (arguments.field_deg) eye.field_deg2 = *arguments.field_deg * *arguments.field_deg;

@@ -210,12 +210,7 @@ int run_vision(Console& console, const ReproduceArguments& arguments, const Prog
   if (!resource) return report_error(console, resource.error());
   const auto observer = parse_observer(*resource);
   if (!observer) return report_error(console, observer.error());
-  if (!observer->eye) {
-    return report_error(console, {ErrorCode::invalid_input,
-                                  "--observer: '" + one_line(arguments.observer) +
-                                      "' has no eye, and figures of people need one: choose hvs-2 or a file made "
-                                      "from it"});
-  }
+  if (const auto eye = require_eye(*observer, arguments.observer); !eye) return report_error(console, eye.error());
   const auto folder = folder_for(arguments);
   if (!folder) return report_error(console, folder.error());
   console.phase("comparing the observer with figures of people");

@@ -277,8 +277,7 @@ PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackag
   }
   const auto observer = observer_of(loaded.plan(), *inputs, [&](std::string_view line) { keep_line(result, line); });
   // A program in place of the observer has no open parameters.
-  const bool known = dynamic_cast<const TemplateObserver*>(observer.get()) != nullptr;
-  OpenEnds ends(known ? inputs->observer : TemplateObserverSpec{});
+  OpenEnds ends(observer_module(loaded.plan()) == nullptr ? inputs->observer : TemplateObserverSpec{});
   run_simulated_one({loaded, *inputs, options, *observer, ends, std::move(stop)}, package, settle_frames, result);
   return result;
 }

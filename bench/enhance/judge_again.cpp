@@ -10,6 +10,7 @@
 #include "bench/enhance/stage_scan.h"
 #include "bench/session/signature.h"
 #include "bench/text/files.h"
+#include "bench/twin/module_chain.h"
 
 namespace todbench {
 namespace {
@@ -21,11 +22,6 @@ Result<std::string> verified_signer(const std::filesystem::path& session) {
   if (signature->valid) return signature->signature.key_sha256();
   return fail(ErrorCode::invalid_input,
               session.string() + ": the signature of the session is not valid: " + signature->sentence);
-}
-
-bool has_observer_module(const Plan& plan) {
-  return std::ranges::any_of(plan.modules,
-                             [](const ModulePlan& module) { return module.place == ModulePlace::observer; });
 }
 
 /// Returns the plan of the new session.
@@ -93,7 +89,7 @@ Result<ExperimentOutcome> judge_again(const std::filesystem::path& session, cons
                       .signed_by = std::move(signer),
                       .then = judged_by(then),
                       .now = judged_by(now)};
-  if (has_observer_module(run.plan)) origin.then.observer = "module";
+  if (observer_module(run.plan) != nullptr) origin.then.observer = "module";
   if (request.package) {
     origin.now.package = request.package->name;
     origin.now.package_sha256 = request.package->sha256;

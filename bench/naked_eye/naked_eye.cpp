@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "acquisition/base/rng.h"
+#include "bench/plan/descriptions.h"
 #include "hvs/eye/display_levels.h"
 #include "hvs/shape/polygon_coverage.h"
 
@@ -21,7 +22,7 @@ constexpr double largest_sample_arcmin = 3;
 
 Result<void> validate(const NakedEyeTask& task) {
   const auto refuse = [](std::string why) { return fail(ErrorCode::invalid_input, std::move(why)); };
-  if (!task.model.eye) return refuse(task.model.name + ": the observer has no eye; choose hvs-2");
+  if (auto eye = require_eye(task.model, task.model.name); !eye) return eye;
   if (!task.model.display) return refuse("the plan has no section [display]");
   if (auto possible = validate(*task.model.display); !possible) return possible;
   if (const double arcmin = arcmin_per_sample(*task.model.display); arcmin > largest_sample_arcmin) {

@@ -309,6 +309,12 @@ Result<void> refuse_eye(const TemplateObserverSpec& observer, std::string_view w
                      " and its display; use an observer without an eye (hvs-1)");
 }
 
+Result<void> require_eye(const TemplateObserverSpec& observer, std::string_view origin) {
+  if (observer.eye) return {};
+  return fail_at(ErrorCode::invalid_input, std::string(origin),
+                 "the observer has no eye; choose hvs-2, or an observer fitted from it");
+}
+
 Result<TargetPlate> load_plate(std::string_view reference) {
   return load(ResourceKind::plate, reference, parse_plate);
 }

@@ -47,14 +47,12 @@ std::string version_of(const ModulePlan& module) {
   return one_line(first_line_of_module(options));
 }
 
-const ModulePlan* observer_module(const Plan& plan) {
-  for (const ModulePlan& module : plan.modules) {
-    if (module.place == ModulePlace::observer) return &module;
-  }
-  return nullptr;
-}
-
 }  // namespace
+
+const ModulePlan* observer_module(const Plan& plan) {
+  const auto found = std::ranges::find(plan.modules, ModulePlace::observer, &ModulePlan::place);
+  return found == plan.modules.end() ? nullptr : &*found;
+}
 
 bool has_modules(const Plan& plan, const SensorSpec& sensor) {
   return !plan.modules.empty() || !sensor.modules.empty();

@@ -40,6 +40,8 @@ void put_stages_behind(OpenedBench& bench, std::vector<std::unique_ptr<ChainStag
 /// lower noise of the camera's and the judged pictures at that contrast.
 void keep_noise(const MeasurementResult& result, TodCurve& curve);
 
+/// Returns the module that replaces the templates of the observer; null without one.
+[[nodiscard]] const ModulePlan* observer_module(const Plan& plan);
 /// Creates the observer of a plan: its templates, or the module that replaces them.
 [[nodiscard]] std::unique_ptr<Observer> observer_of(const Plan& plan, const ExperimentInputs& inputs,
                                                     const ModuleLine& on_error_line);
