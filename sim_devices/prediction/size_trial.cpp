@@ -52,6 +52,17 @@ RandomStream named(const RandomStream& stream, std::uint64_t draw, std::string_v
   return {stream.sub((std::uint64_t{1} << 41) + draw).stream(), name};
 }
 
+/// Adds in the order of the samples, in double precision. cv::Mat::dot() adds in single precision and in an order that
+/// depends on the processor; the covariance of nearly equal templates enlarges that to 5e-6 of a threshold.
+double sum_of_products(const cv::Mat1f& a, const cv::Mat1f& b) {
+  double sum = 0;
+  for (int row = 0; row < a.rows; ++row) {
+    for (int column = 0; column < a.cols; ++column)
+      sum += static_cast<double>(a(row, column)) * static_cast<double>(b(row, column));
+  }
+  return sum;
+}
+
 /// Map of dead detectors for the noise in way `turn` (of ScoreTurns): T(turned) . w is T . (w turned back).
 cv::Mat1b dead_turned_back(const cv::Mat1b& map, std::size_t turn) {
   cv::Mat1b back = map;
@@ -191,7 +202,7 @@ double SizeTrial::known_position_proportion(double noise, int nodes, double eye_
       std::array<cv::Mat1f, 4> images;
       for (std::size_t o = 0; o < 4; ++o) images[o] = bank_->image(static_cast<int>(o), response.place);
       for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; j < 4; ++j) slot->second[i][j] = images[i].dot(images[j]);
+        for (std::size_t j = 0; j < 4; ++j) slot->second[i][j] = sum_of_products(images[i], images[j]);
       }
       if (eye_sd > 0) add_eye_gram(noise, eye_sd, slot->second);
     }
@@ -228,7 +239,7 @@ double SizeTrial::variance_ratio(SharedBy shared_by) const {
       }
       double variance = 0;
       for (const auto& [key, sum] : shared) variance += sum * sum;
-      largest = std::max(largest, variance / d.dot(d));
+      largest = std::max(largest, variance / sum_of_products(d, d));
     }
   }
   return largest;
@@ -262,7 +273,7 @@ double SizeTrial::eye_variance(double contrast_k) const {
       const std::size_t a = static_cast<std::size_t>(first) * places + middle;
       const std::size_t b = static_cast<std::size_t>(other) * places + middle;
       const double moved = eye->covariance(a, a) + eye->covariance(b, b) - 2 * eye->covariance(a, b);
-      least = std::min(least, moved / eye->energy() / d.dot(d));
+      least = std::min(least, moved / eye->energy() / sum_of_products(d, d));
     }
   }
   return std::pow(eye->sd(contrast_k), 2) * least;

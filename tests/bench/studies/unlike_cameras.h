@@ -68,7 +68,14 @@ inline std::vector<GradedDesign> unlike_designs() {
           row("time constant 12 ms / none", sensor([](SensorSpec& s) { s.time_constant_ms = 12; }), plain),
           row("two frames averaged / none", sensor([](SensorSpec& s) { s.frames_averaged = 2; }), plain),
           row("MWIR f/4 15 um, blur 0.6 / 0", midwave(0.6), midwave(0)),
-          row("distortion 2 % / none", sensor([](SensorSpec& s) { s.distortion_percent = 2; }), plain)};
+          row("distortion 2 % / none", sensor([](SensorSpec& s) { s.distortion_percent = 2; }), plain),
+          row("detector 42.5 x 25 um / 42.5 um", sensor([](SensorSpec& s) { s.detector_y_um = 25; }), plain),
+          row("f/1.5, blur 0.25, NETD x 1.5, rows 40 mK / none", sensor([](SensorSpec& s) {
+                s.f_number = 1.5, s.aberration_sigma_pitch = 0.25, s.netd_k = 0.105, s.row_noise_k = 0.04;
+              }),
+              plain),
+          row("display bilinear / sample and hold",
+              sensor([](SensorSpec& s) { s.display = DisplayReconstruction::bilinear; }), plain)};
 }
 
 inline SensorSpec camera_of(const GradedDesign& design) {

@@ -162,6 +162,19 @@ TEST(TwoTiers, TheSearchForAThresholdEndsEarlyOnlyWhereThereIsNone) {
   EXPECT_FALSE(none);
 }
 
+/// OpenCV chooses its code by the processor; without the optimised code it is that of a processor of 2003.
+TEST(TwoTiers, TheAnalyticThresholdIsTheSameOnEveryProcessor) {
+  const auto found = [](bool optimised) {
+    cv::setUseOptimized(optimised);
+    const SensorSpec sensor = test::sc2000();
+    TemplateObserver observer({}, triangle_alternatives());
+    const double s75_pitch = CuedEstimate(sensor, full_plan(sensor, {}, {}), observer).s75_pitch(0.1).value();
+    cv::setUseOptimized(true);
+    return s75_pitch;
+  };
+  EXPECT_EQ(found(true), found(false));
+}
+
 TEST(TwoTiers, TheAnalyticThresholdOfKnownPositionsIsThatOfTheSearchWithinItsValidity) {
   for (const int microscan : {1, 2}) {
     SensorSpec sensor = test::sc2000();
