@@ -30,8 +30,8 @@ void add_small_tables(SelftestCases& cases) {
   int refused = 0;
   for (const double spread : {1.001, 2.0, 1e6}) {
     for (int code = 0; code < 64; ++code) {
-      const std::vector<Level> levels{
-          {1 / spread, code % 4 * 1.0, 3, -1}, {1, code / 4 % 4 * 1.0, 3, -1}, {spread, code / 16 * 1.0, 3, -1}};
+      const auto right = [code](int digit) { return static_cast<double>(code >> (2 * digit) & 3); };
+      const std::vector<Level> levels{{1 / spread, right(0), 3, -1}, {1, right(1), 3, -1}, {spread, right(2), 3, -1}};
       for (const PsychometricForm form : {PsychometricForm::size, PsychometricForm::acuity}) {
         const auto fit = fit_psychometric(levels, {.form = form, .with_posterior = false});
         refused += fit && finite_where_given(*fit) ? 0 : 1;

@@ -135,7 +135,7 @@ class PairedTwin {
     cv::Mat1f unit(tiles.size, 0.0F);
     const double sample = 1.0 / sensor_.samples_per_pitch();
     for (std::size_t i = 0; i < shown.size(); ++i) {
-      const auto& [window, whole] = tiles.tiles[i];
+      const cv::Rect window = tiles.tiles[i].window, whole = tiles.tiles[i].whole;
       // The middle of the window is a corner between four samples; the triangle is displaced from it by `phase`.
       const double first = -0.5 * (window.width - 1) - margin_;
       const cv::Point2d corner((first - shown[i].phase_x_px) * sample, (first - shown[i].phase_y_px) * sample);

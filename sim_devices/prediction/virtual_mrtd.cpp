@@ -160,7 +160,7 @@ class BarTrial {
   }
   [[nodiscard]] double frequency_per_sample() const { return frequency_per_pitch_ / spec_.samples_per_pitch(); }
 
-  [[nodiscard]] Seen of(cv::Mat1f window) const {
+  [[nodiscard]] Seen of(const cv::Mat1f& window) const {
     Seen out;
     if (task_.criterion == BarCriterion::bars_resolved) {
       out.profile = bar_profile(picture_ ? picture_->of(window) : window, frequency_per_sample(), task_.axis);
