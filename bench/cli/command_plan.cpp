@@ -125,8 +125,8 @@ int run_optimise(Console& console, const PlanArguments& asked, const Plan& plan,
 /// What `plan` forecasts of a run.
 struct RunForecast {
   PlanPrediction prediction;
-  std::optional<std::vector<PrecisionChoice>>
-      frontier{};  ///< empty if no time can be predicted, which a warning states
+  /// Empty if no time can be predicted, which a warning states.
+  std::optional<std::vector<PrecisionChoice>> frontier{};
   std::vector<LimitForecast> limits{};
   std::vector<MeasureForecast> measure_limits{};
   std::vector<AcuityLimits> acuity{};

@@ -11,23 +11,23 @@
 
 namespace todbench {
 
-/// Scores of noise as they would be if the noise were turned by quarters and mirrored: the same scores with exchanged
-/// templates. Eight ways for the four triangles at a square of places; only the identity for a bank without this
-/// symmetry. One thread at a time.
+/// Turns and mirrors noise after its projection: turned noise has the same scores, exchanged between the templates.
+/// The four triangles at a square of places allow eight ways; a bank without this symmetry allows one, the noise as it
+/// is. One thread at a time.
 class ScoreTurns {
  public:
   /// Tests the symmetry on templates of the bank.
   explicit ScoreTurns(const TemplateBank& bank);
 
-  /// Number of ways, the identity first: turns by 0 to 3 quarters, then their mirrored ones.
+  /// Number of ways, 8 or 1. The first four turn by 0 to 3 quarters; the others do so and mirror.
   [[nodiscard]] std::size_t size() const { return turns_.size(); }
-  /// Begins with the scores of another draw, which must stay until the last turned().
+  /// Takes the scores of a draw. They must outlive the calls of turned().
   void begin(std::span<const float> scores);
   /// Writes the scores in way `turn` to `out`, which has as many elements.
   void turned(std::size_t turn, std::span<float> out) const;
 
  private:
-  /// For each template, the template whose score it gets: that of alternative from[o] at the turned place.
+  /// Template (o, p) gets the score of template (from[o], place p turned).
   struct Turn {
     std::array<int, 4> from{0, 1, 2, 3};
     bool transposed = false, rows_reversed = false, columns_reversed = false;  ///< in this order

@@ -81,10 +81,10 @@ cv::Mat1b dead_turned_back(const cv::Mat1b& map, std::size_t turn) {
 struct SizeTrial::FineFields {
   cv::Mat1d even, odd;
 
-  /// For a row of samples of the window. Neighbouring phases differ in the field of the first row: in a session both
-  /// fields are as frequent.
+  /// The picture for a row of samples of the window; rows above it are negative. The field of the first row alternates
+  /// between neighbouring phases, because both fields are equally frequent in a session.
   [[nodiscard]] const cv::Mat1d& of_row(int row, int samples_per_pitch, cv::Point phase) const {
-    const int detector_row = (row + 64 * samples_per_pitch) / samples_per_pitch;
+    const int detector_row = static_cast<int>(std::floor(static_cast<double>(row) / samples_per_pitch));
     return odd.empty() || (detector_row + phase.x + phase.y) % 2 == 0 ? even : odd;
   }
 };

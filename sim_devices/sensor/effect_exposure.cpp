@@ -26,8 +26,7 @@ double exposure_transfer(double u_per_pitch, double w_per_pitch, cv::Point2d way
 }
 
 cv::Point2d exposure_way_pitch(const SensorSpec& spec, SceneMotion motion) {
-  const double pitches_per_mrad_s = spec.exposure_ms * 1e-3 / spec.ifov_mrad();
-  return {motion.x_mrad_s * pitches_per_mrad_s, motion.y_mrad_s * pitches_per_mrad_s};
+  return moved_pitch(spec, motion, spec.exposure_ms * 1e-3);
 }
 
 cv::Point2d mean_lag_pitch(const SensorSpec& spec, SceneMotion motion) {

@@ -24,9 +24,13 @@ std::complex<double> motion_transfer(double u_per_pitch, double w_per_pitch, cv:
   return std::polar(1.0, -phase) / std::complex<double>(1, -phase);
 }
 
-cv::Point2d smear_pitch(const SensorSpec& spec, SceneMotion motion) {
-  const double pitches_per_mrad_s = spec.time_constant_ms * 1e-3 / spec.ifov_mrad();
+cv::Point2d moved_pitch(const SensorSpec& spec, SceneMotion motion, double seconds) {
+  const double pitches_per_mrad_s = seconds / spec.ifov_mrad();
   return {motion.x_mrad_s * pitches_per_mrad_s, motion.y_mrad_s * pitches_per_mrad_s};
+}
+
+cv::Point2d smear_pitch(const SensorSpec& spec, SceneMotion motion) {
+  return moved_pitch(spec, motion, spec.time_constant_ms * 1e-3);
 }
 
 EffectRow effect_rows::motion() {

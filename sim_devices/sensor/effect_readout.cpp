@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "sim_devices/sensor/effect_motion.h"
 #include "sim_devices/sensor/effect_row.h"
 
 namespace todbench {
@@ -13,8 +14,7 @@ constexpr double steepest = 0.1;  // pitches per row; beyond it the bound does n
 }  // namespace
 
 cv::Point2d readout_slope(const SensorSpec& spec, SceneMotion motion) {
-  const double pitches_per_mrad_s = spec.row_time_us * 1e-6 / spec.ifov_mrad();
-  return {motion.x_mrad_s * pitches_per_mrad_s, motion.y_mrad_s * pitches_per_mrad_s};
+  return moved_pitch(spec, motion, spec.row_time_us * 1e-6);
 }
 
 cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row) {
@@ -25,8 +25,7 @@ cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row)
 }
 
 cv::Point2d way_between_fields(const SensorSpec& spec, SceneMotion motion) {
-  const double pitches_per_mrad_s = spec.field_delay_ms * 1e-3 / spec.ifov_mrad();
-  return {motion.x_mrad_s * pitches_per_mrad_s, motion.y_mrad_s * pitches_per_mrad_s};
+  return moved_pitch(spec, motion, spec.field_delay_ms * 1e-3);
 }
 
 void take_odd_rows(cv::Mat& picture, const cv::Mat& later, int samples_per_pitch) {

@@ -15,20 +15,21 @@ namespace todbench {
 /// the rows and a stretch across them. In pitches or samples. A slope of 0 returns the place bit for bit.
 [[nodiscard]] cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row);
 
-/// Motion of the target from the first field of an interlaced frame, the even rows of detectors, to the second, in
-/// pitches. 0 if the frame is progressive or the target still.
+/// Motion of the target between the two fields of an interlaced frame, in pitches. The even rows of detectors are the
+/// first field. 0 if the frame is progressive or the target does not move.
 [[nodiscard]] cv::Point2d way_between_fields(const SensorSpec& spec, SceneMotion motion);
 
 /// Copies the odd rows of detectors of `later` into `picture`. Row 0 of the samples belongs to an even row.
 void take_odd_rows(cv::Mat& picture, const cv::Mat& later, int samples_per_pitch);
 
-/// A picture in two fields, half of their delay before and after the time of the picture. `draw` (displacement of the
-/// target in pitches) returns the picture of all rows at one time. Without a way: draw({0, 0}).
+/// Draws an interlaced picture: the even rows half of the delay before the time of the picture, the odd rows half of it
+/// after. `draw` takes a displacement of the target, in pitches, and returns the picture of all rows at one time. If
+/// `between_fields` is 0, it is called once.
 template <typename Draw>
-[[nodiscard]] auto in_fields(cv::Point2d way_pitch, int samples_per_pitch, Draw draw) {
-  if (way_pitch == cv::Point2d(0, 0)) return draw(cv::Point2d(0, 0));
-  auto picture = draw(-0.5 * way_pitch);
-  take_odd_rows(picture, draw(0.5 * way_pitch), samples_per_pitch);
+[[nodiscard]] auto in_fields(cv::Point2d between_fields, int samples_per_pitch, Draw draw) {
+  if (between_fields == cv::Point2d(0, 0)) return draw(cv::Point2d(0, 0));
+  auto picture = draw(-0.5 * between_fields);
+  take_odd_rows(picture, draw(0.5 * between_fields), samples_per_pitch);
   return picture;
 }
 

@@ -49,7 +49,6 @@ GradedChoice TrialJudge::judge(const PresentationShown& shown, const Patch& patc
 Trial TrialJudge::first_answer(std::size_t triangle, const PresentationShown& shown, const Frame& frame,
                                const Choice& choice, cv::Point2d phase) const {
   const PlateTriangle& t = shown.mounted_plate.triangles[triangle];
-  const cv::Point2d place = shown.registration.pixel(t.position_mm);
   Trial trial;
   trial.presentation = shown.presentation;
   trial.plate = shown.state.plate;
@@ -65,7 +64,6 @@ Trial TrialJudge::first_answer(std::size_t triangle, const PresentationShown& sh
   for (std::size_t o = 0; o < trial.scores.size(); ++o) trial.scores[o] = choice.scores[o];
   trial.phase_x_px = phase.x;
   trial.phase_y_px = phase.y;
-  trial.centroid = PlaceInPicture{place.x, place.y};
   trial.frame = frame.sequence;
   trial.device_time_ns = frame.device_time_ns;
   trial.host_time_ns = frame.host_time_ns;
@@ -97,6 +95,7 @@ Result<void> TrialJudge::judge_frame(const Frame& taken, int number, const Prese
     probabilities[i] += judged.answers.probability[static_cast<std::size_t>(t.apex)];
     if (number == 0) {
       out.trials.push_back(first_answer(i, shown, frame, judged.choice, window.phase));
+      out.trials.back().centroid = PlaceInPicture{place.x, place.y};
       out.patches.push_back(std::move(patch));
     }
     out.trials[i].saturated_pixels = std::max(out.trials[i].saturated_pixels, saturated);

@@ -36,7 +36,7 @@ struct PresentationAnswers {
   std::vector<GreyFrame> greys;  ///< one per frame if contrasts are in grey levels
 };
 
-/// Lets an observer answer. One thread at a time; everything borrowed outlives it.
+/// Lets an observer judge the triangles of a presentation. One thread at a time. What it borrows must outlive it.
 class TrialJudge {
  public:
   TrialJudge(const MeasurementOptions& options, Observer& observer, FrameTaker& taker, SetUpStep& step)

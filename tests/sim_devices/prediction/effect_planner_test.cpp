@@ -162,7 +162,7 @@ TEST(TwoTiers, TheSearchForAThresholdEndsEarlyOnlyWhereThereIsNone) {
   EXPECT_FALSE(none);
 }
 
-/// OpenCV chooses its code by the processor; without the optimised code it is that of a processor of 2003.
+/// OpenCV chooses its code by the processor. Without the optimised code it is that of the oldest one.
 TEST(TwoTiers, TheAnalyticThresholdIsTheSameOnEveryProcessor) {
   const auto found = [](bool optimised) {
     cv::setUseOptimized(optimised);
