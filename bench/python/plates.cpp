@@ -34,6 +34,7 @@ void add_registration(py::module_& module) {
       // clang-format off
       TODBENCH_WRITE(RegistrationOptions, expected_scale_px_per_mm)
       TODBENCH_WRITE(RegistrationOptions, max_scale_deviation)
+      TODBENCH_WRITE(RegistrationOptions, max_stretch)
       .def_readwrite("max_rotation_deg", &RegistrationOptions::max_rotation_deg, "Largest rotation of the plate in the picture.")
       TODBENCH_WRITE(RegistrationOptions, max_residual_px)
       TODBENCH_WRITE(RegistrationOptions, min_triangle_px)

@@ -222,7 +222,54 @@ Result<void> check_input(const cv::Mat1d& picture, const TargetPlate& plate, con
   return {};
 }
 
-/// Why the stated mounting was not found: another mounting, or too few matches.
+std::string percent(double share) {
+  return fixed(100 * share, 1) + " %";
+}
+
+/// Pixels per millimetre along the rows and along the columns of the plate.
+cv::Point2d axis_scales(const cv::Matx33d& mapping) {
+  const cv::Matx22d j = jacobian(mapping, {0, 0});
+  return {std::hypot(j(0, 0), j(1, 0)), std::hypot(j(0, 1), j(1, 1))};
+}
+
+double stretch_of(const cv::Matx33d& mapping) {
+  const cv::Point2d scales = axis_scales(mapping);
+  return scales.x / scales.y - 1;
+}
+
+tl::unexpected<Error> stretched(const TargetPlate& plate, const cv::Matx33d& mapping, double limit) {
+  const cv::Point2d scales = axis_scales(mapping);
+  return contradiction(plate, "is stretched in the picture: " + fixed(scales.x, 4) + " px/mm along x and " +
+                                  fixed(scales.y, 4) + " px/mm along y differ by " + percent(stretch_of(mapping)) +
+                                  ", at most " + percent(limit) +
+                                  " are allowed: check whether the pixels are square and the plate faces the camera");
+}
+
+/// The mapping by which a picture with unequal scales shows the plate as it is mounted, if it does: of the layouts
+/// drawn with several ratios that with the most located triangles, then the smallest residual.
+std::optional<cv::Matx33d> stretched_mapping(const Search& search, const TargetPlate& plate) {
+  std::size_t most = 0;
+  FittedMapping best;
+  for (const double ratio : {1.1, 1 / 1.1, 1.2, 1 / 1.2, 1.3, 1 / 1.3}) {
+    const double wide = std::sqrt(ratio);
+    TargetPlate drawn = plate;
+    for (PlateTriangle& t : drawn.triangles) t.position_mm = {t.position_mm.x * wide, t.position_mm.y / wide};
+    const auto found = attempt(search, drawn, Mounting::identity);
+    if (!found || !found->agrees() || static_cast<int>(found->located.size()) < search.options.min_triangles) continue;
+    std::vector<cv::Point2d> of_file = places(found->located);
+    for (cv::Point2d& p : of_file) p = {p.x / wide, p.y * wide};
+    const FittedMapping fitted = fit_mapping(of_file, found->pixels, search.options.expected_scale_px_per_mm);
+    // A layout that fits by chance has scales unlike those with which it was drawn.
+    if (std::abs(std::log((1 + stretch_of(fitted.plate_to_pixel)) / ratio)) > 0.06) continue;
+    if (std::pair(most, -best.residual_px) >= std::pair(found->located.size(), -fitted.residual_px)) continue;
+    most = found->located.size();
+    best = fitted;
+  }
+  if (most == 0 || best.residual_px > search.options.max_residual_px) return std::nullopt;
+  return best.plate_to_pixel;
+}
+
+/// Why the stated mounting was not found: another mounting, unequal scales, or too few matches.
 tl::unexpected<Error> explain(const Search& search, const TargetPlate& plate, const std::optional<Attempt>& stated) {
   for (const Mounting relative : all_mountings) {
     if (relative == Mounting::identity) continue;
@@ -236,6 +283,9 @@ tl::unexpected<Error> explain(const Search& search, const TargetPlate& plate, co
                                       std::to_string(stated ? stated->located.size() : 0) + " as in the stated one");
     }
   }
+  if (const auto mapping = stretched_mapping(search, plate);
+      mapping && std::abs(stretch_of(*mapping)) > search.options.max_stretch)
+    return stretched(plate, *mapping, search.options.max_stretch);
   const std::string spots = std::to_string(search.blobs[0].size()) + " warm and " +
                             std::to_string(search.blobs[1].size()) + " cold spots were found";
   const std::size_t wanted =
@@ -263,10 +313,6 @@ Registration describe(const FittedMapping& fitted, const Attempt& at, double exp
   r.contrast_sign = at.sign;
   r.blur_px = at.blur_px;
   return r;
-}
-
-std::string percent(double share) {
-  return fixed(100 * share, 1) + " %";
 }
 
 }  // namespace
@@ -332,6 +378,11 @@ Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate&
                                             fixed(result.residual_px, 3) +
                                             " px rms from their places in the file, at most " +
                                             fixed(options.max_residual_px, 3) + " px are allowed");
+  }
+  if (std::abs(stretch_of(result.plate_to_pixel)) > options.max_stretch) {
+    // With a row of the layout assigned to another one, the similarity leads to wrong scales.
+    const cv::Matx33d mapping = stretched_mapping(search, mounted_plate).value_or(result.plate_to_pixel);
+    return stretched(mounted_plate, mapping, options.max_stretch);
   }
   if (std::abs(result.scale_deviation) > options.max_scale_deviation) {
     return contradiction(mounted_plate, "does not have the planned scale: the picture shows " +

@@ -16,6 +16,9 @@ struct RegistrationOptions {
   double expected_scale_px_per_mm = 0;  ///< from distance and IFOV of the plan, > 0
   double max_scale_deviation = 0.02;    ///< relative; a larger one means that plan and picture contradict each other
   double max_rotation_deg = 10;
+  /// Relative difference of the scales along x and y. The triangles of the observer are made for square pixels: within
+  /// this limit the acuity of the mean scale changes by less than 0.5 % (docs/validation/measurement.md).
+  double max_stretch = 0.04;
   double max_residual_px = 0.25;  ///< rms over the triangles used
   double min_triangle_px = 2.5;   ///< smallest size (square root of area) of a triangle that is located separately
   int min_triangles = 6;          ///< 1 is allowed for a plate of one triangle: only its place is then measured
@@ -52,9 +55,9 @@ struct Registration {
 /// Locates a mounted plate in an averaged high-contrast picture (kelvin or counts, either sign). Small triangles are
 /// never located separately. The search covers scales within 30 % of the expected one and 10 degrees of rotation beyond
 /// the limit, so that a wrong scale or rotation can be reported. Errors: `calibration` with a reason (plate not found
-/// or partly outside the picture, unexpected scale or rotation, residual too large, or large triangles that do not
-/// point as the mounted plate states, so that the mounting is another one), `invalid_input` (options or plate that make
-/// registration impossible, or a picture that is not finite).
+/// or partly outside the picture, unexpected scale or rotation, unequal scales, residual too large, or large triangles
+/// that do not point as the mounted plate states, so that the mounting is another one), `invalid_input` (options or
+/// plate that make registration impossible, or a picture that is not finite).
 [[nodiscard]] Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                   const RegistrationOptions& options);
 

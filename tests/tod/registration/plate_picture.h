@@ -54,6 +54,7 @@ struct PictureSpec {
   double noise_k = 0;
   double gaussian_px = 0.3;
   double scale = expected_scale;
+  double stretch = 1;  ///< scale along the rows of the picture over that along its columns
   double rotation_deg = 0;
   cv::Point2d centre_px{79.8, 69.7};
   cv::Point2d tilt_per_mm{0, 0};  ///< third row of the homography
@@ -65,7 +66,8 @@ inline cv::Matx33d true_mapping(const PictureSpec& spec) {
   const double angle = spec.rotation_deg * std::numbers::pi / 180;
   const cv::Matx33d turn(spec.scale * std::cos(angle), -spec.scale * std::sin(angle), 0, spec.scale * std::sin(angle),
                          spec.scale * std::cos(angle), 0, spec.tilt_per_mm.x, spec.tilt_per_mm.y, 1);
-  return cv::Matx33d(1, 0, spec.centre_px.x, 0, 1, spec.centre_px.y, 0, 0, 1) * turn;
+  const double wide = std::sqrt(spec.stretch);
+  return cv::Matx33d(wide, 0, spec.centre_px.x, 0, 1 / wide, spec.centre_px.y, 0, 0, 1) * turn;
 }
 
 inline cv::Point2d mapped(const cv::Matx33d& h, cv::Point2d p) {

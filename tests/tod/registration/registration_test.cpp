@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "tests/tod/registration/plate_picture.h"
 #include "tod/registration/blurred_polygon.h"
@@ -294,6 +295,41 @@ TEST(Registration, ReportsBothScalesWhenTheyContradictEachOther) {
     EXPECT_NEAR(number_after("shows "), spec.scale, 1e-4) << message;
     EXPECT_NEAR(number_after("a deviation of "), 100 * (factor - 1), 0.11) << message;
   }
+}
+
+TEST(Registration, RefusesAPictureWhosePixelsAreNotSquareAndSaysBothScales) {
+  for (const char* name : {"tcat-a", "tcat-b"}) {
+    const TargetPlate plate = shipped_plate(name);
+    for (const double stretch : {1 / 1.25, 1 / 1.15, 0.95, 1.05, 1.07, 1.1, 1.2, 1.25}) {
+      PictureSpec spec;
+      spec.size = {200, 200};
+      spec.centre_px = {99.8, 98.7};
+      spec.noise_k = averaged_noise_k;
+      spec.stretch = stretch;
+
+      const std::string said = refusal(register_plate(plate_picture(plate, spec), plate, planned_plate()));
+
+      double along_x = 0, along_y = 0;
+      const std::size_t stated = said.find("in the picture: ");
+      ASSERT_NE(stated, std::string::npos) << name << ", " << stretch << ": " << said;
+      ASSERT_EQ(std::sscanf(said.c_str() + stated, "in the picture: %lf px/mm along x and %lf", &along_x, &along_y), 2);
+      EXPECT_NEAR(along_x / (expected_scale * std::sqrt(stretch)), 1, 0.004) << name << ", " << stretch;
+      EXPECT_NEAR(along_y / (expected_scale / std::sqrt(stretch)), 1, 0.004) << name << ", " << stretch;
+    }
+  }
+}
+
+TEST(Registration, AllowsAStretchThatDoesNotChangeTheAcuity) {
+  const TargetPlate plate = shipped_plate("tcat-a");
+  PictureSpec spec;
+  spec.noise_k = averaged_noise_k;
+  spec.stretch = 1.03;
+
+  const auto found = register_plate(plate_picture(plate, spec), plate, planned_plate());
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_LT(place_error(plate, *found, spec), 0.02);
+  EXPECT_NEAR(found->scale_deviation, 0, 0.001);
 }
 
 TEST(Registration, RefusesARotationBeyondItsLimitWithTheAngle) {
