@@ -130,14 +130,17 @@ Result<void> Workbench::select_device(const QString& id) {
 
 void Workbench::rescan() {
   scan_.start([this](const std::stop_token&) {
-    const auto listing = camera_registry().list();
+    auto listing = camera_registry().list();
+    // The emulated laboratory and the shipped sensors are in the list anyway.
+    const std::string own = laboratory_serial();
+    std::erase_if(listing.cameras, [&](const CameraEntry& camera) {
+      return camera_name(camera.id, camera_scheme::sim) ||
+             (!own.empty() && camera.serial == own && camera.address.starts_with("127."));
+    });
     post([this, listing] {
       auto entries = built_in_devices();
       for (const auto& camera : listing.cameras) {
-        // The emulated laboratory and the shipped sensors are already in the list.
-        const QString id = QString::fromStdString(camera.id);
-        if (camera_name(camera.id, camera_scheme::sim) || camera.address.starts_with("127.")) continue;
-        entries.push_back({.id = id,
+        entries.push_back({.id = QString::fromStdString(camera.id),
                            .group = QString::fromStdString(camera.transport),
                            .label = QString::fromStdString(camera.vendor + " " + camera.model),
                            .serial = QString::fromStdString(camera.serial),
@@ -155,6 +158,14 @@ void Workbench::rescan() {
       for (const auto& warning : listing.warnings) emit noted(QString::fromStdString(warning));
     });
   });
+}
+
+std::string Workbench::laboratory_serial() {
+#ifdef TODBENCH_WITH_ARAVIS
+  const std::lock_guard lock(laboratory_mutex_);
+  if (laboratory_) return laboratory_is_->serial;
+#endif
+  return {};
 }
 
 Result<Plan> Workbench::with_devices(Plan plan, const QString& device, const std::stop_token& stop) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bench/devices/emulation.h"
@@ -97,6 +98,8 @@ class Workbench final : public QObject {
   void trouble(const QString& sentence, Remedy remedy);
 
  private:
+  /// Serial number of the camera of the window's own emulated laboratory; empty while there is none. Any thread.
+  [[nodiscard]] std::string laboratory_serial();
   [[nodiscard]] Result<Plan> with_devices(Plan plan, const QString& device, const std::stop_token& stop);
   enum class Devices { needed, none };
   void begin(Activity activity, Devices devices, DeviceJob job);

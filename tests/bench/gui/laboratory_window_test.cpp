@@ -81,12 +81,12 @@ TEST(LaboratoryWindow, ShowsACameraWithoutATargetAndItsControls) {
   auto laboratory = start_laboratory(emulation_for(window->bench().plan()));
   ASSERT_TRUE(laboratory) << laboratory.error().message;
   const QString camera = QString::fromStdString((*laboratory)->camera_id());
-  Plan plan = window->bench().plan();
-  plan.camera.id = camera.toStdString();
-  window->bench().set_plan(plan);  // lists it
+  // The laboratory is another's; the window's own is not listed twice.
+  window->bench().rescan();
+  ASSERT_TRUE(wait_until([&] { return window->bench().devices().back().id == camera; }));
   ASSERT_TRUE(window->bench().select_device(emulated_laboratory));
   ASSERT_TRUE(window->bench().select_device(camera));
-  plan = window->bench().plan();
+  Plan plan = window->bench().plan();
   EXPECT_EQ(plan.target.kind, TargetKind::prompt);
   EXPECT_EQ(plan.camera.ifov_mrad, 0);
   plan.target.kind = TargetKind::scpi;
