@@ -269,7 +269,45 @@ std::optional<cv::Matx33d> stretched_mapping(const Search& search, const TargetP
   return best.plate_to_pixel;
 }
 
-/// Why the stated mounting was not found: another mounting, unequal scales, or too few matches.
+/// Blobs of the sizes that the large triangles have at the expected scale.
+Search search_for(const cv::Mat1d& picture, const TargetPlate& plate, const RegistrationOptions& options) {
+  const double scale = options.expected_scale_px_per_mm;
+  const auto large = triangles_from(plate, options.min_triangle_px / scale);
+  const auto [smallest, largest] = std::ranges::minmax(large, {}, &PlateTriangle::size_mm);
+  const double low = smallest.size_mm * scale * (1 - scale_range);
+  const double high = largest.size_mm * scale * (1 + scale_range);
+  return {picture, options, {find_warm_blobs(picture, low, high), find_warm_blobs(-picture, low, high)}};
+}
+
+/// Pixels per millimetre of a picture that shows the plate as it is mounted, but at a scale beyond the range that is
+/// searched otherwise.
+std::optional<double> scale_of_another_distance(const Search& search, const TargetPlate& plate) {
+  RegistrationOptions options = search.options;
+  options.min_triangles = std::min(credible_pairs, options.min_triangles);
+  for (const double factor : {1.45, 0.7, 2.0, 0.5, 2.8, 0.35, 4.0, 0.25}) {
+    options.expected_scale_px_per_mm = factor * search.options.expected_scale_px_per_mm;
+    if (!check_input(search.picture, plate, options)) continue;
+    const Search there = search_for(search.picture, plate, options);
+    auto found = attempt(there, plate, Mounting::identity);
+    if (!found || !found->agrees() || static_cast<int>(found->located.size()) < options.min_triangles) continue;
+    const FittedMapping fitted = refine(there, *found);
+    const double scale = std::sqrt(std::abs(cv::determinant(jacobian(fitted.plate_to_pixel, {0, 0}))));
+    const bool fits = fitted.residual_px <= options.max_residual_px &&
+                      std::abs(stretch_of(fitted.plate_to_pixel)) <= options.max_stretch;
+    if (fits && std::abs(scale / search.options.expected_scale_px_per_mm - 1) > scale_range) return scale;
+  }
+  return std::nullopt;
+}
+
+tl::unexpected<Error> of_unplanned_scale(const TargetPlate& plate, double scale, const RegistrationOptions& options) {
+  const double expected = options.expected_scale_px_per_mm;
+  return contradiction(plate, "does not have the planned scale: the picture shows " + fixed(scale, 4) +
+                                  " px/mm, distance and IFOV give " + fixed(expected, 4) + " px/mm, a deviation of " +
+                                  percent(scale / expected - 1) + "; at most " + percent(options.max_scale_deviation) +
+                                  " are allowed");
+}
+
+/// Why the stated mounting was not found: another mounting, another scale, unequal scales, or too few matches.
 tl::unexpected<Error> explain(const Search& search, const TargetPlate& plate, const std::optional<Attempt>& stated) {
   for (const Mounting relative : all_mountings) {
     if (relative == Mounting::identity) continue;
@@ -283,6 +321,8 @@ tl::unexpected<Error> explain(const Search& search, const TargetPlate& plate, co
                                       std::to_string(stated ? stated->located.size() : 0) + " as in the stated one");
     }
   }
+  if (const auto scale = scale_of_another_distance(search, plate))
+    return of_unplanned_scale(plate, *scale, search.options);
   if (const auto mapping = stretched_mapping(search, plate);
       mapping && std::abs(stretch_of(*mapping)) > search.options.max_stretch)
     return stretched(plate, *mapping, search.options.max_stretch);
@@ -355,11 +395,7 @@ Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate&
                                     const RegistrationOptions& options) {
   if (auto checked = check_input(picture, mounted_plate, options); !checked) return tl::unexpected(checked.error());
   const double scale = options.expected_scale_px_per_mm;
-  const auto large = triangles_from(mounted_plate, options.min_triangle_px / scale);
-  const auto [smallest, largest] = std::ranges::minmax(large, {}, &PlateTriangle::size_mm);
-  const double low = smallest.size_mm * scale * (1 - scale_range);
-  const double high = largest.size_mm * scale * (1 + scale_range);
-  const Search search{picture, options, {find_warm_blobs(picture, low, high), find_warm_blobs(-picture, low, high)}};
+  const Search search = search_for(picture, mounted_plate, options);
 
   auto found = attempt(search, mounted_plate, Mounting::identity);
   if (!found || !found->agrees()) return explain(search, mounted_plate, found);
@@ -368,7 +404,7 @@ Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate&
     if (!outside.empty()) return contradiction(mounted_plate, outside);
     return contradiction(mounted_plate,
                          "has too few usable triangles in the picture: " + std::to_string(found->located.size()) +
-                             " of " + std::to_string(large.size()) + " large ones were located, " +
+                             " of " + std::to_string(found->large.size()) + " large ones were located, " +
                              std::to_string(options.min_triangles) + " are needed");
   }
   const FittedMapping fitted = refine(search, *found);
@@ -384,13 +420,8 @@ Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate&
     const cv::Matx33d mapping = stretched_mapping(search, mounted_plate).value_or(result.plate_to_pixel);
     return stretched(mounted_plate, mapping, options.max_stretch);
   }
-  if (std::abs(result.scale_deviation) > options.max_scale_deviation) {
-    return contradiction(mounted_plate, "does not have the planned scale: the picture shows " +
-                                            fixed(result.scale_px_per_mm, 4) + " px/mm, distance and IFOV give " +
-                                            fixed(scale, 4) + " px/mm, a deviation of " +
-                                            percent(result.scale_deviation) + "; at most " +
-                                            percent(options.max_scale_deviation) + " are allowed");
-  }
+  if (std::abs(result.scale_deviation) > options.max_scale_deviation)
+    return of_unplanned_scale(mounted_plate, result.scale_px_per_mm, options);
   if (std::abs(result.rotation_deg) > options.max_rotation_deg) {
     return contradiction(mounted_plate, "is rotated by " + fixed(result.rotation_deg, 1) + " degrees; at most " +
                                             fixed(options.max_rotation_deg, 1) + " degrees are allowed");
