@@ -185,7 +185,7 @@ void HumanPresenter::answer(Apex apex) {
   if (training_left() > 0) {
     const Apex truth = training_[trained_++].trial.truth;
     const auto word = to_string(truth);
-    feedback_ = (apex == truth ? "✓ right: " : "✗ it pointed ") +
+    feedback_ = (apex == truth ? "✓ correct: " : "✗ it pointed ") +
                 QString::fromUtf8(word.data(), static_cast<qsizetype>(word.size()));
     if (training_left() == 0) feedback_ += ". From now on the answers count, without feedback.";
     show_next();

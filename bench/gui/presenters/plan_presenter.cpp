@@ -27,7 +27,8 @@ bool same_thresholds(const Plan& a, const Plan& b) {
   return a.target.delta_t_k == b.target.delta_t_k && a.target.plates == b.target.plates &&
          a.target.distance_m == b.target.distance_m && a.fit == b.fit && a.observer == b.observer &&
          a.simulation.sensor == b.simulation.sensor && a.simulation.microscan == b.simulation.microscan &&
-         a.simulation.skip == b.simulation.skip && a.simulation.force == b.simulation.force;
+         a.simulation.skip == b.simulation.skip && a.simulation.force == b.simulation.force &&
+         a.simulation.motion == b.simulation.motion && a.display == b.display;
 }
 
 /// Returns the plan without the settings of a tolerance: plans that are then equal have equal prices.
@@ -47,13 +48,14 @@ struct LookAhead {
 Result<LookAhead> looked_ahead(const LoadedPlan& loaded, std::optional<std::vector<ExpectedThreshold>> expected,
                                EffectPlanner& planner, const std::stop_token& stop) {
   LookAhead out{.expected = std::move(expected), .misfit = {}};
-  if (auto inputs = experiment_inputs(loaded, planner)) {
-    if (auto fits = check_simulated_geometry(loaded.plan(), *inputs); !fits) out.misfit = sentence(fits.error());
-  } else {
+  auto inputs = experiment_inputs(loaded, planner);
+  if (!inputs) {
     out.misfit = sentence(inputs.error());
+    return out;
   }
+  if (auto fits = check_simulated_geometry(loaded.plan(), *inputs); !fits) out.misfit = sentence(fits.error());
   if (!out.expected) {
-    TODBENCH_TRY(out.expected, expected_thresholds(loaded, stop));
+    TODBENCH_TRY(out.expected, expected_thresholds(loaded.plan(), *std::move(inputs), stop));
   }
   return out;
 }
@@ -206,9 +208,15 @@ void PlanPresenter::plan_changed() {
 }
 
 void PlanPresenter::refresh() {
+  outlook_ = {};
   if (loaded_) {
     outlook_ = todbench::outlook(loaded_->plan(), loaded_->plates(), forecast_ ? &*forecast_ : nullptr,
                                  frame_rate_hz(*loaded_));
+    // The thresholds of the forecast are those of the planner's first tier.
+    for (PlannedContrast& contrast : outlook_.contrasts) {
+      const auto known = std::ranges::find(expected_, contrast.delta_t_k, &ExpectedThreshold::delta_t_k);
+      contrast.s75_mrad = known == expected_.end() ? std::nullopt : known->s75_mrad;
+    }
   }
   emit updated();
 }
@@ -217,9 +225,9 @@ void PlanPresenter::foresee() {
   if (!loaded_) return;
   const bool priced = !prices_.empty();
   const bool measuring = bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying;
-  forecasts_.start([this, loaded = *loaded_, priced, measuring](const std::stop_token& stop) {
+  forecasts_.start([this, loaded = *loaded_, known = expected_, priced, measuring](const std::stop_token& stop) {
     const Plan& plan = loaded.plan();
-    auto seen = todbench::forecast(loaded, planner_);
+    auto seen = todbench::forecast(loaded, known, planner_);
     // Posted even if a newer plan waits, so that the table follows a moving slider plan by plan.
     bench_.post([this, plan, seen] {
       if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
@@ -228,7 +236,7 @@ void PlanPresenter::foresee() {
       refresh();
     });
     if (!seen || priced || measuring) return;
-    auto prices = accuracy_prices(loaded, *seen, frame_rate_hz(loaded), planner_, stop);
+    auto prices = accuracy_prices(loaded, *seen, known, frame_rate_hz(loaded), planner_, stop);
     if (stop.stop_requested()) return;
     bench_.post([this, plan, prices = std::move(prices)] {
       if (without_tolerance(plan) != without_tolerance(bench_.plan())) return;
@@ -243,17 +251,19 @@ void PlanPresenter::look_ahead() {
   if (!loaded_) return;
   // A running measurement has priority over a forecast.
   if (bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying) return;
-  const auto known = expected_.empty() ? std::nullopt : std::optional(expected_);
-  jobs_.start([this, loaded = *loaded_, known](const std::stop_token& stop) {
+  jobs_.start([this, loaded = *loaded_, known = expected_](const std::stop_token& stop) {
     const Plan& plan = loaded.plan();
-    auto seen = looked_ahead(loaded, known, planner_, stop);
+    auto seen = looked_ahead(loaded, known.empty() ? std::nullopt : std::optional(known), planner_, stop);
     if (!seen && seen.error().code == ErrorCode::interrupted) return;
-    bench_.post([this, plan, seen = std::move(seen)] {
+    bench_.post([this, plan, known, seen = std::move(seen)] {
       if (plan != bench_.plan()) return;
       expected_of_ = plan;
-      expected_ = seen ? *seen->expected : std::vector<ExpectedThreshold>();
+      expected_ = seen && seen->expected ? *seen->expected : std::vector<ExpectedThreshold>();
       misfit_ = seen ? seen->misfit : sentence(seen.error());
       refresh();
+      if (expected_ == known) return;
+      prices_.clear();
+      foresee();
     });
   });
 }

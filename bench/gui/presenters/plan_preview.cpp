@@ -8,8 +8,7 @@
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/graded_precision.h"
 #include "bench/plan/plan_options.h"
-#include "sim_devices/prediction/direct_estimate.h"
-#include "tod/plate/test_pattern.h"
+#include "bench/twin/direct_results.h"
 
 namespace todbench {
 namespace {
@@ -34,6 +33,15 @@ const ContrastPrediction* at(const std::vector<ContrastPrediction>& contrasts, d
   return found == contrasts.end() ? nullptr : &*found;
 }
 
+void use_thresholds(const std::vector<ExpectedThreshold>& known, ExperimentInputs& inputs) {
+  for (ContrastOutlook& outlook : inputs.outlooks) {
+    for (const ExpectedThreshold& threshold : known) {
+      if (threshold.delta_t_k == outlook.delta_t_k && threshold.s75_mrad)
+        outlook.s75_pitch = *threshold.s75_mrad / inputs.sensor.ifov_mrad();
+    }
+  }
+}
+
 std::vector<std::pair<int, double>> half_widths_by_frames(Plan plan, const ExperimentInputs& inputs) {
   std::vector<std::pair<int, double>> out;
   if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::binary) return out;
@@ -48,18 +56,16 @@ std::vector<std::pair<int, double>> half_widths_by_frames(Plan plan, const Exper
 
 }  // namespace
 
-Result<std::vector<ExpectedThreshold>> expected_thresholds(const LoadedPlan& loaded, std::stop_token stop) {
-  const Plan& plan = loaded.plan();
-  const SensorSpec& sensor = loaded.sensor();
-  TemplateObserver observer(loaded.observer(), triangle_alternatives());
-  const SensorPlan effects = full_plan(sensor, plan.simulation.skip, plan.simulation.force, plan.simulation.motion);
+Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, ExperimentInputs inputs,
+                                                           std::stop_token stop) {
+  if (auto refined = refine_thresholds(inputs, plan.seed, std::move(stop)); !refined)
+    return tl::unexpected(refined.error());
   std::vector<ExpectedThreshold> out;
   for (const double contrast : plan.target.delta_t_k) {
     ExpectedThreshold expected{.delta_t_k = contrast, .s75_mrad = {}};
-    const auto point = direct_estimate(as_planned(sensor, effects), effects, observer, {contrast},
-                                       {.motion = plan.simulation.motion, .accuracy = Accuracy::draft(), .stop = stop});
-    if (!point && point.error().code == ErrorCode::interrupted) return tl::unexpected(point.error());
-    if (point) expected.s75_mrad = point->front().s75_pitch * sensor.ifov_mrad();
+    for (const ContrastOutlook& outlook : inputs.outlooks) {
+      if (outlook.delta_t_k == contrast) expected.s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+    }
     out.push_back(expected);
   }
   return out;
@@ -76,11 +82,13 @@ TodCurve as_curve(const std::vector<ExpectedThreshold>& expected) {
   return curve;
 }
 
-Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner, std::stop_token stop) {
+Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<ExpectedThreshold>& known,
+                              EffectPlanner& planner, std::stop_token stop) {
   const Plan& plan = loaded.plan();
   PlanForecast out;
   out.plan = plan;
   TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
+  use_thresholds(known, inputs);
   out.frames = with_frames(plan, inputs).schedule.frames_per_presentation;
   auto prediction = predict_plan(plan, inputs);
   // Effects are planned even if the simulation cannot meet the tolerance.
@@ -183,7 +191,8 @@ Plan with_tolerance(Plan plan, const PlanForecast* seen, double tolerance_percen
   return plan;
 }
 
-std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanForecast& seen, double frame_rate_hz,
+std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanForecast& seen,
+                                           const std::vector<ExpectedThreshold>& known, double frame_rate_hz,
                                            EffectPlanner& planner, const std::stop_token& stop) {
   std::vector<AccuracyPrice> prices;
   for (const double tolerance : {0.5, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 20.0}) {
@@ -191,8 +200,9 @@ std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanF
     const auto at = loaded.with(with_tolerance(loaded.plan(), &seen, tolerance));
     if (!at) continue;
     const Plan& priced = at->plan();
-    const auto inputs = experiment_inputs(*at, planner);
+    auto inputs = experiment_inputs(*at, planner);
     if (!inputs) continue;
+    use_thresholds(known, *inputs);
     auto found = predict_plan(priced, *inputs);
     if (found && !predict_times(priced, *inputs, *found, stop) && stop.stop_requested()) break;
     PlanForecast at_tolerance = seen;

@@ -20,10 +20,12 @@ namespace todbench {
 struct ExpectedThreshold {
   double delta_t_k = 0;
   std::optional<double> s75_mrad;  ///< empty: no size has a threshold at this contrast
+  bool operator==(const ExpectedThreshold&) const = default;
 };
 
-/// Computes the direct estimate at draft accuracy, in about a second. Errors: `interrupted`.
-[[nodiscard]] Result<std::vector<ExpectedThreshold>> expected_thresholds(const LoadedPlan& loaded,
+/// Computes direct estimates as `todbench plan` does (bench/twin/direct_results.h), in some seconds. Errors:
+/// `interrupted`.
+[[nodiscard]] Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, ExperimentInputs inputs,
                                                                          std::stop_token stop);
 /// The same as a curve without intervals.
 [[nodiscard]] TodCurve as_curve(const std::vector<ExpectedThreshold>& expected);
@@ -42,13 +44,14 @@ struct PlanForecast {
   std::string problem;           ///< why the tolerance cannot be met; empty: it can
 };
 
-/// Errors: `interrupted`. `planner` caches decisions that changes of tolerance and trials do not affect.
-[[nodiscard]] Result<PlanForecast> forecast(const LoadedPlan& loaded, EffectPlanner& planner,
-                                            std::stop_token stop = {});
+/// `known`: thresholds that replace those of the planner's first tier, where there are any. Errors: `interrupted`.
+/// `planner` caches decisions that changes of tolerance and trials do not affect.
+[[nodiscard]] Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<ExpectedThreshold>& known,
+                                            EffectPlanner& planner, std::stop_token stop = {});
 
 struct PlannedContrast {
   double delta_t_k = 0;
-  std::optional<double> s75_mrad;                                              ///< of the first tier
+  std::optional<double> s75_mrad;  ///< of the planner's first tier, or expected_thresholds()
   std::optional<double> camera_uncertainty_percent, twin_uncertainty_percent;  ///< half the 95 % interval of S75
 };
 
@@ -81,8 +84,10 @@ struct AccuracyPrice {
 };
 
 /// Runs predict_plan() and predict_times() for tolerances from 0.5 to 20 %, without those that 256 phases do not reach.
-/// Returns the points so far if stop is requested. Does not depend on tolerance and phases of the plan.
+/// Returns the points so far if stop is requested. Does not depend on tolerance and phases of the plan. `known`: as for
+/// forecast().
 [[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanForecast& seen,
+                                                         const std::vector<ExpectedThreshold>& known,
                                                          double frame_rate_hz, EffectPlanner& planner,
                                                          const std::stop_token& stop);
 

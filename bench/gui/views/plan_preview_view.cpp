@@ -134,17 +134,19 @@ void PlanPreviewView::show_outlook() {
   const auto uncertainty = seen.uncertainty_percent();
   const bool known = presenter_.forecast().has_value();
   cost_->setText(
-      QString("%1 presentations, %2 answers. Time on the bench: about %3. Simulated twin: about %4 on one core. "
-              "Uncertainty: %5")
-          .arg(seen.presentations)
-          .arg(seen.trials)
-          .arg(duration_text(seen.bench_s),
-               seen.twin_s ? duration_text(*seen.twin_s)
-               : known     ? "–"
-                           : "…",
-               uncertainty ? QString("± %1 %").arg(*uncertainty, 0, 'f', 1)
-               : known     ? QString("not known, because a contrast has no threshold")
-                           : QString("being computed …")));
+      seen.contrasts.empty()
+          ? QString()
+          : QString("%1 presentations, %2 answers. Time on the bench: about %3. Simulated twin: about %4 on one core. "
+                    "Uncertainty: %5")
+                .arg(seen.presentations)
+                .arg(seen.trials)
+                .arg(duration_text(seen.bench_s),
+                     seen.twin_s ? duration_text(*seen.twin_s)
+                     : known     ? "–"
+                                 : "…",
+                     uncertainty ? QString("± %1 %").arg(*uncertainty, 0, 'f', 1)
+                     : known     ? QString("not known, because a contrast has no threshold")
+                                 : QString("being computed …")));
   const QStringList warnings = presenter_.warnings();
   misfit_->setText(!presenter_.misfit().isEmpty() ? "✗ " + presenter_.misfit()
                    : !warnings.isEmpty()          ? "⚠ " + warnings.join("; ")
@@ -159,7 +161,8 @@ void PlanPreviewView::show_outlook() {
                         percent(c.camera_uncertainty_percent), percent(c.twin_uncertainty_percent)};
   }
   fill_table(*contrasts_, rows);
-  if (Plot plot = accuracy_plot(presenter_.prices(), seen); !plot.series.empty()) prices_->show_plot(plot);
+  if (Plot plot = accuracy_plot(presenter_.prices(), seen); !plot.series.empty() || seen.contrasts.empty())
+    prices_->show_plot(plot);
   show_effects();
 }
 

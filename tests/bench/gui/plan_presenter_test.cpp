@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/twin/direct_results.h"
 #include "tests/bench/gui/gui_test_support.h"
 
 namespace todbench {
@@ -103,13 +104,15 @@ TEST(PlanPresenter, NeedsFourTimesTheAnswersForHalfTheUncertainty) {
 TEST(PlanPresenter, ForeseesWhatTheCommandLinePredicts) {
   PlanBench b;
   ASSERT_EQ(b.presenter.set_tolerance_percent(4).toStdString(), "");
-  ASSERT_TRUE(wait_until([&] { return b.presenter.forecast_current(); }));
+  ASSERT_TRUE(wait_until([&] { return b.presenter.expected_known(); }));
+  ASSERT_TRUE(wait_until([&] { return b.presenter.forecast_current() && !b.presenter.prices().empty(); }));
 
   const auto loaded = LoadedPlan::load(b.presenter.plan());
   ASSERT_TRUE(loaded) << loaded.error().message;
   EffectPlanner planner;
-  const auto inputs = experiment_inputs(*loaded, planner);
+  auto inputs = experiment_inputs(*loaded, planner);
   ASSERT_TRUE(inputs);
+  ASSERT_TRUE(refine_thresholds(*inputs, loaded->plan().seed, {}));
   auto predicted = predict_plan(loaded->plan(), *inputs);
   ASSERT_TRUE(predicted && predict_times(loaded->plan(), *inputs, *predicted, {}));
 
