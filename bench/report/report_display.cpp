@@ -17,6 +17,7 @@ Table limits_table(const DisplayRecord& record) {
                                                                        ? missing("nothing can be left out")
                                                                        : plain(to_string(at.costs.front().factor))};
     for (const LimitingFactor factor : all_limiting_factors) {
+      if (factor == LimitingFactor::observer) continue;  // the record is of an observer with an eye
       RichText cell = missing("not estimated");
       for (const FactorCost& cost : at.costs) {
         if (cost.factor == factor) cell = plain(shown(std::round(cost.percent) + 0.0, 0));

@@ -52,6 +52,8 @@ std::string_view to_string(LimitingFactor factor) {
       return "eye";
     case LimitingFactor::light:
       return "light";
+    case LimitingFactor::observer:
+      return "observer";
   }
   return "";
 }

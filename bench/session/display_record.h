@@ -20,11 +20,13 @@ enum class LimitingFactor {
   sampling,      ///< distance of the sensor's samples
   sensor_noise,  ///< all noise of the sensor
   display,       ///< spot, interpolation, veil, black level and gain of the display
-  eye,           ///< noise and uncertainty of the person; for an observer without an eye its blur and internal noise
-  light,         ///< luminance of the display; none for an observer without an eye
+  eye,           ///< noise and uncertainty of the person
+  light,         ///< luminance of the display
+  observer,      ///< blur and internal noise of an observer without an eye, which has none of the three before
 };
 inline constexpr std::array all_limiting_factors{LimitingFactor::sampling, LimitingFactor::sensor_noise,
-                                                 LimitingFactor::display, LimitingFactor::eye, LimitingFactor::light};
+                                                 LimitingFactor::display,  LimitingFactor::eye,
+                                                 LimitingFactor::light,    LimitingFactor::observer};
 [[nodiscard]] std::string_view to_string(LimitingFactor factor);
 
 /// Cost of one factor: 100 (S75 / S75 without it - 1), in percent.

@@ -80,13 +80,15 @@ bool leave_out(LimitingFactor factor, ViewedSensor& viewed) {
       leave_out_display(*observer.display);
       return true;
     case LimitingFactor::eye:
-      if (observer.eye) {
-        observer.eye->sensitivity *= 1000;
-        observer.eye->contrast_noise = 0;
-      } else {
-        observer.blur_sigma_samples = 0.1;
-        observer.internal_noise = 0;
-      }
+      if (!observer.eye) return false;
+      observer.eye->sensitivity *= 1000;
+      observer.eye->contrast_noise = 0;
+      observer.sensor_noise_factor = 1;
+      return true;
+    case LimitingFactor::observer:
+      if (observer.eye) return false;
+      observer.blur_sigma_samples = 0.1;
+      observer.internal_noise = 0;
       observer.sensor_noise_factor = 1;
       return true;
     case LimitingFactor::light:

@@ -31,10 +31,22 @@ QString heading_of(LimitingFactor factor) {
   return QString::fromStdString(std::string(to_string(factor))).replace('_', ' ');
 }
 
-/// The factor that limits most in bold; a dash for a factor that the observer does not have.
-QString row_of(const AcuityLimits& limits) {
-  QStringList texts{QString("%1 K").arg(limits.delta_t_k)};
+/// Those that the observer has.
+std::vector<LimitingFactor> factors_of(const std::vector<AcuityLimits>& limits) {
+  std::vector<LimitingFactor> factors;
   for (const LimitingFactor factor : all_limiting_factors) {
+    const auto has = [&](const AcuityLimits& at) {
+      return std::ranges::find(at.costs, factor, &FactorCost::factor) != at.costs.end();
+    };
+    if (std::ranges::any_of(limits, has)) factors.push_back(factor);
+  }
+  return factors;
+}
+
+/// The factor that limits most in bold; a dash for a factor without an estimate.
+QString row_of(const AcuityLimits& limits, const std::vector<LimitingFactor>& factors) {
+  QStringList texts{QString("%1 K").arg(limits.delta_t_k)};
+  for (const LimitingFactor factor : factors) {
     const auto found = std::ranges::find(limits.costs, factor, &FactorCost::factor);
     // Adding 0 turns a rounded -0 into 0.
     const QString cost =
@@ -79,9 +91,10 @@ Result<QString> limits_advice(const Plan& plan, const std::stop_token& stop) {
   }
   TODBENCH_TRY(const auto limits, acuity_limits(plan, inputs, plan.target.delta_t_k, stop));
   QStringList headings{"Contrast"}, lost;
-  for (const LimitingFactor factor : all_limiting_factors) headings << heading_of(factor);
+  const std::vector<LimitingFactor> factors = factors_of(limits);
+  for (const LimitingFactor factor : factors) headings << heading_of(factor);
   QString rows = cells(headings, "th");
-  for (const AcuityLimits& at : limits) rows += row_of(at);
+  for (const AcuityLimits& at : limits) rows += row_of(at, factors);
   for (const double contrast : plan.target.delta_t_k) {
     if (std::ranges::find(limits, contrast, &AcuityLimits::delta_t_k) == limits.end())
       lost << QString("%1 K").arg(contrast);
