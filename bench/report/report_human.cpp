@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Section of a person's answers to the camera's frames, compared with the model.
+#include <algorithm>
+#include <functional>
+#include <set>
+
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
@@ -34,21 +38,30 @@ Table people_table(const ReportData& data) {
   rows.caption = "All people. Mean: geometric, every person once; its interval contains the scatter between people";
   rows.header = {"Person", "Day (UTC)"};
   const std::vector<PeopleMean> means = mean_over_people(data.people);
-  for (const PeopleMean& mean : means) rows.header.push_back("S₇₅ at " + stated(mean.set_delta_t_k) + " K (mrad)");
+  std::set<double, std::greater<>> contrasts_k;
+  for (const PersonRecord& one : data.people) {
+    for (const TodPoint& point : one.record.curve.points) contrasts_k.insert(point.set_delta_t_k);
+  }
+  for (const double contrast_k : contrasts_k) rows.header.push_back("S₇₅ at " + stated(contrast_k) + " K (mrad)");
   for (std::size_t i = 0; i < data.people.size(); ++i) {
     const PersonRecord& one = data.people[i];
     std::vector<RichText> row{plain(facts_in_words(one.person, i + 1)), plain(one.person.judged_utc.substr(0, 10))};
-    for (const PeopleMean& mean : means) {
-      const TodPoint* point = point_at(one.record.curve, mean.set_delta_t_k);
+    for (const double contrast_k : contrasts_k) {
+      const TodPoint* point = point_at(one.record.curve, contrast_k);
       row.push_back(point == nullptr ? missing("not asked") : threshold_cell(point->fit));
     }
     rows.rows.push_back(std::move(row));
   }
   std::vector<RichText> last{plain("mean"), plain("")};
-  for (const PeopleMean& mean : means) {
+  for (const double contrast_k : contrasts_k) {
+    const auto mean = std::ranges::find(means, contrast_k, &PeopleMean::set_delta_t_k);
+    if (mean == means.end()) {
+      last.push_back(missing("no person has a threshold"));
+      continue;
+    }
     Interval interval;
-    if (mean.ci95_mrad) interval = {mean.ci95_mrad->first, mean.ci95_mrad->second};
-    last.push_back(interval_or_missing(mean.s75_mrad, interval, "one person"));
+    if (mean->ci95_mrad) interval = {mean->ci95_mrad->first, mean->ci95_mrad->second};
+    last.push_back(interval_or_missing(mean->s75_mrad, interval, "one person"));
   }
   rows.rows.push_back(std::move(last));
   return rows;

@@ -121,9 +121,12 @@ QString result_of_triangles(const HumanPresenter& human, const MeasurePresenter&
   }
   if (!means.isEmpty())
     means = "<p>Mean over people, interval between people:</p><table cellspacing=4>" + means + "</table>";
+  const auto& points = human.record()->curve.points;
+  const bool all_found = std::ranges::all_of(points, [](const TodPoint& p) { return p.fit.threshold.has_value(); });
   return "<p>" + human.problem() +
          "</p><table cellspacing=4><tr><th>ΔT</th><th>S75 human (mrad)</th><th>model (mrad)</th></tr>" + rows +
-         "</table>" + means;
+         "</table>" + (all_found ? "" : "<p>Limits without a value: the answers do not determine the threshold.</p>") +
+         means;
 }
 
 }  // namespace todbench
