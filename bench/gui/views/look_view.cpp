@@ -20,6 +20,14 @@
 namespace todbench {
 namespace {
 
+/// A fraction to six digits: cameras report 30.00030000300003 for 30 Hz.
+QString setting_text(const std::string& value) {
+  const QString text = QString::fromStdString(value);
+  bool number = false;
+  const double parsed = text.toDouble(&number);
+  return number && text.contains('.') && text.size() > 7 ? QString::number(parsed, 'g', 6) : text;
+}
+
 QIcon badge(DeviceHealth health) {
   // Colour and shape: a disc is ready, a ring in use, a cross lost.
   QPixmap pixmap(16, 16);
@@ -87,6 +95,7 @@ QWidget* LookView::device_panel() {
   layout->addWidget(title_label("Cameras"));
   devices_ = new QTreeWidget;
   devices_->setObjectName("deviceTree");
+  devices_->setWordWrap(true);
   devices_->setHeaderHidden(true);
   devices_->setRootIsDecorated(false);
   devices_->setIndentation(10);
@@ -133,7 +142,7 @@ QWidget* LookView::controls_panel() {
     connect(line, &QLineEdit::editingFinished, this, [this, line, row] {
       if (row >= presenter_.controls().size()) return;
       const ControlReading& reading = presenter_.controls()[row];
-      if (line->text().trimmed().toStdString() == reading.value) return;
+      if (line->text().trimmed() == setting_text(reading.value)) return;
       presenter_.change(reading.feature, line->text().trimmed().toStdString());
     });
   }
@@ -167,7 +176,7 @@ void LookView::show_controls() {
     QLineEdit& line = *controls_[i];
     const ControlReading reading = looking ? presenter_.controls()[i] : ControlReading{};
     line.setEnabled(!reading.feature.empty());
-    line.setText(QString::fromStdString(reading.value));
+    line.setText(setting_text(reading.value));
     line.setToolTip(!looking ? QString("Start the live picture to read the settings of the camera.")
                     : reading.feature.empty()
                         ? QString("The camera has no feature with a known name for this. Set a feature by its name in "
@@ -252,8 +261,10 @@ void LookView::list_devices() {
       group->setFlags(Qt::ItemIsEnabled);
       group->setExpanded(true);
     }
-    const QString serial = device.serial.isEmpty() ? QString() : "\nserial number " + device.serial;
-    auto* item = new QTreeWidgetItem(group, {device.label + "  –  " + name_of(device.health) + serial});
+    const QString health = name_of(device.health);
+    auto* item = new QTreeWidgetItem(
+        group, {device.label +
+                (device.serial.isEmpty() ? "  –  " + health : "\nserial number " + device.serial + ", " + health)});
     item->setIcon(0, badge(device.health));
     item->setToolTip(0, device.detail);
     item->setData(0, Qt::UserRole, device.id);

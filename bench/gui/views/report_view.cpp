@@ -50,6 +50,7 @@ QString verdict_text(ReportVerdict verdict) {
 
 /// Adds a sign, because some users cannot distinguish the colours.
 QString in_a_list(const QString& verdict) {
+  if (verdict == "not judged") return verdict;
   return (verdict == "pass" ? "✓ " : verdict == "fail" ? "✗ " : "? ") + verdict;
 }
 
