@@ -231,6 +231,24 @@ Table directions_table(const std::string& caption, const TodCurve& curve) {
   return rows;
 }
 
+/// The person, or the mean over people where several have a threshold.
+std::pair<std::string, TodCurve> of_people(const ReportData& data) {
+  const std::vector<PeopleMean> means = mean_over_people(data.people);
+  int people = 0;
+  for (const PeopleMean& mean : means) people = std::max(people, mean.people);
+  if (people < 2) return {"human", *data.human};
+  TodCurve curve;
+  for (const PeopleMean& mean : means) {
+    TodPoint point;
+    point.set_delta_t_k = point.delta_t_k = mean.set_delta_t_k;
+    if (const TodPoint* judged = point_at(*data.human, mean.set_delta_t_k)) point.delta_t_k = judged->delta_t_k;
+    point.fit.threshold = mean.s75_mrad;
+    if (mean.ci95_mrad) point.fit.ci95 = {mean.ci95_mrad->first, mean.ci95_mrad->second};
+    curve.points.push_back(std::move(point));
+  }
+  return {"mean of " + std::to_string(people) + " people", std::move(curve)};
+}
+
 }  // namespace
 
 Plot tod_plot(const ReportData& data) {
@@ -238,8 +256,9 @@ Plot tod_plot(const ReportData& data) {
   Plot plot = tod_figure({measured_name(data), pointer(data.measured)}, {simulated_name(data), pointer(data.simulated)},
                          limits);
   if (!data.human) return plot;
-  // Curve of the person in the style of the figure, in the third tone.
-  const Plot human = tod_figure({"human", pointer(data.human)}, {}, {});
+  // Curve of the person or of the mean over people in the style of the figure, in the third tone.
+  const auto [name, curve] = of_people(data);
+  const Plot human = tod_figure({name, &curve}, {}, {});
   for (PlotSeries series : human.series) {
     series.tone = PlotTone::third;
     series.marker = PlotMarker::square;

@@ -429,7 +429,8 @@ void HumanView::show_triangles() {
                             : state == HumanState::hidden ? "Which way did it point?"
                             : running                     ? ""
                             : ready                       ? "Press Begin when you are ready."
-                                    : "Run a measurement first. A person then judges its frames.");
+                                    : "Run a measurement first, or open a session with recorded frames and press "
+                                      "Replay. A person then judges its frames.");
   const int level = presenter_.background_level();
   picture_->set_surround(QColor(level, level, level));
   // A fixed number of screen pixels per sample: the size of the window does not affect the picture.

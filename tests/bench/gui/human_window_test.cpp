@@ -252,7 +252,7 @@ TEST(HumanObserver, KeepsEveryPersonWithFactsAndStatesTheirMean) {
   }));
   const std::string page = render_report(window->sessions().current()->report);
   EXPECT_THAT(page, ::testing::HasSubstr("P1, 34 years"));
-  EXPECT_THAT(page, ::testing::HasSubstr("mean"));
+  EXPECT_THAT(page, ::testing::HasSubstr(">mean of 2 people</text>"));
   ASSERT_TRUE(wait_until([&] {
     const auto changed = verify_manifest(folder);
     return changed && changed->empty();
