@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bench/judgement/demand_kinds.h"
 #include "bench/report/fit_words.h"
@@ -231,22 +232,34 @@ Table directions_table(const std::string& caption, const TodCurve& curve) {
   return rows;
 }
 
-/// The person, or the mean over people where several have a threshold.
+/// The threshold of the only person who has one, with its own interval, or the mean over people.
+PsychometricFit fit_of_people(const ReportData& data, const PeopleMean& mean) {
+  PsychometricFit fit;
+  fit.threshold = mean.s75_mrad;
+  if (mean.ci95_mrad) fit.ci95 = {mean.ci95_mrad->first, mean.ci95_mrad->second};
+  if (mean.people > 1) return fit;
+  for (const PersonRecord& one : data.people) {
+    const TodPoint* point = point_at(one.record.curve, mean.set_delta_t_k);
+    if (point != nullptr && point->fit.threshold) return point->fit;
+  }
+  return fit;
+}
+
+/// One person, or the thresholds of all people: a line of a person without a threshold says nothing beside them.
 std::pair<std::string, TodCurve> of_people(const ReportData& data) {
   const std::vector<PeopleMean> means = mean_over_people(data.people);
-  int people = 0;
-  for (const PeopleMean& mean : means) people = std::max(people, mean.people);
-  if (people < 2) return {"human", *data.human};
+  if (data.people.size() < 2 || means.empty()) return {"human", *data.human};
   TodCurve curve;
+  int people = 0;
   for (const PeopleMean& mean : means) {
+    people = std::max(people, mean.people);
     TodPoint point;
     point.set_delta_t_k = point.delta_t_k = mean.set_delta_t_k;
     if (const TodPoint* judged = point_at(*data.human, mean.set_delta_t_k)) point.delta_t_k = judged->delta_t_k;
-    point.fit.threshold = mean.s75_mrad;
-    if (mean.ci95_mrad) point.fit.ci95 = {mean.ci95_mrad->first, mean.ci95_mrad->second};
+    point.fit = fit_of_people(data, mean);
     curve.points.push_back(std::move(point));
   }
-  return {"mean of " + std::to_string(people) + " people", std::move(curve)};
+  return {people > 1 ? "mean of " + std::to_string(people) + " people" : "human", std::move(curve)};
 }
 
 }  // namespace

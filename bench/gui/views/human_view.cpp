@@ -191,6 +191,7 @@ void HumanView::add_questions(QFormLayout& form) {
   axis_->addItems({"horizontal", "vertical"});
   packages_ = new QLineEdit;
   packages_->setObjectName("humanPackages");
+  packages_->setPlaceholderText("files");
   packages_->setToolTip("Files of enhancement packages, separated by commas; each is a source beside the camera");
   twin_ = new QCheckBox("Simulated twin");
   twin_->setObjectName("humanTwin");
