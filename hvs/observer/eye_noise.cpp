@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "acquisition/base/multiversion.h"
 #include "hvs/observer/block_product.h"
 #include "hvs/observer/pivoted_cholesky.h"
 #include "hvs/observer/template_bank.h"
@@ -34,6 +35,23 @@ struct Waves {
   }
 };
 
+/// Adds (x + i y) (cosine + i sine) to each element.
+TODBENCH_MULTIVERSION
+void add_turned(double x, double y, const double* cosine, const double* sine, std::size_t count, double* __restrict re,
+                double* __restrict im) {
+  for (std::size_t d = 0; d < count; ++d) {
+    re[d] += x * cosine[d] - y * sine[d];
+    im[d] += x * sine[d] + y * cosine[d];
+  }
+}
+
+/// Adds the real part of (re + i im) (cosine + i sine) to each element.
+TODBENCH_MULTIVERSION
+void add_real_part(const double* re, const double* im, double cosine, double sine, std::size_t count,
+                   double* __restrict sums) {
+  for (std::size_t d = 0; d < count; ++d) sums[d] += re[d] * cosine - im[d] * sine;
+}
+
 /// Sum over the lattice of cross * exp(2 pi i (u dx + w dy)), real part, for all displacements: rows dy, columns dx.
 std::vector<double> correlation(const Spectrum& cross, const FrequencyLattice& lattice, int most, int steps) {
   const double period_steps = static_cast<double>(lattice.period) * steps;
@@ -49,18 +67,13 @@ std::vector<double> correlation(const Spectrum& cross, const FrequencyLattice& l
       const double weight = c == 0 ? 1 : 2;  // the other half of the plane is conjugate
       const double x = weight * values[c].real(), y = weight * values[c].imag();
       if (x == 0 && y == 0) continue;
-      const double* cosine = &along.cosine[static_cast<std::size_t>(c) * width];
-      const double* sine = &along.sine[static_cast<std::size_t>(c) * width];
-      for (std::size_t d = 0; d < width; ++d) {
-        re[d] += x * cosine[d] - y * sine[d];
-        im[d] += x * sine[d] + y * cosine[d];
-      }
+      const std::size_t at = static_cast<std::size_t>(c) * width;
+      add_turned(x, y, &along.cosine[at], &along.sine[at], width, re.data(), im.data());
     }
     const double* cosine = &down.cosine[static_cast<std::size_t>(r) * width];
     const double* sine = &down.sine[static_cast<std::size_t>(r) * width];
-    for (std::size_t j = 0; j < width; ++j) {
-      for (std::size_t d = 0; d < width; ++d) out[j * width + d] += re[d] * cosine[j] - im[d] * sine[j];
-    }
+    for (std::size_t j = 0; j < width; ++j)
+      add_real_part(re.data(), im.data(), cosine[j], sine[j], width, &out[j * width]);
   }
   return out;
 }

@@ -7,175 +7,10 @@
 #include <utility>
 
 #include "tod/plate/plate_outlines.h"
-#include "tod/registration/blob_finder.h"
-#include "tod/registration/layout_matching.h"
-#include "tod/registration/plate_mapping.h"
-#include "tod/registration/shift_fit.h"
+#include "tod/registration/plate_attempt.h"
 
 namespace todbench {
 namespace {
-
-constexpr double first_blur_px = 0.45;     // optics, detector and sampling box of a focused camera
-constexpr double scale_range = 0.3;        // searched, so that a wrong scale can be reported
-constexpr double extra_rotation_deg = 10;  // searched beyond the limit, for the same reason
-constexpr int credible_pairs = 4;          // fewer blobs fit any layout by chance
-constexpr double agreement_needed = 0.75;  // of the large triangles must point as the plate states
-constexpr double reach_px = 2.5;           // of the fit from the place that the blobs suggest
-
-/// Constant data of one attempt.
-struct Search {
-  const cv::Mat1d& picture;
-  const RegistrationOptions& options;
-  std::array<std::vector<Blob>, 2> blobs;  ///< warm, cold
-};
-
-/// The plate in one mounting, laid over the picture.
-struct Attempt {
-  Mounting mounting = Mounting::identity;
-  double sign = 1;
-  std::vector<PlateTriangle> large;
-  LayoutMatch match;
-  std::vector<PlateTriangle> located;  ///< those with the stated orientation
-  std::vector<cv::Point2d> pixels;     ///< their centroids
-  int judged = 0;                      ///< large triangles whose orientation could be determined
-  double blur_px = first_blur_px;
-  [[nodiscard]] int pairs() const { return static_cast<int>(match.pairs.size()); }
-  [[nodiscard]] bool agrees() const {
-    return judged > 0 && static_cast<double>(located.size()) >= agreement_needed * judged;
-  }
-};
-
-std::vector<cv::Point2d> places(const std::vector<PlateTriangle>& triangles) {
-  std::vector<cv::Point2d> result;
-  result.reserve(triangles.size());
-  for (const PlateTriangle& t : triangles) result.push_back(t.position_mm);
-  return result;
-}
-
-/// The blur that explains the located triangles best: golden section on its logarithm from 0.2 to 1.6 px.
-double best_blur(const cv::Mat1d& picture, const cv::Matx33d& mapping, const Attempt& at) {
-  std::vector<Polygon> outlines;
-  for (std::size_t i = 0; i < at.located.size(); ++i) {
-    outlines.push_back(outline_in_picture(mapping, at.located[i], at.located[i].apex));
-    const cv::Point2d move = at.pixels[i] - to_pixel(mapping, at.located[i].position_mm);
-    for (cv::Point2d& p : outlines.back()) p += move;
-  }
-  const double ratio = std::numbers::phi - 1;
-  double low = std::log(0.2), high = std::log(1.6);
-  double a = high - ratio * (high - low), b = low + ratio * (high - low);
-  const auto cost = [&](double log_blur) { return misfit(picture, outlines, std::exp(log_blur)); };
-  double cost_a = cost(a), cost_b = cost(b);
-  while (high - low > 0.02) {
-    if (cost_a < cost_b) {
-      high = b;
-      b = a;
-      cost_b = cost_a;
-      a = high - ratio * (high - low);
-      cost_a = cost(a);
-    } else {
-      low = a;
-      a = b;
-      cost_a = cost_b;
-      b = low + ratio * (high - low);
-      cost_b = cost(b);
-    }
-  }
-  return std::exp((low + high) / 2);
-}
-
-/// Place of the triangle if it points to `apex`, and the quality of that explanation.
-std::optional<ShiftFit> locate(const cv::Mat1d& picture, const cv::Matx33d& mapping, const PlateTriangle& t, Apex apex,
-                               double blur_px) {
-  const Polygon outline = outline_in_picture(mapping, t, apex);
-  return fit_shift(picture, std::span(&outline, 1), blur_px, {0, 0}, reach_px);
-}
-
-/// Determines the orientation of each large triangle (smallest unexplained variance of the four shapes, each at its
-/// best place) and locates those that point as the plate states.
-void judge(const Search& search, Attempt& at) {
-  for (const PlateTriangle& t : at.large) {
-    std::optional<Apex> seen;
-    std::optional<ShiftFit> best;
-    for (const Apex apex : all_apexes) {
-      auto fit = locate(search.picture, at.match.plate_to_pixel, t, apex, first_blur_px);
-      if (!fit || fit->amplitudes[0] * at.sign <= 0) continue;
-      if (best && fit->unexplained >= best->unexplained) continue;
-      best = std::move(fit);
-      seen = apex;
-    }
-    // Half of the variance unexplained: the window shows another object, or none.
-    if (!best || best->unexplained > 0.5) continue;
-    ++at.judged;
-    if (*seen != t.apex) continue;
-    at.located.push_back(t);
-    at.pixels.push_back(to_pixel(at.match.plate_to_pixel, t.position_mm) + best->shift);
-  }
-}
-
-/// Matches the layout in one mounting with the warm and with the cold blobs; returns the better one, with judged
-/// orientations.
-std::optional<Attempt> attempt(const Search& search, const TargetPlate& plate, Mounting relative) {
-  const TargetPlate turned = mounted(plate, relative);
-  const double scale = search.options.expected_scale_px_per_mm;
-  const MatchLimits limits{scale, scale_range, search.options.max_rotation_deg + extra_rotation_deg,
-                           search.picture.size()};
-  std::optional<Attempt> best;
-  for (std::size_t side = 0; side < 2; ++side) {
-    Attempt at;
-    at.mounting = turned.mounting;
-    at.sign = side == 0 ? 1 : -1;
-    at.large = triangles_from(turned, search.options.min_triangle_px / scale);
-    auto match = match_layout(at.large, search.blobs[side], limits);
-    if (!match || (best && !match->better_than(best->match))) continue;
-    at.match = std::move(*match);
-    best = std::move(at);
-  }
-  const int needed = std::min(credible_pairs, search.options.min_triangles);
-  if (best && best->pairs() >= needed) judge(search, *best);
-  return best;
-}
-
-/// The index of the triangle that disturbs the fit most, and the fit without it.
-std::pair<std::size_t, FittedMapping> without_worst(const Attempt& at, double scale) {
-  std::pair<std::size_t, FittedMapping> best;
-  for (std::size_t i = 0; i < at.located.size(); ++i) {
-    auto plate = places(at.located);
-    auto pixels = at.pixels;
-    plate.erase(plate.begin() + static_cast<std::ptrdiff_t>(i));
-    pixels.erase(pixels.begin() + static_cast<std::ptrdiff_t>(i));
-    const FittedMapping others = fit_mapping(plate, pixels, scale);
-    if (i == 0 || others.residual_px < best.second.residual_px) best = {i, others};
-  }
-  return best;
-}
-
-/// Improves mapping, places and blur in turn. Then leaves out triangles displaced by a bad pixel or dirt while enough
-/// remain.
-FittedMapping refine(const Search& search, Attempt& at) {
-  const double scale = search.options.expected_scale_px_per_mm;
-  FittedMapping fitted = fit_mapping(places(at.located), at.pixels, scale);
-  for (int round = 0; round < 2; ++round) {
-    at.blur_px = best_blur(search.picture, fitted.plate_to_pixel, at);
-    for (std::size_t i = 0; i < at.located.size(); ++i) {
-      const auto fit = locate(search.picture, fitted.plate_to_pixel, at.located[i], at.located[i].apex, at.blur_px);
-      if (fit) at.pixels[i] = to_pixel(fitted.plate_to_pixel, at.located[i].position_mm) + fit->shift;
-    }
-    fitted = fit_mapping(places(at.located), at.pixels, scale);
-  }
-  // A third of the residual remains when one of eight is removed: F(2, 10) = 40, for a given one by chance once in 60
-  // 000. Below 0.02 px it has no effect.
-  constexpr double decisive = 3;
-  constexpr double harmless_px = 0.02;
-  while (static_cast<int>(at.located.size()) > search.options.min_triangles && fitted.residual_px > harmless_px) {
-    const auto [worst, others] = without_worst(at, scale);
-    const bool acceptable = fitted.residual_px <= search.options.max_residual_px;
-    if (acceptable && others.residual_px * decisive > fitted.residual_px) break;
-    at.located.erase(at.located.begin() + static_cast<std::ptrdiff_t>(worst));
-    at.pixels.erase(at.pixels.begin() + static_cast<std::ptrdiff_t>(worst));
-    fitted = others;
-  }
-  return fitted;
-}
 
 tl::unexpected<Error> contradiction(const TargetPlate& plate, const std::string& what) {
   return fail(ErrorCode::calibration, "plate \"" + plate.name + "\" " + what);
@@ -247,16 +82,16 @@ tl::unexpected<Error> stretched(const TargetPlate& plate, const cv::Matx33d& map
 
 /// The mapping by which a picture with unequal scales shows the plate as it is mounted, if it does: of the layouts
 /// drawn with several ratios that with the most located triangles, then the smallest residual.
-std::optional<cv::Matx33d> stretched_mapping(const Search& search, const TargetPlate& plate) {
+std::optional<cv::Matx33d> stretched_mapping(const PlateSearch& search, const TargetPlate& plate) {
   std::size_t most = 0;
   FittedMapping best;
   for (const double ratio : {1.1, 1 / 1.1, 1.2, 1 / 1.2, 1.3, 1 / 1.3}) {
     const double wide = std::sqrt(ratio);
     TargetPlate drawn = plate;
     for (PlateTriangle& t : drawn.triangles) t.position_mm = {t.position_mm.x * wide, t.position_mm.y / wide};
-    const auto found = attempt(search, drawn, Mounting::identity);
+    const auto found = attempt_mounting(search, drawn, Mounting::identity);
     if (!found || !found->agrees() || static_cast<int>(found->located.size()) < search.options.min_triangles) continue;
-    std::vector<cv::Point2d> of_file = places(found->located);
+    std::vector<cv::Point2d> of_file = places_of(found->located);
     for (cv::Point2d& p : of_file) p = {p.x / wide, p.y * wide};
     const FittedMapping fitted = fit_mapping(of_file, found->pixels, search.options.expected_scale_px_per_mm);
     // A layout that fits by chance has scales unlike those with which it was drawn.
@@ -269,32 +104,22 @@ std::optional<cv::Matx33d> stretched_mapping(const Search& search, const TargetP
   return best.plate_to_pixel;
 }
 
-/// Blobs of the sizes that the large triangles have at the expected scale.
-Search search_for(const cv::Mat1d& picture, const TargetPlate& plate, const RegistrationOptions& options) {
-  const double scale = options.expected_scale_px_per_mm;
-  const auto large = triangles_from(plate, options.min_triangle_px / scale);
-  const auto [smallest, largest] = std::ranges::minmax(large, {}, &PlateTriangle::size_mm);
-  const double low = smallest.size_mm * scale * (1 - scale_range);
-  const double high = largest.size_mm * scale * (1 + scale_range);
-  return {picture, options, {find_warm_blobs(picture, low, high), find_warm_blobs(-picture, low, high)}};
-}
-
 /// Pixels per millimetre of a picture that shows the plate as it is mounted, but at a scale beyond the range that is
 /// searched otherwise.
-std::optional<double> scale_of_another_distance(const Search& search, const TargetPlate& plate) {
+std::optional<double> scale_of_another_distance(const PlateSearch& search, const TargetPlate& plate) {
   RegistrationOptions options = search.options;
   options.min_triangles = std::min(credible_pairs, options.min_triangles);
   for (const double factor : {1.45, 0.7, 2.0, 0.5, 2.8, 0.35, 4.0, 0.25}) {
     options.expected_scale_px_per_mm = factor * search.options.expected_scale_px_per_mm;
     if (!check_input(search.picture, plate, options)) continue;
-    const Search there = search_for(search.picture, plate, options);
-    auto found = attempt(there, plate, Mounting::identity);
+    const PlateSearch there = search_for(search.picture, plate, options);
+    auto found = attempt_mounting(there, plate, Mounting::identity);
     if (!found || !found->agrees() || static_cast<int>(found->located.size()) < options.min_triangles) continue;
-    const FittedMapping fitted = refine(there, *found);
+    const FittedMapping fitted = refine_attempt(there, *found);
     const double scale = std::sqrt(std::abs(cv::determinant(jacobian(fitted.plate_to_pixel, {0, 0}))));
     const bool fits = fitted.residual_px <= options.max_residual_px &&
                       std::abs(stretch_of(fitted.plate_to_pixel)) <= options.max_stretch;
-    if (fits && std::abs(scale / search.options.expected_scale_px_per_mm - 1) > scale_range) return scale;
+    if (fits && std::abs(scale / search.options.expected_scale_px_per_mm - 1) > searched_scale_range) return scale;
   }
   return std::nullopt;
 }
@@ -308,10 +133,11 @@ tl::unexpected<Error> of_unplanned_scale(const TargetPlate& plate, double scale,
 }
 
 /// Why the stated mounting was not found: another mounting, another scale, unequal scales, or too few matches.
-tl::unexpected<Error> explain(const Search& search, const TargetPlate& plate, const std::optional<Attempt>& stated) {
+tl::unexpected<Error> explain(const PlateSearch& search, const TargetPlate& plate,
+                              const std::optional<PlateAttempt>& stated) {
   for (const Mounting relative : all_mountings) {
     if (relative == Mounting::identity) continue;
-    const auto other = attempt(search, plate, relative);
+    const auto other = attempt_mounting(search, plate, relative);
     if (other && other->pairs() >= std::min(credible_pairs, search.options.min_triangles) && other->agrees() &&
         static_cast<int>(other->located.size()) >= std::min(credible_pairs, search.options.min_triangles)) {
       return contradiction(plate, "seems to be mounted " + std::string(to_string(other->mounting)) + ", not " +
@@ -339,7 +165,7 @@ tl::unexpected<Error> explain(const Search& search, const TargetPlate& plate, co
                                   " point as stated, and no other mounting fits better: check which plate is inserted");
 }
 
-Registration describe(const FittedMapping& fitted, const Attempt& at, double expected_scale) {
+Registration describe(const FittedMapping& fitted, const PlateAttempt& at, double expected_scale) {
   Registration r;
   r.plate_to_pixel = fitted.plate_to_pixel;
   r.mapping = fitted.mapping;
@@ -395,9 +221,9 @@ Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate&
                                     const RegistrationOptions& options) {
   if (auto checked = check_input(picture, mounted_plate, options); !checked) return tl::unexpected(checked.error());
   const double scale = options.expected_scale_px_per_mm;
-  const Search search = search_for(picture, mounted_plate, options);
+  const PlateSearch search = search_for(picture, mounted_plate, options);
 
-  auto found = attempt(search, mounted_plate, Mounting::identity);
+  auto found = attempt_mounting(search, mounted_plate, Mounting::identity);
   if (!found || !found->agrees()) return explain(search, mounted_plate, found);
   if (static_cast<int>(found->located.size()) < options.min_triangles) {
     const std::string outside = outside_picture(mounted_plate, found->match.plate_to_pixel, picture.size());
@@ -407,7 +233,7 @@ Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate&
                              " of " + std::to_string(found->large.size()) + " large ones were located, " +
                              std::to_string(options.min_triangles) + " are needed");
   }
-  const FittedMapping fitted = refine(search, *found);
+  const FittedMapping fitted = refine_attempt(search, *found);
   const Registration result = describe(fitted, *found, scale);
   if (result.residual_px > options.max_residual_px) {
     return contradiction(mounted_plate, "does not fit its file: the located triangles are " +

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plate laid over a picture in one mounting: which large triangles show where the layout has them.
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "tod/registration/blob_finder.h"
+#include "tod/registration/layout_matching.h"
+#include "tod/registration/plate_mapping.h"
+#include "tod/registration/registration.h"
+
+namespace todbench {
+
+inline constexpr double first_blur_px = 0.45;        ///< optics, detector and sampling box of a focused camera
+inline constexpr double searched_scale_range = 0.3;  ///< searched, relative, so that a wrong scale can be reported
+inline constexpr int credible_pairs = 4;             ///< fewer blobs fit any layout by chance
+inline constexpr double agreement_needed = 0.75;     ///< of the large triangles must point as the plate states
+
+/// Constant data of the attempts at one scale. Borrows picture and options.
+struct PlateSearch {
+  const cv::Mat1d& picture;
+  const RegistrationOptions& options;
+  std::array<std::vector<Blob>, 2> blobs;  ///< warm, cold
+};
+
+/// The plate in one mounting, laid over the picture.
+struct PlateAttempt {
+  Mounting mounting = Mounting::identity;
+  double sign = 1;
+  std::vector<PlateTriangle> large;
+  LayoutMatch match;
+  std::vector<PlateTriangle> located;  ///< those with the stated orientation
+  std::vector<cv::Point2d> pixels;     ///< their centroids
+  int judged = 0;                      ///< large triangles whose orientation could be determined
+  double blur_px = first_blur_px;
+  [[nodiscard]] int pairs() const { return static_cast<int>(match.pairs.size()); }
+  [[nodiscard]] bool agrees() const {
+    return judged > 0 && static_cast<double>(located.size()) >= agreement_needed * judged;
+  }
+};
+
+/// Finds the blobs of the sizes that the large triangles have at the expected scale. Precondition: there are some.
+[[nodiscard]] PlateSearch search_for(const cv::Mat1d& picture, const TargetPlate& plate,
+                                     const RegistrationOptions& options);
+
+/// Matches the layout in one mounting with the warm and with the cold blobs; returns the better one, with judged
+/// orientations. Empty: no arrangement fits.
+[[nodiscard]] std::optional<PlateAttempt> attempt_mounting(const PlateSearch& search, const TargetPlate& plate,
+                                                           Mounting relative);
+
+/// Improves mapping, places and blur in turn. Then leaves out triangles displaced by a bad pixel or dirt while enough
+/// remain.
+[[nodiscard]] FittedMapping refine_attempt(const PlateSearch& search, PlateAttempt& at);
+
+/// Places of the triangles on the plate, in mm.
+[[nodiscard]] std::vector<cv::Point2d> places_of(const std::vector<PlateTriangle>& triangles);
+
+}  // namespace todbench
