@@ -76,6 +76,11 @@ class MeasurePresenter final : public QObject {
     return replayed_ && same_.value_or(false) ? *replayed_ : folder_;
   }
 
+  /// Plan of the session whose frames were replayed last; empty: the frames are those of a run.
+  [[nodiscard]] std::optional<Plan> replayed_plan() const {
+    return replayed_ && outcome_ ? std::optional(plan_) : std::nullopt;
+  }
+
   /// Curves of the camera and of its twin: fitted during the run, afterwards the results of the session.
   [[nodiscard]] const std::optional<TodCurve>& measured() const { return measured_; }
   [[nodiscard]] const std::optional<TodCurve>& twin() const { return twin_; }

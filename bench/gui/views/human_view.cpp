@@ -365,6 +365,7 @@ void HumanView::show_state() {
                         !naked_eye_->predicting() && !presenter_.preparing());
   criterion_->setEnabled(question_->isEnabled());
   alternatives_->setVisible(!triangles() && running(person_.state()));
+  limits_->set_replayed_plan(measured_.replayed_plan());
   limits_->setVisible(of_frames() && !running(presenter_.state()) && !presenter_.preparing());
   if (question_->currentIndex() == of_naked_eye)
     show_naked_eye();

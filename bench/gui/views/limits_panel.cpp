@@ -4,6 +4,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
+#include <utility>
 
 #include "bench/gui/presenters/plan_advice.h"
 #include "bench/gui/presenters/workbench.h"
@@ -47,12 +48,21 @@ void LimitsPanel::hideEvent(QHideEvent* event) {
   asked_.reset();
 }
 
+void LimitsPanel::set_replayed_plan(std::optional<Plan> plan) {
+  replayed_ = std::move(plan);
+  follow_plan();
+}
+
+const Plan& LimitsPanel::plan() const {
+  return replayed_ ? *replayed_ : bench_.plan();
+}
+
 void LimitsPanel::follow_plan() {
-  if (isVisible() && asked_ != bench_.plan()) ask();
+  if (isVisible() && asked_ != plan()) ask();
 }
 
 void LimitsPanel::ask() {
-  asked_ = bench_.plan();
+  asked_ = plan();
   stopped_ = false;
   advice_->ask(*asked_);
 }

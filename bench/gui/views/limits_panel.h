@@ -22,6 +22,8 @@ class LimitsPanel final : public QWidget {
 
  public:
   explicit LimitsPanel(Workbench& bench, QWidget* parent = nullptr);
+  /// Plan of the frames that a person would judge; empty: the plan of the workbench.
+  void set_replayed_plan(std::optional<Plan> plan);
 
  protected:
   void showEvent(QShowEvent* event) override;
@@ -32,7 +34,10 @@ class LimitsPanel final : public QWidget {
   void ask();
   void show_advice();
 
+  [[nodiscard]] const Plan& plan() const;
+
   Workbench& bench_;
+  std::optional<Plan> replayed_;
   PlanAdvice* advice_;
   QLabel* text_;
   QPushButton* button_;        ///< stops the calculation, or starts it again after it was stopped

@@ -309,7 +309,11 @@ TEST(HumanObserver, AddsToTheRecordedSessionOnAnotherDay) {
   ASSERT_TRUE(wait_until([&] { return window->measure().state() == RunState::idle; }));
   ASSERT_EQ(window->measure().same_as_recorded(), std::optional(true));
 
+  plan.simulation.sensor = "no-such-sensor";
+  window->bench().set_plan(plan);
   window->show_view(View::human);
+  EXPECT_TRUE(wait_until([&] { return window.part<QLabel>("acuityLimits").text().contains("of sc2000 for"); }))
+      << "limits of the session's sensor";
   window.part<QLineEdit>("personCode").setText("P7");
   window.part<QSpinBox>("humanPerSize").setValue(1);
   window.click("beginHuman");
