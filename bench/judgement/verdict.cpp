@@ -121,6 +121,11 @@ bool limits_asked(const Verdict& verdict) {
                      [](const Demand& demand) { return demand.kind != DemandKind::identified; });
 }
 
+std::string_view decision_word(const Verdict& verdict) {
+  const bool nothing_to_judge = verdict.decision == VerdictKind::pass && !limits_asked(verdict);
+  return nothing_to_judge ? "not judged" : to_string(verdict.decision);
+}
+
 Verdict judge(const JudgementInput& evidence) {
   const LimitsPlan& limits = evidence.limits;
   Verdict verdict{.rule = limits.rule,

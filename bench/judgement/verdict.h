@@ -139,6 +139,8 @@ struct JudgementInput {
 
 /// Returns whether the plan has limits. Without limits a verdict states only whether every threshold was found.
 [[nodiscard]] bool limits_asked(const Verdict& verdict);
+/// The decision as a word; "not judged" in place of "pass" if the plan has no limits.
+[[nodiscard]] std::string_view decision_word(const Verdict& verdict);
 
 /// Returns whether a fit identifies the threshold: it has a value and both ends of its interval, the slope is not at
 /// its lower bound, and the likelihood has no ridge (fewer sizes than parameters).

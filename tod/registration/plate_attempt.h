@@ -19,7 +19,7 @@ inline constexpr double searched_scale_range = 0.3;  ///< searched, relative, so
 inline constexpr int credible_pairs = 4;             ///< fewer blobs fit any layout by chance
 inline constexpr double agreement_needed = 0.75;     ///< of the large triangles must point as the plate states
 
-/// Constant data of the attempts at one scale. Borrows picture and options.
+/// Data that all attempts at one scale share. Borrows picture and options.
 struct PlateSearch {
   const cv::Mat1d& picture;
   const RegistrationOptions& options;

@@ -61,6 +61,11 @@ std::string percent(double share) {
   return fixed(100 * share, 1) + " %";
 }
 
+/// Pixels per millimetre at a place, mean of both axes.
+double mean_scale(const cv::Matx33d& mapping, cv::Point2d plate_mm) {
+  return std::sqrt(std::abs(cv::determinant(jacobian(mapping, plate_mm))));
+}
+
 /// Pixels per millimetre along the rows and along the columns of the plate.
 cv::Point2d axis_scales(const cv::Matx33d& mapping) {
   const cv::Matx22d j = jacobian(mapping, {0, 0});
@@ -116,7 +121,7 @@ std::optional<double> scale_of_another_distance(const PlateSearch& search, const
     auto found = attempt_mounting(there, plate, Mounting::identity);
     if (!found || !found->agrees() || static_cast<int>(found->located.size()) < options.min_triangles) continue;
     const FittedMapping fitted = refine_attempt(there, *found);
-    const double scale = std::sqrt(std::abs(cv::determinant(jacobian(fitted.plate_to_pixel, {0, 0}))));
+    const double scale = mean_scale(fitted.plate_to_pixel, {0, 0});
     const bool fits = fitted.residual_px <= options.max_residual_px &&
                       std::abs(stretch_of(fitted.plate_to_pixel)) <= options.max_stretch;
     if (fits && std::abs(scale / search.options.expected_scale_px_per_mm - 1) > searched_scale_range) return scale;
@@ -172,7 +177,7 @@ Registration describe(const FittedMapping& fitted, const PlateAttempt& at, doubl
   r.residual_px = fitted.residual_px;
   r.triangles_used = static_cast<int>(at.located.size());
   const cv::Matx22d j = jacobian(r.plate_to_pixel, {0, 0});
-  r.scale_px_per_mm = std::sqrt(std::abs(cv::determinant(j)));
+  r.scale_px_per_mm = mean_scale(r.plate_to_pixel, {0, 0});
   // Rotation part of the polar decomposition.
   r.rotation_deg = std::atan2(j(1, 0) - j(0, 1), j(0, 0) + j(1, 1)) * 180 / std::numbers::pi;
   r.scale_deviation = r.scale_px_per_mm / expected_scale - 1;
@@ -202,7 +207,7 @@ cv::Point2d Registration::pixel(cv::Point2d plate_mm) const {
 }
 
 double Registration::scale_at(cv::Point2d plate_mm) const {
-  return std::sqrt(std::abs(cv::determinant(jacobian(plate_to_pixel, plate_mm))));
+  return mean_scale(plate_to_pixel, plate_mm);
 }
 
 Registration Registration::shifted(cv::Point2d shift_mm) const {

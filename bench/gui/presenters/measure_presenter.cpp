@@ -364,11 +364,8 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
     measured_ = outcome->curve;
     twin_ = outcome->twin;
     if (!outcome->ended_by) done_ = planned_ = presented_;
-    const Verdict& verdict = outcome->verdict;
     phase_ = outcome->ended_by ? "ended early: " + QString::fromStdString(outcome->ended_by->message)
-             : verdict.decision == VerdictKind::pass && !limits_asked(verdict)
-                 ? QString("not judged: the plan has no limits")
-                 : "verdict: " + QString::fromUtf8(to_string(verdict.decision).data());
+                               : "verdict: " + QString::fromUtf8(decision_word(outcome->verdict).data());
     if (same_)
       phase_ = (*same_ ? "✓ replayed: trials and fits are the same, byte for byte; "
                        : "✗ replayed: the answers DIFFER from those of the session; ") +

@@ -31,7 +31,7 @@ QString heading_of(LimitingFactor factor) {
   return QString::fromStdString(std::string(to_string(factor))).replace('_', ' ');
 }
 
-/// Those that the observer has.
+/// Factors with an estimate at one contrast or more: an observer does not have all of them.
 std::vector<LimitingFactor> factors_of(const std::vector<AcuityLimits>& limits) {
   std::vector<LimitingFactor> factors;
   for (const LimitingFactor factor : all_limiting_factors) {

@@ -40,12 +40,12 @@ Plan without_tolerance(Plan plan) {
 }
 
 struct LookAhead {
-  std::optional<std::vector<ExpectedThreshold>> expected;
+  std::vector<ExpectedThreshold> expected;
   QString misfit;
 };
 
-/// `expected`: the thresholds of the plan, if already known.
-Result<LookAhead> looked_ahead(const LoadedPlan& loaded, std::optional<std::vector<ExpectedThreshold>> expected,
+/// `expected`: the thresholds of the plan if they are known, otherwise empty.
+Result<LookAhead> looked_ahead(const LoadedPlan& loaded, std::vector<ExpectedThreshold> expected,
                                EffectPlanner& planner, const std::stop_token& stop) {
   LookAhead out{.expected = std::move(expected), .misfit = {}};
   auto inputs = experiment_inputs(loaded, planner);
@@ -54,7 +54,7 @@ Result<LookAhead> looked_ahead(const LoadedPlan& loaded, std::optional<std::vect
     return out;
   }
   if (auto fits = check_simulated_geometry(loaded.plan(), *inputs); !fits) out.misfit = sentence(fits.error());
-  if (!out.expected) {
+  if (out.expected.empty()) {
     TODBENCH_TRY(out.expected, expected_thresholds(loaded.plan(), *std::move(inputs), stop));
   }
   return out;
@@ -212,7 +212,7 @@ void PlanPresenter::refresh() {
   if (loaded_) {
     outlook_ = todbench::outlook(loaded_->plan(), loaded_->plates(), forecast_ ? &*forecast_ : nullptr,
                                  frame_rate_hz(*loaded_));
-    // The thresholds of the forecast are those of the planner's first tier.
+    // Until the direct estimates are known, the forecast has thresholds of the planner that may be 6 % low.
     for (PlannedContrast& contrast : outlook_.contrasts) {
       const auto known = std::ranges::find(expected_, contrast.delta_t_k, &ExpectedThreshold::delta_t_k);
       contrast.s75_mrad = known == expected_.end() ? std::nullopt : known->s75_mrad;
@@ -235,7 +235,8 @@ void PlanPresenter::foresee() {
       if (seen) forecast_ = *seen;
       refresh();
     });
-    if (!seen || priced || measuring) return;
+    // Prices are of the direct estimates: foresee() runs again when these are known.
+    if (!seen || known.empty() || priced || measuring) return;
     auto prices = accuracy_prices(loaded, *seen, known, frame_rate_hz(loaded), planner_, stop);
     if (stop.stop_requested()) return;
     bench_.post([this, plan, prices = std::move(prices)] {
@@ -253,17 +254,15 @@ void PlanPresenter::look_ahead() {
   if (bench_.activity() == Activity::measuring || bench_.activity() == Activity::replaying) return;
   jobs_.start([this, loaded = *loaded_, known = expected_](const std::stop_token& stop) {
     const Plan& plan = loaded.plan();
-    auto seen = looked_ahead(loaded, known.empty() ? std::nullopt : std::optional(known), planner_, stop);
+    auto seen = looked_ahead(loaded, known, planner_, stop);
     if (!seen && seen.error().code == ErrorCode::interrupted) return;
     bench_.post([this, plan, known, seen = std::move(seen)] {
       if (plan != bench_.plan()) return;
       expected_of_ = plan;
-      expected_ = seen && seen->expected ? *seen->expected : std::vector<ExpectedThreshold>();
+      expected_ = seen ? seen->expected : std::vector<ExpectedThreshold>();
       misfit_ = seen ? seen->misfit : sentence(seen.error());
       refresh();
-      if (expected_ == known) return;
-      prices_.clear();
-      foresee();
+      if (expected_ != known) foresee();
     });
   });
 }

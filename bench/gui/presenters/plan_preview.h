@@ -23,7 +23,7 @@ struct ExpectedThreshold {
   bool operator==(const ExpectedThreshold&) const = default;
 };
 
-/// Computes direct estimates as `todbench plan` does (bench/twin/direct_results.h), in some seconds. Errors:
+/// Refines the thresholds of `inputs` by direct estimates, as `todbench plan` does. Takes some seconds. Errors:
 /// `interrupted`.
 [[nodiscard]] Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, ExperimentInputs inputs,
                                                                          std::stop_token stop);
@@ -44,7 +44,7 @@ struct PlanForecast {
   std::string problem;           ///< why the tolerance cannot be met; empty: it can
 };
 
-/// `known`: thresholds that replace those of the planner's first tier, where there are any. Errors: `interrupted`.
+/// `known`: thresholds in place of those that the planner estimates first; may be empty. Errors: `interrupted`.
 /// `planner` caches decisions that changes of tolerance and trials do not affect.
 [[nodiscard]] Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<ExpectedThreshold>& known,
                                             EffectPlanner& planner, std::stop_token stop = {});

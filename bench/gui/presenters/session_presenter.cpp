@@ -51,8 +51,7 @@ QString verdict_of(const std::filesystem::path& folder) {
   if (json.is_discarded()) return {};
   const auto verdict = verdict_from(json);
   if (!verdict) return {};
-  if (verdict->decision == VerdictKind::pass && !limits_asked(*verdict)) return "not judged";
-  const auto word = to_string(verdict->decision);
+  const auto word = decision_word(*verdict);
   return QString::fromUtf8(word.data(), static_cast<qsizetype>(word.size()));
 }
 
