@@ -31,6 +31,12 @@ std::uint64_t ignored_bytes(ArvStream* stream) {
   return usb ? arv_stream_get_info_uint64_by_name(stream, "n_ignored_bytes") : 0;
 }
 
+std::uint64_t underruns(ArvStream* stream) {
+  guint64 completed = 0, failed = 0, without_buffer = 0;
+  if (stream != nullptr) arv_stream_get_statistics(stream, &completed, &failed, &without_buffer);
+  return without_buffer;
+}
+
 FrameNumberKind number_kind(ArvDevice* device, AravisTransport transport) {
   if (transport == AravisTransport::usb3_vision) return FrameNumberKind::wide;
   const auto extended = get_feature(device, "GevGVSPExtendedIDMode").value_or("Off");
@@ -58,7 +64,9 @@ void AravisSource::on_stream_event(void* data, ArvStreamCallbackType type, ArvBu
   {
     const std::lock_guard lock(events.mutex);
     // Frames over USB are consecutive: bytes discarded since this one began were its own.
-    events.arrivals.push_back({.host_time_ns = monotonic_ns(), .oversized = ignored != tap.ignored_bytes});
+    events.arrivals.push_back({.host_time_ns = monotonic_ns(),
+                               .oversized = ignored != tap.ignored_bytes,
+                               .underruns = underruns(tap.stream)});
     events.last_sign_of_life = Clock::now();
     events.failed_pings = 0;
   }
@@ -102,6 +110,7 @@ Result<void> AravisSource::start() {
     arv_stream_push_buffer(stream->get(), new_frame_buffer(buffer_bytes(format_)).release());
   }
   frames_of_wrong_size_ = 0;
+  last_sequence_ = known_underruns_ = 0;
   sequence_ = FrameSequence(number_kind(arv_camera_get_device(camera_.get()), options_.transport), info_.frame_rate_hz);
   {
     const std::lock_guard lock(events_->mutex);
@@ -184,6 +193,12 @@ Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
                                                .may_pause = frame->host_time_ns < may_pause_until_ns_});
       frame->sequence = place.sequence;
       frame->numbering = place.numbering;
+      const bool gap = frame->sequence > last_sequence_ + 1;
+      if (gap && frame->numbering == Numbering::counted && arrived.underruns > known_underruns_) {
+        frame->numbering = Numbering::unread;
+      }
+      if (gap || frame->sequence == 0) known_underruns_ = arrived.underruns;
+      last_sequence_ = std::max(last_sequence_, frame->sequence);
       frame->scale = scale_;
     }
     clear_frame_id(buffer.get());

@@ -23,6 +23,8 @@ std::string_view to_string(Numbering numbering) {
       return "restarted";
     case Numbering::timed:
       return "timed";
+    case Numbering::unread:
+      return "unread";
   }
   return "unknown";
 }

@@ -62,11 +62,16 @@ std::string_view to_string(Rejection reason) {
 }
 
 std::string describe(const NumberingFaults& faults) {
-  if (faults == NumberingFaults()) return {};
-  std::string text = "The frame numbers of the camera do not agree with the elapsed time. Restarts of the numbers: " +
-                     std::to_string(faults.restarts) +
-                     ". Pauses without missing numbers: " + std::to_string(faults.silent_gaps) +
-                     ". Lost frames estimated from the time: " + std::to_string(faults.estimated_lost) + ".";
+  std::string text;
+  if (faults.restarts + faults.silent_gaps > 0) {
+    text = "The frame numbers of the camera do not agree with the elapsed time. Restarts of the numbers: " +
+           std::to_string(faults.restarts) + ". Pauses without missing numbers: " + std::to_string(faults.silent_gaps) +
+           ". Lost frames estimated from the time: " + std::to_string(faults.estimated_lost) + ".";
+  }
+  if (faults.unread > 0) {
+    text += (text.empty() ? "" : " ") + std::to_string(faults.unread) +
+            " of the lost frames arrived while the program was busy and found its buffers full.";
+  }
   return text;
 }
 
@@ -82,7 +87,9 @@ std::optional<Rejection> IntegrityGate::judge_sequence(const Frame& frame) {
   if (!last || frame.sequence == *last + 1) return std::nullopt;
   const std::uint64_t missing = frame.sequence - *last - 1;
   lost_ += missing;
-  if (frame.numbering != Numbering::counted) numbering_.estimated_lost += missing;
+  const bool estimated = frame.numbering == Numbering::restarted || frame.numbering == Numbering::timed;
+  if (estimated) numbering_.estimated_lost += missing;
+  if (frame.numbering == Numbering::unread) numbering_.unread += missing;
   return Rejection::gapped;
 }
 

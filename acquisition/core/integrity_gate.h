@@ -32,11 +32,12 @@ inline constexpr Rejection all_rejections[] = {
 
 [[nodiscard]] std::string_view to_string(Rejection reason);
 
-/// Inconsistencies of the frame numbers.
+/// Inconsistencies of the frame numbers, and losses that the program caused.
 struct NumberingFaults {
   std::uint64_t restarts = 0;        ///< Numbering::restarted
   std::uint64_t silent_gaps = 0;     ///< Numbering::timed
   std::uint64_t estimated_lost = 0;  ///< exposures missing in both cases; included in lost()
+  std::uint64_t unread = 0;          ///< exposures missing before Numbering::unread; included in lost()
   bool operator==(const NumberingFaults&) const = default;
 };
 
@@ -64,7 +65,7 @@ class IntegrityGate {
   [[nodiscard]] std::uint64_t accepted() const { return accepted_; }
   [[nodiscard]] std::uint64_t rejected() const;
   [[nodiscard]] const std::map<Rejection, std::uint64_t>& rejected_by_reason() const { return rejected_; }
-  /// Exposures that never arrived: the sum of the gaps in the sequence.
+  /// Exposures that never arrived: the sum of the gaps in the sequence, including NumberingFaults::unread.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
   /// Disagreements of the camera's numbers with the elapsed time, and the part of lost() that is estimated from time.
   [[nodiscard]] const NumberingFaults& numbering() const { return numbering_; }

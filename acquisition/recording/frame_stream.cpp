@@ -100,7 +100,7 @@ struct FramePlace {
 
 bool plausible(const FrameHead& head, std::uint32_t payload_bytes) {
   return payload_bytes == sizeof(FrameHead) + std::size_t{2} * head.width * head.height && head.status <= 2 &&
-         head.correction <= 2 && head.numbering <= 2 && head.significant_bits >= 1 && head.significant_bits <= 16;
+         head.correction <= 2 && head.numbering <= 3 && head.significant_bits >= 1 && head.significant_bits <= 16;
 }
 
 Result<RecordedFrame> read_frame(const File& file, const FramePlace& place) {

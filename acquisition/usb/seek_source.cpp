@@ -187,6 +187,7 @@ Frame SeekSource::frame_of(const SeekArrival& arrival) {
                                            .may_pause = std::exchange(corrected_last_, corrects) || corrects});
   frame.sequence = place.sequence;
   frame.numbering = place.numbering;
+  if (arrival.after_unread && frame.numbering == Numbering::counted) frame.numbering = Numbering::unread;
   if (!parsed) {
     frame.status = FrameStatus::incomplete;
     frame.counts = cv::Mat1w::zeros(info_.height, info_.width);

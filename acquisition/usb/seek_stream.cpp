@@ -140,9 +140,11 @@ void SeekStream::deliver() {
   if (arrivals_.size() >= most_waiting_) {
     // A slow reader loses the newest frames except the shutter's, on which later frames depend.
     const auto parsed = parse_seek_frame(arrival.bytes, model_);
+    overflowed_ = true;
     if (!parsed || !parsed->is(SeekFrameKind::shutter)) return;
     arrivals_.pop_back();
   }
+  arrival.after_unread = std::exchange(overflowed_, false);
   arrivals_.push_back(std::move(arrival));
   changed_.notify_all();
 }

@@ -21,6 +21,7 @@ namespace todbench {
 struct SeekArrival {
   std::vector<std::uint8_t> bytes;  ///< fewer than a frame if the transfer ended early
   std::int64_t host_time_ns = 0;    ///< CLOCK_MONOTONIC at the end of the transfer
+  bool after_unread = false;        ///< frames directly before this one were dropped for a slow reader
 };
 
 /// Requests and receives frames on a thread of its own from creation to end().
@@ -71,7 +72,8 @@ class SeekStream {
   std::mutex mutex_;  ///< guards the following members
   std::condition_variable changed_;
   std::deque<SeekArrival> arrivals_;
-  bool under_way_ = false;  ///< a transfer has been submitted and its callback has not run
+  bool overflowed_ = false;  ///< since the last arrival
+  bool under_way_ = false;   ///< a transfer has been submitted and its callback has not run
   bool ending_ = false, lost_ = false;
   libusb_transfer* submitted_ = nullptr;
 

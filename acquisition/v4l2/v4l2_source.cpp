@@ -310,7 +310,9 @@ void V4l2Source::keep(const VideoBuffer& buffer) {
   {
     const std::lock_guard lock(inbox_.mutex);
     // A slow reader loses the newest frames, which shows as a gap.
-    if (inbox_.arrivals.size() < most_arrivals) inbox_.arrivals.push_back(std::move(arrival));
+    const bool full = inbox_.arrivals.size() >= most_arrivals;
+    arrival.after_unread = std::exchange(inbox_.overflowed, full);
+    if (!full) inbox_.arrivals.push_back(std::move(arrival));
   }
   inbox_.changed.notify_all();
 }
@@ -341,6 +343,7 @@ std::optional<Frame> V4l2Source::finished(Arrival arrival) {
                       .may_pause = corrects || corrected || frame.host_time_ns < may_pause_until_ns_});
   frame.sequence = place.sequence;
   frame.numbering = place.numbering;
+  if (arrival.after_unread && frame.numbering == Numbering::counted) frame.numbering = Numbering::unread;
   const bool assumed = layout_.kelvin_per_count > 0 && !stated_kelvin_per_count_;
   frame.scale = assumed && beyond_high_gain(frame.counts) ? no_scale() : scale_;
   return std::move(frame);

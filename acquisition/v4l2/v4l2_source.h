@@ -43,6 +43,7 @@ class V4l2Source final : public FrameSource {
     Frame frame;  ///< without sequence and scale
     std::uint32_t sequence = 0;
     std::optional<LeptonTelemetry> telemetry;
+    bool after_unread = false;  ///< frames directly before this one found the inbox full
   };
 
   /// State shared by the receiving thread and the reader.
@@ -50,6 +51,7 @@ class V4l2Source final : public FrameSource {
     std::mutex mutex;
     std::condition_variable changed;
     std::deque<Arrival> arrivals;
+    bool overflowed = false;  ///< since the last arrival
     bool running = false;
     bool lost = false;
   };

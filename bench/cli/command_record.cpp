@@ -254,7 +254,8 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
                     {"numbering",
                      {{"restarts", recorded.numbering.restarts},
                       {"silent_gaps", recorded.numbering.silent_gaps},
-                      {"estimated_lost", recorded.numbering.estimated_lost}}}});
+                      {"estimated_lost", recorded.numbering.estimated_lost},
+                      {"unread", recorded.numbering.unread}}}});
   } else {
     print_source(console, info);
     std::string doubtful;

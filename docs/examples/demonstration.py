@@ -9,6 +9,8 @@ def main(folder):
     plan = tb.demonstration_plan()
     laboratory = tb.Laboratory(plan)
     run = tb.measure(laboratory.plan(plan), folder, on_phase=lambda phase: print(phase, file=sys.stderr))
+    if run.ended_by:
+        sys.exit(f"ended early: {run.ended_by}")
     print("dT [K]  measured [1/mrad]  95 %            simulated  ratio  verdict")
     for point in run.comparison.points:
         measured, twin = (next(one.fit for one in curve.points if one.set_delta_t_k == point.set_delta_t_k)

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <future>
+#include <thread>
+#include <utility>
 
 namespace todbench::testing_support {
 
@@ -54,20 +56,46 @@ void expect_not_found(const OpenedSource& source, const std::string& told) {
   EXPECT_THAT(source.error().message, HasSubstr(told));
 }
 
+namespace {
+
+/// The exposures missing before the first frame with a gap after `last`, which it replaces, and that frame's numbering.
+/// A gap of 0: none within a thousand frames.
+std::pair<std::uint64_t, Numbering> next_gap(FrameSource& source, Frame& last) {
+  for (int k = 0; k < most_frames; ++k) {
+    const auto frame = source.next(patience);
+    if (!frame) break;
+    const std::uint64_t gap = frame->sequence - last.sequence - 1;
+    last = *frame;
+    if (gap > 0) return {gap, frame->numbering};
+  }
+  return {0, Numbering::counted};
+}
+
+}  // namespace
+
 void expect_gap_of_lost_exposures(FrameSource& source, const std::function<void(unsigned)>& lose) {
   auto last = source.next(patience);
   ASSERT_TRUE(last);
 
   lose(3);
 
-  std::uint64_t gap = 0;
-  for (int k = 0; k < most_frames && gap == 0; ++k) {
-    const auto frame = source.next(patience);
-    ASSERT_TRUE(frame);
-    gap = frame->sequence - last->sequence - 1;
-    last = frame;
-  }
-  EXPECT_EQ(gap, 3U);
+  EXPECT_EQ(next_gap(source, *last), std::pair(std::uint64_t{3}, Numbering::counted));
+}
+
+void expect_unread_behind_a_slow_reader(FrameSource& source, const std::function<std::uint64_t()>& exposures,
+                                        std::uint64_t buffered, const std::function<void(unsigned)>& lose) {
+  auto last = source.next(patience);
+  ASSERT_TRUE(last);
+  const std::uint64_t enough = exposures() + buffered + 20;
+  while (exposures() < enough) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+
+  const auto [unread, numbering] = next_gap(source, *last);
+  lose(3);
+  const auto lost = next_gap(source, *last);
+
+  EXPECT_GT(unread, 0U);
+  EXPECT_EQ(numbering, Numbering::unread);
+  EXPECT_EQ(lost, std::pair(std::uint64_t{3}, Numbering::counted));
 }
 
 Result<Frame> next_damaged(FrameSource& source) {

@@ -134,16 +134,18 @@ double FrameTaker::since_nuc_s(const Frame& frame) const {
 
 Result<void> FrameTaker::check_share() const {
   // Frames rejected because of a correction do not count; exposures that never arrived do. A frame after a gap counts
-  // once for all that are missing before it.
-  std::uint64_t bad = gate_.lost();
-  std::string reasons = gate_.lost() > 0 ? std::to_string(gate_.lost()) + " lost" : "";
+  // once for all that are missing before it. Exposures that nobody took while the program computed say nothing about
+  // camera and cable.
+  const std::uint64_t lost = gate_.lost() - gate_.numbering().unread;
+  std::uint64_t bad = lost;
+  std::string reasons = lost > 0 ? std::to_string(lost) + " lost" : "";
   for (const auto& [reason, count] : gate_.rejected_by_reason()) {
     if (reason == Rejection::nonuniformity_correction || reason == Rejection::gapped) continue;
     bad += count;
     reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(to_string(reason));
   }
   bad -= std::min(bad, excused_ + cadence_.repeats());
-  const std::uint64_t all = seen_ + gate_.lost();
+  const std::uint64_t all = seen_ + lost;
   if (all < frames_before_share_counts ||
       static_cast<double>(bad) <= options_.max_rejected_share * static_cast<double>(all))
     return {};

@@ -33,6 +33,18 @@ TEST(GigeLoss, LostExposuresLeaveAGapOfExactlyThatManyFrames) {
   EXPECT_EQ(gap, 7U);
 }
 
+TEST(GigeLoss, FramesThatFoundTheBuffersFullAreUnread) {
+  EmulatedGigeCameraConfig config;
+  config.frame_rate_hz = 100;
+  const auto camera = start_camera(config);
+  const auto source = open_camera();
+  ASSERT_TRUE(source && source->start());
+
+  // Two seconds of frames are kept.
+  expect_unread_behind_a_slow_reader(
+      *source, [&] { return camera->exposures(); }, 200, [&](unsigned count) { camera->lose_exposures(count); });
+}
+
 TEST(GigeLoss, FramesWithMissingPacketsAreMarkedAndCompleteOnesAreTrue) {
   EmulatedGigeCameraConfig config;
   config.frame_rate_hz = 100;

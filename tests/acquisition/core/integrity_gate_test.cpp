@@ -70,6 +70,21 @@ TEST(IntegrityGate, CountsLostExposuresFromGapsInTheSequence) {
   EXPECT_EQ(gate.lost(), 3u);
 }
 
+TEST(IntegrityGate, CountsExposuresThatNobodyReadAmongTheLostOnes) {
+  IntegrityGate gate({});
+  Frame unread = frame(14);
+  unread.numbering = Numbering::unread;
+
+  EXPECT_EQ(gate.judge(frame(10)), std::nullopt);
+  EXPECT_EQ(gate.judge(unread), Rejection::gapped);
+  EXPECT_EQ(gate.judge(frame(16)), Rejection::gapped);
+
+  EXPECT_EQ(gate.lost(), 4u);
+  EXPECT_EQ(gate.numbering().unread, 3u);
+  EXPECT_EQ(describe(gate.numbering()),
+            "3 of the lost frames arrived while the program was busy and found its buffers full.");
+}
+
 TEST(IntegrityGate, CountsAnOldPictureUnderANewNumberAsRepeated) {
   IntegrityGate gate({});
   for (std::uint64_t k = 0; k < 6; ++k) EXPECT_EQ(gate.judge(frame(k)), std::nullopt);

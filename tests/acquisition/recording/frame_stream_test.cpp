@@ -304,7 +304,7 @@ TEST_F(Recordings, OfACameraWithAnImpossibleFrameRateAreReadWithoutOne) {
 
 TEST_F(Recordings, KeepHowTheNumberOfAFrameCameAbout) {
   auto writer = FrameStreamWriter::create(file("a"), header());
-  for (const auto numbering : {Numbering::counted, Numbering::restarted, Numbering::timed}) {
+  for (const auto numbering : {Numbering::counted, Numbering::restarted, Numbering::timed, Numbering::unread}) {
     Frame f = frame(0);
     f.numbering = numbering;
     ASSERT_TRUE(writer->append(f).has_value());
@@ -312,7 +312,7 @@ TEST_F(Recordings, KeepHowTheNumberOfAFrameCameAbout) {
   const auto source = recorded_source(open_frame_stream(file("a"))->recording);
   ASSERT_TRUE(source->start());
 
-  for (const auto numbering : {Numbering::counted, Numbering::restarted, Numbering::timed})
+  for (const auto numbering : {Numbering::counted, Numbering::restarted, Numbering::timed, Numbering::unread})
     EXPECT_EQ(source->next(std::chrono::milliseconds(1))->numbering, numbering);
 }
 

@@ -171,6 +171,17 @@ TEST(SeekStreamOf, LostExposuresIsAGapOfTheirNumber) {
   expect_gap_of_lost_exposures(*source, [&](unsigned count) { bench.camera->lose_exposures(count); });
 }
 
+TEST(SeekStreamOf, FramesThatFoundTheBuffersFullAreUnread) {
+  const auto config = fast(SeekModel::compact);
+  const auto bench = plug_seek(config);
+  const auto source = open_seek(config);
+  ASSERT_TRUE(source && source->start());
+
+  expect_unread_behind_a_slow_reader(
+      *source, [&] { return bench.camera->exposures(); }, 128,
+      [&](unsigned count) { bench.camera->lose_exposures(count); });
+}
+
 TEST(SeekStreamOf, AFrameWithMissingBytesIsIncompleteAndTheNextIsGood) {
   const auto config = fast(SeekModel::compact);
   const auto bench = plug_seek(config);

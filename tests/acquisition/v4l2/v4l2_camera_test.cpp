@@ -214,6 +214,18 @@ TEST(V4l2Stream, LostExposuresAreAGapOfTheirNumber) {
   expect_gap_of_lost_exposures(*source, [&](unsigned count) { bench.camera->lose_exposures(count); });
 }
 
+TEST(V4l2Stream, FramesThatFoundTheBuffersFullAreUnread) {
+  auto config = small(VideoCameraKind::y16);
+  config.frame_rate_hz = 100;
+  const auto bench = start_video(config);
+  const auto source = open_video(config);
+  ASSERT_TRUE(source && source->start());
+
+  expect_unread_behind_a_slow_reader(
+      *source, [&] { return bench.camera->exposures(); }, 256,
+      [&](unsigned count) { bench.camera->lose_exposures(count); });
+}
+
 TEST(V4l2Stream, AFrameWithMissingBytesIsIncompleteAndTheNextIsGood) {
   const auto config = small(VideoCameraKind::y16);
   const auto bench = start_video(config);

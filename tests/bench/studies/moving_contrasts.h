@@ -207,7 +207,7 @@ inline MovingTruth truth_of(const SensorSpec& sensor, double delta_t_k, int part
 /// Figures of one contrast over the seeds of a study.
 struct MovingSummary {
   double delta_t_k = 0, bias_percent = 0, se_percent = 0, sd_percent = 0, half_percent = 0;
-  double truth_se_percent = 0;
+  double truth_mrad = 0, truth_se_percent = 0;
   int covered = 0, runs = 0;
 };
 
@@ -255,8 +255,10 @@ inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::u
   for (const auto& [delta_t_k, results] : by_contrast) {
     const MovingTruth truth = truth_of(design.camera, delta_t_k, parts_of_truth);
     const auto n = static_cast<double>(results.size());
-    MovingSummary sum{
-        .delta_t_k = delta_t_k, .truth_se_percent = 100 * truth.se, .runs = static_cast<int>(results.size())};
+    MovingSummary sum{.delta_t_k = delta_t_k,
+                      .truth_mrad = std::exp(truth.ln_s75),
+                      .truth_se_percent = 100 * truth.se,
+                      .runs = static_cast<int>(results.size())};
     double squares = 0;
     for (const MovingResult& one : results) {
       const double error = 100 * (one.ln_s75 - truth.ln_s75);

@@ -52,6 +52,29 @@ TEST(MeasurementFaults, TooManyBadFramesEndTheRunWithIntegrity) {
   EXPECT_THAT(error.message, testing::HasSubstr("incomplete"));
 }
 
+/// Every tenth frame of a run comes after ten that are missing.
+Result<MeasurementResult> run_with_gaps(Numbering numbering) {
+  const SmallBench bench;
+  DisturbedSource source(bench.camera(), [&](std::uint64_t index, Frame frame) -> Result<Frame> {
+    frame.sequence += index / 10 * 10;
+    if (index % 10 == 0 && index > 0) frame.numbering = numbering;
+    return frame;
+  });
+  return bench.run(source, test::options_of(bench));
+}
+
+TEST(MeasurementFaults, FramesThatNobodyReadDoNotEndTheRun) {
+  const auto lost = run_with_gaps(Numbering::counted);
+  const auto unread = run_with_gaps(Numbering::unread);
+
+  ASSERT_TRUE(unread.has_value()) << unread.error().message;
+  EXPECT_FALSE(unread->ended_by.has_value());
+  EXPECT_GE(unread->frames_lost, 10u);
+  EXPECT_THAT(unread->notes, testing::Contains(testing::HasSubstr("found its buffers full")));
+  ASSERT_FALSE(lost.has_value() && !lost->ended_by.has_value());
+  EXPECT_EQ((lost ? *lost->ended_by : lost.error()).code, ErrorCode::integrity);
+}
+
 TEST(MeasurementFaults, ALostCameraEndsTheRunAndKeepsItsTrials) {
   const SmallBench bench;
   std::size_t heard = 0;
