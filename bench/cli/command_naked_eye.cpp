@@ -45,7 +45,7 @@ Result<void> answer_as(const TemplateObserverSpec& person, NakedEyeSession& sess
     console.progress(session.done(), session.planned());
   }
   console.end_progress();
-  return session.finish();
+  return session.finish({});
 }
 
 void print_prediction(const Console& console, const NakedEyePrediction& prediction) {

@@ -134,9 +134,9 @@ void NakedEyeSession::answer(Apex answer, double response_s, std::optional<int> 
   draw_next();
 }
 
-Result<void> NakedEyeSession::finish() {
+Result<void> NakedEyeSession::finish(const PersonFacts& person) {
   TODBENCH_TRY(record_, human_record(answers_, shown_, Plan{}));
-  if (auto written = write_human(folder_, *record_); !written) return written;
+  if (auto written = add_person(folder_, {.person = person, .record = *record_}); !written) return written;
   comparison_ = naked_eye_comparison(prediction_, *record_);
   comparison_["complete"] = complete();
   TODBENCH_TRY(const auto sum, sha256_of_file(folder_ / naked_eye_name));

@@ -38,8 +38,9 @@ class NakedEyeSession {
   [[nodiscard]] const NakedEyePicture& picture() const { return picture_; }
   /// Takes the answer to picture(). `response_s`: time from display to answer.
   void answer(Apex answer, double response_s, std::optional<int> limit_ms);
-  /// Writes the answers so far and the comparison, once. Errors: `invalid_input` (no answers), `io`.
-  [[nodiscard]] Result<void> finish();
+  /// Writes the answers so far, the facts of the person who gave them and the comparison, once. Errors:
+  /// `invalid_input` (no answers), `io`.
+  [[nodiscard]] Result<void> finish(const PersonFacts& person);
   /// After finish().
   [[nodiscard]] const HumanRecord& record() const { return *record_; }
   [[nodiscard]] const Json& comparison() const { return comparison_; }

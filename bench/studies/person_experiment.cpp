@@ -336,11 +336,13 @@ Json share_json(const PersonShare& share) {
           {"ci95", json_interval(share.ci95)}};
 }
 
-Json person_json(const PersonExperiment& experiment, const std::vector<ExperimentAnswer>& answers, bool complete) {
+Json person_json(const PersonExperiment& experiment, const std::vector<ExperimentAnswer>& answers, const Json& person,
+                 bool complete) {
   const PersonResult result = person_result(experiment, answers);
   Json json{{"schema", "todbench-person-1"},
             {"task", to_string(experiment.task())},
             {"observer", "human"},
+            {"person", person},
             {"complete", complete},
             {"answers", answers.size()},
             {"planned", experiment.trials().size()},
@@ -452,12 +454,14 @@ PersonResult person_result(const PersonExperiment& experiment, const std::vector
 }
 
 Result<void> write_person(const std::filesystem::path& folder, const PersonExperiment& experiment,
-                          const std::vector<ExperimentAnswer>& answers, bool complete) {
+                          const std::vector<ExperimentAnswer>& answers, const PersonFacts& person, bool complete) {
+  TODBENCH_TRY(const auto facts, json_of(person, person_fields));
   if (is_there(folder)) return fail(ErrorCode::invalid_input, folder.string() + ": exists");
   if (auto made = make_folder(folder); !made) return made;
   if (auto written = write_file_atomically(folder / "answers.csv", answers_csv(experiment, answers)); !written)
     return written;
-  return write_file_atomically(folder / "person.json", person_json(experiment, answers, complete).dump(2) + "\n");
+  return write_file_atomically(folder / "person.json",
+                               person_json(experiment, answers, facts, complete).dump(2) + "\n");
 }
 
 }  // namespace todbench

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/session/human_record.h"
 #include "bench/studies/identification_study.h"
 #include "bench/text/json.h"
 #include "sim_devices/prediction/virtual_mrtd.h"
@@ -114,9 +115,10 @@ struct PersonResult {
 [[nodiscard]] PersonResult person_result(const PersonExperiment& experiment,
                                          const std::vector<ExperimentAnswer>& answers);
 
-/// Writes person.json (with the keys of `identify` or `mrtd` of the same meaning) and answers.csv into a new folder.
-/// Errors: `invalid_input` if it exists; `io` with the path.
+/// Writes person.json (with the facts of the person and the keys of `identify` or `mrtd` of the same meaning) and
+/// answers.csv into a new folder. Errors: `invalid_input` if it exists; `io` with the path.
 [[nodiscard]] Result<void> write_person(const std::filesystem::path& folder, const PersonExperiment& experiment,
-                                        const std::vector<ExperimentAnswer>& answers, bool complete);
+                                        const std::vector<ExperimentAnswer>& answers, const PersonFacts& person,
+                                        bool complete);
 
 }  // namespace todbench

@@ -10,6 +10,7 @@
 #include "bench/gui/presenters/person_presenter.h"
 #include "bench/gui/presenters/plan_advice.h"
 #include "bench/plan/descriptions.h"
+#include "bench/session/provenance.h"
 #include "hvs/eye/display_levels.h"
 
 namespace todbench {
@@ -46,6 +47,7 @@ QString NakedEyePresenter::begin(const Plan& plan, const NakedEyeQuestion& quest
   if (const auto possible = validate(task); !possible) return QString::fromStdString(possible.error().message);
   folder_ = new_person_folder(sessions, "naked-eye");
   shown_ms_ = shown_ms;
+  facts_ = question.person;
   session_.reset();
   problem_.clear();
   screen_.end(HumanState::idle);
@@ -106,7 +108,9 @@ void NakedEyePresenter::abort() {
 
 void NakedEyePresenter::finish() {
   screen_.end(HumanState::finished);
-  if (const auto written = session_->finish(); !written) problem_ = QString::fromStdString(written.error().message);
+  facts_.judged_utc = utc_now();
+  if (const auto written = session_->finish(facts_); !written)
+    problem_ = QString::fromStdString(written.error().message);
   emit updated();
 }
 

@@ -21,6 +21,7 @@ struct NakedEyeQuestion {
   std::vector<double> contrasts{0.4, 0.15, 0.06};
   double noise = 0;
   int per_size = 12;
+  PersonFacts person{};
 };
 
 /// The picture with `zoom` screen pixels on a side of each sample.
@@ -62,6 +63,7 @@ class NakedEyePresenter final : public QObject {
 
   std::filesystem::path folder_;
   std::optional<int> shown_ms_;
+  PersonFacts facts_;
   std::optional<NakedEyeSession> session_;
   PictureTimer screen_;
   bool predicting_ = false;

@@ -10,6 +10,7 @@
 #include "bench/gui/presenters/colour_map.h"
 #include "bench/plan/atmospheres.h"
 #include "bench/plan/descriptions.h"
+#include "bench/session/provenance.h"
 #include "bench/session/session_folder.h"
 #include "bench/studies/pictured_scenes.h"
 #include "bench/text/files.h"
@@ -74,9 +75,10 @@ PersonPresenter::PersonPresenter(QObject* parent) : QObject(parent) {
   connect(&screen_, &PictureTimer::updated, this, &PersonPresenter::updated);
 }
 
-void PersonPresenter::begin(PersonExperiment experiment, const std::filesystem::path& sessions,
-                            std::optional<int> shown_ms, int magnification) {
+void PersonPresenter::begin(PersonExperiment experiment, const PersonFacts& person,
+                            const std::filesystem::path& sessions, std::optional<int> shown_ms, int magnification) {
   experiment_ = std::move(experiment);
+  facts_ = person;
   sessions_ = sessions;
   shown_ms_ = shown_ms;
   magnification_ = magnification;
@@ -124,7 +126,8 @@ void PersonPresenter::finish() {
   screen_.end(HumanState::finished);
   const auto folder = new_person_folder(sessions_, to_string(experiment_->task()));
   const bool complete = answers_.size() == experiment_->trials().size();
-  if (auto written = write_person(folder, *experiment_, answers_, complete); !written)
+  facts_.judged_utc = utc_now();
+  if (auto written = write_person(folder, *experiment_, answers_, facts_, complete); !written)
     problem_ = QString::fromStdString(written.error().message);
   else
     folder_ = folder;

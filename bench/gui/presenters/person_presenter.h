@@ -44,9 +44,9 @@ class PersonPresenter final : public QObject {
  public:
   explicit PersonPresenter(QObject* parent = nullptr);
 
-  /// Answers are written to a new folder in `sessions`.
-  void begin(PersonExperiment experiment, const std::filesystem::path& sessions, std::optional<int> shown_ms,
-             int magnification = 24);
+  /// Answers are written to a new folder in `sessions`, with the facts of the person.
+  void begin(PersonExperiment experiment, const PersonFacts& person, const std::filesystem::path& sessions,
+             std::optional<int> shown_ms, int magnification = 24);
   /// The person's answer to the frame shown now or last.
   void answer(std::size_t alternative);
   /// Ends with the answers so far.
@@ -69,6 +69,7 @@ class PersonPresenter final : public QObject {
   void finish();
 
   std::optional<PersonExperiment> experiment_;
+  PersonFacts facts_;
   std::filesystem::path sessions_, folder_;
   std::optional<int> shown_ms_;
   int magnification_ = 24;

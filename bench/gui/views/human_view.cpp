@@ -233,7 +233,7 @@ void HumanView::show_question() {
   form_->setRowVisible(twin_, question == of_blind);
   form_->setRowVisible(contrasts_, question == of_naked_eye);
   form_->setRowVisible(noise_, question == of_naked_eye);
-  fields_->set_visible(of_frames());
+  fields_->set_training_visible(of_frames());
   form_->setRowVisible(propose_, triangles());
   form_->setRowVisible(proposal_, triangles());
   title_->setText(question == of_set    ? "Which one is it?"
@@ -261,17 +261,17 @@ void HumanView::show_question() {
 }
 
 void HumanView::begin() {
-  if (question_->currentIndex() == of_naked_eye) {
-    begin_naked_eye();
-    return;
-  }
-  if (!triangles()) {
-    begin_person();
-    return;
-  }
   const auto facts = fields_->facts();
   if (!facts) {
     emit bench_.trouble(QString::fromStdString(facts.error().message), Remedy::none);
+    return;
+  }
+  if (question_->currentIndex() == of_naked_eye) {
+    begin_naked_eye(*facts);
+    return;
+  }
+  if (!triangles()) {
+    begin_person(*facts);
     return;
   }
   HumanOptions options;
@@ -296,7 +296,7 @@ void HumanView::begin() {
   setFocus();
 }
 
-void HumanView::begin_person() {
+void HumanView::begin_person(const PersonFacts& facts) {
   PersonQuestion question{.task = question_->currentIndex() == of_set ? PersonTask::identify : PersonTask::bars,
                           .sensor = bench_.plan().simulation.sensor,
                           .set = set_->currentText().toStdString(),
@@ -319,12 +319,12 @@ void HumanView::begin_person() {
     return;
   }
   alternatives_->set_alternatives(*experiment);
-  person_.begin(*std::move(experiment), bench_.sessions_folder(),
+  person_.begin(*std::move(experiment), facts, bench_.sessions_folder(),
                 limited_->isChecked() ? std::optional(shown_ms_->value()) : std::nullopt);
   setFocus();
 }
 
-void HumanView::begin_naked_eye() {
+void HumanView::begin_naked_eye(const PersonFacts& facts) {
   const auto contrasts = numbers_of(contrasts_->text()), noise = numbers_of(noise_->text());
   if (!contrasts || !noise || noise->size() != 1) {
     emit bench_.trouble(
@@ -332,7 +332,8 @@ void HumanView::begin_naked_eye() {
     return;
   }
   const QString problem = naked_eye_->begin(
-      bench_.plan(), {.contrasts = *contrasts, .noise = noise->front(), .per_size = per_size_->value()},
+      bench_.plan(),
+      {.contrasts = *contrasts, .noise = noise->front(), .per_size = per_size_->value(), .person = facts},
       bench_.sessions_folder(), limited_->isChecked() ? std::optional(shown_ms_->value()) : std::nullopt);
   if (!problem.isEmpty()) emit bench_.trouble(problem, Remedy::none);
   setFocus();

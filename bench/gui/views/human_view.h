@@ -25,6 +25,7 @@ class PictureView;
 class PlanAdvice;
 class Workbench;
 enum class BarCriterion;
+struct PersonFacts;
 
 class HumanView final : public QWidget {
   Q_OBJECT
@@ -44,8 +45,8 @@ class HumanView final : public QWidget {
   [[nodiscard]] bool of_frames() const;
   [[nodiscard]] BarCriterion criterion() const;
   void begin();
-  void begin_person();
-  void begin_naked_eye();
+  void begin_person(const PersonFacts& facts);
+  void begin_naked_eye(const PersonFacts& facts);
   void add_proposal(QFormLayout& form);
   void show_question();
   void show_state();

@@ -5,7 +5,6 @@
 #include <QLineEdit>
 #include <QLocale>
 #include <QSpinBox>
-#include <initializer_list>
 #include <utility>
 
 namespace todbench {
@@ -33,10 +32,8 @@ PersonFields::PersonFields(QFormLayout& form, QObject* parent) : QObject(parent)
   form.addRow("Training", training_);
 }
 
-void PersonFields::set_visible(bool visible) {
-  for (QWidget* field :
-       std::initializer_list<QWidget*>{code_, age_, acuity_, distance_, screen_, luminance_, training_})
-    form_.setRowVisible(field, visible);
+void PersonFields::set_training_visible(bool visible) {
+  form_.setRowVisible(training_, visible);
 }
 
 Result<PersonFacts> PersonFields::facts() const {

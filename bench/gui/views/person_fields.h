@@ -20,7 +20,8 @@ class PersonFields final : public QObject {
   /// Adds the rows to the form, which must exist as long as this object.
   PersonFields(QFormLayout& form, QObject* parent);
 
-  void set_visible(bool visible);
+  /// Training is for questions about frames.
+  void set_training_visible(bool visible);
   /// Facts as entered. Errors: `invalid_input` for a value that is not a number above 0.
   [[nodiscard]] Result<PersonFacts> facts() const;
   /// Patches with feedback before the answers count.

@@ -405,6 +405,7 @@ void ask(ShownWindow& window, int question, const char* field, const QString& va
   window.part<QComboBox>("humanQuestion").setCurrentIndex(question);
   window.part<QLineEdit>(field).setText(values);
   window.part<QSpinBox>("humanPerSize").setValue(1);
+  window.part<QLineEdit>("personCode").setText("P7");
 }
 
 TEST(HumanObserver, TellsTheTargetsOfASetApartByTheirIcons) {
@@ -433,7 +434,9 @@ TEST(HumanObserver, TellsTheTargetsOfASetApartByTheirIcons) {
   ASSERT_EQ(window->person().answers().size(), 24u);
   for (std::size_t i = 0; i < 24; ++i) EXPECT_EQ(window->person().answers()[i].answer, given[i]);
   EXPECT_EQ(window->person().problem().toStdString(), "");
-  EXPECT_TRUE(std::filesystem::exists(window->person().folder() / "person.json"));
+  const Json stored = Json::parse(content_of(window->person().folder() / "person.json"));
+  EXPECT_EQ(stored["person"]["code"], "P7");
+  EXPECT_EQ(stored["person"]["judged_utc"].get<std::string>().size(), 20u);
   EXPECT_TRUE(std::filesystem::exists(window->person().folder() / "answers.csv"));
   EXPECT_FALSE(window.part<QWidget>("alternatives").isVisible());
 }
@@ -550,6 +553,9 @@ TEST(HumanObserver, AnswersTrianglesOfTheDisplayWithoutACamera) {
   ASSERT_TRUE(answers) << answers.error().message;
   ASSERT_EQ(answers->size(), given.size());
   for (std::size_t i = 0; i < given.size(); ++i) EXPECT_EQ((*answers)[i].answer, given[i]);
+  const auto people = read_people(eye->folder());
+  ASSERT_TRUE(people && people->size() == 1);
+  EXPECT_EQ(people->front().person.code, "P7");
   EXPECT_THAT(window.part<QLabel>("humanResult").text().toStdString(), ::testing::HasSubstr("predicted"));
 
   plan.display = {};

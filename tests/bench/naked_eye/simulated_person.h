@@ -43,7 +43,7 @@ inline void answer_all(NakedEyeSession& session, const TemplateObserverSpec& per
     const Choice choice = (*prepared)->choose(patch, trial.contrast, numbers.sub(trial.number));
     session.answer(static_cast<Apex>(choice.alternative), 1.0, std::nullopt);
   }
-  const auto finished = session.finish();
+  const auto finished = session.finish({});
   ASSERT_TRUE(finished) << finished.error().message;
 }
 

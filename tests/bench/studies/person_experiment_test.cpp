@@ -197,13 +197,19 @@ TEST(PersonExperiment, KeepsWhatWasAnsweredAndNothingTwice) {
   ASSERT_TRUE(experiment);
   auto answers = answers_of(*experiment, [](const PersonTrial&) { return true; });
   answers.resize(7);
+  PersonFacts person;
+  person.code = "P7";
+  person.age_years = 41;
 
-  ASSERT_TRUE(write_person(folder.path() / "p", *experiment, answers, false));
+  ASSERT_TRUE(write_person(folder.path() / "p", *experiment, answers, person, false));
 
   std::ifstream file(folder.path() / "p" / "person.json");
   const Json json = Json::parse(file);
   EXPECT_EQ(json["task"], "identify");
   EXPECT_EQ(json["observer"], "human");
+  EXPECT_EQ(json["person"]["code"], "P7");
+  EXPECT_EQ(json["person"]["age_years"], 41);
+  EXPECT_EQ(json["person"]["acuity_decimal"], nullptr);
   EXPECT_EQ(json["complete"], false);
   EXPECT_EQ(json["answers"], 7);
   ASSERT_EQ(json["ranges"].size(), 2u);
@@ -215,7 +221,7 @@ TEST(PersonExperiment, KeepsWhatWasAnsweredAndNothingTwice) {
   const auto csv = read_text_file(folder.path() / "p" / "answers.csv");
   ASSERT_TRUE(csv);
   EXPECT_EQ(std::count(csv->begin(), csv->end(), '\n'), 8);
-  const auto twice = write_person(folder.path() / "p", *experiment, answers, false);
+  const auto twice = write_person(folder.path() / "p", *experiment, answers, person, false);
   ASSERT_FALSE(twice);
   EXPECT_EQ(twice.error().code, ErrorCode::invalid_input);
 }
