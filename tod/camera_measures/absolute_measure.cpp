@@ -63,7 +63,7 @@ class AbsoluteRun {
     std::erase_if(seen, [](const std::vector<Seen>& level) { return level[0].saturated || level[1].saturated; });
     if (seen.size() < least_levels)
       return fail(ErrorCode::invalid_input, "fewer than three temperatures do not saturate the camera");
-    add_repeatability(seen.size());
+    add_repeatability(seen);
     if (auto line = add_line(); !line) return tl::unexpected(line.error());
     add_prnu(seen);
     const Seen& middle = seen[seen.size() / 2][0];
@@ -108,13 +108,20 @@ class AbsoluteRun {
     out_.levels.push_back(level);
   }
 
-  /// Both passes at each of n temperatures: the variance of a reading from half of the squared differences.
-  void add_repeatability(std::size_t levels) {
-    double squares = 0;
+  /// Both passes at each of n temperatures: the variance of a reading from half of the squared differences. A reading
+  /// is at least as uncertain as the mean of its pixels, although few differences may be smaller by chance.
+  void add_repeatability(const std::vector<std::vector<Seen>>& seen) {
+    double squares = 0, of_pixels = 0;
     for (const AbsoluteLevel& level : out_.levels) squares += level.saturated ? 0 : std::pow(level.difference_k, 2);
-    out_.repeatability_k = std::sqrt(0.5 * squares / static_cast<double>(levels));
-    out_.u_k = out_.repeatability_k / std::sqrt(static_cast<double>(passes));
-    out_.degrees_of_freedom = static_cast<int>(levels);
+    for (const auto& level : seen) {
+      for (const Seen& pass : level)
+        of_pixels += pass.noise_k * pass.noise_k / (static_cast<double>(pass.picture.total()) * options_.frames);
+    }
+    const auto levels = static_cast<double>(seen.size());
+    out_.repeatability_k = std::sqrt(0.5 * squares / levels);
+    const double least_k = std::sqrt(of_pixels / (levels * static_cast<double>(passes)));
+    out_.u_k = std::max(out_.repeatability_k, least_k) / std::sqrt(static_cast<double>(passes));
+    out_.degrees_of_freedom = static_cast<int>(seen.size());
   }
 
   Result<void> add_line() {
