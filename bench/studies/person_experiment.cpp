@@ -13,6 +13,7 @@
 #include "bench/report/tod_figures.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
+#include "bench/text/json_fields.h"
 #include "bench/text/text.h"
 
 namespace todbench {
