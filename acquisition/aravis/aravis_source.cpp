@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "acquisition/aravis/frame_buffers.h"
 #include "acquisition/aravis/genicam_features.h"
@@ -60,13 +61,14 @@ void AravisSource::on_stream_event(void* data, ArvStreamCallbackType type, ArvBu
   const std::uint64_t ignored = ignored_bytes(tap.stream);
   if (type == ARV_STREAM_CALLBACK_TYPE_START_BUFFER) tap.ignored_bytes = ignored;
   if (type != ARV_STREAM_CALLBACK_TYPE_BUFFER_DONE) return;
+  const std::uint64_t without_buffer = underruns(tap.stream);
   Events& events = *tap.events;
   {
     const std::lock_guard lock(events.mutex);
     // Frames over USB are consecutive: bytes discarded since this one began were its own.
     events.arrivals.push_back({.host_time_ns = monotonic_ns(),
                                .oversized = ignored != tap.ignored_bytes,
-                               .underruns = underruns(tap.stream)});
+                               .after_unread = without_buffer != std::exchange(tap.underruns, without_buffer)});
     events.last_sign_of_life = Clock::now();
     events.failed_pings = 0;
   }
@@ -110,7 +112,6 @@ Result<void> AravisSource::start() {
     arv_stream_push_buffer(stream->get(), new_frame_buffer(buffer_bytes(format_)).release());
   }
   frames_of_wrong_size_ = 0;
-  last_sequence_ = known_underruns_ = 0;
   sequence_ = FrameSequence(number_kind(arv_camera_get_device(camera_.get()), options_.transport), info_.frame_rate_hz);
   {
     const std::lock_guard lock(events_->mutex);
@@ -190,15 +191,10 @@ Result<Frame> AravisSource::next(std::chrono::milliseconds timeout) {
       const FramePlace place = sequence_.next({.number = frame_id_of(buffer.get()),
                                                .device_time_ns = frame->device_time_ns,
                                                .host_time_ns = frame->host_time_ns,
-                                               .may_pause = frame->host_time_ns < may_pause_until_ns_});
+                                               .may_pause = frame->host_time_ns < may_pause_until_ns_,
+                                               .after_unread = arrived.after_unread});
       frame->sequence = place.sequence;
       frame->numbering = place.numbering;
-      const bool gap = frame->sequence > last_sequence_ + 1;
-      if (gap && frame->numbering == Numbering::counted && arrived.underruns > known_underruns_) {
-        frame->numbering = Numbering::unread;
-      }
-      if (gap || frame->sequence == 0) known_underruns_ = arrived.underruns;
-      last_sequence_ = std::max(last_sequence_, frame->sequence);
       frame->scale = scale_;
     }
     clear_frame_id(buffer.get());

@@ -41,8 +41,8 @@ class AravisSource : public FrameSource {
   /// A buffer that came into the stream's output queue.
   struct Arrival {
     std::int64_t host_time_ns = 0;
-    bool oversized = false;       ///< more bytes arrived than the buffer holds
-    std::uint64_t underruns = 0;  ///< count of the stream at the arrival: data that found no free buffer
+    bool oversized = false;     ///< more bytes arrived than the buffer holds
+    bool after_unread = false;  ///< since the last arrival, data found no free buffer
   };
 
   /// Events reported by Aravis's threads. Shared with the callbacks, which may run after the source is destroyed.
@@ -63,6 +63,7 @@ class AravisSource : public FrameSource {
     std::shared_ptr<Events> events;
     std::atomic<ArvStream*> stream = nullptr;
     std::uint64_t ignored_bytes = 0;  ///< count of the stream when the present buffer was begun
+    std::uint64_t underruns = 0;      ///< count of the stream at the last arrival
   };
 
   AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, SourceInfo info, std::string device_address);
@@ -105,8 +106,6 @@ class AravisSource : public FrameSource {
   int frames_of_wrong_size_ = 0;  ///< in a row since the start; negative: a frame of the right size has arrived
   std::shared_ptr<const RadiometricScale> scale_;
   FrameSequence sequence_{FrameNumberKind::gvsp16, 0};
-  std::uint64_t last_sequence_ = 0;      ///< of the last frame handed out
-  std::uint64_t known_underruns_ = 0;    ///< of the stream, at its last gap
   std::int64_t may_pause_until_ns_ = 0;  ///< host time until which a commanded correction may interrupt the stream
 
   std::mutex control_;                 ///< serialises communication with the camera; locked before events_->mutex

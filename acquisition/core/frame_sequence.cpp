@@ -242,6 +242,15 @@ FramePlace FrameSequence::keep(const FrameStamp& stamp, std::uint64_t sequence, 
 }
 
 FramePlace FrameSequence::next(const FrameStamp& as_told) {
+  const std::uint64_t following = started_ ? last_ + 1 : 0;
+  FramePlace place = place_of(as_told);
+  const bool gap = place.sequence > following, unread = as_told.after_unread || after_unread_;
+  after_unread_ = as_told.after_unread && !gap;
+  if (gap && unread && place.numbering == Numbering::counted) place.numbering = Numbering::unread;
+  return place;
+}
+
+FramePlace FrameSequence::place_of(const FrameStamp& as_told) {
   FrameStamp stamp = as_told;
   stamp.device_time_ns = std::max<std::int64_t>(stamp.device_time_ns, 0);
   const bool first = !std::exchange(started_, true);

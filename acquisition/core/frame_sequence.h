@@ -25,6 +25,7 @@ struct FrameStamp {
   std::int64_t device_time_ns = 0;      ///< on the clock of the camera or driver; 0: none
   std::int64_t host_time_ns = 0;        ///< CLOCK_MONOTONIC at arrival
   bool may_pause = false;               ///< the camera corrects itself: it may be silent without losing exposures
+  bool after_unread = false;            ///< since the last frame, others found every buffer of the program full
 };
 
 /// Frame::sequence and its origin.
@@ -50,7 +51,8 @@ class FrameSequence {
   /// Returns the place of a frame. A frame without number gets the place after the last one: its true place is that one
   /// or later, because the numbers of its neighbours differ from its own. 16-bit numbers are unwrapped over gaps of up
   /// to 32767 frames (ten minutes at 50 Hz). A frame that is older by number and by the camera's clock gets its older
-  /// place.
+  /// place. A counted gap before a frame with `after_unread`, or before the next one (a frame may have been under way
+  /// when others found no buffer), is `unread`.
   [[nodiscard]] FramePlace next(const FrameStamp& as_told);
 
  private:
@@ -105,6 +107,7 @@ class FrameSequence {
     int frames = 0;  ///< since then
   };
 
+  [[nodiscard]] FramePlace place_of(const FrameStamp& as_told);
   [[nodiscard]] std::int64_t step_to(std::uint64_t number) const;
   [[nodiscard]] std::uint64_t steps_in(double periods, const FrameStamp& stamp) const;
   [[nodiscard]] Elapsed elapsed(const FrameStamp& stamp) const;
@@ -120,6 +123,7 @@ class FrameSequence {
   DevicePeriod device_period_;
   HostPeriod host_period_;
   bool started_ = false;
+  bool after_unread_ = false;  ///< of the last frame, if it had no gap
   std::optional<Anchor> anchor_;
   std::uint64_t last_ = 0;
   std::optional<double> last_gap_;  ///< device periods, if the last frame hid a gap

@@ -184,10 +184,10 @@ Frame SeekSource::frame_of(const SeekArrival& arrival) {
   const FramePlace place = sequence_.next({.number = seek_counter(arrival.bytes, model_),
                                            .device_time_ns = 0,
                                            .host_time_ns = arrival.host_time_ns,
-                                           .may_pause = std::exchange(corrected_last_, corrects) || corrects});
+                                           .may_pause = std::exchange(corrected_last_, corrects) || corrects,
+                                           .after_unread = arrival.after_unread});
   frame.sequence = place.sequence;
   frame.numbering = place.numbering;
-  if (arrival.after_unread && frame.numbering == Numbering::counted) frame.numbering = Numbering::unread;
   if (!parsed) {
     frame.status = FrameStatus::incomplete;
     frame.counts = cv::Mat1w::zeros(info_.height, info_.width);

@@ -340,10 +340,10 @@ std::optional<Frame> V4l2Source::finished(Arrival arrival) {
       sequence_.next({.number = static_cast<std::uint32_t>(arrival.sequence - repeated_),
                       .device_time_ns = frame.device_time_ns,
                       .host_time_ns = frame.host_time_ns,
-                      .may_pause = corrects || corrected || frame.host_time_ns < may_pause_until_ns_});
+                      .may_pause = corrects || corrected || frame.host_time_ns < may_pause_until_ns_,
+                      .after_unread = arrival.after_unread});
   frame.sequence = place.sequence;
   frame.numbering = place.numbering;
-  if (arrival.after_unread && frame.numbering == Numbering::counted) frame.numbering = Numbering::unread;
   const bool assumed = layout_.kelvin_per_count > 0 && !stated_kelvin_per_count_;
   frame.scale = assumed && beyond_high_gain(frame.counts) ? no_scale() : scale_;
   return std::move(frame);

@@ -28,14 +28,15 @@ class NumberedCamera {
       : sequence_(kind, rate_hz), clock_(clock), device_ns_(running_ns) {}
 
   /// `exposures` pass; the last of them arrives with this number.
-  FramePlace send(std::optional<std::uint64_t> number, std::int64_t exposures = 1) {
+  FramePlace send(std::optional<std::uint64_t> number, std::int64_t exposures = 1, bool after_unread = false) {
     now_ += exposures * period_ns;
     device_ns_ += exposures * period_ns;
     const std::int64_t late = (number.value_or(0) % 5) * 1'000'000;
     return sequence_.next({.number = number,
                            .device_time_ns = clock_ == Clock::none ? 0 : device_ns_,
                            .host_time_ns = now_ + late,
-                           .may_pause = false});
+                           .may_pause = false,
+                           .after_unread = after_unread});
   }
   void begin_anew() {
     if (clock_ == Clock::begins_anew) device_ns_ = 0;
@@ -51,6 +52,22 @@ class NumberedCamera {
 
 constexpr FramePlace counted(std::uint64_t sequence) {
   return {sequence, Numbering::counted};
+}
+
+TEST(FrameSequence, AGapThatFullBuffersExplainIsUnreadAndTheNextOneIsNot) {
+  for (const Clock clock : {Clock::none, Clock::goes_on}) {
+    NumberedCamera camera(FrameNumberKind::wrap32, clock);
+    EXPECT_EQ(camera.send(10), counted(0));
+
+    EXPECT_EQ(camera.send(15, 5, true), (FramePlace{5, Numbering::unread}));
+    EXPECT_EQ(camera.send(19, 4), counted(9)) << "lost after the buffers had been read";
+    // This frame was under way when the next ones found no buffer.
+    EXPECT_EQ(camera.send(20, 1, true), counted(10));
+    EXPECT_EQ(camera.send(24, 4), (FramePlace{14, Numbering::unread}));
+    EXPECT_EQ(camera.send(25, 1, true), counted(15));
+    EXPECT_EQ(camera.send(26), counted(16));
+    EXPECT_EQ(camera.send(29, 3), counted(19)) << "full buffers two frames before explain nothing";
+  }
 }
 
 TEST(FrameSequence, StartsAtZeroWhateverTheFirstId) {
