@@ -43,8 +43,9 @@ void expect_not_found(const OpenedSource& source, const std::string& told = "");
 /// A started source shows as a gap of three what `lose` is told to lose.
 void expect_gap_of_lost_exposures(FrameSource& source, const std::function<void(unsigned)>& lose);
 
-/// Frames that find the buffers of a slow reader full are `unread`; frames that are lost afterwards are not.
-/// `exposures` of the camera so far; `buffered`: at least as many frames as the source keeps.
+/// Expects `unread` for the frame behind those that found the buffers full, and `counted` for a later loss.
+/// `exposures` returns the number that the camera has made. `buffered`: the number of frames that the source keeps, or
+/// more.
 void expect_unread_behind_a_slow_reader(FrameSource& source, const std::function<std::uint64_t()>& exposures,
                                         std::uint64_t buffered, const std::function<void(unsigned)>& lose);
 

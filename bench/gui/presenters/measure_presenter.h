@@ -76,7 +76,7 @@ class MeasurePresenter final : public QObject {
     return replayed_ && same_.value_or(false) ? *replayed_ : folder_;
   }
 
-  /// Plan of the session whose frames were replayed last; empty: the frames are those of a run.
+  /// Plan of the session that was replayed last. Empty if the frames are those of a run.
   [[nodiscard]] std::optional<Plan> replayed_plan() const {
     return replayed_ && outcome_ ? std::optional(plan_) : std::nullopt;
   }

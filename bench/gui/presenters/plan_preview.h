@@ -44,7 +44,7 @@ struct PlanForecast {
   std::string problem;           ///< why the tolerance cannot be met; empty: it can
 };
 
-/// `known`: thresholds in place of those that the planner estimates first; may be empty. Errors: `interrupted`.
+/// `known`: thresholds that replace the planner's own; may be empty. Errors: `interrupted`.
 /// `planner` caches decisions that changes of tolerance and trials do not affect.
 [[nodiscard]] Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<ExpectedThreshold>& known,
                                             EffectPlanner& planner, std::stop_token stop = {});

@@ -22,7 +22,7 @@ class LimitsPanel final : public QWidget {
 
  public:
   explicit LimitsPanel(Workbench& bench, QWidget* parent = nullptr);
-  /// States the limits for the plan of a replayed session; empty: for the plan of the workbench.
+  /// States the limits for this plan. Empty: for the plan of the workbench.
   void set_replayed_plan(std::optional<Plan> plan);
 
  protected:
