@@ -191,10 +191,6 @@ Result<void> add_person(const std::filesystem::path& session, const PersonRecord
   return refresh_manifest(session, {files.trials, files.shown, files.fits, facts_name});
 }
 
-Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record) {
-  return add_person(session, {.person = {}, .record = record});
-}
-
 Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session) {
   std::error_code none;
   if (!std::filesystem::exists(session / trials_name, none)) return std::nullopt;

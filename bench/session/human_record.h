@@ -83,8 +83,6 @@ struct MeanOverPeople {
 /// people/N-fits.json for the N-th, and people/people.json with the facts of all. Replaces no earlier answers. Errors:
 /// `io`; `invalid_input` (no manifest, or files that differ from it), in which case no file is written.
 [[nodiscard]] Result<void> add_person(const std::filesystem::path& session, const PersonRecord& person);
-/// add_person() for a person without facts.
-[[nodiscard]] Result<void> write_human(const std::filesystem::path& session, const HumanRecord& record);
 /// Reads the record of the first person from a session that open_session() accepted; empty if no person has answered.
 /// Errors: `invalid_input` with file and line or key.
 [[nodiscard]] Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session);

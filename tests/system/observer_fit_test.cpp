@@ -48,7 +48,7 @@ class ObserverFitCommand : public ::testing::Test {
     };
     const auto done = simulate_plan(*plan->with(own), {.folder = at(name)}, listener, {});
     ASSERT_TRUE(done) << done.error().message;
-    ASSERT_TRUE(write_human(at(name), human_record(answers, shown, own).value()));
+    ASSERT_TRUE(add_person(at(name), {.person = {}, .record = human_record(answers, shown, own).value()}));
   }
   Ended run(const std::vector<std::string>& arguments) const {
     ChildOptions options;

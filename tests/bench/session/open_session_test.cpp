@@ -40,7 +40,8 @@ std::filesystem::path write_session(const testing::TemporaryFolder& parent) {
   EXPECT_TRUE(folder.finish(begin_provenance(Plan{}, Side::measured), SessionState::complete));
   std::vector<Trial> answers = testing::random_trials(2);
   const std::vector<ShownPatch> shown(2, ShownPatch{.kelvin = cv::Mat1f(2, 2, 300.5F), .limit_ms = {}});
-  EXPECT_TRUE(write_human(folder.path(), human_record(std::move(answers), shown, Plan{}).value()));
+  EXPECT_TRUE(
+      add_person(folder.path(), {.person = {}, .record = human_record(std::move(answers), shown, Plan{}).value()}));
   return folder.path();
 }
 
@@ -195,8 +196,9 @@ TEST_F(ChangedSession, TakesNoAnswersOfAPerson) {
   const std::string answers = content("trials_human.csv");
   put("trials.csv", content("trials.csv") + "\n");
 
-  const auto written =
-      write_human(session_, human_record(testing::random_trials(3), std::vector<ShownPatch>(3), Plan{}).value());
+  const auto written = add_person(
+      session_,
+      {.person = {}, .record = human_record(testing::random_trials(3), std::vector<ShownPatch>(3), Plan{}).value()});
 
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error().message, HasSubstr("trials.csv was changed after the session ended"));
