@@ -122,7 +122,8 @@ std::string changes_bought(const BillInput& input) {
                      contrasts.size(), input.presentations.size());
 }
 
-void add_rows(AccuracyBill& bill, const BillInput& input) {
+/// Adds the rows of where the time went. Returns the seconds that the records of presentations account for.
+double add_rows(AccuracyBill& bill, const BillInput& input) {
   const auto times = times_of(input.presentations);
   double known_s = 0;
   if (times) {
@@ -142,6 +143,7 @@ void add_rows(AccuracyBill& bill, const BillInput& input) {
   bill.rows.push_back(
       times ? BillRow{"Rest of the run", std::max(0.0, input.wall_s - known_s), "start, physical measures, fits"}
             : BillRow{"Computing", input.wall_s, "all of the rows above: the scene is simulated"});
+  return known_s;
 }
 
 /// Half-width of the rows that are stated in the budget, in percent: no time reduces them.
@@ -232,12 +234,10 @@ void add_left_out(AccuracyBill& bill, const SensorPlan& effects) {
 }  // namespace
 
 AccuracyBill accuracy_bill(const BillInput& input) {
-  AccuracyBill bill{.rows = {}, .total_s = input.wall_s, .sentences = {}};
-  add_rows(bill, input);
-  // The parts of a resumed run were taken in more than one run.
-  double parts_s = 0;
-  for (const BillRow& row : bill.rows) parts_s += row.seconds.value_or(0);
-  bill.total_s = std::max(bill.total_s, parts_s);
+  AccuracyBill bill;
+  const double known_s = add_rows(bill, input);
+  // The presentations of a resumed run were taken in more than one run.
+  bill.total_s = std::max(input.wall_s, known_s);
   add_floor(bill, input);
   add_least(bill, input);
   add_left_out(bill, input.effects);
