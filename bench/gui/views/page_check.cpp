@@ -59,7 +59,7 @@ void check_table(const QTableWidget& table, QStringList& faults) {
     }
     for (int row = 0; row < table.rowCount(); ++row) {
       const QTableWidgetItem* item = table.item(row, column);
-      if (item == nullptr || table.cellWidget(row, column) != nullptr) continue;
+      if (item == nullptr || table.isRowHidden(row) || table.cellWidget(row, column) != nullptr) continue;
       // Rows scrolled out of view are as wide as visible ones.
       const QRect room(0, 0, table.columnWidth(column) - margin, table.rowHeight(row));
       const int flags = table.wordWrap() ? Qt::TextWordWrap : Qt::TextSingleLine;

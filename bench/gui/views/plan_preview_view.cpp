@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/gui/views/plan_preview_view.h"
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -91,6 +92,11 @@ PlanPreviewView::PlanPreviewView(PlanPresenter& presenter, QWidget* parent) : QW
   layout->addLayout(seen);
   layout->addWidget(title_label("Effects of the simulated sensor"));
   layout->addWidget(effects_table(), 1);
+  neutral_ = new QCheckBox;
+  neutral_->setObjectName("neutralEffects");
+  neutral_->setToolTip("A neutral effect does not change the picture with the parameters of this sensor.");
+  connect(neutral_, &QCheckBox::toggled, this, &PlanPreviewView::fold_effects);
+  layout->addWidget(neutral_);
   connect(tolerance_, &QSlider::valueChanged, this,
           [this](int position) { emit problem(presenter_.set_tolerance_percent(tolerance_of(position))); });
   connect(&presenter_, &PlanPresenter::updated, this, &PlanPreviewView::show_outlook);
@@ -180,6 +186,23 @@ void PlanPreviewView::show_effects() {
   fill_table(*effects_, rows);
   for (std::size_t i = 0; i < choices_.size(); ++i)
     choices_[i]->setCurrentIndex(static_cast<int>(presenter_.choice(all_effects[i])));
+  fold_effects();
+}
+
+/// Hides the rows of neutral effects, unless they are asked for or chosen by hand.
+void PlanPreviewView::fold_effects() {
+  int neutral = 0;
+  for (const Effect effect : all_effects) effects_->setRowHidden(static_cast<int>(effect), false);
+  if (presenter_.forecast()) {
+    for (const auto& d : presenter_.forecast()->effects.decisions) {
+      if (!d.changes_nothing() || presenter_.choice(d.effect) != EffectChoice::planner) continue;
+      ++neutral;
+      effects_->setRowHidden(static_cast<int>(d.effect), !neutral_->isChecked());
+    }
+  }
+  neutral_->setText(neutral == 1 ? QString("Show the effect that is neutral in this sensor")
+                                 : QString("Show the %1 effects that are neutral in this sensor").arg(neutral));
+  neutral_->setVisible(neutral > 0);
 }
 
 }  // namespace todbench

@@ -5,6 +5,7 @@
 #include <QWidget>
 #include <vector>
 
+class QCheckBox;
 class QComboBox;
 class QLabel;
 class QSlider;
@@ -29,11 +30,13 @@ class PlanPreviewView final : public QWidget {
   [[nodiscard]] QWidget* effects_table();
   void show_outlook();
   void show_effects();
+  void fold_effects();
 
   PlanPresenter& presenter_;
   QLabel *tolerance_text_, *cost_, *misfit_;
   QSlider* tolerance_;
   QTableWidget *contrasts_, *effects_;
+  QCheckBox* neutral_;  ///< shows the rows of neutral effects
   PlotView* prices_;
   std::vector<QComboBox*> choices_;  ///< in the order of the effects
 };

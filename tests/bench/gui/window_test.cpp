@@ -6,7 +6,6 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QDropEvent>
-#include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
@@ -22,6 +21,7 @@
 #include <QTableWidget>
 #include <QThread>
 #include <QTimer>
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 
@@ -153,6 +153,30 @@ TEST(Window, CutsNoTextOffFromASmallScreenToALargeOne) {
           << name_of(static_cast<View>(view)).toStdString() << " at " << size.width();
     }
   }
+}
+
+TEST(Window, FoldsNeutralEffectsUnlessTheyAreChosen) {
+  ShownWindow window("sim:sc2000");
+  window->show_view(View::plan);
+  ASSERT_TRUE(wait_until([&] { return window->plan().forecast_current(); }));
+  auto& table = window.part<QTableWidget>("planEffects");
+  auto& unfold = window.part<QCheckBox>("neutralEffects");
+  const auto& decisions = window->plan().forecast()->effects.decisions;
+  const auto is_neutral = [](const EffectDecision& d) { return d.changes_nothing(); };
+  const auto neutral = static_cast<int>(std::count_if(decisions.begin(), decisions.end(), is_neutral));
+  ASSERT_GT(neutral, 5);
+
+  for (const auto& d : decisions)
+    EXPECT_EQ(table.isRowHidden(static_cast<int>(d.effect)), d.changes_nothing()) << to_string(d.effect);
+  EXPECT_EQ(unfold.text(), QString("Show the %1 effects that are neutral in this sensor").arg(neutral));
+
+  unfold.setChecked(true);
+  for (const auto& d : decisions) EXPECT_FALSE(table.isRowHidden(static_cast<int>(d.effect))) << to_string(d.effect);
+  unfold.setChecked(false);
+  const auto chosen = std::find_if(decisions.begin(), decisions.end(), is_neutral)->effect;
+  ASSERT_EQ(window->plan().choose(chosen, EffectChoice::skip).toStdString(), "");
+  ASSERT_TRUE(wait_until([&] { return window->plan().forecast_current(); }));
+  EXPECT_FALSE(table.isRowHidden(static_cast<int>(chosen))) << "a choice by hand stays in sight";
 }
 
 TEST(PageCheck, NamesWhatIsCutOffEmptyOrAnError) {
