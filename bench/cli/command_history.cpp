@@ -114,7 +114,7 @@ Json chart_json(const HistorySeries& series, const HistoryArguments& a) {
 int run_add(Console& console, const HistoryArguments& a) {
   auto index = HistoryIndex::open(a.index);
   if (!index) return report_error(console, index.error());
-  int added = 0, known = 0, moved = 0;
+  int added = 0, known = 0, moved = 0, again = 0;
   std::vector<std::string> refused;
   for (const std::string& folder : a.folders) {
     const auto sessions = session_folders_below(folder);
@@ -128,15 +128,25 @@ int run_add(Console& console, const HistoryArguments& a) {
       }
       const auto done = index->add(*session);
       if (!done) return report_error(console, done.error());
-      ++(*done == Adding::added ? added : *done == Adding::known ? known : moved);
+      ++(*done == Adding::added ? added : *done == Adding::known ? known : *done == Adding::moved ? moved : again);
     }
   }
   for (const std::string& sentence : refused) console.note(sentence);
+  if (again > 0) {
+    console.note("not added: " + std::to_string(again) +
+                 " sessions that judge frames of other sessions again. They are no further checks of the unit.");
+  }
   if (console.json()) {
-    console.object({{"index", a.index}, {"added", added}, {"known", known}, {"moved", moved}, {"refused", refused}});
+    console.object({{"index", a.index},
+                    {"added", added},
+                    {"known", known},
+                    {"moved", moved},
+                    {"judged_again", again},
+                    {"refused", refused}});
   } else {
     console.text("added " + std::to_string(added) + ", known " + std::to_string(known) + ", moved " +
-                 std::to_string(moved) + ", refused " + std::to_string(refused.size()));
+                 std::to_string(moved) + ", judged again " + std::to_string(again) + ", refused " +
+                 std::to_string(refused.size()));
   }
   return refused.empty() ? 0 : exit_code(ErrorCode::invalid_input);
 }

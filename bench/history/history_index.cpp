@@ -258,7 +258,18 @@ Result<HistoryIndex> HistoryIndex::open_read_only(const std::filesystem::path& f
   return HistoryIndex(file, std::move(database));
 }
 
+namespace {
+
+/// Condition of a value, with the observer of an acuity if it is not the one of earlier indexes.
+std::string condition_of(const HistoryValue& value, const std::string& observer) {
+  const bool named = value.measure == "acuity" && !observer.empty() && observer != "hvs-1";
+  return value.condition + (named ? " observer " + observer : "");
+}
+
+}  // namespace
+
 Result<Adding> HistoryIndex::add(const HistorySession& session) {
+  if (session.judged_again) return Adding::judged_again;
   sqlite3* const database = database_.get();
   Transaction transaction(database);
   if (!transaction.open()) return refused(database, file_);
@@ -311,7 +322,7 @@ Result<Adding> HistoryIndex::add(const HistorySession& session) {
     if (Statement(database, "INSERT OR REPLACE INTO value VALUES(?, ?, ?, ?, ?, ?, ?)")
             .bind(id)
             .bind(value.measure)
-            .bind(value.condition)
+            .bind(condition_of(value, session.observer))
             .bind(value.unit)
             .bind(value.scale)
             .bind(value.value)

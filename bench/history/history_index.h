@@ -23,8 +23,9 @@ struct HistoryEvent {
 
 enum class Adding {
   added,
-  known,  ///< same manifest at the same place, or a copy of a session that still exists
-  moved,  ///< same manifest at another place; the old place no longer has it
+  known,         ///< same manifest at the same place, or a copy of a session that still exists
+  moved,         ///< same manifest at another place; the old place no longer has it
+  judged_again,  ///< not added: its frames are those of another session
 };
 
 /// Index of sessions. Events exist only here, so they are also kept in FILE.events.csv next to the index, and a rebuilt
@@ -41,6 +42,8 @@ class HistoryIndex {
   HistoryIndex& operator=(HistoryIndex&&) noexcept;
   ~HistoryIndex();
 
+  /// Adds the session. The condition of an acuity that another observer than hvs-1 judged contains its name: acuities
+  /// of two observers are two measures.
   [[nodiscard]] Result<Adding> add(const HistorySession& session);
   [[nodiscard]] Result<void> add_event(const HistoryEvent& event);
   /// Returns the sessions of all units, or of those with this serial number, ordered by unit and time.

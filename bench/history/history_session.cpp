@@ -142,19 +142,27 @@ Result<void> add_measures(HistorySession& session, const std::filesystem::path& 
   return {};
 }
 
-/// Returns the name of the measured camera, as stated at the end of the run; for a session without a curve the name in
-/// its own file.
-Result<std::string> sensor_of(const std::filesystem::path& folder) {
+/// Returns the first text with this key. The file may be long, so that it is not parsed.
+std::string first_text(const std::string& json, const std::string& name) {
+  const std::string key = "\"" + name + "\": \"";
+  const std::size_t at = json.find(key);
+  const std::size_t from = at == std::string::npos ? json.size() : at + key.size();
+  return json.substr(from, json.find('"', from) - from);
+}
+
+/// Who was measured by whom, as stated at the end of the run.
+struct CurveNames {
+  std::string sensor, observer;
+};
+
+/// Names of the curve; of a session without a curve the camera in its own file.
+Result<CurveNames> names_of(const std::filesystem::path& folder) {
   if (is_there(folder / curveless)) {
     TODBENCH_TRY(const auto json, vouched_json(folder, curveless));
-    return text_at(json, "camera");
+    return CurveNames{text_at(json, "camera"), ""};
   }
-  const auto fits = vouched_text(folder, "fits.json");
-  if (!fits) return fits;
-  constexpr std::string_view key = "\"sensor\": \"";  // the file may be long
-  const std::size_t at = fits->find(key);
-  const std::size_t from = at == std::string::npos ? fits->size() : at + key.size();
-  return fits->substr(from, fits->find('"', from) - from);
+  TODBENCH_TRY(const auto fits, vouched_text(folder, "fits.json"));
+  return CurveNames{first_text(fits, "sensor"), first_text(fits, "observer")};
 }
 
 /// Returns the unit in the words of the plan, if many units share the serial number.
@@ -169,8 +177,9 @@ Result<std::string> unit_without_serial(const std::filesystem::path& folder, con
 }
 
 Result<void> set_unit(HistorySession& session, const std::filesystem::path& folder, const Json& provenance) {
-  TODBENCH_TRY(const auto named, sensor_of(folder));
-  const std::string& sensor = named;
+  TODBENCH_TRY(const auto names, names_of(folder));
+  const std::string& sensor = names.sensor;
+  session.observer = names.observer;
   if (!provenance.contains("camera") || !provenance["camera"].is_object()) {
     session.unit = {"simulation", sensor, "", ""};
     return {};
@@ -204,6 +213,8 @@ Result<HistorySession> read_history_session(const std::filesystem::path& folder)
   session.started_utc = text_at(provenance, "started_utc");
   session.program = text_at(provenance, "program_version");
   session.state = text_at(provenance, "state");
+  session.judged_again = provenance.contains("origin") && provenance["origin"].is_object() &&
+                         !provenance["origin"].value("resumed", false);
   if (!days_of_utc(session.started_utc))
     return fail(ErrorCode::invalid_input,
                 (folder / "provenance.json").string() + ": started_utc is missing or is not a time in UTC");

@@ -31,6 +31,8 @@ struct HistorySession {
   HistoryUnit unit;
   std::string path, manifest_sha256, started_utc, program, state, firmware;
   std::vector<HistoryValue> values;
+  std::string observer{};     ///< that judged the curve; empty: not known
+  bool judged_again = false;  ///< the frames are those of another session: no further check of the unit
 };
 
 /// Reads the record from small files that the manifest confirms. A simulation has the vendor "simulation" and no serial

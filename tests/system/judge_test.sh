@@ -56,6 +56,9 @@ for file in trials.csv targets.csv curve.csv fits.json verdict.json trials_simul
   cmp then/$file same/$file || fail "$file differs for the same observer"
 done
 runs 0 verify same
+runs 0 history add --index history.sqlite then same --json
+[ "$(key said "['added']") $(key said "['judged_again']")" = "1 1" ] ||
+  fail "frames judged again count as a check of the unit: $(cat said)"
 [ "$(key same/provenance.json "['origin']['manifest_sha256']")" = "$(sha256sum <then/manifest.json | cut -c 1-64)" ] ||
   "$program" verify then --json | grep -q "$(key same/provenance.json "['origin']['manifest_sha256']")" || fail "the origin has another manifest"
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
+#include <string>
 
 #include "bench/history/control_chart.h"
 #include "bench/history/fleet_history.h"
@@ -18,6 +20,7 @@
 namespace todbench {
 namespace {
 
+using testing::content_of;
 using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 
@@ -168,6 +171,34 @@ void give_camera(const std::filesystem::path& folder, const std::string& serial,
   change("fits.json", R"("sensor": "sc2000")", R"("sensor": "v4l2:Topdon-TC001-)" + serial + "\"");
   change("session.toml", "unit = \"\"", "unit = \"" + unit + "\"");
   ASSERT_TRUE(write_manifest(folder));
+}
+
+TEST_F(History, CountsNoFrameTwiceAndMixesNoObservers) {
+  const auto measured = session("measured"), judged = session("judged"), by_another = session("by_another");
+  const auto change = [](const std::filesystem::path& file, const std::string& from, const std::string& to) {
+    std::string text = content_of(file);
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << file;
+    std::ofstream(file, std::ios::binary) << text.replace(at, from.size(), to);
+  };
+  change(judged / "provenance.json", "\"camera\": null", R"("camera": null, "origin": {"session": "measured"})");
+  change(by_another / "fits.json", R"("observer": "hvs-1")", R"("observer": "hvs-2")");
+  for (const auto& folder : {judged, by_another}) ASSERT_TRUE(write_manifest(folder));
+  auto index = HistoryIndex::open(file());
+  ASSERT_TRUE(index) << index.error().message;
+
+  EXPECT_EQ(index->add(*read_history_session(measured)).value(), Adding::added);
+  EXPECT_EQ(index->add(*read_history_session(judged)).value(), Adding::judged_again);
+  EXPECT_EQ(index->add(*read_history_session(by_another)).value(), Adding::added);
+
+  std::map<std::string, int> values;
+  const auto sessions = index->sessions(std::nullopt);
+  ASSERT_TRUE(sessions);
+  for (const HistorySession& one : *sessions) {
+    for (const HistoryValue& value : one.values) ++values[value.condition];
+  }
+  EXPECT_EQ(values["dT=16.9K"], 1);
+  EXPECT_EQ(values["dT=16.9K observer hvs-2"], 1);
 }
 
 TEST_F(History, TakesNoPlaceholderOfASerialNumberForAUnit) {
