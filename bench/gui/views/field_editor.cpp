@@ -318,6 +318,7 @@ void FieldEditor::make_rows(const PlanField& field) {
   const int width = column_widths(*table, longest);
   table->setMinimumWidth(std::min(width, most_width));
   if (width > most_width) table->setHorizontalScrollMode(QAbstractItemView::ScrollPerPixel);
+  fit_height(*table, most_rows_shown);
   auto* buttons = new QHBoxLayout;  // NOLINT
   QPushButton* add = plain_button("Add", field.object_name + "Add");
   QPushButton* remove = plain_button("Remove", field.object_name + "Remove");

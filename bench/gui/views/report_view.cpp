@@ -29,6 +29,7 @@ QString text_of(std::string_view text) {
 constexpr int most_ratios = 5;  // visible at once
 constexpr int least_plot_px = 190;
 constexpr int logo_px = 40;
+const QString write_reports = "Write HTML and PDF";
 
 QString verdict_text(ReportVerdict verdict) {
   switch (verdict) {
@@ -90,9 +91,11 @@ ReportView::ReportView(SessionPresenter& presenter, QWidget* parent) : QWidget(p
   connect(&presenter_, &SessionPresenter::opened, this, &ReportView::show_session);
   connect(&presenter_, &SessionPresenter::compared, this, &ReportView::show_comparison);
   connect(&presenter_, &SessionPresenter::exported, this, [this](const QString& html, const QString& pdf) {
+    show_writing(false);
     files_->setText("Written: " + html + " and " + pdf);
     page_->setEnabled(true);
   });
+  connect(&presenter_, &SessionPresenter::problem, this, [this] { show_writing(false); });
 }
 
 QWidget* ReportView::browser() {
@@ -183,7 +186,7 @@ QWidget* ReportView::session_panel() {
   fit_rows(*limits_, 100, QWIDGETSIZE_MAX);
   layout->addWidget(results(), 1);
   auto* buttons = new QHBoxLayout;
-  export_ = primary_button("Write HTML and PDF", "exportReports");
+  export_ = primary_button(write_reports, "exportReports");
   page_ = plain_button("Show the PDF", "showPdf");
   replay_ = plain_button("Replay", "replaySession");
   replay_->setToolTip("Judges the recorded frames of the session again and reports whether all answers are the same.");
@@ -212,12 +215,17 @@ QWidget* ReportView::session_panel() {
   files_->setObjectName("exportedFiles");
   layout->addWidget(files_);
   connect(log_log_, &QCheckBox::toggled, this, &ReportView::show_plot);
-  connect(export_, &QPushButton::clicked, this, [this] { presenter_.export_reports(); });
+  connect(export_, &QPushButton::clicked, this, [this] {
+    show_writing(true);
+    presenter_.export_reports();
+  });
   connect(page_, &QPushButton::clicked, this, &ReportView::show_pdf);
   connect(replay_, &QPushButton::clicked, this, &ReportView::replay);
   connect(order_, &QPushButton::clicked, this, [this] {
     const QString file = QFileDialog::getOpenFileName(this, "Order", {}, "Orders (*.toml)");
-    if (!file.isEmpty()) presenter_.export_with_order(file.toStdString());
+    if (file.isEmpty()) return;
+    show_writing(true);
+    presenter_.export_with_order(file.toStdString());
   });
   connect(go_on_, &QPushButton::clicked, this, &ReportView::go_on);
   connect(again_, &QPushButton::clicked, this, [this] {
@@ -225,6 +233,11 @@ QWidget* ReportView::session_panel() {
     emit again();
   });
   return panel;
+}
+
+void ReportView::show_writing(bool writing) {
+  export_->setText(writing ? "Writing …" : write_reports);
+  for (QPushButton* button : {export_, order_}) button->setEnabled(!writing && presenter_.current().has_value());
 }
 
 void ReportView::show_pdf() {
@@ -322,7 +335,8 @@ void ReportView::show_session() {
   }
   fill_table(*limits_, rows);
   files_->clear();
-  for (QPushButton* button : {export_, order_, again_, compare_}) button->setEnabled(true);
+  show_writing(false);
+  for (QPushButton* button : {again_, compare_}) button->setEnabled(true);
   replay_->setEnabled(opened.recorded);
   go_on_->setEnabled(opened.recorded && opened.session.provenance.state != SessionState::complete);
   frames_->setText(opened.recorded

@@ -52,6 +52,8 @@ class ReportView final : public QWidget {
   void show_ratios(const std::optional<Comparison>& comparison);
   void show_plot();
   void show_pdf();
+  /// A report of many frames takes seconds: the button says so, and cannot be pressed again.
+  void show_writing(bool writing);
 
   SessionPresenter& presenter_;
   std::vector<SessionEntry> listed_;  ///< one per row
