@@ -11,6 +11,7 @@
 #include "bench/report/number_format.h"
 #include "bench/session/provenance.h"
 #include "bench/text/text.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -33,7 +34,7 @@ void show(Console& console, const BlindResult& result) {
         }
       }
       rows.push_back({result.sources[s], number_text(point.set_delta_t_k),
-                      with_interval(point.fit.threshold, point.fit.ci95), ratio});
+                      with_interval(stated_threshold(point.fit), point.fit.ci95), ratio});
     }
   }
   console.table({"source", "set dT (K)", "S75 (mrad) [95 %]", "acuity / " + result.sources.front() + " [95 %]"}, rows);

@@ -34,9 +34,9 @@ void print_comparison(const Console& console, const ExperimentOutcome& outcome) 
     const auto& c = outcome.comparison->points[i];
     const TodPoint* real = point_at(outcome.curve, c.set_delta_t_k);
     const TodPoint* twin = point_at(*outcome.twin, c.set_delta_t_k);
-    rows.push_back({fixed(c.delta_t_a_k, 3), real != nullptr ? fixed(acuity_per_mrad(real->fit), 4) : "–",
+    rows.push_back({fixed(c.delta_t_a_k, 3), real != nullptr ? fixed(stated_acuity_per_mrad(real->fit), 4) : "–",
                     real != nullptr ? range(acuity_interval(real->fit.ci95), 4) : "–",
-                    twin != nullptr ? fixed(acuity_per_mrad(twin->fit), 4) : "–",
+                    twin != nullptr ? fixed(stated_acuity_per_mrad(twin->fit), 4) : "–",
                     twin != nullptr ? range(acuity_interval(twin->fit.ci95), 4) : "–", fixed(c.ratio, 3),
                     range(c.ratio_ci95, 3), std::string(to_string(c.verdict))});
   }
@@ -160,8 +160,8 @@ void print_bill(const Console& console, const AccuracyBill& bill) {
 void print_curve(const Console& console, const TodCurve& curve) {
   std::vector<TableRow> rows;
   for (const auto& point : curve.points) {
-    rows.push_back({fixed(point.delta_t_k, 3), fixed(point.fit.threshold, 4), range(point.fit.ci95, 4),
-                    fixed(acuity_per_mrad(point.fit), 4), range(acuity_interval(point.fit.ci95), 4),
+    rows.push_back({fixed(point.delta_t_k, 3), fixed(stated_threshold(point.fit), 4), range(point.fit.ci95, 4),
+                    fixed(stated_acuity_per_mrad(point.fit), 4), range(acuity_interval(point.fit.ci95), 4),
                     with_error(point.direct_s75_mrad, point.direct_s75_se_mrad), fixed(point.fit.trials, 0),
                     std::string(to_string(point.fit.verdict))});
   }

@@ -91,7 +91,8 @@ Json points_json(const TodCurve& curve) {
     points.push_back({{"set_delta_t_k", point.set_delta_t_k},
                       {"answers", point.fit.trials},
                       {"s75_mrad", json_number(point.fit.threshold)},
-                      {"s75_ci95_mrad", json_interval(point.fit.ci95)}});
+                      {"s75_ci95_mrad", json_interval(point.fit.ci95)},
+                      {"verdict", to_string(point.fit.verdict)}});
   }
   return points;
 }

@@ -110,7 +110,7 @@ Demand judged_acuity(const AcuityLimit& limit, const JudgementInput& evidence) {
   if (both) deciding = {*both, deciding.s75_mrad};
   const Interval& s75_mrad = deciding.s75_mrad;
   const double largest_mrad = 1 / limit.least_acuity_per_mrad;
-  demand.result = acuity_per_mrad(point->fit);
+  demand.result = stated_acuity_per_mrad(point->fit);
   demand.interval = acuity_interval(s75_mrad);
   if (deciding.statistical_mrad) demand.statistical = acuity_interval(*deciding.statistical_mrad);
   demand.degrees_of_freedom = freedom_of(*point, uncertainty);

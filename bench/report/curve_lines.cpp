@@ -22,7 +22,7 @@ struct AcuityNow {
 AcuityNow acuity_at(const TodCurve* curve, double delta_t_k) {
   const TodPoint* point = curve == nullptr ? nullptr : point_at(*curve, delta_t_k);
   if (point == nullptr) return {};
-  return {acuity_per_mrad(point->fit), acuity_interval(point->fit.ci95)};
+  return {stated_acuity_per_mrad(point->fit), acuity_interval(point->fit.ci95)};
 }
 
 std::string acuity_text(const AcuityNow& now) {

@@ -7,12 +7,13 @@
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "bench/report/tod_figures.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
 
 RichText threshold_cell(const PsychometricFit& fit) {
-  return interval_or_missing(fit.threshold, fit.ci95, "not identified");
+  return interval_or_missing(stated_threshold(fit), fit.ci95, "not identified");
 }
 
 /// Returns the curve of the model observer for the same frames: of the camera, or of a simulated one.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bench/judgement/demand_kinds.h"
+#include "bench/judgement/verdict.h"
 #include "bench/report/fit_words.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
@@ -136,8 +137,8 @@ std::vector<RichText> curve_row(const TodPoint& point, bool with_direct) {
   const std::string_view reason = fit.verdict == FitVerdict::no_data ? "no trials" : "not identified";
   std::vector<RichText> row{plain(stated(point.set_delta_t_k)),
                             contrast_cell(point),
-                            interval_or_missing(fit.threshold, fit.ci95, reason),
-                            interval_or_missing(acuity_per_mrad(fit), acuity_interval(fit.ci95), reason),
+                            interval_or_missing(stated_threshold(fit), fit.ci95, reason),
+                            interval_or_missing(stated_acuity_per_mrad(fit), acuity_interval(fit.ci95), reason),
                             optional_number(fit.slope, 3, reason),
                             lapse_cell(point),
                             trials_cell(fit),
@@ -240,7 +241,7 @@ PsychometricFit fit_of_people(const ReportData& data, const PeopleMean& mean) {
   if (mean.people > 1) return fit;
   for (const PersonRecord& one : data.people) {
     const TodPoint* point = point_at(one.record.curve, mean.set_delta_t_k);
-    if (point != nullptr && point->fit.threshold) return point->fit;
+    if (point != nullptr && threshold_identified(point->fit)) return point->fit;
   }
   return fit;
 }

@@ -35,7 +35,7 @@ double contrast_of(const TodPoint& point) {
 }
 
 PlotPoint tod_point(const TodPoint& point) {
-  return {acuity_per_mrad(point.fit), std::abs(contrast_of(point)), acuity_interval(point.fit.ci95), {}};
+  return {stated_acuity_per_mrad(point.fit), std::abs(contrast_of(point)), acuity_interval(point.fit.ci95), {}};
 }
 
 /// Returns the points of one sign. A line joins neighbouring contrasts.
@@ -233,7 +233,7 @@ Plot psychometric_figure(const std::string& id, const NamedPoint& first, const N
     if (point->point == nullptr) continue;
     for (const AnswersAtSize& answers : answers_by_size(*point->point))
       if (answers.size_mrad > 0) sizes.include(answers.size_mrad);
-    if (point->point->fit.verdict == FitVerdict::extrapolated) sizes.include(point->point->fit.threshold);
+    if (point->point->fit.verdict == FitVerdict::extrapolated) sizes.include(stated_threshold(point->point->fit));
   }
   plot.x.label = "Size S (mrad)";
   set_logarithmic_range(plot.x, sizes, 1.12);

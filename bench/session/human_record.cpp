@@ -13,6 +13,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/try.h"
+#include "bench/judgement/verdict.h"
 #include "bench/plan/plan_options.h"
 #include "bench/session/fit_record.h"
 #include "bench/session/manifest.h"
@@ -238,7 +239,7 @@ std::vector<PeopleMean> mean_over_people(const std::vector<PersonRecord>& people
   std::map<double, std::pair<std::vector<std::string>, std::vector<double>>, std::greater<>> found;
   for (const PersonRecord& one : people) {
     for (const TodPoint& point : one.record.curve.points) {
-      if (!point.fit.threshold || !(*point.fit.threshold > 0)) continue;
+      if (!threshold_identified(point.fit)) continue;
       auto& [codes, thresholds] = found[point.set_delta_t_k];
       codes.push_back(one.person.code);
       thresholds.push_back(*point.fit.threshold);

@@ -9,6 +9,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/try.h"
+#include "tod/psychometric/acuity.h"
 #include "tod/psychometric/contrast_slope.h"
 #include "tod/psychometric/threshold_pair.h"
 
@@ -26,8 +27,9 @@ double wald_equivalence_probability(double ln_ratio, double se, double margin_pe
 std::optional<double> ln_threshold(const PsychometricFit& fit) {
   const bool meaningful =
       fit.verdict == FitVerdict::ok || fit.verdict == FitVerdict::extrapolated || fit.verdict == FitVerdict::step;
-  if (!meaningful || !fit.threshold) return std::nullopt;
-  return std::log(*fit.threshold);
+  const auto threshold = stated_threshold(fit);
+  if (!meaningful || !threshold) return std::nullopt;
+  return std::log(*threshold);
 }
 
 // Interval of exp(tb - ta) from the intervals of both, asymmetric on the log scale (method of variance estimates

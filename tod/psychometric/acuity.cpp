@@ -18,6 +18,16 @@ std::optional<double> acuity_per_mrad(const PsychometricFit& fit) {
   return reciprocal(fit.threshold);
 }
 
+std::optional<double> stated_threshold(const PsychometricFit& fit) {
+  const bool within_sizes = fit.verdict != FitVerdict::extrapolated && fit.verdict != FitVerdict::flat_or_decreasing &&
+                            fit.verdict != FitVerdict::underdetermined;
+  return within_sizes || (fit.ci95.low && fit.ci95.high) ? fit.threshold : std::nullopt;
+}
+
+std::optional<double> stated_acuity_per_mrad(const PsychometricFit& fit) {
+  return reciprocal(stated_threshold(fit));
+}
+
 Interval acuity_interval(const Interval& s75_mrad) {
   return {reciprocal(s75_mrad.high), reciprocal(s75_mrad.low)};
 }

@@ -11,6 +11,11 @@ namespace todbench {
 
 /// Acuity in 1/mrad: 1 / threshold in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> acuity_per_mrad(const PsychometricFit& fit);
+/// The threshold as a result: empty if it lies outside the tested sizes, or has no meaning (verdict), and an end of its
+/// interval is open. The likelihood hardly changes there, and the value is where the search ended.
+[[nodiscard]] std::optional<double> stated_threshold(const PsychometricFit& fit);
+/// Acuity in 1/mrad of the threshold as a result; empty without one.
+[[nodiscard]] std::optional<double> stated_acuity_per_mrad(const PsychometricFit& fit);
 /// The interval of 1 / S75 with exchanged sides. A lower limit of 0 gives an open side.
 [[nodiscard]] Interval acuity_interval(const Interval& s75_mrad);
 /// The ends of 1 / S75, in 1/mrad, for a spread of S75 over the open parameters of an observer with an eye; empty

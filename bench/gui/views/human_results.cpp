@@ -11,6 +11,7 @@
 #include "bench/gui/presenters/person_presenter.h"
 #include "bench/report/number_format.h"
 #include "bench/report/tod_figures.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -71,7 +72,7 @@ QString result_of_sources(const HumanPresenter& human) {
       rows += QString("<tr><td>%1, %2 K&nbsp;</td><td>%3&nbsp;</td><td>%4</td></tr>")
                   .arg(QString::fromStdString(result.sources[s]).toHtmlEscaped())
                   .arg(point.set_delta_t_k)
-                  .arg(QString::fromStdString(with_interval(point.fit.threshold, point.fit.ci95)), ratio);
+                  .arg(QString::fromStdString(with_interval(stated_threshold(point.fit), point.fit.ci95)), ratio);
     }
   }
   return "<table cellspacing=4><tr><th>Source</th><th>S75 (mrad)</th><th>acuity ratio</th></tr>" + rows +
@@ -89,8 +90,9 @@ QString result_of_naked_eye(const NakedEyePresenter& naked_eye) {
     const TodPoint* found = point_at(session.record().curve, predicted.contrast);
     rows += QString("<tr><td>%1&nbsp;</td><td>%2&nbsp;</td><td>%3</td></tr>")
                 .arg(predicted.contrast)
-                .arg(found == nullptr ? QString("–")
-                                      : QString::fromStdString(with_interval(found->fit.threshold, found->fit.ci95)))
+                .arg(found == nullptr
+                         ? QString("–")
+                         : QString::fromStdString(with_interval(stated_threshold(found->fit), found->fit.ci95)))
                 .arg(QString::fromStdString(
                     with_interval(predicted.s75_mrad, {predicted.spread_low_mrad, predicted.spread_high_mrad})));
   }
@@ -105,10 +107,10 @@ QString result_of_triangles(const HumanPresenter& human, const MeasurePresenter&
     const TodPoint* modelled = model.measured() ? point_at(*model.measured(), point.set_delta_t_k) : nullptr;
     rows += QString("<tr><td>%1 K&nbsp;</td><td>%2&nbsp;</td><td>%3</td></tr>")
                 .arg(point.set_delta_t_k)
-                .arg(QString::fromStdString(with_interval(point.fit.threshold, point.fit.ci95)))
+                .arg(QString::fromStdString(with_interval(stated_threshold(point.fit), point.fit.ci95)))
                 .arg(modelled == nullptr
                          ? QString("–")
-                         : QString::fromStdString(with_interval(modelled->fit.threshold, modelled->fit.ci95)));
+                         : QString::fromStdString(with_interval(stated_threshold(modelled->fit), modelled->fit.ci95)));
   }
   QString means;
   for (const PeopleMean& mean : human.means()) {
@@ -122,7 +124,8 @@ QString result_of_triangles(const HumanPresenter& human, const MeasurePresenter&
   if (!means.isEmpty())
     means = "<p>Mean over people, interval between people:</p><table cellspacing=4>" + means + "</table>";
   const auto& points = human.record()->curve.points;
-  const bool all_found = std::ranges::all_of(points, [](const TodPoint& p) { return p.fit.threshold.has_value(); });
+  const bool all_found =
+      std::ranges::all_of(points, [](const TodPoint& p) { return stated_threshold(p.fit).has_value(); });
   return "<p>" + human.problem() +
          "</p><table cellspacing=4><tr><th>ΔT</th><th>S75 human (mrad)</th><th>model (mrad)</th></tr>" + rows +
          "</table>" + (all_found ? "" : "<p>Limits without a value: the answers do not determine the threshold.</p>") +

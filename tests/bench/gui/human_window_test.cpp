@@ -331,17 +331,22 @@ TEST(MeanOverPeople, HasAnIntervalThatContainsTheScatterBetweenPeople) {
     TodPoint point;
     point.set_delta_t_k = 1;
     point.fit.threshold = s75_mrad;
+    point.fit.verdict = FitVerdict::ok;
+    point.fit.ci95 = {0.9 * s75_mrad, 1.1 * s75_mrad};
     out.record.curve.points.push_back(point);
     return out;
   };
+  PersonRecord guesses = person("D", 7e8);
+  guesses.record.curve.points.front().fit.verdict = FitVerdict::extrapolated;
+  guesses.record.curve.points.front().fit.ci95 = {4, {}};
 
   const auto one = mean_over_people({person("A", 2)});
-  const auto three = mean_over_people({person("A", 1), person("B", 2), person("C", 4), person("C", 4)});
+  const auto three = mean_over_people({person("A", 1), person("B", 2), person("C", 4), person("C", 4), guesses});
 
   ASSERT_EQ(one.size(), 1u);
   EXPECT_FALSE(one.front().ci95_mrad) << "one person has no scatter";
   ASSERT_EQ(three.size(), 1u);
-  EXPECT_EQ(three.front().people, 3);
+  EXPECT_EQ(three.front().people, 3) << "answers at chance have no threshold";
   EXPECT_NEAR(three.front().s75_mrad, 2, 1e-12);
   // ln S75 = 0, ln 2, ln 4: standard deviation ln 2; t(0.975, 2) = 4.302653 (tables of Student's t).
   const double factor = std::exp(4.302653 * std::log(2.0) / std::sqrt(3.0));

@@ -294,6 +294,19 @@ TEST(Comparison, AMissingThresholdLeavesTheRatioOutAndIsInconclusive) {
   EXPECT_EQ(comparison->verdict, ComparisonVerdict::inconclusive);
 }
 
+TEST(Comparison, AThresholdFarOutsideTheSizesGivesNoRatio) {
+  const std::vector<Level> near_chance{{0.7875, 1, 2}, {0.95, 0, 2}, {1.14, 0, 2},    {1.38, 1, 2}, {1.66, 2, 2},
+                                       {2, 0, 2},      {2.41, 1, 2}, {2.90625, 1, 2}, {3.5, 1, 2},  {4.21875, 0, 2}};
+  const TodPoint far = point(1, near_chance);
+  ASSERT_GT(far.fit.threshold.value(), 1000);
+
+  const auto comparison = compare(curve({point(1, counts(1, 3, 40))}), curve({far}), {});
+
+  ASSERT_TRUE(comparison);
+  EXPECT_FALSE(comparison->points[0].ratio);
+  EXPECT_EQ(comparison->points[0].verdict, ComparisonVerdict::inconclusive);
+}
+
 TEST(Comparison, ClusteringWeakensTheEvidence) {
   // Six clusters of which three always do better: the counts of each size are the same as without clusters.
   const auto clustered = [](double threshold) {

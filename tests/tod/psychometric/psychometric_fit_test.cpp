@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "tests/tod/psychometric/psychometric_support.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -197,6 +198,26 @@ TEST(PsychometricFit, SaysExtrapolatedWhereTheThresholdIsOutsideTheSizes) {
   EXPECT_EQ(fit->verdict, FitVerdict::extrapolated);
   EXPECT_GT(fit->threshold.value(), 1.6);
   EXPECT_TRUE(fit->usable());
+}
+
+TEST(PsychometricFit, StatesNoThresholdOutsideTheSizesWithAnOpenInterval) {
+  // Twenty answers near chance: the likelihood hardly changes from 4 mrad on, and its maximum is far away.
+  const std::vector<Level> levels{{0.7875, 1, 2}, {0.95, 0, 2}, {1.14, 0, 2},    {1.38, 1, 2}, {1.66, 2, 2},
+                                  {2, 0, 2},      {2.41, 1, 2}, {2.90625, 1, 2}, {3.5, 1, 2},  {4.21875, 0, 2}};
+
+  const auto fit = fit_psychometric(levels, {});
+
+  ASSERT_TRUE(fit && fit->threshold);
+  EXPECT_EQ(fit->verdict, FitVerdict::extrapolated);
+  EXPECT_GT(*fit->threshold, 1000);
+  EXPECT_GT(fit->ci95.low.value(), 4);
+  EXPECT_FALSE(fit->ci95.high);
+  EXPECT_FALSE(stated_threshold(*fit));
+  EXPECT_FALSE(stated_acuity_per_mrad(*fit));
+  const auto closed =
+      fit_psychometric(std::vector<Level>{{1, 30, 100}, {1.2, 37, 100}, {1.4, 46, 100}, {1.6, 58, 100}}, {});
+  ASSERT_TRUE(closed && closed->ci95.low && closed->ci95.high);
+  EXPECT_EQ(stated_threshold(*closed), closed->threshold) << "outside the sizes, with both ends";
 }
 
 TEST(PsychometricFit, GivesNoThresholdForAStepThatTouchesNoLevel) {
