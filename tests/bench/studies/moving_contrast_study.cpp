@@ -24,7 +24,9 @@ TEST_P(MovingContrastStudy, HoldsTheThresholdOfTheCamera) {
   testing::MovingRecord record((kept != nullptr ? std::filesystem::path(kept) : temporary.path()) /
                                "moving_contrasts.csv");
 
-  const auto summary = testing::study_of(GetParam(), 7000, runs, record, 6);
+  const auto summary = testing::study_of(GetParam(), 7000, runs, record, [](double delta_t_k) {
+    return testing::truth_of(GetParam().camera, delta_t_k, 6);
+  });
 
   for (const auto& one : summary) {
     std::printf(

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -186,7 +187,7 @@ struct MovingTruth {
   double ln_s75 = 0, se = 0;
 };
 
-inline MovingTruth truth_of(const SensorSpec& sensor, double delta_t_k, int parts = 2) {
+inline MovingTruth truth_of(const SensorSpec& sensor, double delta_t_k, int parts) {
   Plan plan;
   EffectPlanner planner;
   const ExperimentInputs inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner).value();
@@ -244,8 +245,10 @@ class MovingRecord {
   std::map<std::pair<std::string, std::uint64_t>, std::vector<MovingResult>> runs_;
 };
 
+/// `truth_at` returns the truth at a contrast in kelvin.
 inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::uint64_t first_seed, int runs,
-                                           MovingRecord& record, int parts_of_truth = 2) {
+                                           MovingRecord& record,
+                                           const std::function<MovingTruth(double delta_t_k)>& truth_at) {
   Surfaces surfaces;
   std::map<double, std::vector<MovingResult>> by_contrast;
   for (int i = 0; i < runs; ++i)
@@ -253,7 +256,7 @@ inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::u
       by_contrast[one.delta_t_k].push_back(one);
   std::vector<MovingSummary> out;
   for (const auto& [delta_t_k, results] : by_contrast) {
-    const MovingTruth truth = truth_of(design.camera, delta_t_k, parts_of_truth);
+    const MovingTruth truth = truth_at(delta_t_k);
     const auto n = static_cast<double>(results.size());
     MovingSummary sum{.delta_t_k = delta_t_k,
                       .truth_mrad = std::exp(truth.ln_s75),
