@@ -46,7 +46,7 @@ void add_rows(std::vector<TableRow>& rows, const std::vector<DynamicAcuity>& fou
       const TableRow cells{fmt::format("{:g}", at.speed_mrad_s),
                            fmt::format("{:.3g}", at.speed_px),
                            std::string(to_string(point.observer)),
-                           fixed(acuity_per_mrad(point.fit), 3),
+                           fixed(stated_acuity_per_mrad(point.fit), 3),
                            range(acuity_interval(point.fit.ci95), 3),
                            fixed(point.ratio, 3),
                            range(point.ratio_ci95, 3)};

@@ -17,6 +17,7 @@
 #include "bench/text/folders.h"
 #include "bench/text/json_fields.h"
 #include "bench/text/text.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -90,7 +91,7 @@ Json points_json(const TodCurve& curve) {
   for (const TodPoint& point : curve.points) {
     points.push_back({{"set_delta_t_k", point.set_delta_t_k},
                       {"answers", point.fit.trials},
-                      {"s75_mrad", json_number(point.fit.threshold)},
+                      {"s75_mrad", json_number(stated_threshold(point.fit))},
                       {"s75_ci95_mrad", json_interval(point.fit.ci95)},
                       {"verdict", to_string(point.fit.verdict)}});
   }

@@ -39,9 +39,9 @@ Json speeds_json(const std::vector<DynamicAcuity>& found) {
     for (const DynamicPoint& point : at.points) {
       Json row{{"observer", to_string(point.observer)},
                {"verdict", to_string(point.fit.verdict)},
-               {"s75_mrad", json_number(point.fit.threshold)},
+               {"s75_mrad", json_number(stated_threshold(point.fit))},
                {"s75_ci95_mrad", json_interval(point.fit.ci95)},
-               {"acuity_per_mrad", json_number(acuity_per_mrad(point.fit))},
+               {"acuity_per_mrad", json_number(stated_acuity_per_mrad(point.fit))},
                {"ratio_to_static", json_number(point.ratio)},
                {"ratio_to_static_ci95", json_interval(point.ratio_ci95)}};
       add_spread(row, "s75_spread_mrad", point.s75_spread_mrad);

@@ -114,7 +114,7 @@ std::vector<std::string> sentences(const DynamicMeasurement& found) {
         const std::string ratio = at.speed_mrad_s == 0 ? "" : ", " + in_text(point.ratio) + " of the acuity at rest";
         out.push_back(fmt::format("{:+.3f} K at {:g} mrad/s ({:.2g} pixels per open), {}: acuity {} 1/mrad, 95 % {}{}",
                                   contrast.set_delta_t_k, at.speed_mrad_s, at.speed_px, to_string(point.observer),
-                                  in_text(acuity_per_mrad(point.fit)), in_text(acuity_interval(point.fit.ci95)),
+                                  in_text(stated_acuity_per_mrad(point.fit)), in_text(acuity_interval(point.fit.ci95)),
                                   ratio));
         if (const auto acuity = acuity_spread_per_mrad(point.s75_spread_mrad))
           out.back() += "; " + in_text(*acuity) + " over the open parameters of the observer (no confidence interval)";

@@ -28,12 +28,12 @@ Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures&
     json["delta_t_k"] = json_number(point.set_delta_t_k);
     json["set_delta_t_k"] = json_number(point.set_delta_t_k);
     json["seen_delta_t_k"] = json_number(point.delta_t_k);
-    json["s75_mrad"] = json_number(point.fit.threshold);
+    json["s75_mrad"] = json_number(stated_threshold(point.fit));
     json["s75_ci95_mrad"] = json_interval(point.fit.ci95);
     json["s75_direct_mrad"] = json_number(point.direct_s75_mrad);
     json["s75_direct_se_mrad"] = json_number(point.direct_s75_se_mrad);
     add_spread(json, "s75_spread_mrad", point.s75_spread_mrad);
-    json["acuity_per_mrad"] = json_number(acuity_per_mrad(point.fit));
+    json["acuity_per_mrad"] = json_number(stated_acuity_per_mrad(point.fit));
     json["trials"] = static_cast<std::int64_t>(std::llround(point.fit.trials));
     json["verdict"] = to_string(point.fit.verdict);
     json["estimator"] = to_string(estimator_of(point.fit));

@@ -121,10 +121,10 @@ void add_rows(std::string& text, const TodCurve& curve, Side side, const std::op
     const Interval acuity = acuity_interval(point.fit.ci95);
     text += to_string(side);
     for (const std::optional<double>& value :
-         {std::optional(point.set_delta_t_k), std::optional(point.delta_t_k), contrast_se_k(point), point.fit.threshold,
-          point.fit.ci95.low, point.fit.ci95.high, acuity_per_mrad(point.fit), acuity.low, acuity.high, point.fit.slope,
-          std::optional(point.fit.lapse), std::optional(point.fit.trials), point.direct_s75_mrad,
-          point.direct_s75_se_mrad}) {
+         {std::optional(point.set_delta_t_k), std::optional(point.delta_t_k), contrast_se_k(point),
+          stated_threshold(point.fit), point.fit.ci95.low, point.fit.ci95.high, stated_acuity_per_mrad(point.fit),
+          acuity.low, acuity.high, point.fit.slope, std::optional(point.fit.lapse), std::optional(point.fit.trials),
+          point.direct_s75_mrad, point.direct_s75_se_mrad}) {
       text += "," + csv_number(value);
     }
     text += "," + std::string(to_string(point.fit.verdict));

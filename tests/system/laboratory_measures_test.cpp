@@ -63,13 +63,14 @@ Json quantity(const Json& side, const std::string& name) {
   return {};
 }
 
-/// Passes if a truth lies within two half-widths of the 95 % interval: four standard uncertainties.
+/// Passes if a truth lies within four half-widths of the 95 % interval. Latency and absolute temperature have three
+/// degrees of freedom, at which two half-widths are exceeded by chance in 0.8 % of the runs, four in 0.1 %.
 ::testing::AssertionResult holds(const Json& side, const std::string& name, double truth) {
   const Json found = quantity(side, name);
   if (found.is_null() || found["value"].is_null())
     return ::testing::AssertionFailure() << name << " is absent: " << side.at("reasons");
   const double value = found["value"], half = 0.5 * (found["ci95"][1].get<double>() - found["ci95"][0].get<double>());
-  if (std::abs(value - truth) <= 2 * half) return ::testing::AssertionSuccess();
+  if (std::abs(value - truth) <= 4 * half) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure() << name << " is " << value << ", half-width " << half << ", truth " << truth;
 }
 

@@ -11,8 +11,8 @@ namespace todbench {
 
 /// Acuity in 1/mrad: 1 / threshold in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> acuity_per_mrad(const PsychometricFit& fit);
-/// The threshold as a result: empty if it lies outside the tested sizes, or has no meaning (verdict), and an end of its
-/// interval is open. The likelihood hardly changes there, and the value is where the search ended.
+/// The threshold as a result: empty if an end of its interval is open and the likelihood hardly changes there, so that
+/// the value is where the search ended (verdicts step, extrapolated, flat_or_decreasing, underdetermined).
 [[nodiscard]] std::optional<double> stated_threshold(const PsychometricFit& fit);
 /// Acuity in 1/mrad of the threshold as a result; empty without one.
 [[nodiscard]] std::optional<double> stated_acuity_per_mrad(const PsychometricFit& fit);

@@ -308,7 +308,7 @@ ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k)
         "the TOD curve was measured at the opposite polarity: the acuity is assumed to be the same for both");
   for (const auto& point : curve.points) {
     if (any && !same_sign(point)) continue;
-    if (!point.fit.threshold || point.fit.verdict == FitVerdict::flat_or_decreasing ||
+    if (!stated_threshold(point.fit) || point.fit.verdict == FitVerdict::flat_or_decreasing ||
         point.fit.verdict == FitVerdict::underdetermined) {
       selection.notes.push_back(fmt::format("the point at {:g} K was left out: it has no threshold", point.delta_t_k));
       continue;

@@ -214,6 +214,9 @@ TEST(PsychometricFit, StatesNoThresholdOutsideTheSizesWithAnOpenInterval) {
   EXPECT_FALSE(fit->ci95.high);
   EXPECT_FALSE(stated_threshold(*fit));
   EXPECT_FALSE(stated_acuity_per_mrad(*fit));
+  const auto step = fit_psychometric(std::vector<Level>{{1, 5, 20}, {2, 5, 20}, {3, 5, 20}, {4, 11, 20}}, {});
+  ASSERT_TRUE(step && !step->ci95.high);
+  EXPECT_FALSE(stated_threshold(*step)) << "only the largest size is above chance";
   const auto closed =
       fit_psychometric(std::vector<Level>{{1, 30, 100}, {1.2, 37, 100}, {1.4, 46, 100}, {1.6, 58, 100}}, {});
   ASSERT_TRUE(closed && closed->ci95.low && closed->ci95.high);

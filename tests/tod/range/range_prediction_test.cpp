@@ -229,6 +229,11 @@ TEST(RangePrediction, TakesThresholdsOfTheTargetsPolarityAndLeavesOutThoseWithou
   point.delta_t_k = -1;
   point.fit.threshold.reset();
   curve.points.push_back(point);
+  point.delta_t_k = -0.5;
+  point.fit.threshold = 7e8;  // the answers are near chance at every size
+  point.fit.verdict = FitVerdict::extrapolated;
+  point.fit.ci95 = {4, {}};
+  curve.points.push_back(point);
 
   const auto warm = thresholds_of(curve, 3);
   const auto cold = thresholds_of(curve, -3);
@@ -237,7 +242,7 @@ TEST(RangePrediction, TakesThresholdsOfTheTargetsPolarityAndLeavesOutThoseWithou
   EXPECT_EQ(warm.thresholds[0].delta_t_k, 10);
   ASSERT_EQ(cold.thresholds.size(), 1u);
   EXPECT_EQ(cold.thresholds[0].delta_t_k, 5);
-  EXPECT_EQ(cold.notes.size(), 1u);
+  EXPECT_EQ(cold.notes.size(), 2u);
 }
 
 TEST(RangePrediction, CarriesTheFindingsOfTheThresholdsThatItRestsOn) {
