@@ -133,8 +133,8 @@ int run_add(Console& console, const HistoryArguments& a) {
   }
   for (const std::string& sentence : refused) console.note(sentence);
   if (again > 0) {
-    console.note("not added: " + std::to_string(again) +
-                 " sessions that judge frames of other sessions again. They are no further checks of the unit.");
+    console.note("sessions judged again, not added because their frames are those of other sessions: " +
+                 std::to_string(again));
   }
   if (console.json()) {
     console.object({{"index", a.index},

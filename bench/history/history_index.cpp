@@ -258,16 +258,6 @@ Result<HistoryIndex> HistoryIndex::open_read_only(const std::filesystem::path& f
   return HistoryIndex(file, std::move(database));
 }
 
-namespace {
-
-/// Condition of a value, with the observer of an acuity if it is not the one of earlier indexes.
-std::string condition_of(const HistoryValue& value, const std::string& observer) {
-  const bool named = value.measure == "acuity" && !observer.empty() && observer != "hvs-1";
-  return value.condition + (named ? " observer " + observer : "");
-}
-
-}  // namespace
-
 Result<Adding> HistoryIndex::add(const HistorySession& session) {
   if (session.judged_again) return Adding::judged_again;
   sqlite3* const database = database_.get();
@@ -322,7 +312,7 @@ Result<Adding> HistoryIndex::add(const HistorySession& session) {
     if (Statement(database, "INSERT OR REPLACE INTO value VALUES(?, ?, ?, ?, ?, ?, ?)")
             .bind(id)
             .bind(value.measure)
-            .bind(condition_of(value, session.observer))
+            .bind(stated_condition(session, value))
             .bind(value.unit)
             .bind(value.scale)
             .bind(value.value)
@@ -330,6 +320,11 @@ Result<Adding> HistoryIndex::add(const HistorySession& session) {
             .step() != SQLITE_DONE)
       return refused(database, file_);
   }
+  if (!session.resumes_sha256.empty() &&
+      Statement(database, "DELETE FROM value WHERE session IN (SELECT id FROM session WHERE manifest_sha256 = ?)")
+              .bind(session.resumes_sha256)
+              .step() != SQLITE_DONE)
+    return refused(database, file_);
   if (!transaction.commit()) return refused(database, file_);
   return Adding::added;
 }

@@ -42,8 +42,8 @@ class HistoryIndex {
   HistoryIndex& operator=(HistoryIndex&&) noexcept;
   ~HistoryIndex();
 
-  /// Adds the session. The condition of an acuity that another observer than hvs-1 judged contains its name: acuities
-  /// of two observers are two measures.
+  /// Adds the session, with the conditions of stated_condition(). The values of an interrupted session that this one
+  /// resumed are removed: its frames are in both.
   [[nodiscard]] Result<Adding> add(const HistorySession& session);
   [[nodiscard]] Result<void> add_event(const HistoryEvent& event);
   /// Returns the sessions of all units, or of those with this serial number, ordered by unit and time.

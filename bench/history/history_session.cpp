@@ -202,6 +202,11 @@ Result<void> set_unit(HistorySession& session, const std::filesystem::path& fold
 
 }  // namespace
 
+std::string stated_condition(const HistorySession& session, const HistoryValue& value) {
+  const bool named = value.measure == "acuity" && !session.observer.empty() && session.observer != "hvs-1";
+  return value.condition + (named ? " observer " + session.observer : "");
+}
+
 Result<HistorySession> read_history_session(const std::filesystem::path& folder) {
   TODBENCH_TRY(auto digest, manifest_digest(folder));
   TODBENCH_TRY(const auto provenance, vouched_json(folder, "provenance.json"));
@@ -213,8 +218,11 @@ Result<HistorySession> read_history_session(const std::filesystem::path& folder)
   session.started_utc = text_at(provenance, "started_utc");
   session.program = text_at(provenance, "program_version");
   session.state = text_at(provenance, "state");
-  session.judged_again = provenance.contains("origin") && provenance["origin"].is_object() &&
-                         !provenance["origin"].value("resumed", false);
+  if (provenance.contains("origin") && provenance["origin"].is_object()) {
+    const Json& origin = provenance["origin"];
+    session.judged_again = !(origin.contains("resumed") && origin["resumed"] == true);
+    if (!session.judged_again) session.resumes_sha256 = text_at(origin, "manifest_sha256");
+  }
   if (!days_of_utc(session.started_utc))
     return fail(ErrorCode::invalid_input,
                 (folder / "provenance.json").string() + ": started_utc is missing or is not a time in UTC");

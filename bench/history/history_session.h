@@ -31,9 +31,14 @@ struct HistorySession {
   HistoryUnit unit;
   std::string path, manifest_sha256, started_utc, program, state, firmware;
   std::vector<HistoryValue> values;
-  std::string observer{};     ///< that judged the curve; empty: not known
-  bool judged_again = false;  ///< the frames are those of another session: no further check of the unit
+  std::string observer{};        ///< that judged the curve; empty: not known
+  bool judged_again = false;     ///< the frames are those of another session: no further check of the unit
+  std::string resumes_sha256{};  ///< digest of the manifest of the interrupted session whose frames it contains too
 };
+
+/// Condition of a value with the observer of an acuity, unless that is hvs-1: "dT=2K observer hvs-2". Acuities of two
+/// observers are two measures.
+[[nodiscard]] std::string stated_condition(const HistorySession& session, const HistoryValue& value);
 
 /// Reads the record from small files that the manifest confirms. A simulation has the vendor "simulation" and no serial
 /// number. Errors: `invalid_input` (not a session, no manifest, changed files, no camera serial number, or two), `io`

@@ -106,7 +106,7 @@ PlanSection display_section() {
            .type = FlagKey{},
            .sentence = "Whether the report states the thresholds of hvs-2 at this display beside those of the observer",
            .place = in_plan(&Plan::display_as_operator),
-           .form = {"State its limits in the report", "planDisplayAsOperator"},
+           .form = {"Thresholds of hvs-2 in the report", "planDisplayAsOperator"},
            .check = [](const Plan& plan, std::size_t) -> std::vector<ValueMistake> {
              if (!plan.display_as_operator || has_display(plan)) return {};
              return {{std::nullopt, "state the display: pixel pitch, viewing distance and luminance"}};

@@ -207,7 +207,7 @@ PlanSection measures_section() {
            .unit = "px",
            .sentence = "Side of the square source whose loss is reported and limited",
            .place = of(&MeasuresPlan::source_size_px),
-           .form = {"Side of the source (px)", "planSourceSizePx"}},
+           .form = {"Side of the source", "planSourceSizePx"}},
           {.name = "absolute",
            .type = FlagKey{},
            .sentence =

@@ -157,9 +157,10 @@ Result<std::vector<SubmittedResult>> session_results(const std::filesystem::path
     const double uncertainty =
         logarithm ? linear * std::sqrt(found.u * found.u + series_variance(session, found)) : found.u;
     if (!std::isfinite(linear) || !(uncertainty >= smallest && uncertainty <= largest)) continue;
+    const std::string condition = one_line(stated_condition(history, found));
     out.push_back({one_line(plan.place), one_line(plan.unit),
-                   found.measure + (found.condition.empty() ? "" : " at " + found.condition), found.unit, linear,
-                   uncertainty, folder.string()});
+                   found.measure + (condition.empty() ? "" : " at " + condition), found.unit, linear, uncertainty,
+                   folder.string()});
   }
   if (out.empty())
     return fail(ErrorCode::invalid_input, folder.string() + ": no value of the session has an uncertainty");

@@ -201,7 +201,8 @@ class FilteredGain {
     const double part = started_ ? part_ : 1;
     gain_ += part * (gain - gain_), offset_ += part * (offset - offset_), started_ = true;
     const std::scoped_lock lock(mutex_);
-    settled_[std::round(delta_t_k)] = gain;
+    // Between two contrasts the black body passes values that only round to the whole kelvin.
+    if (std::abs(delta_t_k - std::round(delta_t_k)) < 0.02) settled_[std::round(delta_t_k)] = gain;
     cv::Mat1w levels(counts.size());
     std::transform(counts.begin(), counts.end(), levels.begin(), [&](std::uint16_t count) {
       return static_cast<std::uint16_t>(std::clamp(std::nearbyint(gain_ * count + offset_), 0.0, 255.0));

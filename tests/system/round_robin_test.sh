@@ -82,6 +82,11 @@ ends 0 "$program" round-robin evaluate session-1 session-2 --out sessions
 awk -F, 'NR > 1 { u[$4] = $6 / $5 } END { more = u["bench 2"] ^ 2 - u["bench 1"] ^ 2; exit !(more > 0.0299 ^ 2 && more < 0.0301 ^ 2) }' sessions/degrees.csv ||
   wrong "uncertainties of sessions: $(cat sessions/degrees.csv)"
 refused "has a second result" "$program" round-robin evaluate session-1 session-1
+# The acuity of another observer is another quantity, which no other laboratory has.
+sed 's/bench 1/bench 3/' plan1.toml >plan3.toml
+printf '[observer]\nname = "human-like-1"\n' >>plan3.toml
+ends 0 "$program" simulate ./plan3.toml --seed 4 --out session-3 --quiet
+refused "observer human-like-1" "$program" round-robin evaluate session-1 session-2 session-3
 
 head="laboratory,item,quantity,value,u"
 printf '%s\nA,i,q,1,0\nB,i,q,1,1\n' $head >zero.csv

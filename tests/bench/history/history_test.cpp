@@ -201,6 +201,28 @@ TEST_F(History, CountsNoFrameTwiceAndMixesNoObservers) {
   EXPECT_EQ(values["dT=16.9K observer hvs-2"], 1);
 }
 
+TEST_F(History, ReplacesAnInterruptedSessionByTheOneThatResumedIt) {
+  const auto interrupted = session("interrupted"), resumed = session("resumed");
+  const std::string digest = read_history_session(interrupted)->manifest_sha256;
+  std::string text = content_of(resumed / "provenance.json");
+  const std::string before = "\"camera\": null";
+  text.replace(text.find(before), before.size(),
+               R"("camera": null, "origin": {"resumed": true, "manifest_sha256": ")" + digest + "\"}");
+  std::ofstream(resumed / "provenance.json", std::ios::binary) << text;
+  ASSERT_TRUE(write_manifest(resumed));
+  auto index = HistoryIndex::open(file());
+  ASSERT_TRUE(index) << index.error().message;
+
+  EXPECT_EQ(index->add(*read_history_session(interrupted)).value(), Adding::added);
+  EXPECT_EQ(index->add(*read_history_session(resumed)).value(), Adding::added);
+  EXPECT_EQ(index->add(*read_history_session(interrupted)).value(), Adding::known);
+
+  const auto sessions = index->sessions(std::nullopt);
+  ASSERT_TRUE(sessions && sessions->size() == 2);
+  EXPECT_TRUE(sessions->at(0).values.empty()) << sessions->at(0).path;
+  EXPECT_FALSE(sessions->at(1).values.empty());
+}
+
 TEST_F(History, TakesNoPlaceholderOfASerialNumberForAUnit) {
   const auto nameless = session("nameless"), first = session("first"), second = session("second"),
              told = session("told");

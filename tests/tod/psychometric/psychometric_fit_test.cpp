@@ -214,7 +214,8 @@ TEST(PsychometricFit, StatesNoThresholdOutsideTheSizesWithAnOpenInterval) {
   EXPECT_FALSE(fit->ci95.high);
   EXPECT_FALSE(stated_threshold(*fit));
   EXPECT_FALSE(stated_acuity_per_mrad(*fit));
-  const auto step = fit_psychometric(std::vector<Level>{{1, 5, 20}, {2, 5, 20}, {3, 5, 20}, {4, 11, 20}}, {});
+  const auto step =
+      fit_psychometric(std::vector<Level>{{1.52, 1, 4}, {2.2, 1, 4}, {3.2, 1, 4}, {4.65, 0, 4}, {6.75, 2, 4}}, {});
   ASSERT_TRUE(step && !step->ci95.high);
   EXPECT_FALSE(stated_threshold(*step)) << "only the largest size is above chance";
   const auto closed =
