@@ -114,7 +114,7 @@ Json chart_json(const HistorySeries& series, const HistoryArguments& a) {
 int run_add(Console& console, const HistoryArguments& a) {
   auto index = HistoryIndex::open(a.index);
   if (!index) return report_error(console, index.error());
-  int added = 0, known = 0, moved = 0, again = 0;
+  std::map<Adding, int> number;
   std::vector<std::string> refused;
   for (const std::string& folder : a.folders) {
     const auto sessions = session_folders_below(folder);
@@ -128,10 +128,12 @@ int run_add(Console& console, const HistoryArguments& a) {
       }
       const auto done = index->add(*session);
       if (!done) return report_error(console, done.error());
-      ++(*done == Adding::added ? added : *done == Adding::known ? known : *done == Adding::moved ? moved : again);
+      ++number[*done];
     }
   }
   for (const std::string& sentence : refused) console.note(sentence);
+  const int added = number[Adding::added], known = number[Adding::known], moved = number[Adding::moved],
+            again = number[Adding::judged_again];
   if (again > 0) {
     console.note("sessions judged again, not added because their frames are those of other sessions: " +
                  std::to_string(again));

@@ -14,6 +14,7 @@
 #include "bench/text/json_fields.h"
 #include "bench/text/json_file.h"
 #include "bench/text/text.h"
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -178,11 +179,12 @@ Json naked_eye_comparison(const NakedEyePrediction& prediction, const HumanRecor
     const auto point = std::find_if(record.curve.points.begin(), record.curve.points.end(),
                                     [&](const TodPoint& one) { return one.set_delta_t_k == predicted.contrast; });
     if (point != record.curve.points.end() && point->fit.threshold) {
-      const double found = *point->fit.threshold;
-      row["s75_mrad"] = found;
       row["s75_ci95_mrad"] = json_interval(point->fit.ci95);
-      row["inside_spread"] = found >= predicted.spread_low_mrad.value_or(0) &&
-                             (!predicted.spread_high_mrad || found <= *predicted.spread_high_mrad);
+      if (const auto found = stated_threshold(point->fit)) {
+        row["s75_mrad"] = *found;
+        row["inside_spread"] = *found >= predicted.spread_low_mrad.value_or(0) &&
+                               (!predicted.spread_high_mrad || *found <= *predicted.spread_high_mrad);
+      }
     }
     contrasts.push_back(std::move(row));
   }

@@ -19,9 +19,9 @@ std::optional<double> acuity_per_mrad(const PsychometricFit& fit) {
 }
 
 std::optional<double> stated_threshold(const PsychometricFit& fit) {
-  const bool searched = fit.verdict == FitVerdict::step || fit.verdict == FitVerdict::extrapolated ||
-                        fit.verdict == FitVerdict::flat_or_decreasing || fit.verdict == FitVerdict::underdetermined;
-  return !searched || (fit.ci95.low && fit.ci95.high) ? fit.threshold : std::nullopt;
+  const bool needs_both_ends = fit.verdict == FitVerdict::step || fit.verdict == FitVerdict::extrapolated ||
+                               fit.verdict == FitVerdict::underdetermined;
+  return !needs_both_ends || (fit.ci95.low && fit.ci95.high) ? fit.threshold : std::nullopt;
 }
 
 std::optional<double> stated_acuity_per_mrad(const PsychometricFit& fit) {

@@ -11,10 +11,10 @@ namespace todbench {
 
 /// Acuity in 1/mrad: 1 / threshold in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> acuity_per_mrad(const PsychometricFit& fit);
-/// The threshold as a result: empty if an end of its interval is open and the likelihood hardly changes there, so that
-/// the value is where the search ended (verdicts step, extrapolated, flat_or_decreasing, underdetermined).
+/// The threshold, if the answers determine it. Empty for the verdicts step, extrapolated and underdetermined if an end
+/// of the interval is open: the likelihood is nearly constant on that side, and the search ended somewhere on it.
 [[nodiscard]] std::optional<double> stated_threshold(const PsychometricFit& fit);
-/// Acuity in 1/mrad of the threshold as a result; empty without one.
+/// The reciprocal of stated_threshold() in mrad, in 1/mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> stated_acuity_per_mrad(const PsychometricFit& fit);
 /// The interval of 1 / S75 with exchanged sides. A lower limit of 0 gives an open side.
 [[nodiscard]] Interval acuity_interval(const Interval& s75_mrad);

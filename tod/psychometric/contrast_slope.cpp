@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -68,9 +69,10 @@ std::vector<double> contrast_slopes(const TodCurve& curve) {
     std::vector<SlopePoint> points;
     for (std::size_t i = 0; i < curve.points.size(); ++i) {
       const TodPoint& point = curve.points[i];
-      if ((point.set_delta_t_k > 0) != positive || !point.fit.threshold || !(*point.fit.threshold > 0)) continue;
+      const auto threshold = stated_threshold(point.fit);
+      if ((point.set_delta_t_k > 0) != positive || !threshold || !(*threshold > 0)) continue;
       if (!(contrast_seen_k(point) > 0)) continue;
-      points.push_back({i, 1 / contrast_seen_k(point), *point.fit.threshold * *point.fit.threshold});
+      points.push_back({i, 1 / contrast_seen_k(point), *threshold * *threshold});
     }
     std::sort(points.begin(), points.end(), [](const SlopePoint& a, const SlopePoint& b) { return a.z < b.z; });
     // Points with equal effective contrasts have no slope between them.

@@ -27,6 +27,10 @@ QString false_alarms_in_words(const PersonResult& result) {
                                      : QString("<p>Bars reported in %1 of %2 empty frames</p>").arg(seen).arg(shown);
 }
 
+QString s75_text(const PsychometricFit& fit) {
+  return QString::fromStdString(with_interval(stated_threshold(fit), fit.ci95));
+}
+
 }  // namespace
 
 QString result_of_a_person(const PersonPresenter& person) {
@@ -72,7 +76,7 @@ QString result_of_sources(const HumanPresenter& human) {
       rows += QString("<tr><td>%1, %2 K&nbsp;</td><td>%3&nbsp;</td><td>%4</td></tr>")
                   .arg(QString::fromStdString(result.sources[s]).toHtmlEscaped())
                   .arg(point.set_delta_t_k)
-                  .arg(QString::fromStdString(with_interval(stated_threshold(point.fit), point.fit.ci95)), ratio);
+                  .arg(s75_text(point.fit), ratio);
     }
   }
   return "<table cellspacing=4><tr><th>Source</th><th>S75 (mrad)</th><th>acuity ratio</th></tr>" + rows +
@@ -90,9 +94,7 @@ QString result_of_naked_eye(const NakedEyePresenter& naked_eye) {
     const TodPoint* found = point_at(session.record().curve, predicted.contrast);
     rows += QString("<tr><td>%1&nbsp;</td><td>%2&nbsp;</td><td>%3</td></tr>")
                 .arg(predicted.contrast)
-                .arg(found == nullptr
-                         ? QString("–")
-                         : QString::fromStdString(with_interval(stated_threshold(found->fit), found->fit.ci95)))
+                .arg(found == nullptr ? QString("–") : s75_text(found->fit))
                 .arg(QString::fromStdString(
                     with_interval(predicted.s75_mrad, {predicted.spread_low_mrad, predicted.spread_high_mrad})));
   }
@@ -107,10 +109,8 @@ QString result_of_triangles(const HumanPresenter& human, const MeasurePresenter&
     const TodPoint* modelled = model.measured() ? point_at(*model.measured(), point.set_delta_t_k) : nullptr;
     rows += QString("<tr><td>%1 K&nbsp;</td><td>%2&nbsp;</td><td>%3</td></tr>")
                 .arg(point.set_delta_t_k)
-                .arg(QString::fromStdString(with_interval(stated_threshold(point.fit), point.fit.ci95)))
-                .arg(modelled == nullptr
-                         ? QString("–")
-                         : QString::fromStdString(with_interval(stated_threshold(modelled->fit), modelled->fit.ci95)));
+                .arg(s75_text(point.fit))
+                .arg(modelled == nullptr ? QString("–") : s75_text(modelled->fit));
   }
   QString means;
   for (const PeopleMean& mean : human.means()) {

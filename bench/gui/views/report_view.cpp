@@ -29,7 +29,7 @@ QString text_of(std::string_view text) {
 constexpr int most_ratios = 5;  // visible at once
 constexpr int least_plot_px = 190;
 constexpr int logo_px = 40;
-const QString write_reports = "Write HTML and PDF";
+constexpr const char* write_reports = "Write HTML and PDF";
 
 QString verdict_text(ReportVerdict verdict) {
   switch (verdict) {

@@ -157,30 +157,25 @@ TEST_F(History, KnowsASessionByItsManifestAndFindsItWhereItWasMoved) {
   EXPECT_NEAR(acuity.u, std::log(0.57682673 / 0.42409196) / (2 * 1.96), 1e-5);
 }
 
+/// Replaces the first place of a text in a file.
+void change(const std::filesystem::path& file, const std::string& from, const std::string& to) {
+  std::string text = content_of(file);
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << file;
+  std::ofstream(file, std::ios::binary) << text.replace(at, from.size(), to);
+}
+
 /// Makes the session one of a camera with this serial number.
 void give_camera(const std::filesystem::path& folder, const std::string& serial, const std::string& unit) {
-  const auto change = [&](const char* name, const std::string& from, const std::string& to) {
-    std::ifstream in(folder / name, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(in), {}};
-    const std::size_t at = text.find(from);
-    ASSERT_NE(at, std::string::npos) << name;
-    std::ofstream(folder / name, std::ios::binary) << text.replace(at, from.size(), to);
-  };
-  change("provenance.json", "\"camera\": null",
+  change(folder / "provenance.json", "\"camera\": null",
          R"("camera": {"vendor": "Topdon", "model": "TC001", "serial": ")" + serial + R"("})");
-  change("fits.json", R"("sensor": "sc2000")", R"("sensor": "v4l2:Topdon-TC001-)" + serial + "\"");
-  change("session.toml", "unit = \"\"", "unit = \"" + unit + "\"");
+  change(folder / "fits.json", R"("sensor": "sc2000")", R"("sensor": "v4l2:Topdon-TC001-)" + serial + "\"");
+  change(folder / "session.toml", "unit = \"\"", "unit = \"" + unit + "\"");
   ASSERT_TRUE(write_manifest(folder));
 }
 
 TEST_F(History, CountsNoFrameTwiceAndMixesNoObservers) {
   const auto measured = session("measured"), judged = session("judged"), by_another = session("by_another");
-  const auto change = [](const std::filesystem::path& file, const std::string& from, const std::string& to) {
-    std::string text = content_of(file);
-    const std::size_t at = text.find(from);
-    ASSERT_NE(at, std::string::npos) << file;
-    std::ofstream(file, std::ios::binary) << text.replace(at, from.size(), to);
-  };
   change(judged / "provenance.json", "\"camera\": null", R"("camera": null, "origin": {"session": "measured"})");
   change(by_another / "fits.json", R"("observer": "hvs-1")", R"("observer": "hvs-2")");
   for (const auto& folder : {judged, by_another}) ASSERT_TRUE(write_manifest(folder));
@@ -204,11 +199,8 @@ TEST_F(History, CountsNoFrameTwiceAndMixesNoObservers) {
 TEST_F(History, ReplacesAnInterruptedSessionByTheOneThatResumedIt) {
   const auto interrupted = session("interrupted"), resumed = session("resumed");
   const std::string digest = read_history_session(interrupted)->manifest_sha256;
-  std::string text = content_of(resumed / "provenance.json");
-  const std::string before = "\"camera\": null";
-  text.replace(text.find(before), before.size(),
-               R"("camera": null, "origin": {"resumed": true, "manifest_sha256": ")" + digest + "\"}");
-  std::ofstream(resumed / "provenance.json", std::ios::binary) << text;
+  change(resumed / "provenance.json", "\"camera\": null",
+         R"("camera": null, "origin": {"resumed": true, "manifest_sha256": ")" + digest + "\"}");
   ASSERT_TRUE(write_manifest(resumed));
   auto index = HistoryIndex::open(file());
   ASSERT_TRUE(index) << index.error().message;

@@ -50,6 +50,22 @@ TEST(ContrastSlope, IsThatOfTheCurve) {
     EXPECT_NEAR(slopes[i], slope_of(a, b, d, resolved.points[i].set_delta_t_k), 1e-12) << i;
 }
 
+TEST(ContrastSlope, LeavesOutAThresholdThatTheAnswersDoNotDetermine) {
+  TodCurve curve;
+  for (const double contrast_k : {10.0, 2.0, 0.5})
+    curve.points.push_back(point_of(contrast_k, 2 + 1 / contrast_k, 0.01));
+  const auto without = contrast_slopes(curve);
+  TodPoint far = point_of(0.2, 7e8, 0.01);
+  far.fit.verdict = FitVerdict::extrapolated;
+  far.fit.ci95.high.reset();
+  curve.points.push_back(far);
+
+  auto with = contrast_slopes(curve);
+
+  with.pop_back();
+  EXPECT_EQ(with, without);
+}
+
 TEST(ContrastSlope, OfTwoPointsIsNotTooSmall) {
   for (const double d : {0.0, 0.1, 0.3}) {
     const double b = 0.4, a = 4.2;
