@@ -76,6 +76,7 @@ PYTHON
 until_rows() {
   while kill -0 $process 2>/dev/null; do
     [ -e "$1/trials.csv" ] && [ "$(wc -l <"$1/trials.csv")" -ge "$2" ] && break
+    sleep 0.02 # without it the loop takes a processor from the run
   done
 }
 k=0 resumed=0

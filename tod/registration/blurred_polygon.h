@@ -14,7 +14,7 @@ struct BlurredPolygon {
 };
 
 /// The polygon (pixels) convolved with a Gaussian of standard deviation `blur_px` > 0 at the pixel centres of `window`;
-/// error of `value` below 1e-4. A Gaussian is a sufficient model of optics, detector and sampling box for locating a
+/// error of `value` below 5e-6. A Gaussian is a sufficient model of optics, detector and sampling box for locating a
 /// triangle: to first order only the variance of their shape matters.
 [[nodiscard]] BlurredPolygon blurred_polygon(const Polygon& polygon, double blur_px, cv::Rect window);
 

@@ -42,15 +42,15 @@ OrientationRuns orientation_runs(const SensorSpec& camera, std::uint64_t first, 
 // TODBENCH_STUDY_RUNS: runs of each camera (6 without it).
 TEST(Orientation, OfTheTrianglesMattersOnlyWithNoiseOfRowsOrColumns) {
   const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
-  const int runs = asked != nullptr ? std::atoi(asked) : 6;
+  const int runs = asked != nullptr ? std::atoi(asked) : 4;
   SensorSpec rows;
   rows.row_noise_k = 0.3;
 
   const OrientationRuns plain = orientation_runs({}, 1, runs), noisy = orientation_runs(rows, 501, runs);
 
-  // At 0.3 % each: two findings of six come by chance once in 7000.
+  // At 0.3 % each: two findings of four come by chance once in 18000.
   EXPECT_LE(plain.findings, 1 + runs / 100);
-  // 95 % intervals: three of six or more miss 0 by chance once in 450.
+  // 95 % intervals: three of four or more miss 0 by chance once in 2000.
   EXPECT_GE(plain.within, runs - 2 - runs / 10);
   EXPECT_GE(noisy.findings, runs / 2);
   EXPECT_LT(noisy.mean_percent, -5);

@@ -42,11 +42,11 @@ TEST(Halo, SpreadsItsShareOfTheLightInANormalBlur) {
       const SensorSpec spec = with_halo(share, sigma), plain = test::sc2000();
       const ImageChain haze(spec, full_plan(spec, {}, {}), Accuracy::normal());
       const ImageChain sharp(plain, full_plan(plain, {}, {}), Accuracy::normal());
-      const cv::Mat1d found = haze.infinite_plane(square(side), {-20, -20}, 4, {11, 11}).values;
-      const cv::Mat1d core = sharp.infinite_plane(square(side), {-20, -20}, 4, {11, 11}).values;
-      for (int y = 0; y < 11; ++y) {
-        for (int x = 0; x < 11; ++x) {
-          const double spread = blurred_square(side, std::hypot(sigma, 0.3), {4.0 * x - 20, 4.0 * y - 20});
+      const cv::Mat1d found = haze.infinite_plane(square(side), {-20, -20}, 8, {6, 6}).values;
+      const cv::Mat1d core = sharp.infinite_plane(square(side), {-20, -20}, 8, {6, 6}).values;
+      for (int y = 0; y < 6; ++y) {
+        for (int x = 0; x < 6; ++x) {
+          const double spread = blurred_square(side, std::hypot(sigma, 0.3), {8.0 * x - 20, 8.0 * y - 20});
           EXPECT_NEAR(found(y, x), (1 - share) * core(y, x) + share * spread, 8e-4) << sigma << " " << side;
         }
       }
