@@ -184,7 +184,8 @@ AccuracyBill bill_of(const ExperimentOutcome& outcome, const RunShown& shown) {
                                      .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
                                      .verdict = &outcome.verdict,
                                      .effects = outcome.effects,
-                                     .wall_s = outcome.figures.wall_s});
+                                     .wall_s = outcome.figures.wall_s,
+                                     .twin_s = outcome.twin_s});
   if (shown.forecast && outcome.forecast) add_forecast(bill, *outcome.forecast);
   return bill;
 }

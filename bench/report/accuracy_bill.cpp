@@ -238,6 +238,9 @@ AccuracyBill accuracy_bill(const BillInput& input) {
   const double known_s = add_rows(bill, input);
   // The presentations of a resumed run were taken in more than one run.
   bill.total_s = std::max(input.wall_s, known_s);
+  if (input.twin_s > 0)
+    bill.sentences.push_back(
+        fmt::format("The simulation of the twin took {} s after the run.", significant(input.twin_s, 2)));
   add_floor(bill, input);
   add_least(bill, input);
   add_left_out(bill, input.effects);

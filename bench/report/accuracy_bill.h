@@ -39,6 +39,7 @@ struct BillInput {
   const Verdict* verdict = nullptr;               ///< null: not judged
   const SensorPlan& effects;
   double wall_s = 0;  ///< of the run with its physical measures, without the twin
+  double twin_s = 0;  ///< of the simulation of the twin, which follows the run; 0: none
 };
 
 /// Divides the time of a run. A presentation begins when the target is in place and ends when its next change begins.

@@ -106,7 +106,8 @@ Document report_document(const ReportData& data) {
                                     .uncertainty = data.uncertainty ? &*data.uncertainty : nullptr,
                                     .verdict = data.verdict ? &*data.verdict : nullptr,
                                     .effects = data.plan,
-                                    .wall_s = data.wall_s})));
+                                    .wall_s = data.wall_s,
+                                    .twin_s = data.twin_s})));
   }
   if (data.cost) add(cost_section(*data.cost));
   add(frames_section(data));

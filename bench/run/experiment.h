@@ -65,6 +65,7 @@ struct ExperimentOutcome {
   SensorPlan effects;                             ///< of the simulated sensor
   std::optional<DisplayRecord> at_display{};      ///< beside the results; at_display()
   RunFigures figures;                             ///< of `curve`
+  double twin_s = 0;                              ///< of the simulation of `twin`
   std::optional<AccuracyBill> forecast{};         ///< of a measured run; made before its first presentation
   std::optional<Error> ended_by;                  ///< of an early stop; the folder is valid and marked interrupted
   std::vector<Presentation> presentations{};      ///< of `curve`

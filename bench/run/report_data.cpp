@@ -141,6 +141,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   data.cut_off = session.cut_off;
   data.interrupted = data.verdict->ended_early ? data.verdict->ended_early : ended_early(session);
   if (provenance.twin_run) {
+    data.twin_s = provenance.twin_run->wall_s;
     for (const auto& note : provenance.twin_run->notes) data.notes.push_back("Simulated twin: " + note);
   }
   if (provenance.clock_jump_s != 0) data.notes.push_back(jump_sentence(provenance.clock_jump_s));

@@ -75,6 +75,7 @@ void add_twin(ExperimentOutcome& outcome, Provenance& provenance, const FromCame
               const Plan& plan, const ExperimentInputs& inputs, const BackgroundWork& background,
               const ExperimentHost& host, const OpenSession& open, const std::stop_token& stop) {
   TwinResults twin = run_twin(plan, inputs, camera, host, open, stop);
+  if (twin.run) outcome.twin_s = twin.run->wall_s;
   provenance.twin_run = std::move(twin.run);
   outcome.twin = std::move(twin.curve);
   if (outcome.twin) take_spread(outcome.curve, *outcome.twin);

@@ -5,6 +5,7 @@
 
 #include "bench/text/json_fields.h"
 #include "bench/text/spread_text.h"
+#include "tod/psychometric/acuity.h"
 #include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
@@ -69,8 +70,8 @@ void fit_fields(JsonFields& json, PsychometricFit& fit) {
   json.later("interval", fit.interval, all_interval_kinds);
   json.later("dispersion", fit.dispersion);
   json.later("twin_shape", fit.twin_shape, twin_shape_fields);
-  // Earlier records hold a meaningless number here.
-  if (json.reading() && fit.verdict == FitVerdict::flat_or_decreasing) fit.threshold.reset();
+  // Earlier records hold meaningless numbers here.
+  if (json.reading() && fit.verdict == FitVerdict::flat_or_decreasing) remove_threshold(fit);
 }
 
 void finding_fields(JsonFields& json, AdequacyFinding& finding) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 #include "bench/session/manifest.h"
 
@@ -74,6 +76,24 @@ void expect_refused(const Ended& ended, int code, const std::string& sentence) {
   if (x == first.end() && y == second.end()) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure() << "line " << x - first.begin() + 1 << ": " << (x == first.end() ? "" : *x)
                                        << " | " << (y == second.end() ? "" : *y);
+}
+
+std::string content(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+int occurrences(const std::string& text, const std::string& of) {
+  int count = 0;
+  for (auto at = text.find(of); at != std::string::npos; at = text.find(of, at + 1)) ++count;
+  return count;
+}
+
+std::map<std::string, std::string> decisions_of(const Json& effects) {
+  std::map<std::string, std::string> decisions;
+  for (const auto& effect : effects) decisions[effect["name"]] = effect["decision"];
+  return decisions;
 }
 
 std::size_t rows_in(const std::filesystem::path& csv) {

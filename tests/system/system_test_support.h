@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -35,6 +36,12 @@ void expect_refused(const Ended& ended, int code, const std::string& sentence);
 [[nodiscard]] ::testing::AssertionResult completed(const Ended& ended);
 /// The two files have the same bytes; tells the first line that differs.
 [[nodiscard]] ::testing::AssertionResult same_content(const std::filesystem::path& a, const std::filesystem::path& b);
+/// The decision on each effect of a JSON list, by the name of the effect.
+[[nodiscard]] std::map<std::string, std::string> decisions_of(const Json& effects);
+/// The bytes of a file; empty when it is not there.
+[[nodiscard]] std::string content(const std::filesystem::path& file);
+/// How often `of` stands in `text`; overlapping ones count.
+[[nodiscard]] int occurrences(const std::string& text, const std::string& of);
 /// Data rows of a CSV file; 0 when it is not there.
 [[nodiscard]] std::size_t rows_in(const std::filesystem::path& csv);
 /// The files that every session has, the manifest agrees with all of them.

@@ -24,6 +24,12 @@ std::optional<double> stated_threshold(const PsychometricFit& fit) {
   return !needs_both_ends || (fit.ci95.low && fit.ci95.high) ? fit.threshold : std::nullopt;
 }
 
+void remove_threshold(PsychometricFit& fit) {
+  fit.threshold.reset();
+  fit.ci95 = fit.ci90 = {};
+  fit.posterior.reset();
+}
+
 std::optional<double> stated_acuity_per_mrad(const PsychometricFit& fit) {
   return reciprocal(stated_threshold(fit));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "tod/psychometric/acuity.h"
 #include "tod/psychometric/psychometric_clusters.h"
 #include "tod/psychometric/psychometric_likelihood.h"
 #include "tod/psychometric/psychometric_posterior.h"
@@ -347,8 +348,7 @@ PsychometricFit fitted(std::span<const Level> levels, const FitOptions& options,
   if (options.with_posterior && !options.graded)
     fit.posterior = grid_posterior(s.counts, s.form, s.scan.nodes, s.lapse);
   if (in_groups) refine(counts, s, fit);
-  // The place of the maximum is arbitrary in this case, tens of decades from the sizes.
-  if (fit.verdict == FitVerdict::flat_or_decreasing) fit.threshold.reset();
+  if (fit.verdict == FitVerdict::flat_or_decreasing) remove_threshold(fit);
   return fit;
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <QPushButton>
 #include <QtTest/QTest>
+#include <array>
 #include <functional>
 #include <string>
 
@@ -12,6 +13,9 @@
 #include "tests/support/temporary_folder.h"
 
 namespace todbench::testing {
+
+/// Keys of the answers, by Apex.
+inline constexpr std::array answer_keys{Qt::Key_Up, Qt::Key_Right, Qt::Key_Down, Qt::Key_Left};
 
 /// Runs the event loop until something is so; false after a time in which it would have been on a loaded machine.
 [[nodiscard]] bool wait_until(const std::function<bool()>& so, int patience_ms = 60'000);

@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// Two set-ups of two contrasts and three places each. A change takes 2 s, a presentation 1 s, and the first of a
 /// set-up or contrast 4 s more.
@@ -61,6 +62,21 @@ std::string all_sentences(const AccuracyBill& bill) {
   std::string text;
   for (const std::string& sentence : bill.sentences) text += sentence + "\n";
   return text;
+}
+
+TEST(AccuracyBill, StatesTheTimeOfTheTwinBesideThatOfTheRun) {
+  const auto presentations = run_of_twelve();
+  const TodCurve curve = curve_of_two();
+  const SensorPlan effects;
+
+  const AccuracyBill alone =
+      accuracy_bill({.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60});
+  const AccuracyBill both =
+      accuracy_bill({.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60, .twin_s = 46.1});
+
+  EXPECT_THAT(all_sentences(alone), Not(HasSubstr("twin")));
+  EXPECT_THAT(all_sentences(both), HasSubstr("The simulation of the twin took 46 s after the run."));
+  EXPECT_NEAR(both.total_s, 60, 0);
 }
 
 TEST(AccuracyBill, DividesTheTimeOfARunWithoutARest) {
