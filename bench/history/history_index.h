@@ -42,8 +42,8 @@ class HistoryIndex {
   HistoryIndex& operator=(HistoryIndex&&) noexcept;
   ~HistoryIndex();
 
-  /// Adds the session; its conditions are those of stated_condition(). If it resumed an interrupted session, the values
-  /// of that session are removed, because its frames are in both.
+  /// Adds the session with the conditions of stated_condition(). If it resumed an interrupted session, it replaces the
+  /// values of that session, because it contains the same frames.
   [[nodiscard]] Result<Adding> add(const HistorySession& session);
   [[nodiscard]] Result<void> add_event(const HistoryEvent& event);
   /// Returns the sessions of all units, or of those with this serial number, ordered by unit and time.

@@ -36,8 +36,8 @@ struct HistorySession {
   std::string resumes_sha256{};  ///< digest of the manifest of the interrupted session whose frames it contains too
 };
 
-/// Condition of a value for comparisons. An acuity by another observer than hvs-1 has its name, "dT=2K observer hvs-2":
-/// acuities by two observers are not compared.
+/// The condition under which a value is compared. It contains the observer of an acuity, unless that is hvs-1:
+/// "dT=2K observer hvs-2". Acuities by different observers are not compared.
 [[nodiscard]] std::string stated_condition(const HistorySession& session, const HistoryValue& value);
 
 /// Reads the record from small files that the manifest confirms. A simulation has the vendor "simulation" and no serial

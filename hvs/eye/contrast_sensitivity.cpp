@@ -9,19 +9,12 @@
 #include <numbers>
 #include <utility>
 
+#include "acquisition/base/normal.h"
 #include "acquisition/base/number_range.h"
 #include "hvs/eye/eye_optics.h"
 
 namespace todbench {
 namespace {
-
-double normal_density(double x) {
-  return std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi);
-}
-
-double normal_probability(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
 
 /// Proportion correct in 2AFC of the rule of the largest response: the interval with the pattern has one channel with
 /// mean d' and M - 1 without, the other M without. By the trapezoidal rule, which converges exponentially here.

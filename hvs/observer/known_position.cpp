@@ -6,12 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/base/normal.h"
+
 namespace todbench {
 namespace {
-
-double normal_cdf(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
 
 double normal_quantile(double p) {
   // Kept inside the open interval: at its ends the weight of the point is zero anyway.
@@ -41,7 +39,7 @@ struct Factor {
 
 /// P(bound + scale z > 0) with scale >= 0. If scale is 0, the sign of the bound decides; a tie gives one half.
 double upper(double bound, double scale) {
-  if (scale > 0) return normal_cdf(bound / scale);
+  if (scale > 0) return normal_probability(bound / scale);
   return bound > 0 ? 1.0 : (bound < 0 ? 0.0 : 0.5);
 }
 

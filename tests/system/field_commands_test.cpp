@@ -90,9 +90,9 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
     EXPECT_FALSE(all["models"][name]["criterion"]["origin"].get<std::string>().empty());
     EXPECT_FALSE(all["models"][name]["display"].get<std::string>().empty());
   }
-  EXPECT_THAT(content(folder.path() / "p.html"), HasSubstr("ACQUIRE"));
-  EXPECT_THAT(content(folder.path() / "p.html"), HasSubstr("M75: people, small craft"));
-  EXPECT_EQ(occurrences(content(folder.path() / "p.html"), "judged by hvs-1"), 1);
+  EXPECT_THAT(content_of(folder.path() / "p.html"), HasSubstr("ACQUIRE"));
+  EXPECT_THAT(content_of(folder.path() / "p.html"), HasSubstr("M75: people, small craft"));
+  EXPECT_EQ(occurrences(content_of(folder.path() / "p.html"), "judged by hvs-1"), 1);
   EXPECT_EQ(beyond.code, 3);
   EXPECT_TRUE(one_object(beyond)["r75_m"].is_null());
   EXPECT_EQ(one_object(beyond)["r75_ci95_m"][0], 50.0);
@@ -103,8 +103,8 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   expect_refused(range({"--air-k", "0"}), 2, "above 0 K");
   const Json weak = one_object(range({"--cn2", "1e-16"}));
   const Json strong = one_object(range({"--cn2", "1e-11", "--models", "all", "--page", "turbulent.html"}));
-  EXPECT_THAT(content(folder.path() / "p.html"), Not(HasSubstr("1e-11")));
-  EXPECT_THAT(content(folder.path() / "turbulent.html"), HasSubstr("1e-11"));
+  EXPECT_THAT(content_of(folder.path() / "p.html"), Not(HasSubstr("1e-11")));
+  EXPECT_THAT(content_of(folder.path() / "turbulent.html"), HasSubstr("1e-11"));
   EXPECT_EQ(weak["r75_m"], plain["r75_m"]);
   EXPECT_EQ(weak["turbulence"]["decision"], "skip");
   EXPECT_EQ(strong["turbulence"]["decision"], "simulate");
@@ -134,7 +134,7 @@ TEST(PatternCommand, WritesPictureAndPlate) {
           todbench({"pattern", kind, "--pixels", "320", "240", "--format", format, "--out", out, "--json"},
                    {.folder = folder.path()});
       EXPECT_EQ(drawn.code, 0) << drawn.err;
-      EXPECT_FALSE(content(folder.path() / out).empty());
+      EXPECT_FALSE(content_of(folder.path() / out).empty());
       EXPECT_EQ(one_object(drawn)["truth"], std::string(kind) + "-" + format + ".toml");
     }
   }
@@ -157,15 +157,15 @@ TEST(PatternCommand, ReplacesItsOwnTruthAndNoOtherFile) {
   };
   EXPECT_EQ(drawn("edge", "x.png").code, 0);
   EXPECT_EQ(drawn("flat", "x.png").code, 0);
-  const std::string truth = content(folder.path() / "x.toml");
+  const std::string truth = content_of(folder.path() / "x.toml");
   EXPECT_THAT(truth, HasSubstr("flat"));
 
   expect_refused(drawn("edge", "x.tiff"), 2, "x.toml");
-  EXPECT_EQ(content(folder.path() / "x.toml"), truth);
+  EXPECT_EQ(content_of(folder.path() / "x.toml"), truth);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "x.tiff"));
   folder.write("plan.toml", "name = \"plan\"\n");
   expect_refused(drawn("edge", "plan.png"), 2, "plan.toml");
-  EXPECT_EQ(content(folder.path() / "plan.toml"), "name = \"plan\"\n");
+  EXPECT_EQ(content_of(folder.path() / "plan.toml"), "name = \"plan\"\n");
 }
 
 TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
@@ -198,11 +198,11 @@ TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
     }
   }
   EXPECT_EQ(read_picture(folder.path() / "p/frame.tiff")->picture.size(), cv::Size(320, 240));
-  EXPECT_EQ(content(folder.path() / "p/pictures.html").find("<script"), std::string::npos);
+  EXPECT_EQ(content_of(folder.path() / "p/pictures.html").find("<script"), std::string::npos);
 
   auto moving = asked;
   moving.insert(moving.end(), {"--force", "--motion-mrad-s", "40", "0"});
-  folder.write("slow.toml", content(source_file("sim_devices/sensors/sc2000.toml")) + "\ntime_constant_ms = 10\n");
+  folder.write("slow.toml", content_of(source_file("sim_devices/sensors/sc2000.toml")) + "\ntime_constant_ms = 10\n");
   moving[3] = "./slow.toml";
   const Json smeared = one_object(todbench(moving, {.folder = folder.path()}));
   moving[moving.size() - 2] = "0";
@@ -224,7 +224,7 @@ TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
   EXPECT_EQ(decisions[2]["name"], "turbulence");
   EXPECT_EQ(decisions[3]["name"], "image_dance");
   // The page states each once, as an effect of the atmosphere.
-  const std::string page = content(folder.path() / "p/pictures.html");
+  const std::string page = content_of(folder.path() / "p/pictures.html");
   const auto rows = [&](const std::string& name) { return occurrences(page, "<th scope=\"row\">" + name + "</th>"); };
   EXPECT_EQ(rows("atmosphere: turbulence"), 1);
   EXPECT_EQ(rows("atmosphere: image_dance"), 1);
@@ -368,10 +368,10 @@ TEST(MrtdCommand, TellsWhatIsAnMrtdFromWhatAMachineDoesBeyond) {
     EXPECT_TRUE(points[1]["threshold_k"].is_number());
     EXPECT_TRUE(points[1]["mrtd_k"].is_null());
     // On the page in place of a number, not beside an interval of nothing.
-    EXPECT_THAT(content(folder.path() / "mrtd.html"), HasSubstr(points[1]["reason"].get<std::string>()));
+    EXPECT_THAT(content_of(folder.path() / "mrtd.html"), HasSubstr(points[1]["reason"].get<std::string>()));
   }
-  EXPECT_EQ(content(folder.path() / "mrtd.html").find("<script"), std::string::npos);
-  EXPECT_NE(content(folder.path() / "mrtd.svg").find("<svg"), std::string::npos);
+  EXPECT_EQ(content_of(folder.path() / "mrtd.html").find("<script"), std::string::npos);
+  EXPECT_NE(content_of(folder.path() / "mrtd.svg").find("<svg"), std::string::npos);
   // Behind air every contrast of the bars is exp(k R) times that at the camera: the answers are the same ones.
   const Json far = one_object(mrtd({"--of-nyquist", "0.4,1.2", "--range-m", "1500", "--extinction-per-km", "0.7"}));
   EXPECT_NEAR(far["transmittance"].get<double>(), std::exp(-1.05), 1e-12);

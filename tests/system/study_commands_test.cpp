@@ -39,22 +39,22 @@ TEST(SweepCommand, HasTheSameTableHoweverItWasRun) {
   }
   for (const char* part : {"a", "b", "c"}) EXPECT_EQ(in("collect", {}, {.folder = folder.path() / part}).code, 0);
 
-  const std::string table = content(folder.path() / "a/s.results/table.csv");
+  const std::string table = content_of(folder.path() / "a/s.results/table.csv");
   EXPECT_THAT(table, HasSubstr("netd_k,detector_um,repeat,seed"));
-  EXPECT_EQ(content(folder.path() / "b/s.results/table.csv"), table);
-  EXPECT_EQ(content(folder.path() / "c/s.results/table.csv"), table);
+  EXPECT_EQ(content_of(folder.path() / "b/s.results/table.csv"), table);
+  EXPECT_EQ(content_of(folder.path() / "c/s.results/table.csv"), table);
   const Json json = one_object(in("collect", {"--json"}));
   EXPECT_EQ(json["rows"].size(), 8u);
   EXPECT_EQ(json["effects"][0]["parameters"][0]["key"], "netd_k");
   EXPECT_EQ(in("collect", {"--page", "page.html"}).code, 0);
-  EXPECT_THAT(content(folder.path() / "a/page.html"), HasSubstr("</html>"));
+  EXPECT_THAT(content_of(folder.path() / "a/page.html"), HasSubstr("</html>"));
 }
 
 TEST(EffectDecisions, AreStatedByEveryCommandThatSimulatesWithoutSimulating) {
   const TemporaryFolder folder;
   folder.write("plan.toml", small_plan(8));
   folder.write("p.toml", "[[stage]]\nkind = \"median\"\n");
-  folder.write("noisy.toml", content(source_file("sim_devices/sensors/sc2000.toml")) +
+  folder.write("noisy.toml", content_of(source_file("sim_devices/sensors/sc2000.toml")) +
                                  "\nhalo_share = 0.02\nhalo_sigma_pitch = 10\n");
   const std::vector<std::vector<std::string>> commands{
       {"enhance", "./plan.toml", "--packages", "p.toml"},
@@ -149,7 +149,7 @@ TEST(SweepCommand, PrintsTaskListsAndRefusesInASentence) {
   EXPECT_EQ(lines_of(run({"sweep", "tasks", "s.toml", "--for", "parallel"}).out).size(), 4u);
   EXPECT_THAT(run({"sweep", "tasks", "s.toml", "--for", "slurm"}).out, HasSubstr("--array=0-3"));
   EXPECT_EQ(run({"sweep", "submit", "s.toml", "--engine", "slurm", "--dry-run", "--quiet"}).code, 0);
-  EXPECT_THAT(content(folder.path() / "s.results/slurm.sh"), HasSubstr("#SBATCH --array=0-3"));
+  EXPECT_THAT(content_of(folder.path() / "s.results/slurm.sh"), HasSubstr("#SBATCH --array=0-3"));
   expect_refused(run({"sweep", "expand", "bad.toml"}), 2, "unknown parameter 'netd'");
   expect_refused(run({"sweep", "expand", "none.toml"}), 2, "none.toml");
   expect_refused(run({"sweep", "run", "s.toml", "--range", "9-3"}), 2, "--range");
@@ -185,9 +185,9 @@ TEST(EnhanceCommand, NamesAPackageThatFailsAndKeepsTheOthers) {
   EXPECT_TRUE(json["results"][1]["error"].is_string());
   EXPECT_TRUE(json["results"][2]["error"].is_null());
   EXPECT_EQ(json["results"][2]["points"][0]["acuity_per_mrad"], json["results"][0]["points"][0]["acuity_per_mrad"]);
-  EXPECT_THAT(content(folder.path() / "e/enhancement.html"), HasSubstr("</html>"));
+  EXPECT_THAT(content_of(folder.path() / "e/enhancement.html"), HasSubstr("</html>"));
   EXPECT_EQ(rows_in(folder.path() / "e/trials-2.csv"), json["results"][0]["trials"].get<std::size_t>());
-  EXPECT_THAT(content(folder.path() / "e/package-1.log"), HasSubstr("no licence"));
+  EXPECT_THAT(content_of(folder.path() / "e/package-1.log"), HasSubstr("no licence"));
   expect_refused(enhance({"plan.toml", "--packages", "good.toml", "--out", "e"}), 2, "not empty");
   expect_refused(enhance({"plan.toml", "--packages", "none.toml"}), 2, "none.toml");
   expect_refused(enhance({"none.toml", "--packages", "good.toml"}), 2, "none.toml");

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "bench/session/manifest.h"
@@ -76,12 +75,6 @@ void expect_refused(const Ended& ended, int code, const std::string& sentence) {
   if (x == first.end() && y == second.end()) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure() << "line " << x - first.begin() + 1 << ": " << (x == first.end() ? "" : *x)
                                        << " | " << (y == second.end() ? "" : *y);
-}
-
-std::string content(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 int occurrences(const std::string& text, const std::string& of) {

@@ -36,10 +36,8 @@ void expect_refused(const Ended& ended, int code, const std::string& sentence);
 [[nodiscard]] ::testing::AssertionResult completed(const Ended& ended);
 /// The two files have the same bytes; tells the first line that differs.
 [[nodiscard]] ::testing::AssertionResult same_content(const std::filesystem::path& a, const std::filesystem::path& b);
-/// The decision on each effect of a JSON list, by the name of the effect.
+/// Decisions by the names of the effects, from a JSON list of effects.
 [[nodiscard]] std::map<std::string, std::string> decisions_of(const Json& effects);
-/// The bytes of a file; empty when it is not there.
-[[nodiscard]] std::string content(const std::filesystem::path& file);
 /// How often `of` stands in `text`; overlapping ones count.
 [[nodiscard]] int occurrences(const std::string& text, const std::string& of);
 /// Data rows of a CSV file; 0 when it is not there.

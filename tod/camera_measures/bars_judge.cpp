@@ -24,9 +24,8 @@ namespace {
 
 constexpr std::size_t own_draws = 4;          ///< of the observer's own noise, for each frame and interval
 constexpr std::size_t most_frame_parts = 16;  ///< of the jackknife over the frames
-/// Pictures of the observer's own noise, for each place. All set-ups use them, so that the jackknife over set-ups does
-/// not contain their sampling error: with 256, which are enough for the little noise of hvs-1, that of an eye was 2.7
-/// %.
+/// Pictures of the observer's own noise, for each place. All set-ups use them, so the jackknife over set-ups does not
+/// contain their sampling error. With 256 pictures that of an eye was 2.7 %; the noise of hvs-1 is small.
 constexpr std::size_t own_pool = 256, own_pool_of_an_eye = 2048;
 constexpr double blur_margin_px = 1.5;  ///< distance of a window from other cut-outs
 

@@ -11,13 +11,13 @@ namespace todbench {
 
 /// Acuity in 1/mrad: 1 / threshold in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> acuity_per_mrad(const PsychometricFit& fit);
-/// The threshold, if the answers determine it. Empty for the verdicts step, extrapolated and underdetermined if an end
-/// of the interval is open: the likelihood is nearly constant on that side, and the search ended somewhere on it.
+/// The threshold, if the answers determine it. Empty if the interval has an open end and the verdict is step,
+/// extrapolated or underdetermined: the likelihood is nearly constant on that side, so the place found is arbitrary.
 [[nodiscard]] std::optional<double> stated_threshold(const PsychometricFit& fit);
-/// Takes threshold, intervals and posterior from a fit whose answers do not increase with size: they are places far
-/// from the sizes, where the search or the prior ends.
+/// Removes threshold, intervals and posterior of a fit. If the answers do not increase with size, these numbers only
+/// state where the search or the prior ends.
 void remove_threshold(PsychometricFit& fit);
-/// The reciprocal of stated_threshold() in mrad, in 1/mrad; empty without a positive threshold.
+/// Acuity in 1/mrad: 1 / stated_threshold() in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> stated_acuity_per_mrad(const PsychometricFit& fit);
 /// The interval of 1 / S75 with exchanged sides. A lower limit of 0 gives an open side.
 [[nodiscard]] Interval acuity_interval(const Interval& s75_mrad);

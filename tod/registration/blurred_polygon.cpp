@@ -2,10 +2,12 @@
 #include "tod/registration/blurred_polygon.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
+#include <utility>
 #include <vector>
+
+#include "acquisition/base/normal.h"
+#include "hvs/shape/gauss_legendre.h"
 
 namespace todbench {
 namespace {
@@ -35,9 +37,7 @@ std::vector<Side> sides_of(const Polygon& polygon) {
 /// Adds the slices between two successive heights of corners. Gauss-Legendre with three nodes on panels in which no
 /// side is longer than one blur width: the integrand is smooth on the scale of the blur along every side.
 void add_slices(const std::vector<Side>& sides, double from, double to, double blur, std::vector<Slice>& slices) {
-  constexpr double gauss_node = 0.7745966692414834;
-  constexpr std::array<double, 3> node{-gauss_node, 0, gauss_node};
-  constexpr std::array<double, 3> weight{5.0 / 9, 8.0 / 9, 5.0 / 9};
+  static const std::vector<QuadratureNode> rule = gauss_legendre(3);
   std::vector<Side> crossed;
   double longest = 0;
   for (const Side& side : sides) {
@@ -48,8 +48,8 @@ void add_slices(const std::vector<Side>& sides, double from, double to, double b
   const int panels = std::max(1, static_cast<int>(std::ceil(longest / blur)));
   const double half = (to - from) / panels / 2;
   for (int panel = 0; panel < panels; ++panel) {
-    for (std::size_t k = 0; k < node.size(); ++k) {
-      Slice slice{from + half * (2 * panel + 1 + node[k]), half * weight[k], {}};
+    for (const QuadratureNode& node : rule) {
+      Slice slice{from + half * (2 * panel + 1 + node.x), half * node.weight, {}};
       for (const auto& [low, high] : crossed)
         slice.crossings.push_back(low.x + (slice.y - low.y) / (high.y - low.y) * (high.x - low.x));
       std::sort(slice.crossings.begin(), slice.crossings.end());
@@ -72,14 +72,6 @@ std::vector<Slice> slices_of(const Polygon& polygon, double blur) {
 
 /// In units of the blur; beyond it the normal law is 0 or 1 to 1e-10.
 constexpr double farthest = 6.5;
-
-double normal_density(double u) {
-  return std::exp(-u * u / 2) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
-}
-
-double normal_probability(double u) {
-  return 0.5 + 0.5 * std::erf(u / std::numbers::sqrt2);
-}
 
 /// The pixels from `first` to below `last`, of `count` from `origin` on, that lie within `farthest` of a place.
 struct Near {

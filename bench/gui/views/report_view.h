@@ -52,7 +52,7 @@ class ReportView final : public QWidget {
   void show_ratios(const std::optional<Comparison>& comparison);
   void show_plot();
   void show_pdf();
-  /// Shows on the button whether a report is being written, and disables it meanwhile: frames make this take seconds.
+  /// Shows on the button that a report is being written, and disables it. Many frames make a report take seconds.
   void show_writing(bool writing);
 
   SessionPresenter& presenter_;
