@@ -28,7 +28,7 @@ std::vector<TargetState> states_of(const Plan& plan) {
     states.push_back({.plate = plan.target.plates.front(),
                       .mounting = plan.target.mountings.front(),
                       .delta_t_k = largest_contrast_k(plan.target.delta_t_k),
-                      .shift_mm = driven_px * pixel_mm * cv::Point2d(x, y)});
+                      .shift_mm = driven_px * pixel_mm * cv::Point2d(x, y * plan.camera.pixel_aspect)});
   return states;
 }
 

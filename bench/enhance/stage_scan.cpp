@@ -169,6 +169,8 @@ Result<std::function<Result<std::string>(OpenedBench&)>> scan_on_opened(const Lo
   if (loaded.observer().sensor_noise_factor != 1)
     return fail(ErrorCode::invalid_input,
                 "an observer whose noise is proportional to the sensor noise cannot judge the frames of a scan");
+  if (auto square = require_square_pixels(loaded.sensor(), "a scan by the stage"); !square)
+    return tl::unexpected(square.error());
   const StageScan scan{.steps = steps, .pixel_mm = loaded.plan().target.distance_m * loaded.plan().camera.ifov_mrad};
   return [scan](OpenedBench& bench) { return scan_with_stage(bench, scan); };
 }

@@ -43,11 +43,12 @@ Result<LoadedPlan> with_suitable_distance(const LoadedPlan& loaded, std::stop_to
       smallest = std::min(smallest, t.size_mm);
       largest = std::max(largest, t.size_mm);
     }
-    extent_mm = std::max({extent_mm, plate.width_mm * sensor.height / sensor.width, plate.height_mm});
+    const double across = sensor.pitch_aspect() * sensor.height / sensor.width;  // height of the picture over its width
+    extent_mm = std::max({extent_mm, plate.width_mm * across, plate.height_mm});
   }
   const double middle_mm = std::sqrt(smallest * largest);
   // The plate may fill 90 % of the picture.
-  const double nearest_m = extent_mm / (0.9 * sensor.height * sensor.ifov_mrad());
+  const double nearest_m = extent_mm / (0.9 * sensor.height * sensor.ifov_mrad(PitchAxis::y));
   // Registration and contrast need triangles of at least five displayed samples.
   const double farthest_m = largest * sensor.samples_per_pitch() / (5.0 * sensor.ifov_mrad());
   plan.target.distance_m = std::max(nearest_m, std::min(middle_mm / middle_mrad, farthest_m));

@@ -198,9 +198,25 @@ Result<void> check_eye(const Plan& plan, const PlanParts& parts) {
 
 namespace {
 
+/// Features of a plan that need pixels as high as wide.
+Result<void> check_pixel_shape(const Plan& plan, const PlanParts& parts) {
+  const MeasuresPlan& measures = plan.measures;
+  const std::pair<bool, std::string_view> features[] = {{parts.observer.eye.has_value(), "an observer with an eye"},
+                                                        {measures.mtf, "mtf in [measures]"},
+                                                        {measures.ctf, "ctf in [measures]"},
+                                                        {measures.source_size, "source_size in [measures]"},
+                                                        {measures.mrtd, "mrtd in [measures]"}};
+  for (const auto& [used, name] : features) {
+    if (!used) continue;
+    if (auto square = require_square_pixels(parts.sensor, name); !square) return square;
+  }
+  return {};
+}
+
 /// Returns the contradictions between parts and plan.
 Result<void> fits_together(const Plan& plan, const PlanParts& parts) {
   if (auto shown = check_eye(plan, parts); !shown) return shown;
+  if (auto shaped = check_pixel_shape(plan, parts); !shaped) return shaped;
   constexpr double steepest = 0.5;  // motion of the target between two rows, in pitches
   const cv::Point2d slope = readout_slope(parts.sensor, plan.simulation.motion);
   if (std::hypot(slope.x, slope.y) <= steepest) return {};
@@ -253,6 +269,7 @@ std::vector<TargetPlate> LoadedPlan::shown_plates() const {
 LoadedPlan::LoadedPlan(Plan plan, PlanParts parts)
     : plan_(std::move(plan)), parts_(std::move(parts)), sensor_(parts_.sensor) {
   sensor_.microscan = plan_.simulation.microscan;
+  plan_.camera.pixel_aspect = parts_.observer.sample_aspect = sensor_.pitch_aspect();
   if (plan_.target.collimator.stated()) {
     const SpectralBand band{sensor_.wavelength_min_um, sensor_.wavelength_max_um};
     plan_.target.collimator.transmission = mean_transmission(plan_.target.collimator, band);
@@ -272,6 +289,7 @@ Result<LoadedPlan> LoadedPlan::load(Plan plan, const ResourceFinder& find) {
 Result<LoadedPlan> LoadedPlan::of(Plan plan, PlanParts parts) {
   if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
   if (auto shown = check_eye(plan, parts); !shown) return tl::unexpected(shown.error());
+  if (auto shaped = check_pixel_shape(plan, parts); !shaped) return tl::unexpected(shaped.error());
   return LoadedPlan(std::move(plan), std::move(parts));
 }
 

@@ -42,12 +42,13 @@ struct WarmUpPlan {
 
 /// [camera]: the real or emulated camera. Without an id the plan can only be simulated.
 struct CameraPlan {
-  std::string id;                                ///< as listed by `todbench devices`, e.g. "gige:FLIR-48000123"
-  double ifov_mrad = 0;                          ///< of one pixel; required with an id
-  double nuc_interval_s = 0;                     ///< period of commanded corrections; 0: never commanded
-  double nuc_wait_s = 1;                         ///< frames within this time after a correction are not measured
-  std::map<std::string, std::string> settings;   ///< feature -> value; set before the run and read back
-  double reconnect_s = 60;                       ///< maximum time to wait for a lost camera; 0: no reconnection
+  std::string id;                               ///< as listed by `todbench devices`, e.g. "gige:FLIR-48000123"
+  double ifov_mrad = 0;                         ///< of one pixel along x; required with an id
+  double pixel_aspect = 1;                      ///< height over width of a pixel; no key: LoadedPlan takes the sensor's
+  double nuc_interval_s = 0;                    ///< period of commanded corrections; 0: never commanded
+  double nuc_wait_s = 1;                        ///< frames within this time after a correction are not measured
+  std::map<std::string, std::string> settings;  ///< feature -> value; set before the run and read back
+  double reconnect_s = 60;                      ///< maximum time to wait for a lost camera; 0: no reconnection
   ContrastUnit contrast = ContrastUnit::kelvin;  ///< camera only; the twin is measured in kelvin
   std::string frame_size;                        ///< "640x512": requested size; empty: chosen by the back end
   std::string nuc_command;                       ///< feature that triggers a correction; empty: found by name

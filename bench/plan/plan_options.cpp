@@ -27,6 +27,7 @@ MeasurementOptions measurement_options(const Plan& plan, const std::vector<Targe
   options.max_rejected_share = plan.measurement.max_rejected_share;
   options.frame_timeout = std::chrono::milliseconds(plan.measurement.frame_timeout_ms);
   options.integrity.max_saturated_share = plan.measurement.max_saturated_share;
+  options.registration.pixel_aspect = plan.camera.pixel_aspect;
   options.registration.max_scale_deviation = plan.measurement.max_scale_deviation;
   options.registration.max_rotation_deg = plan.measurement.max_rotation_deg;
   options.registration.max_residual_px = plan.measurement.max_residual_px;
@@ -52,6 +53,7 @@ ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<Targe
   options.delta_t_k = plan.target.delta_t_k;
   options.phases = side == Side::measured ? plan.target.phases : plan.simulation.phases;
   options.pixel_mm = ifov_mrad * plan.target.distance_m;  // mrad times m
+  options.pixel_aspect = plan.camera.pixel_aspect;
   const double costs[] = {plan.target.plate_change_s, plan.target.mounting_change_s, plan.target.contrast_change_s,
                           plan.target.shift_change_s};
   std::copy(std::begin(costs), std::end(costs), std::begin(options.change_cost_s));

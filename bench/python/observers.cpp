@@ -119,6 +119,7 @@ void add_observers(py::module_& module) {
       TODBENCH_WRITE(TemplateObserverSpec, search_range_samples)
       .def_readwrite("search_step_samples", &TemplateObserverSpec::search_step_samples, "Distance of neighbouring places of the search.")
       TODBENCH_WRITE(TemplateObserverSpec, window_size_factor)
+      TODBENCH_WRITE(TemplateObserverSpec, sample_aspect)
       .def_readwrite("window_margin_pitch", &TemplateObserverSpec::window_margin_pitch, "Margin of the window beyond the target, in detector pitches.");
   // clang-format on
   module.def(

@@ -18,6 +18,7 @@ py::class_<SensorSpec> sensor_spec(py::module_& module) {
       .def_readwrite("width", &SensorSpec::width, "Detectors in a row.")
       .def_readwrite("height", &SensorSpec::height, "Detectors in a column.")
       TODBENCH_WRITE(SensorSpec, pitch_um)
+      TODBENCH_WRITE(SensorSpec, pitch_y_um)
       TODBENCH_WRITE(SensorSpec, detector_um)
       TODBENCH_WRITE(SensorSpec, detector_y_um)
       .def_readwrite("focal_length_mm", &SensorSpec::focal_length_mm, "Focal length of the lens.")
@@ -56,7 +57,11 @@ py::class_<SensorSpec> sensor_spec(py::module_& module) {
       .def_readwrite("frame_rate_hz", &SensorSpec::frame_rate_hz, "Frames per second.")
       TODBENCH_WRITE(SensorSpec, scene_temperature_k)
       // clang-format on
-      .def_property_readonly("ifov_mrad", &SensorSpec::ifov_mrad, "Angle of a detector pitch.")
+      .def_property_readonly(
+          "ifov_mrad", [](const SensorSpec& spec) { return spec.ifov_mrad(); }, "Angle of a detector pitch along x.")
+      .def_property_readonly(
+          "ifov_y_mrad", [](const SensorSpec& spec) { return spec.ifov_mrad(PitchAxis::y); },
+          "Angle of a detector pitch along y.")
       .def_property_readonly("samples_per_pitch", &SensorSpec::samples_per_pitch, doc("SensorSpec::samples_per_pitch"))
       .def(
           "validate", [](const SensorSpec& spec) { take(validate(spec)); },
@@ -122,7 +127,7 @@ void add_scene(py::module_& module) {
   module.def(
       "scene_pixel",
       [](const PlateScene& scene, cv::Point2d plate_mm, double ifov_mrad, int width, int height) {
-        return scene_pixel(scene, plate_mm, ifov_mrad, {width, height});
+        return scene_pixel(scene, plate_mm, ifov_mrad, cv::Size(width, height));
       },
       py::arg("scene"), py::arg("plate_mm"), py::arg("ifov_mrad"), py::arg("width"), py::arg("height"),
       doc("scene_pixel"));

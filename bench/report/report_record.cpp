@@ -77,11 +77,14 @@ std::vector<NamedValue> text_values(const std::vector<std::pair<std::string, std
 
 Paragraph sensor_paragraph(const SensorSpec& spec) {
   std::string text = spec.name + ": " + std::to_string(spec.width) + " × " + std::to_string(spec.height) +
-                     " detectors, pitch " + stated(spec.pitch_um) + " µm, sensitive side " + stated(spec.detector_um) +
-                     (spec.square_detector() ? "" : " × " + stated(spec.detector_y_um)) + " µm, focal length " +
-                     stated(spec.focal_length_mm) + " mm, f/" + stated(spec.f_number) + ", " +
+                     " detectors, pitch " + stated(spec.pitch_um) +
+                     (spec.pitch_aspect() == 1 ? "" : " × " + stated(spec.pitch_along(PitchAxis::y))) +
+                     " µm, sensitive side " + stated(spec.detector_um) +
+                     (spec.square_detector() ? "" : " × " + stated(spec.detector_along(PitchAxis::y))) +
+                     " µm, focal length " + stated(spec.focal_length_mm) + " mm, f/" + stated(spec.f_number) + ", " +
                      stated(spec.wavelength_min_um) + " to " + stated(spec.wavelength_max_um) + " µm, NETD " +
-                     stated(spec.netd_k) + " K, IFOV " + significant(spec.ifov_mrad(), 4) + " mrad.";
+                     stated(spec.netd_k) + " K, IFOV " + significant(spec.ifov_mrad(), 4) +
+                     (spec.pitch_aspect() == 1 ? "" : " × " + significant(spec.ifov_mrad(PitchAxis::y), 4)) + " mrad.";
   return {plain(text)};
 }
 

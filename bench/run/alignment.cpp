@@ -40,7 +40,8 @@ double magnification_spread_percent(const TargetPlate& plate, const Registration
   for (const cv::Point2d place : {cv::Point2d(-x, 0), cv::Point2d(x, 0), cv::Point2d(0, -y), cv::Point2d(0, y)})
     scales.push_back(registration.scale_at(place));
   const double along_x = cv::norm(registration.pixel({x, 0}) - registration.pixel({-x, 0})) / (2 * x);
-  const double along_y = cv::norm(registration.pixel({0, y}) - registration.pixel({0, -y})) / (2 * y);
+  const double along_y =
+      registration.pixel_aspect * cv::norm(registration.pixel({0, y}) - registration.pixel({0, -y})) / (2 * y);
   const auto [low, high] = std::minmax_element(scales.begin(), scales.end());
   return 100 * std::max(*high / *low - 1, std::max(along_x, along_y) / std::min(along_x, along_y) - 1);
 }

@@ -141,6 +141,7 @@ std::optional<AbsoluteOptions> absolute_options(const Plan& plan, const Experime
                           .frames = measures.absolute_frames,
                           .shift_px = measures.absolute_shift_px,
                           .pixel_mm = plan.camera.ifov_mrad * plan.target.distance_m,
+                          .pixel_aspect = plan.camera.pixel_aspect,
                           .source_u_k = source_u_k(plan)};
   const SpectralBand band{inputs.sensor.wavelength_min_um, inputs.sensor.wavelength_max_um};
   if (plan.target.collimator.stated())

@@ -36,15 +36,20 @@ Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const
   if (!(size_samples > 0) || samples_per_pitch < 1) {
     return fail(ErrorCode::invalid_input, "an observer needs a positive target size and at least one sample per pitch");
   }
+  if (spec.eye && spec.sample_aspect != 1)
+    return fail(ErrorCode::invalid_input, "an observer with an eye judges only pictures of square pixels");
   const int steps = static_cast<int>(std::lround(1 / spec.search_step_samples));
   const int reach = static_cast<int>(std::lround(spec.search_range_samples * steps));
+  // Samples of the axis that has more of them, for each sample along x.
+  const double most_samples = std::max(1.0, 1 / spec.sample_aspect);
   double margin_pitch = spec.window_margin_pitch;
   if (spec.eye) {
     if (!spec.display) return fail(ErrorCode::invalid_input, "an observer with an eye needs a display");
     margin_pitch =
         std::max(margin_pitch, spec.window_margin_arcmin / (arcmin_per_sample(*spec.display) * samples_per_pitch));
   }
-  const double half_pitch = std::ceil(spec.window_size_factor * size_samples / samples_per_pitch + margin_pitch - 1e-9);
+  const double half_pitch =
+      std::ceil(most_samples * (spec.window_size_factor * size_samples / samples_per_pitch + margin_pitch) - 1e-9);
   const double samples = std::pow(2 * half_pitch * samples_per_pitch, 2);
   TemplateBank bank;
   bank.alternatives_ = static_cast<int>(alternatives.size());
@@ -63,7 +68,7 @@ Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const
   // The next copy of the shape must stay outside the window: shape, seven sigma of blur, the display sample, and the
   // search range.
   const int period = static_cast<int>(std::ceil((spec.eye ? 2 : 1) * (half + spec.search_range_samples) +
-                                                0.9 * size_samples + viewing.reach_samples + 1));
+                                                most_samples * (0.9 * size_samples + viewing.reach_samples) + 1));
   const FrequencyLattice lattice{.period = period,
                                  .band = static_cast<int>(std::ceil(viewing.band_per_sample * period))};
   int per_sample = steps % 2 == 0 ? steps : 2 * steps;
@@ -75,8 +80,9 @@ Result<TemplateBank> TemplateBank::build(const TemplateObserverSpec& spec, const
   bank.values_.assign(bank.blocks_ * block * count, 0.0F);
   std::vector<double> values(count);
   for (int o = 0; o < bank.alternatives_; ++o) {
-    const cv::Mat1d fine = PolygonImage(placed(alternatives[static_cast<std::size_t>(o)], size_samples, {0, 0}), filter)
-                               .fine_image(per_sample);
+    Polygon shape = placed(alternatives[static_cast<std::size_t>(o)], size_samples, {0, 0});
+    for (auto& corner : shape) corner.y /= spec.sample_aspect;
+    const cv::Mat1d fine = PolygonImage(shape, filter).fine_image(per_sample);
     for (int place = 0; place < bank.places_; ++place) {
       const int dx = place % (2 * reach + 1) - reach;
       const int dy = place / (2 * reach + 1) - reach;

@@ -212,6 +212,7 @@ Result<void> validate(const TemplateObserverSpec& spec) {
     return refuse("window_size_factor must be from 0.9 to 10");
   if (!(spec.window_margin_pitch >= 0 && spec.window_margin_pitch <= 100))
     return refuse("window_margin_pitch must be from 0 to 100");
+  if (!(spec.sample_aspect >= 0.5 && spec.sample_aspect <= 2)) return refuse("sample_aspect must be from 0.5 to 2");
   if (!spec.eye) {
     if (spec.display) return refuse("only an observer with an eye has a display");
     return {};

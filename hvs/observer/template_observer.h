@@ -35,6 +35,9 @@ struct TemplateObserverSpec {
   std::optional<EyeParameters> eye{};
   double window_margin_arcmin = 0;         ///< the larger of both margins counts; only with an eye
   std::optional<ViewedDisplay> display{};  ///< of the plan; only with an eye
+  /// Height of a displayed sample over its width, which is that of the camera's pixels. Lengths in samples are widths;
+  /// search and sampling are in samples of each axis. Not part of a parameter set. An eye needs 1.
+  double sample_aspect = 1;
   bool operator==(const TemplateObserverSpec&) const = default;
 };
 

@@ -12,12 +12,13 @@ namespace todbench {
 namespace {
 
 /// Display (sample and hold over one sample) and blur of display and eye together: sinc(u) sinc(w) exp(-2 pi^2 sigma^2
-/// rho^2).
-TransferFunction blurring_filter(double sigma_samples) {
-  return [sigma_samples](double u, double w) -> std::complex<double> {
+/// rho^2), with w in rho divided by the height of a sample.
+TransferFunction blurring_filter(double sigma_samples, double aspect) {
+  return [sigma_samples, aspect](double u, double w) -> std::complex<double> {
     const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); };
     const double pi_sigma = std::numbers::pi * sigma_samples;
-    return sinc(u) * sinc(w) * std::exp(-2 * pi_sigma * pi_sigma * (u * u + w * w));
+    const double v = w / aspect;
+    return sinc(u) * sinc(w) * std::exp(-2 * pi_sigma * pi_sigma * (u * u + v * v));
   };
 }
 
@@ -54,7 +55,9 @@ ViewingFilter seeing_filter(const TemplateObserverSpec& spec) {
 
 ViewingFilter viewing_filter(const TemplateObserverSpec& spec) {
   if (spec.eye) return seeing_filter(spec);
-  return {blurring_filter(spec.blur_sigma_samples), filter_band(spec.blur_sigma_samples), 7 * spec.blur_sigma_samples};
+  const double sigma = spec.blur_sigma_samples;
+  return {blurring_filter(sigma, spec.sample_aspect), filter_band(sigma) * std::max(1.0, spec.sample_aspect),
+          7 * sigma};
 }
 
 }  // namespace todbench

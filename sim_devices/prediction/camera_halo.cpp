@@ -39,14 +39,15 @@ cv::Mat1f coverage(const std::vector<Polygon>& outlines, cv::Size size) {
 }
 
 /// The tail of diffraction at a distance, a / (4 pi^2 r^3) per pixel, of covered pixels.
-cv::Mat1f diffraction_tail(const cv::Mat1f& covered, double slope_px) {
+cv::Mat1f diffraction_tail(const cv::Mat1f& covered, double slope_px, double aspect) {
   constexpr int reach = 40;
   cv::Mat1f kernel(2 * reach + 1, 2 * reach + 1, 0.0F);
   for (int y = -reach; y <= reach; ++y) {
     for (int x = -reach; x <= reach; ++x) {
-      const double r = std::hypot(x, y);
+      const double r = std::hypot(x, aspect * y);
       if (r < 2) continue;
-      kernel(y + reach, x + reach) = static_cast<float>(slope_px / (4 * std::pow(std::numbers::pi, 2) * r * r * r));
+      kernel(y + reach, x + reach) =
+          static_cast<float>(aspect * slope_px / (4 * std::pow(std::numbers::pi, 2) * r * r * r));
     }
   }
   cv::Mat1f tail;
@@ -108,6 +109,7 @@ CameraHaloFit::CameraHaloFit(const SensorSpec& twin, int samples_per_pitch)
     : diffraction_px_(4 / std::numbers::pi * 0.5 * (twin.wavelength_min_um + twin.wavelength_max_um) * twin.f_number /
                       twin.pitch_um * samples_per_pitch),
       clear_px_(clear_pitches * samples_per_pitch),
+      aspect_(twin.pitch_aspect()),
       twin_share_(twin.halo_share),
       twin_sigma_px_(twin.halo_sigma_pitch * samples_per_pitch) {}
 
@@ -129,14 +131,14 @@ void CameraHaloFit::add(const OpticsPicture& shown, double delta_t_k) {
   shown.picture.convertTo(level, CV_32F, 1 / delta_t_k);
   if (twin_share_ > 0 && twin_sigma_px_ > 0) {
     cv::Mat1f spread;
-    cv::GaussianBlur(covered, spread, {}, twin_sigma_px_, twin_sigma_px_, cv::BORDER_CONSTANT);
+    cv::GaussianBlur(covered, spread, {}, twin_sigma_px_, twin_sigma_px_ / aspect_, cv::BORDER_CONSTANT);
     level -= twin_share_ * spread;
   }
   look.level = cell_means(level(whole), marked, look.weight);
-  look.tail = cell_means(diffraction_tail(covered, diffraction_px_)(whole), marked, look.weight);
+  look.tail = cell_means(diffraction_tail(covered, diffraction_px_, aspect_)(whole), marked, look.weight);
   for (const double sigma : sigmas_px) {
     cv::Mat1f spread;
-    cv::GaussianBlur(covered, spread, {}, sigma, sigma, cv::BORDER_CONSTANT);
+    cv::GaussianBlur(covered, spread, {}, sigma, sigma / aspect_, cv::BORDER_CONSTANT);
     look.haloes.push_back(cell_means(spread(whole), marked, look.weight));
   }
   looks_.push_back(std::move(look));

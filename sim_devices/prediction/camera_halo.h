@@ -52,7 +52,7 @@ class CameraHaloFit {
   [[nodiscard]] std::optional<Estimate> estimate(std::size_t width, double f_number_ratio) const;
 
   double diffraction_px_ = 0;  ///< slope of the MTF at frequency 0
-  double clear_px_, twin_share_, twin_sigma_px_;
+  double clear_px_, aspect_, twin_share_, twin_sigma_px_;
   std::vector<Look> looks_;
 };
 

@@ -103,14 +103,14 @@ class Judge {
   }
 
   /// One level per size, one graded answer per triangle.
-  void add_answers(PictureAnswers& out, const Picture& picture, const PlateScene& scene, double ifov_mrad,
+  void add_answers(PictureAnswers& out, const Picture& picture, const PlateScene& scene, cv::Point2d pixel_mrad,
                    cv::Size sensor, const RandomStream& noise, int presentation) const {
     const auto& sizes = prepared_[picture.samples_per_pitch == 1 ? 0 : 1];
     std::vector<Level> levels(sizes.size());
     for (std::size_t t = 0; t < 4 * sizes.size(); ++t) {  // the marks follow
       const PlateTriangle& triangle = scene.plate.triangles[t];
       const PreparedObserver& observer = *sizes[t / 4];
-      const cv::Point2d place = scene_pixel(scene, triangle.position_mm, ifov_mrad, sensor);
+      const cv::Point2d place = scene_pixel(scene, triangle.position_mm, pixel_mrad, sensor);
       const PatchWindow window =
           patch_window((place - picture.first_px) * picture.samples_per_pitch, observer.window_samples());
       Patch patch;
@@ -193,7 +193,7 @@ Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vec
     for (std::size_t o = 0; o < judges.size(); ++o) {
       const RandomStream trial = internal.sub(static_cast<std::uint64_t>(p) * 16 + o);
       const auto add = [&](PictureAnswers& answers, const Picture& picture, std::uint64_t stream) {
-        judges[o].add_answers(answers, picture, shown.scene, camera.ifov_mrad(), model.size(), trial.sub(stream), p);
+        judges[o].add_answers(answers, picture, shown.scene, sample_mrad(camera), model.size(), trial.sub(stream), p);
       };
       add(record.observers[o].still, still, 0);
       add(record.observers[o].super_resolved, resolved, 1);

@@ -58,6 +58,8 @@ CuedEstimate::CuedEstimate(const SensorSpec& sensor, const SensorPlan& plan, Tem
 Result<const SizeTrial*> CuedEstimate::trial_at(int index) {
   auto& slot = trials_[index];
   if (slot == nullptr) {
+    if (auto alike = check_sample_shape(conditions_.sensor, observer_.spec()); !alike)
+      return tl::unexpected(alike.error());
     const double size = std::pow(size_step, index);
     TODBENCH_TRY(auto bank, observer_.bank(size * conditions_.samples_per_pitch, conditions_.samples_per_pitch));
     slot = std::make_unique<SizeTrial>(chain_, bank, size, conditions_, RandomStream(1, "unused"));
@@ -161,7 +163,7 @@ double discriminability(const SensorSpec& sensor, const SensorPlan& plan, double
     for (int c = 0; c < up.cols; ++c) {
       const double difference = std::norm(up(r, c) - down(r, c)) + std::norm(up(r, c) - right(r, c));
       const double u = static_cast<double>(c) / period, w = static_cast<double>(r - lattice.band) / period;
-      sum += difference * std::norm(transfer(u, w));
+      sum += difference * std::norm(transfer(u, w * sensor.pitch_aspect()));
     }
   }
   return std::sqrt(sum) / period;

@@ -151,6 +151,7 @@ void add_answers(const SequenceJudge& judge, const MovingPass& pass, const Senso
 
 Result<void> check_dynamic(const SensorSpec& sensor, const DynamicTrialOptions& options) {
   const auto refuse = [](const std::string& why) { return fail(ErrorCode::invalid_input, why); };
+  if (auto square = require_square_pixels(sensor, "a trial with a moving target"); !square) return square;
   if (options.sizes_pitch.empty() || options.speeds_mrad_s.empty() || options.passes < 2 || options.frames < 1)
     return refuse("dynamic trials need at least one size, one speed, two passes and one frame");
   for (const double size : options.sizes_pitch) {

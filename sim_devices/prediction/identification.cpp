@@ -340,6 +340,8 @@ double IdentificationPoint::standard_error() const {
 }
 
 Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task) {
+  if (auto square = require_square_pixels(task.sensor, "identification"); !square)
+    return tl::unexpected(square.error());
   if (auto fine = check_passes(task); !fine) return tl::unexpected(fine.error());
   const auto targets = seen_targets(task);
   if (!targets) return tl::unexpected(targets.error());

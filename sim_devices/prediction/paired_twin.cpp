@@ -126,8 +126,8 @@ class PairedTwin {
   const PolygonImage& image_of(const Trial& trial, double rotation_deg) {
     auto& slot = images_[{trial.size_mrad, static_cast<int>(trial.truth), rotation_deg}];
     if (!slot)
-      slot = std::make_unique<const PolygonImage>(
-          chain_.image(rotated_by(triangle(trial.size_mrad / sensor_.ifov_mrad(), trial.truth), rotation_deg)));
+      slot = std::make_unique<const PolygonImage>(chain_.image(on_detectors(
+          rotated_by(triangle(trial.size_mrad / sensor_.ifov_mrad(), trial.truth), rotation_deg), sensor_)));
     return *slot;
   }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/size_trial.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,6 +79,15 @@ cv::Mat1b dead_turned_back(const cv::Mat1b& map, std::size_t turn) {
 
 }  // namespace
 
+Result<void> check_sample_shape(const SensorSpec& sensor, const TemplateObserverSpec& observer) {
+  if (sensor.pitch_aspect() == observer.sample_aspect) return {};
+  return fail(
+      ErrorCode::invalid_input,
+      fmt::format("observer {} judges samples {:g} times as high as wide, but the pitches of sensor {} differ by "
+                  "a factor of {:g}",
+                  observer.name, observer.sample_aspect, sensor.name, sensor.pitch_aspect()));
+}
+
 /// Picture of a shape for the even and the odd rows of detectors; `odd` is empty if they sample together.
 struct SizeTrial::FineFields {
   cv::Mat1d even, odd;
@@ -115,8 +126,8 @@ SizeTrial::SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank
   const cv::Point2d way = way_between_fields(sensor, conditions_.motion);
   for (int truth = 0; truth < truths; ++truth) {
     const auto fine_at = [&](cv::Point2d place) {
-      return chain.image(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)], place))
-          .fine_image(per_pitch, reach);
+      const Polygon shape = on_detectors(triangle(size_pitch, all_apexes[static_cast<std::size_t>(truth)]), sensor);
+      return chain.image(placed(shape, 1, place)).fine_image(per_pitch, reach);
     };
     const FineFields fine{fine_at(-0.5 * way), way == cv::Point2d(0, 0) ? cv::Mat1d() : fine_at(0.5 * way)};
     for (int danced = 0; danced < places_of_dance_; ++danced) {

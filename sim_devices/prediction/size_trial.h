@@ -9,8 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "acquisition/base/result.h"
 #include "acquisition/base/rng.h"
 #include "hvs/observer/template_bank.h"
+#include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/score_turns.h"
 #include "sim_devices/sensor/effect_row.h"
 #include "sim_devices/sensor/image_chain.h"
@@ -27,6 +29,9 @@ enum class ShownOrientations {
   as_needed,  ///< one represents all four if no effect depends on direction
   all,        ///< for comparisons draw by draw between conditions that need one and conditions that need all
 };
+
+/// `invalid_input` if the displayed samples of the observer have another shape than the pixels of the sensor.
+[[nodiscard]] Result<void> check_sample_shape(const SensorSpec& sensor, const TemplateObserverSpec& observer);
 
 /// Conditions that all sizes and contrasts share.
 struct TrialConditions {

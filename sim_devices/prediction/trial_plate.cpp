@@ -46,11 +46,11 @@ TargetPlate trial_plate(const std::vector<double>& sizes_pitch, double ifov_mrad
 }
 
 SensorSpec cropped_to(SensorSpec sensor, const TargetPlate& plate, int margin_px) {
-  const auto pixels = [&](double mm) {
-    return static_cast<int>(std::ceil(mm / sensor.ifov_mrad())) + 8 + 2 * margin_px;
+  const auto pixels = [&](double mm, PitchAxis axis) {
+    return static_cast<int>(std::ceil(mm / sensor.ifov_mrad(axis))) + 8 + 2 * margin_px;
   };
-  sensor.width = std::max(32, pixels(plate.width_mm));
-  sensor.height = std::max(32, pixels(plate.height_mm));
+  sensor.width = std::max(32, pixels(plate.width_mm, PitchAxis::x));
+  sensor.height = std::max(32, pixels(plate.height_mm, PitchAxis::y));
   sensor.distortion_percent = sensor.distortion_r4_percent = 0;  // trials represent the middle of the picture
   return sensor;
 }

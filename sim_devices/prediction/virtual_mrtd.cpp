@@ -287,6 +287,7 @@ class BarTrial {
 };
 
 Result<void> check_bars(const VirtualMrtdTask& task, const SensorSpec& spec) {
+  if (auto square = require_square_pixels(spec, "the virtual MRTD"); !square) return square;
   if (task.frequencies_per_mrad.empty()) return fail(ErrorCode::invalid_input, "at least one frequency is needed");
   if (task.draws < 64) return fail(ErrorCode::invalid_input, "at least 64 draws are needed");
   for (const double f : task.frequencies_per_mrad) {

@@ -8,12 +8,17 @@
 namespace todbench {
 
 cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, double ifov_mrad, cv::Size sensor) {
+  return scene_pixel(scene, plate_mm, cv::Point2d(ifov_mrad, ifov_mrad), sensor);
+}
+
+cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, cv::Point2d sample_mrad, cv::Size sensor) {
   // A plane through a lens without distortion: millimetres over metres are milliradians of the tangent.
-  const cv::Point2d px = (plate_mm + scene.shift_mm) * (1 / (scene.distance_m * ifov_mrad));
+  const cv::Point2d px = (plate_mm + scene.shift_mm) * (1 / (scene.distance_m * sample_mrad.x));
   const double angle = scene.rotation_deg * std::numbers::pi / 180;
   const cv::Point2d turned(px.x * std::cos(angle) - px.y * std::sin(angle),
                            px.x * std::sin(angle) + px.y * std::cos(angle));
-  return turned + scene.centre_px + cv::Point2d((sensor.width - 1) / 2.0, (sensor.height - 1) / 2.0);
+  return cv::Point2d(turned.x, turned.y * (sample_mrad.x / sample_mrad.y)) + scene.centre_px +
+         cv::Point2d((sensor.width - 1) / 2.0, (sensor.height - 1) / 2.0);
 }
 
 bool same_geometry(const PlateScene& a, const PlateScene& b) {

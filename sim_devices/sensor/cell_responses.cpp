@@ -57,6 +57,7 @@ std::vector<std::pair<int, int>> legendre_pairs(int degree) {
 SampleTransfer::SampleTransfer(const ChainScope& scope, const Accuracy& accuracy)
     : per_pitch_(scope.spec.samples_per_pitch()),
       band_(highest_frequency(scope.spec, scope.plan, accuracy)),
+      per_aspect_squared_(std::pow(scope.spec.pitch_aspect(), -2)),
       footprint_(scope),
       others_(other_transfers(scope)) {
   const OpticsMtf optics(scope);
@@ -97,7 +98,7 @@ cv::Mat1f coefficient_responses(const SampleTransfer& transfer, int degree) {
     for (int m = -band; m <= band; ++m) {
       const double u = static_cast<double>(m) / table_period, w = static_cast<double>(n) / table_period;
       const auto i = static_cast<std::size_t>(m + band), j = static_cast<std::size_t>(n + band);
-      const double value = transfer.optics(u * u + w * w) * along_x[i] * along_y[j];
+      const double value = transfer.optics(transfer.radius_squared(u, w)) * along_x[i] * along_y[j];
       chain[j * count + i] = value == 0 ? 0 : value * transfer.rest(u, w);
     }
   }
@@ -171,7 +172,7 @@ cv::Mat2d unit_cell_response(const SampleTransfer& transfer, cv::Size size) {
           const auto at_x = static_cast<std::size_t>(l) * per + m;
           const double factor = x.factor[at_x] * y.factor[at_y];
           if (factor == 0) continue;
-          const double value = factor * transfer.optics(x.f[at_x] * x.f[at_x] + w * w);
+          const double value = factor * transfer.optics(transfer.radius_squared(x.f[at_x], w));
           if (transfer.symmetric())
             plain += value;
           else

@@ -38,6 +38,8 @@ class SampleTransfer {
   [[nodiscard]] double footprint(double f_per_sample, PitchAxis axis) const {
     return footprint_(f_per_sample * per_pitch_, axis);
   }
+  /// Squared radial frequency in cycles per sample along x.
+  [[nodiscard]] double radius_squared(double u, double w) const { return u * u + w * w * per_aspect_squared_; }
   /// Optics at a squared radial frequency; 0 beyond the band.
   [[nodiscard]] double optics(double rho_squared) const;
   /// Product of all transfer functions except optics and footprint.
@@ -45,6 +47,7 @@ class SampleTransfer {
 
  private:
   double per_pitch_, band_;
+  double per_aspect_squared_;  ///< square of the pitch along x over that along y
   FootprintMtf footprint_;
   std::vector<TransferFunction> others_;
   std::vector<double> optics_;

@@ -60,7 +60,8 @@ EffectRow effect_rows::dead_pixels() {
   // above chance, 0.5 of the answers, and the proportion rises by 1 per ln S.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const double share = scene.spec.dead_pixel_share, n = scene.spec.samples_per_pitch();
-    return std::max(scene.noise_change(share * n * n / 9.0), 0.5 * share * std::pow(1.5 * scene.s75_pitch + 2, 2));
+    const double detectors = std::pow(1.5 * scene.s75_pitch + 2, 2) / scene.spec.pitch_aspect();
+    return std::max(scene.noise_change(share * n * n / 9.0), 0.5 * share * detectors);
   };
   return row;
 }

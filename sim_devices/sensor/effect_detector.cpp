@@ -29,8 +29,15 @@ EffectRow effect_rows::detector() {
               {"detector_y_um", &SensorSpec::detector_y_um, NumberRange::between(0, 1000), KeyPresence::optional,
                "sensitive side along the columns, if it differs; 0: detector_um"}};
   row.impossible = [](const SensorSpec& spec) -> std::string {
+    constexpr double most_unlike = 2;  // beyond it templates and lattices are not tested
+    const double aspect = spec.pitch_aspect();
+    if (!(aspect <= most_unlike && aspect * most_unlike >= 1))
+      return "pitch_y_um is more than twice pitch_um, or less than half of it";
     if (spec.detector_um > spec.pitch_um) return "detector_um is larger than pitch_um: detectors cannot overlap";
-    if (spec.detector_y_um > spec.pitch_um) return "detector_y_um is larger than pitch_um: detectors cannot overlap";
+    if (spec.detector_pitch_ratio(PitchAxis::y) > 1) {
+      return spec.detector_y_um > 0 ? "detector_y_um is larger than the pitch along y: detectors cannot overlap"
+                                    : "detector_um is larger than pitch_y_um: state detector_y_um";
+    }
     return spec.detector_y_um > 0 && spec.detector_y_um < 0.1 ? "detector_y_um must be 0, or 0.1 to 1000" : "";
   };
   row.stage = stage::Footprint{

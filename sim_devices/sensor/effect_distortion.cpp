@@ -38,8 +38,9 @@ cv::Point2d middle_of(cv::Size size) {
   return {0.5 * (size.width - 1), 0.5 * (size.height - 1)};
 }
 
-double corner_of(cv::Size size) {
-  return 0.5 * std::hypot(size.width, size.height);
+/// Half the diagonal, in samples along x.
+double corner_of(cv::Size size, const SensorSpec& spec) {
+  return 0.5 * std::hypot(size.width, size.height * spec.pitch_aspect());
 }
 
 }  // namespace
@@ -51,12 +52,15 @@ bool distorts(const SensorSpec& spec) {
 cv::Point2d as_lens_shows(cv::Point2d place, const SensorSpec& spec, cv::Size size) {
   if (!distorts(spec)) return place;
   const cv::Point2d p = place - middle_of(size);
-  return middle_of(size) + p * lens_of(spec).stretch(std::hypot(p.x, p.y) / corner_of(size));
+  return middle_of(size) +
+         p * lens_of(spec).stretch(std::hypot(p.x, p.y * spec.pitch_aspect()) / corner_of(size, spec));
 }
 
 Polygon as_lens_shows(const Polygon& outline, const SensorSpec& spec, cv::Size size) {
   constexpr double within = 0.002;
-  const double curvature = lens_of(spec).curvature() / corner_of(size);
+  const double aspect = spec.pitch_aspect();
+  // Per sample of the axis with the smaller pitch.
+  const double curvature = lens_of(spec).curvature() / corner_of(size, spec) * std::max(aspect, 1 / aspect);
   Polygon seen;
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const cv::Point2d from = outline[k], along = outline[(k + 1) % outline.size()] - from;
@@ -86,7 +90,9 @@ EffectRow effect_rows::distortion() {
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const RadialLens lens = lens_of(scene.spec);
     const double k1 = std::abs(lens.k1), k2 = std::abs(lens.k2);
-    if ((k1 + k2) * corner_of({scene.spec.width, scene.spec.height}) > farthest_px) return std::nullopt;
+    const double most_samples = std::max(1.0, 1 / scene.spec.pitch_aspect());
+    if ((k1 + k2) * most_samples * corner_of({scene.spec.width, scene.spec.height}, scene.spec) > farthest_px)
+      return std::nullopt;
     return 3 * k1 + 5 * k2;
   };
   row.always = "always simulated: the lens displaces image points by more than half a pitch";

@@ -13,9 +13,10 @@ namespace {
 
 constexpr double longest_way = 1;  // pitch per exposure; beyond it the bound does not hold
 
+/// In pitches along x.
 double exposure_way_length(const SensorSpec& spec, SceneMotion motion) {
   const cv::Point2d way = exposure_way_pitch(spec, motion);
-  return std::hypot(way.x, way.y);
+  return std::hypot(way.x, way.y * spec.pitch_aspect());
 }
 
 }  // namespace

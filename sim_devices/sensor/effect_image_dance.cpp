@@ -73,7 +73,7 @@ double averaged_dance_bound(const SensorSpec& spec, const SensorSpec& instant, d
   return 12 * std::abs(without * without - with * with) / (s75_pitch * s75_pitch);
 }
 
-ImageDance::ImageDance(const SensorSpec& spec) : sd_pitch_(dance_sd_pitch(spec)) {
+ImageDance::ImageDance(const SensorSpec& spec) : sd_pitch_(dance_sd_pitch(spec)), aspect_(spec.pitch_aspect()) {
   if (!still()) weights_ = memory_weights(dance_correlation(spec));
 }
 
@@ -84,7 +84,7 @@ cv::Point2d ImageDance::displacement_pitch(const RandomStream& stream, std::uint
     const RandomStream own = stream.sub(exposure - ago);
     sum += weights_[ago] * cv::Point2d(own.normal(0), own.normal(1));
   }
-  return sd_pitch_ * sum;
+  return sd_pitch_ * cv::Point2d(sum.x, sum.y / aspect_);
 }
 
 std::vector<cv::Point2d> spread_dance_pitch(const SensorSpec& spec, std::uint64_t index) {
@@ -101,7 +101,7 @@ std::vector<cv::Point2d> spread_dance_pitch(const SensorSpec& spec, std::uint64_
   std::vector<cv::Point2d> out;
   for (int k = 0; k < exposures; ++k) {
     const double at = 0.5 + static_cast<double>(index * static_cast<std::uint64_t>(exposures)) + k;
-    const cv::Point2d own(sd * deviate(at / g), sd * deviate(at / (g * g)));
+    const cv::Point2d own(sd * deviate(at / g), sd * deviate(at / (g * g)) / spec.pitch_aspect());
     out.push_back(k == 0 ? own : memory * out.back() + fresh * own);
   }
   return out;

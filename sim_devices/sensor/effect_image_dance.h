@@ -20,7 +20,7 @@ namespace todbench {
 [[nodiscard]] double dance_weight(const SensorSpec& spec);
 /// Cut-off frequency of the lens in cycles per pitch, at the wavelength of the turbulent path.
 [[nodiscard]] double dance_cut_off(const SensorSpec& spec);
-/// Standard deviation of an exposure's displacement per axis, in pitches; 0 without turbulence. The variance is
+/// Standard deviation of an exposure's displacement per axis, in pitches along x; 0 without turbulence. The variance is
 /// 6.88 (D / r0)^(5/3) (lambda / (2 pi D))^2 times weight and share (Tatarskii 1961: phase difference across the lens).
 [[nodiscard]] double dance_sd_pitch(const SensorSpec& spec);
 /// Correlation of the displacements of successive exposures, 0 to 1.
@@ -32,8 +32,8 @@ namespace todbench {
 /// without that average. 12 / S^2 times the variance that is blur in one and dance in the other.
 [[nodiscard]] double averaged_dance_bound(const SensorSpec& spec, const SensorSpec& instant, double s75_pitch);
 
-/// Displacements of exposures in pitches, first-order autoregressive. Memory below 1 % is cut off, so that each
-/// exposure takes bounded work. Immutable.
+/// Displacements of exposures in pitches of each axis, first-order autoregressive. Memory below 1 % is cut off, so that
+/// each exposure takes bounded work. Immutable.
 class ImageDance {
  public:
   /// Precondition: `spec` is as_planned().
@@ -43,12 +43,12 @@ class ImageDance {
   [[nodiscard]] cv::Point2d displacement_pitch(const RandomStream& stream, std::uint64_t exposure) const;
 
  private:
-  double sd_pitch_ = 0;
+  double sd_pitch_ = 0, aspect_ = 1;
   std::vector<double> weights_;  ///< of the random numbers of this exposure and of earlier ones; squares sum to 1
 };
 
-/// Evenly spread displacements in pitches for presentation `index`, for estimates without frames. One for each exposure
-/// that a sample averages.
+/// Evenly spread displacements in pitches of each axis for presentation `index`, for estimates without frames. One for
+/// each exposure that a sample averages.
 [[nodiscard]] std::vector<cv::Point2d> spread_dance_pitch(const SensorSpec& spec, std::uint64_t index);
 /// Number of these displacements that an estimate uses at each sampling phase, if it has so many phases per pitch and
 /// axis. The error of the threshold is then some tenths of a per cent with 8 phases and 1 % with 4. 1 without dance.

@@ -12,9 +12,10 @@ namespace {
 
 constexpr double strongest_motion = 0.5;  // pitches per time constant; beyond it the bound does not hold
 
+/// In pitches along x.
 double length_of(const SensorSpec& spec, SceneMotion motion) {
   const cv::Point2d smear = smear_pitch(spec, motion);
-  return std::hypot(smear.x, smear.y);
+  return std::hypot(smear.x, smear.y * spec.pitch_aspect());
 }
 
 }  // namespace
@@ -26,7 +27,7 @@ std::complex<double> motion_transfer(double u_per_pitch, double w_per_pitch, cv:
 
 cv::Point2d moved_pitch(const SensorSpec& spec, SceneMotion motion, double seconds) {
   const double pitches_per_mrad_s = seconds / spec.ifov_mrad();
-  return {motion.x_mrad_s * pitches_per_mrad_s, motion.y_mrad_s * pitches_per_mrad_s};
+  return {motion.x_mrad_s * pitches_per_mrad_s, motion.y_mrad_s * pitches_per_mrad_s / spec.pitch_aspect()};
 }
 
 cv::Point2d smear_pitch(const SensorSpec& spec, SceneMotion motion) {

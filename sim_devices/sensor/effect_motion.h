@@ -13,9 +13,9 @@ namespace todbench {
 /// detector weights the past with exp(-t / tau) / tau, so the tail lies behind the target: 1 / (1 - 2 pi i f.s). The
 /// factor exp(-2 pi i f.s) removes the mean lag, because the target is tracked.
 [[nodiscard]] std::complex<double> motion_transfer(double u_per_pitch, double w_per_pitch, cv::Point2d smear_pitch);
-/// Motion of the target in this time, in pitches.
+/// Motion of the target in this time, in pitches of each axis.
 [[nodiscard]] cv::Point2d moved_pitch(const SensorSpec& spec, SceneMotion motion, double seconds);
-/// Smear v tau in pitches.
+/// Smear v tau in pitches of each axis.
 [[nodiscard]] cv::Point2d smear_pitch(const SensorSpec& spec, SceneMotion motion);
 
 }  // namespace todbench

@@ -58,7 +58,7 @@ EffectRow effect_rows::readout() {
   // an edge, for which there is no bound.
   row.bound = [](const ExpectedScene& scene) -> std::optional<double> {
     const cv::Point2d slope = readout_slope(scene.spec, scene.motion);
-    const double length = std::hypot(slope.x, slope.y);
+    const double length = std::hypot(slope.x / scene.spec.pitch_aspect(), slope.y);
     if (length >= steepest || way_between_fields(scene.spec, scene.motion) != cv::Point2d(0, 0)) return std::nullopt;
     return length;
   };

@@ -23,7 +23,17 @@ double reach(const Polygon& shape) {
   return largest;
 }
 
+/// The inverse of on_detectors().
+Polygon in_space(Polygon shape, double aspect) {
+  for (auto& corner : shape) corner.y *= aspect;
+  return shape;
+}
+
 }  // namespace
+
+Polygon on_detectors(Polygon shape_pitch, const SensorSpec& spec) {
+  return in_space(std::move(shape_pitch), 1 / spec.pitch_aspect());
+}
 
 ImageChain::ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, SceneMotion motion)
     : spec_(std::move(spec)),
@@ -45,13 +55,15 @@ FrequencyLattice ImageChain::lattice(double size_pitch) const {
   // Diffraction tails fall as r^-3. Their energy is proportional to the area and to the width of the blur spot in
   // pitches: wrapped signal 1.6e-4 at period 16, for size 2.6 and a spot of 13 um x f/1 on 47.5 um.
   const double relative_area = std::max(1.0, std::pow(size_pitch / 2.6, 2));
-  const double spot = spec_.wavelength_max_um * spec_.f_number / spec_.pitch_um;
+  // The spread along the axis with the smaller pitch, in its pitches.
+  const double stretch = std::max(1.0, 1 / spec_.pitch_aspect());
+  const double spot = stretch * spec_.wavelength_max_um * spec_.f_number / spec_.pitch_um;
   const double relative_spot = plan_.simulates(Effect::diffraction) ? std::max(1.0, spot / (13 / 47.5)) : 1.0;
   const double tails = 16 * std::cbrt(1.6e-4 * relative_area * relative_spot / accuracy_.wrap_tolerance);
   // Copies of a halo that is wider than the period add up to a uniform level of share x area / period^2.
   const double halo =
-      std::min(spread_.halo_reach, size_pitch * std::sqrt(spread_.halo_share / accuracy_.wrap_tolerance));
-  const double body = 2 * size_pitch + 16 + spread_.period + halo;
+      std::min(stretch * spread_.halo_reach, size_pitch * std::sqrt(spread_.halo_share / accuracy_.wrap_tolerance));
+  const double body = 2 * size_pitch + 16 + stretch * spread_.period + halo;
   const int period = 8 * static_cast<int>(std::ceil(std::max(tails, body) / 8 - 1e-9));
   return {.period = period, .band = static_cast<int>(std::floor(band_per_pitch_ * period))};
 }
@@ -86,12 +98,14 @@ PolygonImage ImageChain::image(const Polygon& shape_pitch) const {
 ImageChain::InfinitePlane ImageChain::infinite_plane(const Polygon& whole_shape_pitch, cv::Point2d first, double step,
                                                      cv::Size size) const {
   const Polygon shape_pitch = read_out(whole_shape_pitch);
+  const double aspect = spec_.pitch_aspect();
   const cv::Point2d half_window(0.5 * step * (size.width - 1), 0.5 * step * (size.height - 1));
   const cv::Point2d centre = first + half_window;
-  const Polygon shape = placed(shape_pitch, 1, -centre);
-  const double half_width = std::max(half_window.x, half_window.y) + near_field + spread_.window;
+  // Far away the spot is round in space, not on the detectors.
+  const Polygon shape = in_space(placed(shape_pitch, 1, -centre), aspect);
+  const double half_width = std::max(half_window.x, aspect * half_window.y) + near_field + spread_.window;
   if (reach(shape) <= std::numbers::sqrt2 * half_width) return extrapolated(shape_pitch, first, step, size);
-  const Polygon near = clipped(shape, half_width);
+  const Polygon near = in_space(clipped(shape, half_width), 1 / aspect);
   InfinitePlane out{cv::Mat1d::zeros(size), 0};
   if (area(near) > 0) out = extrapolated(near, first - centre, step, size);
   add_far_field(out, shape, first - centre, step, half_width);
@@ -101,7 +115,7 @@ ImageChain::InfinitePlane ImageChain::infinite_plane(const Polygon& whole_shape_
 /// The transfer function of a diffraction spot has a cusp at zero, 1 - a |f|. Far away the spot therefore falls as a /
 /// (4 pi^2 r^3), the inverse transform of -a |f|. The average over detector and aberration, with variance v per axis,
 /// changes this by the fraction 9 v / (2 r^2).
-void ImageChain::add_far_field(InfinitePlane& near, const Polygon& shape_pitch, cv::Point2d first, double step,
+void ImageChain::add_far_field(InfinitePlane& near, const Polygon& shape, cv::Point2d first, double step,
                                double half_width) const {
   const OpticsMtf optics(scope());
   // In cycles per pitch; the next terms, those of a halo among them, are of second and third order.
@@ -110,7 +124,8 @@ void ImageChain::add_far_field(InfinitePlane& near, const Polygon& shape_pitch, 
   double largest = 0;
   for (int row = 0; row < near.values.rows; ++row) {
     for (int column = 0; column < near.values.cols; ++column) {
-      const double added = cusp * far_integral(shape_pitch, first + step * cv::Point2d(column, row), half_width);
+      const cv::Point2d place = first + step * cv::Point2d(column, row);
+      const double added = cusp * far_integral(shape, {place.x, spec_.pitch_aspect() * place.y}, half_width);
       near.values(row, column) += added;
       largest = std::max(largest, added);
     }

@@ -14,8 +14,8 @@
 
 namespace todbench {
 
-/// Optics and detector of one sensor, for a scene of one motion. Lengths in detector pitches. Thread-safe. Filter
-/// tables are computed once per lattice.
+/// Optics and detector of one sensor, for a scene of one motion. Shapes and places are in detector pitches of each axis
+/// (on_detectors()). Thread-safe. Filter tables are computed once per lattice.
 class ImageChain {
  public:
   /// Precondition: validate(spec) succeeds.
@@ -32,7 +32,7 @@ class ImageChain {
   [[nodiscard]] PolygonImage image(const Polygon& shape_pitch) const;
   /// True if the image of the shape turned by a quarter is `image` turned by a quarter.
   [[nodiscard]] bool turns_alike(const PolygonImage& image) const {
-    return readout_slope_ == cv::Point2d(0, 0) && image.turns_alike();
+    return readout_slope_ == cv::Point2d(0, 0) && spec_.pitch_aspect() == 1 && image.turns_alike();
   }
 
   /// Samples for an infinite plane, by Richardson extrapolation from periods P and 2P (the wrapped signal falls as
@@ -49,7 +49,8 @@ class ImageChain {
  private:
   [[nodiscard]] InfinitePlane extrapolated(const Polygon& shape_pitch, cv::Point2d first, double step,
                                            cv::Size size) const;
-  void add_far_field(InfinitePlane& near, const Polygon& shape_pitch, cv::Point2d first, double step,
+  /// `shape` and `half_width` are in pitches along x; `first` and `step` as above.
+  void add_far_field(InfinitePlane& near, const Polygon& shape, cv::Point2d first, double step,
                      double half_width) const;
   [[nodiscard]] std::shared_ptr<const FilterTable> filter(const FrequencyLattice& lattice) const;
   [[nodiscard]] ChainScope scope() const;
@@ -67,5 +68,8 @@ class ImageChain {
   mutable std::mutex mutex_;
   mutable std::map<int, std::shared_ptr<const FilterTable>> filters_;  ///< by period
 };
+
+/// A shape whose lengths are in pitches along x, in pitches of each axis: divides y by the ratio of the pitches.
+[[nodiscard]] Polygon on_detectors(Polygon shape_pitch, const SensorSpec& spec);
 
 }  // namespace todbench

@@ -44,6 +44,7 @@ std::vector<SensorFact> sensor_facts(const SensorSpec& spec, std::uint64_t seed)
         key.member);
   }
   facts.push_back({"ifov_mrad", spec.ifov_mrad()});
+  facts.push_back({"ifov_y_mrad", spec.ifov_mrad(PitchAxis::y)});
   facts.push_back({"scene_samples_per_pitch", std::int64_t{scene_samples_per_pitch}});
   facts.push_back({"seed", seed});
   return facts;
@@ -54,10 +55,10 @@ cv::Mat1f scene_picture_k(const PlateScene& scene, const SensorSpec& spec) {
   const cv::Size size(spec.width * fine, spec.height * fine);
   PlateScene finer = scene;
   finer.centre_px *= fine;
-  const double sample_mrad = spec.ifov_mrad() / fine;
+  const cv::Point2d fine_mrad = cv::Point2d(spec.ifov_mrad(), spec.ifov_mrad(PitchAxis::y)) / fine;
   std::vector<PaintedPolygon> painted;
   const auto paint = [&](Polygon outline_on_plate_mm) {
-    for (auto& corner : outline_on_plate_mm) corner = scene_pixel(finer, corner, sample_mrad, size);
+    for (auto& corner : outline_on_plate_mm) corner = scene_pixel(finer, corner, fine_mrad, size);
     painted.push_back({std::move(outline_on_plate_mm), 1});
   };
   for (const auto& t : scene.plate.triangles) paint(triangle(t.size_mm, t.apex, t.position_mm));

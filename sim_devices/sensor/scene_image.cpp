@@ -19,7 +19,8 @@ constexpr int margin_pitches = 48;
 
 /// Pitches beyond the margin from which a halo spreads light into the frame.
 int halo_margin_pitches(const SensorSpec& spec, const SensorPlan& plan) {
-  return static_cast<int>(std::ceil(spread_of({.spec = spec, .plan = plan}).halo_reach));
+  const double most_samples = std::max(1.0, 1 / spec.pitch_aspect());
+  return static_cast<int>(std::ceil(most_samples * spread_of({.spec = spec, .plan = plan}).halo_reach));
 }
 
 /// Elements of a picture that overlap a cell along one axis, with the integral of each polynomial over each of them.

@@ -11,6 +11,7 @@ namespace todbench {
 namespace {
 
 Result<void> check_view(const SensorSpec& spec, const FieldScene& scene, const SceneView& view) {
+  if (auto square = require_square_pixels(spec, "a field scene"); !square) return square;
   if (!(view.range_m > 0)) return fail(ErrorCode::invalid_input, "the range must be above 0 m");
   const double pitch_m = view.range_m * spec.ifov_mrad() * 1e-3;
   const cv::Size2d extent = extent_m(scene);

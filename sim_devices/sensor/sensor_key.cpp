@@ -10,6 +10,8 @@ const std::vector<SensorKey>& camera_keys() {
       {"width", &SensorSpec::width, NumberRange::between(16, 16384), required, "detectors per row"},
       {"height", &SensorSpec::height, NumberRange::between(16, 16384), required, "rows of detectors"},
       {"pitch_um", &SensorSpec::pitch_um, NumberRange::between(0.1, 1000), required, "distance of detector centres"},
+      {"pitch_y_um", &SensorSpec::pitch_y_um, NumberRange::between(0, 1000), optional,
+       "distance of detector centres along the columns, if it differs; 0: pitch_um"},
       {"focal_length_mm", &SensorSpec::focal_length_mm, NumberRange::between(0.01, 1e5), required, "focal length"},
       {"optics_transmission",
        &SensorSpec::optics_transmission,

@@ -103,7 +103,8 @@ struct SensorModel::State {
     const auto image_of = [&](Apex shown) -> const PolygonImage& {
       auto& slot = shapes[{size_pitch, static_cast<int>(shown), rotation_deg, motion.x_mrad_s, motion.y_mrad_s}];
       if (slot == nullptr)
-        slot = std::make_unique<const PolygonImage>(own_chain.image(turned(triangle(size_pitch, shown), rotation_deg)));
+        slot = std::make_unique<const PolygonImage>(
+            own_chain.image(on_detectors(turned(triangle(size_pitch, shown), rotation_deg), spec)));
       return *slot;
     };
     const PolygonImage& upright = image_of(Apex::up);
@@ -145,7 +146,7 @@ struct SensorModel::State {
   }
   /// The same for a lens without distortion and simultaneous readout.
   [[nodiscard]] cv::Point2d projected(const PlateScene& scene, cv::Point2d plate_mm, cv::Size size) const {
-    return scene_pixel(scene, plate_mm, spec.ifov_mrad() / spec.samples_per_pitch(), size);
+    return scene_pixel(scene, plate_mm, sample_mrad(spec), size);
   }
 
   /// A triangle with the distortion of the lens, relative to the displayed place of its middle.
@@ -310,6 +311,10 @@ cv::Mat1w SensorModel::expose(const cv::Mat1f& unit_signal, double delta_t_k, do
   auto* to = counts.ptr<std::uint16_t>();
   for (std::size_t i = 0; i < kelvin.total(); ++i) to[i] = quantiser.count(from[i]);
   return counts;
+}
+
+cv::Point2d sample_mrad(const SensorSpec& spec) {
+  return cv::Point2d(spec.ifov_mrad(PitchAxis::x), spec.ifov_mrad(PitchAxis::y)) / spec.samples_per_pitch();
 }
 
 }  // namespace todbench

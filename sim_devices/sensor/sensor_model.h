@@ -57,4 +57,7 @@ class SensorModel {
   std::unique_ptr<State> state_;
 };
 
+/// Angle of a sample along x and y.
+[[nodiscard]] cv::Point2d sample_mrad(const SensorSpec& spec);
+
 }  // namespace todbench

@@ -49,4 +49,11 @@ Result<void> validate(const SensorSpec& spec) {
               "sensor " + (spec.name.empty() ? std::string("without a name") : spec.name) + ": " + problem);
 }
 
+Result<void> require_square_pixels(const SensorSpec& spec, std::string_view task) {
+  if (spec.pitch_aspect() == 1) return {};
+  return fail(ErrorCode::invalid_input,
+              "sensor " + spec.name + " has another pitch along y (pitch_y_um) than along x: " + std::string(task) +
+                  " needs square pixels");
+}
+
 }  // namespace todbench

@@ -22,12 +22,14 @@ enum class DisplayReconstruction {
 /// Axis of the array: along rows or along columns.
 enum class PitchAxis { x, y };
 
-/// A staring thermal camera: rectangular detectors on a square lattice. Names state the units.
+/// A staring thermal camera: rectangular detectors on a rectangular lattice. Names state the units. A length in pitches
+/// is in those along x, unless it is a place or a displacement in the picture, which is in pitches of each axis.
 struct SensorSpec {
   std::string name;
   std::string description;
   int width = 320, height = 240;  ///< detectors
-  double pitch_um = 47.5;         ///< between the centres of neighbouring detectors
+  double pitch_um = 47.5;         ///< between the centres of neighbouring detectors, along x, and along y by default
+  double pitch_y_um = 0;          ///< the same along y; 0: pitch_um
   double detector_um = 42.5;      ///< side of the sensitive area along x, and along y by default; at most the pitch
   double detector_y_um = 0;       ///< side of the sensitive area along y; 0: detector_um
   double focal_length_mm = 36.3;
@@ -70,23 +72,36 @@ struct SensorSpec {
   std::vector<ModulePlan> modules{};
   double scene_temperature_k = 300;  ///< of the surround; sets the spectral weighting dL/dT
 
-  [[nodiscard]] double ifov_mrad() const { return pitch_um / focal_length_mm; }
+  [[nodiscard]] double pitch_along(PitchAxis axis) const {
+    return axis == PitchAxis::y && pitch_y_um > 0 ? pitch_y_um : pitch_um;
+  }
+  /// Pitch along y over that along x.
+  [[nodiscard]] double pitch_aspect() const { return pitch_along(PitchAxis::y) / pitch_um; }
+  [[nodiscard]] double ifov_mrad(PitchAxis axis = PitchAxis::x) const { return pitch_along(axis) / focal_length_mm; }
   /// Displayed samples per detector pitch and axis.
   [[nodiscard]] int samples_per_pitch() const { return microscan * (super_resolution_frames > 0 ? 2 : 1); }
   /// Exposures averaged in each displayed sample.
   [[nodiscard]] int exposures_per_sample() const {
     return frames_averaged * (super_resolution_frames > 0 ? super_resolution_frames / 4 : 1);
   }
-  [[nodiscard]] double detector_pitch_ratio(PitchAxis axis = PitchAxis::x) const {
-    return (axis == PitchAxis::y && detector_y_um > 0 ? detector_y_um : detector_um) / pitch_um;
+  [[nodiscard]] double detector_along(PitchAxis axis) const {
+    return axis == PitchAxis::y && detector_y_um > 0 ? detector_y_um : detector_um;
   }
-  /// Whether the sensitive area is a square.
-  [[nodiscard]] bool square_detector() const { return detector_y_um == 0 || detector_y_um == detector_um; }
+  [[nodiscard]] double detector_pitch_ratio(PitchAxis axis = PitchAxis::x) const {
+    return detector_along(axis) / pitch_along(axis);
+  }
+  /// Whether lattice and sensitive area are the same along both axes.
+  [[nodiscard]] bool square_detector() const {
+    return pitch_aspect() == 1 && (detector_y_um == 0 || detector_y_um == detector_um);
+  }
   bool operator==(const SensorSpec&) const = default;
 };
 
 /// `invalid_input` with one sentence for an impossible sensor (negative aperture, detector larger than pitch, zero
 /// focal length, ...).
 [[nodiscard]] Result<void> validate(const SensorSpec& spec);
+
+/// `invalid_input` for a sensor with unlike pitches along x and y, which `task` ("identification") does not support.
+[[nodiscard]] Result<void> require_square_pixels(const SensorSpec& spec, std::string_view task);
 
 }  // namespace todbench

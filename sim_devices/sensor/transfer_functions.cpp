@@ -46,15 +46,17 @@ std::vector<TransferFunction> other_transfers(const ChainScope& scope) {
 
 TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths, SceneMotion motion) {
   const ChainScope scope{.spec = spec, .plan = plan, .wavelengths = wavelengths, .motion = motion};
-  return [optics = OpticsMtf(scope), footprint = FootprintMtf(scope), others = other_transfers(scope)](double u,
-                                                                                                       double w) {
-    std::complex<double> value = optics(std::hypot(u, w)) * (footprint(u, PitchAxis::x) * footprint(w, PitchAxis::y));
+  return [optics = OpticsMtf(scope), footprint = FootprintMtf(scope), others = other_transfers(scope),
+          aspect = spec.pitch_aspect()](double u, double w) {
+    std::complex<double> value =
+        optics(std::hypot(u, w / aspect)) * (footprint(u, PitchAxis::x) * footprint(w, PitchAxis::y));
     for (const auto& other : others) value *= other(u, w);
     return value;
   };
 }
 
 TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope) {
+  if (scope.spec.pitch_aspect() != 1) return sensor_transfer(scope.spec, scope.plan, scope.wavelengths, scope.motion);
   const OpticsMtf optics(scope);
   const FootprintMtf footprint(scope);
   const double period = lattice.period;
@@ -85,7 +87,8 @@ double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const A
     const EffectRow& row = row_of(effect);
     if (row.band != nullptr && plan.simulates(effect)) band = std::min(band, row.band(spec, accuracy));
   }
-  return band;
+  // In cycles per pitch of the axis with the larger one.
+  return band * std::max(1.0, spec.pitch_aspect());
 }
 
 cv::Point2d readout_slope_of(const ChainScope& scope) {

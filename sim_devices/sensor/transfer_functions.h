@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image formation in the frequency domain, in cycles per detector pitch: the product of the effects in the plan.
+// Image formation in the frequency domain, in cycles per detector pitch of each axis: the product of the effects in the
+// plan. Optics depend on the radius in cycles per pitch along x: hypot(u, w / aspect), SensorSpec::pitch_aspect().
 #pragma once
 
 #include <complex>
@@ -41,12 +42,12 @@ class FootprintMtf {
 [[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths,
                                                SceneMotion motion = {});
 /// The same at the frequencies m / period, |m| <= band, bit for bit. Optics depend only on the radius and the footprint
-/// is a product over the axes, so only an eighth of the plane and both axes are computed.
+/// is a product over the axes, so only an eighth of the plane and both axes are computed. Unlike pitches: no table.
 [[nodiscard]] TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope);
 
-/// Highest relevant frequency in cycles per pitch: the cut-off of the optics, or the frequency at which they have
-/// reduced the signal to the tolerance. Without either the spectrum of a sharp shape is unlimited; a limit of 16 cycles
-/// per pitch leaves an error near 1/(pi^2 16) at edges.
+/// Highest relevant frequency along either axis, in cycles per pitch: the cut-off of the optics, or the frequency at
+/// which they have reduced the signal to the tolerance. Without either the spectrum of a sharp shape is unlimited; a
+/// limit of 16 cycles per pitch leaves an error near 1/(pi^2 16) at edges.
 [[nodiscard]] double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy);
 
 /// Motion of the target from one row of samples to the next, in pitches: the sum over the rows of stage::Readout.

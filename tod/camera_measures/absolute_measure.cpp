@@ -79,7 +79,8 @@ class AbsoluteRun {
 
  private:
   Result<Seen> look(double temperature_k, cv::Point shift_px) {
-    TODBENCH_TRY(const PresentedTarget shown, show_(temperature_k, options_.pixel_mm * cv::Point2d(shift_px)));
+    const cv::Point2d shift_mm(options_.pixel_mm * shift_px.x, options_.pixel_mm * options_.pixel_aspect * shift_px.y);
+    TODBENCH_TRY(const PresentedTarget shown, show_(temperature_k, shift_mm));
     const double said_k = shown.black_body_temperature_k.value_or(temperature_k);
     TODBENCH_TRY(const AveragedPicture picture,
                  taker_.average(options_.frames, stop_, [&](const Frame& frame, const cv::Mat1d&) {

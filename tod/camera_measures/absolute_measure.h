@@ -21,9 +21,10 @@ struct AbsoluteOptions {
   std::string plate;                   ///< its cut-out fills the picture
   std::vector<double> temperatures_k;  ///< of the black body, at least three; shown in order and in reverse order
   int frames = 32;                     ///< averaged at each temperature and place
-  int shift_px = 8;       ///< of the source on the stage, to tell camera and source apart; 0: not told apart
-  double pixel_mm = 0;    ///< pixel pitch on the plate
-  double source_u_k = 0;  ///< standard uncertainty of the expected temperature
+  int shift_px = 8;         ///< of the source on the stage, to tell camera and source apart; 0: not told apart
+  double pixel_mm = 0;      ///< pixel pitch on the plate
+  double pixel_aspect = 1;  ///< height of a pixel over its width, which is pixel_mm
+  double source_u_k = 0;    ///< standard uncertainty of the expected temperature
   /// Temperature that the camera's own sensor reports, in degrees Celsius; may be empty, or return nothing.
   std::function<std::optional<double>()> camera_temperature_c{};
   /// Temperature that a correct camera shows for one of the black body, through a collimator; empty: the same.

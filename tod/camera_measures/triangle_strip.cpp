@@ -17,7 +17,9 @@ TriangleStrip smallest_triangles(const cv::Mat1d& picture, const TargetPlate& mo
   triangles.resize(std::min(triangles.size(), static_cast<std::size_t>(std::max(1, count))));
   const double scale = where.scale_px_per_mm;
   // The width of an equilateral triangle is 1.52 times the root of its area.
-  const int side = std::max(least_side, static_cast<int>(std::ceil(1.52 * triangles.back().size_mm * scale)) + margin);
+  const double highest = std::max(1.0, 1 / where.pixel_aspect);  // pixels along y for one along x
+  const int side =
+      std::max(least_side, static_cast<int>(std::ceil(1.52 * triangles.back().size_mm * scale * highest)) + margin);
   const auto windows = static_cast<int>(triangles.size());
   TriangleStrip strip;
   strip.kelvin = cv::Mat1d(side, windows * (side + gap) - gap, median_of(picture));

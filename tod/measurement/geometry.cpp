@@ -26,16 +26,17 @@ std::string words(const TrianglesTooNear& misfit) {
 Result<std::vector<Misfit>> find_misfits(const MeasurementOptions& options, Observer& observer, cv::Size picture) {
   if (!(options.distance_m > 0) || !(options.ifov_mrad > 0))
     return fail(ErrorCode::invalid_input, "distance and IFOV must be positive");
-  const double scale = 1 / (options.distance_m * options.ifov_mrad);
+  RegistrationOptions registration = options.registration;
+  const double scale = registration.expected_scale_px_per_mm = 1 / (options.distance_m * options.ifov_mrad);
   std::vector<Misfit> out;
   for (const auto& plate : options.plates) {
     PreparedPlate prepared{plate, {}, {}};
     if (auto ready = prepare(prepared, observer, scale, options.samples_per_pitch); !ready)
       return tl::unexpected(ready.error());
     const double search = prepared.observers.empty() ? 0 : prepared.observers.front()->search_samples();
-    for (auto& window : touching_windows(plate, scale, prepared.sides(), search))
+    for (auto& window : touching_windows(plate, registration, prepared.sides(), search))
       out.emplace_back(TrianglesTooNear{plate.name, std::move(window)});
-    const cv::Size2d size_px(plate.width_mm * scale, plate.height_mm * scale);
+    const cv::Size2d size_px(plate.width_mm * scale, plate.height_mm * scale / registration.pixel_aspect);
     if (size_px.width > picture.width || size_px.height > picture.height)
       out.emplace_back(
           PlateBeyondPicture{plate.name, {plate.width_mm, plate.height_mm}, size_px, options.distance_m, picture});

@@ -460,6 +460,7 @@ Result<void> check_moving(const SourceInfo& camera, Target& target, TemplateObse
   const MeasurementOptions& at_rest = options.measurement;
   if (at_rest.samples_per_pitch != 1)
     return refuse("a moving target can only be measured without microscan and super-resolution");
+  if (at_rest.registration.pixel_aspect != 1) return refuse("a moving target can only be measured with square pixels");
   if (at_rest.contrast_unit != ContrastUnit::kelvin)
     return refuse("a moving target can only be measured in kelvin, not in grey levels");
   if (!(camera.frame_rate_hz > 0)) return refuse("camera " + camera.id + " does not report its frame rate");

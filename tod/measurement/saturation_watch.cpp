@@ -37,7 +37,8 @@ cv::Mat1b seen_triangles(cv::Size size, const TargetPlate& plate, const Registra
   for (const PlateTriangle& triangle : plate.triangles) {
     const cv::Point2d centre = registration.pixel(triangle.position_mm);
     // A corner is 2 / 27^(1/4) of the size from the centroid.
-    const double reach = 0.878 * triangle.size_mm * registration.scale_at(triangle.position_mm) + blur_px;
+    const double highest = std::max(1.0, 1 / registration.pixel_aspect);  // pixels along y for one along x
+    const double reach = 0.878 * triangle.size_mm * registration.scale_at(triangle.position_mm) * highest + blur_px;
     const int top = std::max(0, static_cast<int>(std::floor(centre.y - reach)));
     const int bottom = std::min(size.height - 1, static_cast<int>(std::ceil(centre.y + reach)));
     const int left = std::max(0, static_cast<int>(std::floor(centre.x - reach)));

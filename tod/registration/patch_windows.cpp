@@ -59,18 +59,23 @@ std::string sentence(const WindowOutOfPicture& window) {
                      window.picture.height);
 }
 
-std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, double scale_px_per_mm,
+std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, const RegistrationOptions& options,
                                              const std::vector<int>& sides, double search_px) {
+  const double scale = options.expected_scale_px_per_mm;
+  const auto in_pixels = [&](cv::Point2d at_mm) {
+    return cv::Point2d(at_mm.x * scale, at_mm.y * scale / options.pixel_aspect);
+  };
   std::vector<TouchingWindow> problems;
   for (std::size_t i = 0; i < plate.triangles.size(); ++i) {
-    const cv::Point2d centre = plate.triangles[i].position_mm * scale_px_per_mm;
+    const cv::Point2d centre = in_pixels(plate.triangles[i].position_mm);
     const double half = sides[i] / 2.0 + search_px + 0.5;
     const Polygon window{centre + cv::Point2d(-half, -half), centre + cv::Point2d(half, -half),
                          centre + cv::Point2d(half, half), centre + cv::Point2d(-half, half)};
     for (std::size_t j = 0; j < plate.triangles.size(); ++j) {
       if (j == i) continue;
       const auto& other = plate.triangles[j];
-      const Polygon shape = triangle(other.size_mm * scale_px_per_mm, other.apex, other.position_mm * scale_px_per_mm);
+      Polygon shape = triangle(other.size_mm, other.apex, other.position_mm);
+      for (auto& corner : shape) corner = in_pixels(corner);
       const double gap = distance(window, shape);
       if (gap >= blur_allowance_px) continue;
       problems.push_back({.triangle = plate.triangles[i].name,

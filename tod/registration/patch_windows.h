@@ -43,9 +43,9 @@ struct WindowOutOfPicture {
 [[nodiscard]] std::string sentence(const WindowOutOfPicture& window);
 
 /// Triangles of a mounted plate whose window, widened by the observer's search and half a pixel, touches a neighbour
-/// (whose edge counts 1.5 px further out because of blur) at `scale_px_per_mm`. `sides` and `search` are in the order
-/// of the triangles.
-[[nodiscard]] std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, double scale_px_per_mm,
+/// (whose edge counts 1.5 px further out because of blur) at the expected scale and aspect of `options`. `sides` and
+/// `search` are in the order of the triangles.
+[[nodiscard]] std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, const RegistrationOptions& options,
                                                            const std::vector<int>& sides, double search_px);
 
 /// Triangles whose window leaves a picture of this size, also if the plate moves by up to a pixel.

@@ -77,14 +77,14 @@ void judge(const PlateSearch& search, PlateAttempt& at) {
 }
 
 /// The index of the triangle that disturbs the fit most, and the fit without it.
-std::pair<std::size_t, FittedMapping> without_worst(const PlateAttempt& at, double scale) {
+std::pair<std::size_t, FittedMapping> without_worst(const PlateAttempt& at, const RegistrationOptions& options) {
   std::pair<std::size_t, FittedMapping> best;
   for (std::size_t i = 0; i < at.located.size(); ++i) {
     auto plate = places_of(at.located);
     auto pixels = at.pixels;
     plate.erase(plate.begin() + static_cast<std::ptrdiff_t>(i));
     pixels.erase(pixels.begin() + static_cast<std::ptrdiff_t>(i));
-    const FittedMapping others = fit_mapping(plate, pixels, scale);
+    const FittedMapping others = fit_mapping(plate, pixels, options);
     if (i == 0 || others.residual_px < best.second.residual_px) best = {i, others};
   }
   return best;
@@ -103,25 +103,36 @@ PlateSearch search_for(const cv::Mat1d& picture, const TargetPlate& plate, const
   const double scale = options.expected_scale_px_per_mm;
   const auto large = triangles_from(plate, options.min_triangle_px / scale);
   const auto [smallest, largest] = std::ranges::minmax(large, {}, &PlateTriangle::size_mm);
-  const double low = smallest.size_mm * scale * (1 - searched_scale_range);
-  const double high = largest.size_mm * scale * (1 + searched_scale_range);
+  // The size of a blob is the square root of its area in pixels.
+  const double blob_scale = scale / std::sqrt(options.pixel_aspect);
+  const double low = smallest.size_mm * blob_scale * (1 - searched_scale_range);
+  const double high = largest.size_mm * blob_scale * (1 + searched_scale_range);
   return {picture, options, {find_warm_blobs(picture, low, high), find_warm_blobs(-picture, low, high)}};
 }
 
 std::optional<PlateAttempt> attempt_mounting(const PlateSearch& search, const TargetPlate& plate, Mounting relative) {
   const TargetPlate turned = mounted(plate, relative);
-  const double scale = search.options.expected_scale_px_per_mm;
-  const MatchLimits limits{scale, searched_scale_range, search.options.max_rotation_deg + extra_rotation_deg,
-                           search.picture.size()};
+  const double scale = search.options.expected_scale_px_per_mm, aspect = search.options.pixel_aspect;
+  // The layout is matched in a picture whose pixels are as high as wide.
+  const MatchLimits limits{scale,
+                           searched_scale_range,
+                           search.options.max_rotation_deg + extra_rotation_deg,
+                           {search.picture.cols, cvRound(search.picture.rows * aspect)}};
   std::optional<PlateAttempt> best;
   for (std::size_t side = 0; side < 2; ++side) {
     PlateAttempt at;
     at.mounting = turned.mounting;
     at.sign = side == 0 ? 1 : -1;
     at.large = triangles_from(turned, search.options.min_triangle_px / scale);
-    auto match = match_layout(at.large, search.blobs[side], limits);
+    std::vector<Blob> blobs = search.blobs[side];
+    for (Blob& blob : blobs) {
+      blob.centre.y *= aspect;
+      blob.size_px *= std::sqrt(aspect);
+    }
+    auto match = match_layout(at.large, blobs, limits);
     if (!match || (best && !match->better_than(best->match))) continue;
     at.match = std::move(*match);
+    at.match.plate_to_pixel = with_own_pixels(at.match.plate_to_pixel, aspect);
     best = std::move(at);
   }
   const int needed = std::min(credible_pairs, search.options.min_triangles);
@@ -130,22 +141,21 @@ std::optional<PlateAttempt> attempt_mounting(const PlateSearch& search, const Ta
 }
 
 FittedMapping refine_attempt(const PlateSearch& search, PlateAttempt& at) {
-  const double scale = search.options.expected_scale_px_per_mm;
-  FittedMapping fitted = fit_mapping(places_of(at.located), at.pixels, scale);
+  FittedMapping fitted = fit_mapping(places_of(at.located), at.pixels, search.options);
   for (int round = 0; round < 2; ++round) {
     at.blur_px = best_blur(search.picture, fitted.plate_to_pixel, at);
     for (std::size_t i = 0; i < at.located.size(); ++i) {
       const auto fit = locate(search.picture, fitted.plate_to_pixel, at.located[i], at.located[i].apex, at.blur_px);
       if (fit) at.pixels[i] = to_pixel(fitted.plate_to_pixel, at.located[i].position_mm) + fit->shift;
     }
-    fitted = fit_mapping(places_of(at.located), at.pixels, scale);
+    fitted = fit_mapping(places_of(at.located), at.pixels, search.options);
   }
   // A third of the residual remains when one of eight is removed: F(2, 10) = 40, for a given one by chance once in 60
   // 000. Below 0.02 px it has no effect.
   constexpr double decisive = 3;
   constexpr double harmless_px = 0.02;
   while (static_cast<int>(at.located.size()) > search.options.min_triangles && fitted.residual_px > harmless_px) {
-    const auto [worst, others] = without_worst(at, scale);
+    const auto [worst, others] = without_worst(at, search.options);
     const bool acceptable = fitted.residual_px <= search.options.max_residual_px;
     if (acceptable && others.residual_px * decisive > fitted.residual_px) break;
     at.located.erase(at.located.begin() + static_cast<std::ptrdiff_t>(worst));

@@ -2,6 +2,7 @@
 #include "tod/registration/plate_mapping.h"
 
 #include <cmath>
+#include <vector>
 
 #include "acquisition/base/distributions.h"
 #include "tod/plate/plate_outlines.h"
@@ -65,11 +66,21 @@ bool demanded(double smaller_sum, int smaller_parameters, double larger_sum, int
 
 }  // namespace
 
-FittedMapping fit_mapping(std::span<const cv::Point2d> plate_mm, std::span<const cv::Point2d> pixels,
-                          double default_scale) {
-  const int n = static_cast<int>(pixels.size());
+cv::Matx33d with_square_pixels(const cv::Matx33d& mapping, double pixel_aspect) {
+  return pixel_aspect == 1 ? mapping : cv::Matx33d(1, 0, 0, 0, pixel_aspect, 0, 0, 0, 1) * mapping;
+}
+
+cv::Matx33d with_own_pixels(const cv::Matx33d& mapping, double pixel_aspect) {
+  return with_square_pixels(mapping, 1 / pixel_aspect);
+}
+
+FittedMapping fit_mapping(std::span<const cv::Point2d> plate_mm, std::span<const cv::Point2d> own_pixels,
+                          const RegistrationOptions& options) {
+  const int n = static_cast<int>(own_pixels.size());
+  std::vector<cv::Point2d> pixels(own_pixels.begin(), own_pixels.end());
+  for (cv::Point2d& p : pixels) p.y *= options.pixel_aspect;
   FittedMapping best;
-  best.plate_to_pixel = fit_similarity(plate_mm, pixels, default_scale);
+  best.plate_to_pixel = fit_similarity(plate_mm, pixels, options.expected_scale_px_per_mm);
   best.mapping = n == 1 ? PlateMapping::translation : PlateMapping::similarity;
   double sum = sum_of_squares(best.plate_to_pixel, plate_mm, pixels);
   int parameters = 4;
@@ -89,6 +100,7 @@ FittedMapping fit_mapping(std::span<const cv::Point2d> plate_mm, std::span<const
     }
   }
   best.residual_px = std::sqrt(sum / n);
+  best.plate_to_pixel = with_own_pixels(best.plate_to_pixel, options.pixel_aspect);
   return best;
 }
 

@@ -44,6 +44,8 @@ Result<void> check_input(const cv::Mat1d& picture, const TargetPlate& plate, con
   if (!(options.expected_scale_px_per_mm > 0) || !std::isfinite(options.expected_scale_px_per_mm)) {
     return wrong("the expected scale must be positive, found " + fixed(options.expected_scale_px_per_mm, 4) + " px/mm");
   }
+  if (!(options.pixel_aspect >= 0.4 && options.pixel_aspect <= 2.5))
+    return wrong("the aspect of a pixel must be from 0.4 to 2.5, found " + fixed(options.pixel_aspect, 4));
   if (options.min_triangles < 1) return wrong("min_triangles must be at least 1");
   if (picture.empty() || !cv::checkRange(picture))
     return wrong("the picture is empty or contains a value that is not finite");
@@ -61,9 +63,9 @@ std::string percent(double share) {
   return fixed(100 * share, 1) + " %";
 }
 
-/// Pixels per millimetre at a place, mean of both axes.
-double mean_scale(const cv::Matx33d& mapping, cv::Point2d plate_mm) {
-  return std::sqrt(std::abs(cv::determinant(jacobian(mapping, plate_mm))));
+/// Pixels per millimetre along x at a place, from the area magnification.
+double scale_along_x(const cv::Matx33d& mapping, cv::Point2d plate_mm, double pixel_aspect) {
+  return std::sqrt(std::abs(cv::determinant(jacobian(mapping, plate_mm))) * pixel_aspect);
 }
 
 /// Pixels per millimetre along the rows and along the columns of the plate.
@@ -72,17 +74,21 @@ cv::Point2d axis_scales(const cv::Matx33d& mapping) {
   return {std::hypot(j(0, 0), j(1, 0)), std::hypot(j(0, 1), j(1, 1))};
 }
 
-double stretch_of(const cv::Matx33d& mapping) {
-  const cv::Point2d scales = axis_scales(mapping);
+double stretch_of(const cv::Matx33d& mapping, double pixel_aspect) {
+  const cv::Point2d scales = axis_scales(with_square_pixels(mapping, pixel_aspect));
   return scales.x / scales.y - 1;
 }
 
-tl::unexpected<Error> stretched(const TargetPlate& plate, const cv::Matx33d& mapping, double limit) {
+tl::unexpected<Error> stretched(const TargetPlate& plate, const cv::Matx33d& mapping,
+                                const RegistrationOptions& options) {
   const cv::Point2d scales = axis_scales(mapping);
-  return contradiction(plate, "is stretched in the picture: " + fixed(scales.x, 4) + " px/mm along x and " +
-                                  fixed(scales.y, 4) + " px/mm along y differ by " + percent(stretch_of(mapping)) +
-                                  ", at most " + percent(limit) +
-                                  " are allowed: check whether the pixels are square and the plate faces the camera");
+  const bool square = options.pixel_aspect == 1;
+  return contradiction(
+      plate, "is stretched in the picture: " + fixed(scales.x, 4) + " px/mm along x and " + fixed(scales.y, 4) +
+                 " px/mm along y differ by " + percent(stretch_of(mapping, options.pixel_aspect)) +
+                 (square ? "" : " from those of pixels " + fixed(options.pixel_aspect, 3) + " times as high as wide") +
+                 ", at most " + percent(options.max_stretch) + " are allowed: check whether the pixels are " +
+                 (square ? "square" : "as the sensor states (pitch_y_um)") + " and the plate faces the camera");
 }
 
 /// The mapping by which a picture with unequal scales shows the plate as it is mounted, if it does: of the layouts
@@ -98,9 +104,10 @@ std::optional<cv::Matx33d> stretched_mapping(const PlateSearch& search, const Ta
     if (!found || !found->agrees() || static_cast<int>(found->located.size()) < search.options.min_triangles) continue;
     std::vector<cv::Point2d> of_file = places_of(found->located);
     for (cv::Point2d& p : of_file) p = {p.x / wide, p.y * wide};
-    const FittedMapping fitted = fit_mapping(of_file, found->pixels, search.options.expected_scale_px_per_mm);
+    const FittedMapping fitted = fit_mapping(of_file, found->pixels, search.options);
     // A layout that fits by chance has scales unlike those with which it was drawn.
-    if (std::abs(std::log((1 + stretch_of(fitted.plate_to_pixel)) / ratio)) > 0.06) continue;
+    const double stretch = stretch_of(fitted.plate_to_pixel, search.options.pixel_aspect);
+    if (std::abs(std::log((1 + stretch) / ratio)) > 0.06) continue;
     if (std::pair(most, -best.residual_px) >= std::pair(found->located.size(), -fitted.residual_px)) continue;
     most = found->located.size();
     best = fitted;
@@ -121,9 +128,9 @@ std::optional<double> scale_of_another_distance(const PlateSearch& search, const
     auto found = attempt_mounting(there, plate, Mounting::identity);
     if (!found || !found->agrees() || static_cast<int>(found->located.size()) < options.min_triangles) continue;
     const FittedMapping fitted = refine_attempt(there, *found);
-    const double scale = mean_scale(fitted.plate_to_pixel, {0, 0});
+    const double scale = scale_along_x(fitted.plate_to_pixel, {0, 0}, options.pixel_aspect);
     const bool fits = fitted.residual_px <= options.max_residual_px &&
-                      std::abs(stretch_of(fitted.plate_to_pixel)) <= options.max_stretch;
+                      std::abs(stretch_of(fitted.plate_to_pixel, options.pixel_aspect)) <= options.max_stretch;
     if (fits && std::abs(scale / search.options.expected_scale_px_per_mm - 1) > searched_scale_range) return scale;
   }
   return std::nullopt;
@@ -155,8 +162,8 @@ tl::unexpected<Error> explain(const PlateSearch& search, const TargetPlate& plat
   if (const auto scale = scale_of_another_distance(search, plate))
     return of_unplanned_scale(plate, *scale, search.options);
   if (const auto mapping = stretched_mapping(search, plate);
-      mapping && std::abs(stretch_of(*mapping)) > search.options.max_stretch)
-    return stretched(plate, *mapping, search.options.max_stretch);
+      mapping && std::abs(stretch_of(*mapping, search.options.pixel_aspect)) > search.options.max_stretch)
+    return stretched(plate, *mapping, search.options);
   const std::string spots = std::to_string(search.blobs[0].size()) + " warm and " +
                             std::to_string(search.blobs[1].size()) + " cold spots were found";
   const std::size_t wanted =
@@ -170,17 +177,18 @@ tl::unexpected<Error> explain(const PlateSearch& search, const TargetPlate& plat
                                   " point as stated, and no other mounting fits better: check which plate is inserted");
 }
 
-Registration describe(const FittedMapping& fitted, const PlateAttempt& at, double expected_scale) {
+Registration describe(const FittedMapping& fitted, const PlateAttempt& at, const RegistrationOptions& options) {
   Registration r;
+  r.pixel_aspect = options.pixel_aspect;
   r.plate_to_pixel = fitted.plate_to_pixel;
   r.mapping = fitted.mapping;
   r.residual_px = fitted.residual_px;
   r.triangles_used = static_cast<int>(at.located.size());
-  const cv::Matx22d j = jacobian(r.plate_to_pixel, {0, 0});
-  r.scale_px_per_mm = mean_scale(r.plate_to_pixel, {0, 0});
+  const cv::Matx22d j = jacobian(with_square_pixels(r.plate_to_pixel, r.pixel_aspect), {0, 0});
+  r.scale_px_per_mm = r.scale_at({0, 0});
   // Rotation part of the polar decomposition.
   r.rotation_deg = std::atan2(j(1, 0) - j(0, 1), j(0, 0) + j(1, 1)) * 180 / std::numbers::pi;
-  r.scale_deviation = r.scale_px_per_mm / expected_scale - 1;
+  r.scale_deviation = r.scale_px_per_mm / options.expected_scale_px_per_mm - 1;
   r.contrast_sign = at.sign;
   r.blur_px = at.blur_px;
   return r;
@@ -207,7 +215,7 @@ cv::Point2d Registration::pixel(cv::Point2d plate_mm) const {
 }
 
 double Registration::scale_at(cv::Point2d plate_mm) const {
-  return mean_scale(plate_to_pixel, plate_mm);
+  return scale_along_x(plate_to_pixel, plate_mm, pixel_aspect);
 }
 
 Registration Registration::shifted(cv::Point2d shift_mm) const {
@@ -225,7 +233,6 @@ Registration Registration::moved(cv::Point2d shift_px) const {
 Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                     const RegistrationOptions& options) {
   if (auto checked = check_input(picture, mounted_plate, options); !checked) return tl::unexpected(checked.error());
-  const double scale = options.expected_scale_px_per_mm;
   const PlateSearch search = search_for(picture, mounted_plate, options);
 
   auto found = attempt_mounting(search, mounted_plate, Mounting::identity);
@@ -239,17 +246,17 @@ Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate&
                              std::to_string(options.min_triangles) + " are needed");
   }
   const FittedMapping fitted = refine_attempt(search, *found);
-  const Registration result = describe(fitted, *found, scale);
+  const Registration result = describe(fitted, *found, options);
   if (result.residual_px > options.max_residual_px) {
     return contradiction(mounted_plate, "does not fit its file: the located triangles are " +
                                             fixed(result.residual_px, 3) +
                                             " px rms from their places in the file, at most " +
                                             fixed(options.max_residual_px, 3) + " px are allowed");
   }
-  if (std::abs(stretch_of(result.plate_to_pixel)) > options.max_stretch) {
+  if (std::abs(stretch_of(result.plate_to_pixel, options.pixel_aspect)) > options.max_stretch) {
     // With a row of the layout assigned to another one, the similarity leads to wrong scales.
     const cv::Matx33d mapping = stretched_mapping(search, mounted_plate).value_or(result.plate_to_pixel);
-    return stretched(mounted_plate, mapping, options.max_stretch);
+    return stretched(mounted_plate, mapping, options);
   }
   if (std::abs(result.scale_deviation) > options.max_scale_deviation)
     return of_unplanned_scale(mounted_plate, result.scale_px_per_mm, options);

@@ -13,11 +13,13 @@
 namespace todbench {
 
 struct RegistrationOptions {
-  double expected_scale_px_per_mm = 0;  ///< from distance and IFOV of the plan, > 0
+  double expected_scale_px_per_mm = 0;  ///< along x, from distance and IFOV of the plan, > 0
+  double pixel_aspect = 1;              ///< expected height of a pixel over its width
   double max_scale_deviation = 0.02;    ///< relative; a larger one means that plan and picture contradict each other
   double max_rotation_deg = 10;
-  /// Relative difference of the scales along x and y. The triangles of the observer are made for square pixels: within
-  /// this limit the acuity of the mean scale changes by less than 0.5 % (docs/validation/measurement.md).
+  /// Relative difference of the scales along x and y from `pixel_aspect`. The triangles of the observer are made for
+  /// pixels of this shape: within this limit the acuity of the mean scale changes by less than 0.5 %
+  /// (docs/validation/measurement.md).
   double max_stretch = 0.04;
   double max_residual_px = 0.25;  ///< rms over the triangles used
   double min_triangle_px = 2.5;   ///< smallest size (square root of area) of a triangle that is located separately
@@ -35,7 +37,8 @@ struct Registration {
   cv::Matx33d plate_to_pixel = cv::Matx33d::eye();  ///< mm on the mounted plate -> pixels
   double residual_px = 0;                           ///< rms distance between located and mapped centroids
   int triangles_used = 0;
-  double scale_px_per_mm = 0;  ///< square root of the area magnification at the middle of the plate
+  double scale_px_per_mm = 0;  ///< along x: scale_at() the middle of the plate
+  double pixel_aspect = 1;     ///< that of the options
   double rotation_deg = 0;     ///< clockwise in the picture
   double scale_deviation = 0;  ///< relative to the expected scale
   double contrast_sign = 1;    ///< +1: triangles warmer than their surround
@@ -44,7 +47,7 @@ struct Registration {
 
   /// Pixel position of a place on the mounted plate.
   [[nodiscard]] cv::Point2d pixel(cv::Point2d plate_mm) const;
-  /// Pixels per millimetre (square root of the area magnification) at a place.
+  /// Pixels per millimetre along x at a place: square root of the area magnification times the aspect of a pixel.
   [[nodiscard]] double scale_at(cv::Point2d plate_mm) const;
   /// The same registration for a plate moved by `shift_mm` in its own plane.
   [[nodiscard]] Registration shifted(cv::Point2d shift_mm) const;

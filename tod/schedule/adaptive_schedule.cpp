@@ -52,7 +52,7 @@ AdaptiveSchedule::AdaptiveSchedule(AdaptiveOptions options, const RandomStream& 
       if (!options_.stimuli.shows(p, m)) continue;
       const Mounting mounting = options_.stimuli.mountings[m];
       set_ups_.push_back({.plate = p, .mounting = mounting, .group = m});
-      const auto more = phased_triangles(options_.plates[p], mounting, options_.stimuli.pixel_mm, m);
+      const auto more = phased_triangles(options_.plates[p], mounting, pixel_of(options_.stimuli), m);
       triangles.insert(triangles.end(), more.begin(), more.end());
     }
     if (options_.stimuli.mountings.empty()) continue;
@@ -144,7 +144,7 @@ std::optional<TargetState> AdaptiveSchedule::next() {
   state.plate = options_.plates[set_up.plate].name;
   state.mounting = set_up.mounting;
   state.delta_t_k = contrast.delta_t_k;
-  state.shift_mm = options_.stimuli.pixel_mm * next_phase(contrast);
+  state.shift_mm = shift_of(next_phase(contrast), options_.stimuli);
   registered_ = true;
   ++contrast.progress.presentations;
   ++shown_here_;

@@ -233,12 +233,14 @@ class GroupPlacement {
 
 }  // namespace
 
-std::vector<PhasedTriangle> phased_triangles(const TargetPlate& plate, Mounting mounting, double pixel_mm,
+std::vector<PhasedTriangle> phased_triangles(const TargetPlate& plate, Mounting mounting, cv::Size2d pixel_mm,
                                              std::size_t group) {
   std::vector<PhasedTriangle> all;
   const TargetPlate held = mounted(plate, mounting);
-  for (const PlateTriangle& t : held.triangles)
-    all.push_back({.group = group, .size = t.size_mm, .apex = t.apex, .position_px = t.position_mm / pixel_mm});
+  for (const PlateTriangle& t : held.triangles) {
+    const cv::Point2d px(t.position_mm.x / pixel_mm.width, t.position_mm.y / pixel_mm.height);
+    all.push_back({.group = group, .size = t.size_mm, .apex = t.apex, .position_px = px});
+  }
   return all;
 }
 

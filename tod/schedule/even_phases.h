@@ -19,9 +19,9 @@ struct PhasedTriangle {
   cv::Point2d position_px;  ///< of the centroid; a common displacement of all triangles has no effect
 };
 
-/// Triangles of a plate in one mounting, for a pixel of `pixel_mm` on the plate.
-[[nodiscard]] std::vector<PhasedTriangle> phased_triangles(const TargetPlate& plate, Mounting mounting, double pixel_mm,
-                                                           std::size_t group);
+/// Triangles of a plate in one mounting, for a pixel of this width and height on the plate.
+[[nodiscard]] std::vector<PhasedTriangle> phased_triangles(const TargetPlate& plate, Mounting mounting,
+                                                           cv::Size2d pixel_mm, std::size_t group);
 
 /// Shifts of every group, in pixels, in [0, 1)^2.
 struct EvenPhases {

@@ -17,10 +17,6 @@ double nearest_point(const std::vector<double>& points, double delta_t_k) {
   return *std::ranges::min_element(points, {}, distance);
 }
 
-cv::Point2d shift_of(const cv::Point2d& phase, double pixel_mm) {
-  return pixel_mm * cv::Point2d(phase.x - std::floor(phase.x), phase.y - std::floor(phase.y));
-}
-
 }  // namespace
 
 double ramp_relative_rate(const RampOptions& options) {
@@ -47,7 +43,7 @@ std::vector<TargetState> ramp_presentations(const RampOptions& options, const Ra
       const double share = static_cast<double>(below) / static_cast<double>(steps - 1);
       state.delta_t_k = options.from_k * std::pow(options.to_k / options.from_k, share);
       state.point_delta_t_k = nearest_point(options.stimuli.delta_t_k, state.delta_t_k);
-      state.shift_mm = shift_of(phases[k] + cv::Point2d(start.uniform(0), start.uniform(1)), options.stimuli.pixel_mm);
+      state.shift_mm = shift_of(phases[k] + cv::Point2d(start.uniform(0), start.uniform(1)), options.stimuli);
       state.wait = k == 0 ? ContrastWait::within_band : ContrastWait::none;
       out.push_back(state);
     }
@@ -65,7 +61,9 @@ std::optional<TargetState> RampSchedule::next() {
     ++repeated_here_;
     TargetState state = states_[position_ - 1];
     const cv::Point2d further = plastic_points(static_cast<int>(repeated_here_) + 1).back();
-    state.shift_mm = shift_of(state.shift_mm / options_.stimuli.pixel_mm + further, options_.stimuli.pixel_mm);
+    const cv::Size2d pixel_mm = pixel_of(options_.stimuli);
+    const cv::Point2d phase(state.shift_mm.x / pixel_mm.width, state.shift_mm.y / pixel_mm.height);
+    state.shift_mm = shift_of(phase + further, options_.stimuli);
     return state;
   }
   if (position_ >= states_.size()) return std::nullopt;

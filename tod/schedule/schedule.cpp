@@ -62,7 +62,7 @@ class Nesting {
       for (std::size_t m = 0; m < options_.mountings.size(); ++m) {
         if (!options_.shows(p, m)) continue;
         const auto more =
-            phased_triangles(*drawing, options_.mountings[m], options_.pixel_mm, outside(mounting_dimension) ? m : 0);
+            phased_triangles(*drawing, options_.mountings[m], pixel_of(options_), outside(mounting_dimension) ? m : 0);
         all.insert(all.end(), more.begin(), more.end());
       }
     }
@@ -85,7 +85,7 @@ class Nesting {
     std::vector<cv::Point2d> out;
     for (const cv::Point2d& shift : phases->second.shifts[group]) {
       const cv::Point2d p = shift + cv::Point2d(start.uniform(0), start.uniform(1));
-      out.push_back(options_.pixel_mm * cv::Point2d(p.x - std::floor(p.x), p.y - std::floor(p.y)));
+      out.push_back(shift_of(p, options_));
     }
     return out;
   }
@@ -131,6 +131,16 @@ class Nesting {
 }  // namespace
 
 void TrialSchedule::observe(std::span<const Trial> /*trials*/) {}
+
+cv::Size2d pixel_of(const ConstantStimuliOptions& options) {
+  return {options.pixel_mm, options.pixel_mm * options.pixel_aspect};
+}
+
+cv::Point2d shift_of(cv::Point2d phase_px, const ConstantStimuliOptions& options) {
+  const cv::Size2d pixel_mm = pixel_of(options);
+  return {pixel_mm.width * (phase_px.x - std::floor(phase_px.x)),
+          pixel_mm.height * (phase_px.y - std::floor(phase_px.y))};
+}
 
 std::vector<cv::Point2d> plastic_points(int count) {
   const double step_x = 1 / plastic_number;

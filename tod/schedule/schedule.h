@@ -39,12 +39,18 @@ struct ConstantStimuliOptions {
   std::vector<double> delta_t_k;
   int phases = 16;                              ///< sub-pixel shifts per plate, mounting and contrast
   double pixel_mm = 1;                          ///< one pixel on the plate; shifts are spread over one pixel in x and y
+  double pixel_aspect = 1;                      ///< height of a pixel over its width, which is pixel_mm
   double change_cost_s[4] = {60, 30, 20, 0.1};  ///< plate, mounting, contrast, shift
   /// Returns whether the plate is shown in the mounting, by their indices.
   [[nodiscard]] bool shows(std::size_t plate, std::size_t mounting) const {
     return mountings_per_plate.empty() || mounting < mountings_per_plate[plate];
   }
 };
+
+/// Width and height of a pixel on the plate.
+[[nodiscard]] cv::Size2d pixel_of(const ConstantStimuliOptions& options);
+/// Shift in mm for a phase in pixels, of which the whole pixels are left out.
+[[nodiscard]] cv::Point2d shift_of(cv::Point2d phase_px, const ConstantStimuliOptions& options);
 
 /// The first `count` points of the additive recurrence with the plastic number (Roberts 2018) in [0, 1)^2, from the
 /// origin.

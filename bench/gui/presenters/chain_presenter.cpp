@@ -38,6 +38,7 @@ Result<Setting> setting_of(const ChainSettings& options) {
   Setting s;
   TODBENCH_TRY(auto sensor, load_sensor(options.sensor));
   TODBENCH_TRY(auto observer, load_observer(options.observer));
+  if (auto square = require_square_pixels(sensor, "this page"); !square) return tl::unexpected(square.error());
   if (!(options.size_pitch > 0)) return fail(ErrorCode::invalid_input, "the size of the triangle must be above 0");
   s.sensor = sensor;
   s.observer = observer;
@@ -228,7 +229,8 @@ Result<std::vector<StagePicture>> chain_pictures(const ChainSettings& options) {
        onoff(plan, Effect::detector,
              QString("width %1 µm%2, pitch %3 µm")
                  .arg(s.sensor.detector_um)
-                 .arg(s.sensor.square_detector() ? QString() : QString(", height %1 µm").arg(s.sensor.detector_y_um))
+                 .arg(s.sensor.square_detector() ? QString()
+                                                 : QString(", height %1 µm").arg(s.sensor.detector_along(PitchAxis::y)))
                  .arg(s.sensor.pitch_um))});
   out.push_back({Stage::samples, samples, per_pitch, QString("%1 per pitch").arg(per_pitch)});
   out.push_back({Stage::noise, noisy, per_pitch,

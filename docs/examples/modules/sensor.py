@@ -7,11 +7,12 @@ from_bench, to_bench = types.SimpleNamespace(read=sys.stdin.buffer.read), types.
 sensor = json.loads(np.lib.format.read_array(from_bench).tobytes())["sensor"]  # every number of the sensor file
 width, height, n = sensor["width"], sensor["height"], sensor["scene_samples_per_pitch"]
 
-def weights_of(side_um):
-    side, at = n * side_um / sensor["pitch_um"], np.arange(n)  # of the sensitive area, in samples of the scene
+def weights_of(side_um, pitch_um):
+    side, at = n * side_um / pitch_um, np.arange(n)  # of the sensitive area, in samples of the scene
     return np.clip(np.minimum(at + 1, (n + side) / 2) - np.maximum(at, (n - side) / 2), 0, 1) / side
 
-along_x, along_y = weights_of(sensor["detector_um"]), weights_of(sensor["detector_y_um"] or sensor["detector_um"])
+along_x = weights_of(sensor["detector_um"], sensor["pitch_um"])
+along_y = weights_of(sensor["detector_y_um"] or sensor["detector_um"], sensor["pitch_y_um"] or sensor["pitch_um"])
 
 while True:
     frame, time_s = np.lib.format.read_array(from_bench)

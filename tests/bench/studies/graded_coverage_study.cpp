@@ -6,6 +6,8 @@
 // tables of docs/validation/coverage.md.
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
+#include <string>
 
 #include "tests/bench/studies/graded_runs.h"
 #include "tests/support/temporary_folder.h"
@@ -31,8 +33,10 @@ Studied other_camera(const std::string& name, void (*change)(SensorSpec&)) {
 }
 
 /// Another camera and its twin, at the distance that suits the shipped plates.
-Studied own_twin(const std::string& name, const std::vector<double>& delta_t_k, void (*change)(SensorSpec&)) {
-  const SensorSpec sensor = with(change);
+Studied own_twin(const std::string& name, const std::vector<double>& delta_t_k,
+                 const std::function<void(SensorSpec&)>& change) {
+  SensorSpec sensor;
+  change(sensor);
   return {
       {.name = name, .camera = sensor, .twin = sensor, .delta_t_k = delta_t_k, .distance_m = 2.6 / sensor.ifov_mrad()}};
 }
@@ -66,6 +70,19 @@ Studied cooled_f4() {
   });
 }
 
+/// Pixels that are higher or lower than wide, behind a lens that blurs.
+Studied unlike_pitches(double pitch_y_um) {
+  return own_twin("pitch 25 x " + std::to_string(std::lround(pitch_y_um)) + " um", {10, 1, 0.2}, [=](SensorSpec& s) {
+    s.pitch_um = 25;
+    s.detector_um = 22;
+    s.pitch_y_um = pitch_y_um;
+    s.detector_y_um = 0.85 * pitch_y_um;
+    s.focal_length_mm = 25;
+    s.aberration_sigma_pitch = 0.2;
+    s.row_noise_k = 0.01;
+  });
+}
+
 /// Judged by hvs-2 at a display: at 3.6 arcmin a sample the camera limits the acuity, at 1.8 arcmin the eye does.
 Studied seen_by_an_eye(const std::string& name, Studied camera, double pixel_pitch_mm, double zoom) {
   camera.design.name = name;
@@ -89,6 +106,8 @@ std::vector<Studied> designs() {
           {{.name = "microscan", .microscan = 2}},
           uncooled_17_um(),
           cooled_f4(),
+          unlike_pitches(20),
+          unlike_pitches(32),
           seen_by_an_eye("eye, SC2000 at 2.4 arcmin", {default_design()}, 0.21, 2),
           seen_by_an_eye("eye, uncooled 17 um at 1.8 arcmin", uncooled_17_um(), 0.315, 1),
           seen_by_an_eye("eye, cooled f/4 at 3.6 arcmin", cooled_f4(), 0.21, 3),

@@ -65,6 +65,7 @@ inline Plan plan_of(const GradedDesign& design, std::uint64_t seed) {
   plan.simulation.microscan = design.microscan;
   plan.schedule.answers = AnswersChoice::graded;
   plan.schedule.frames_per_presentation = design.frames;
+  plan.camera.pixel_aspect = design.camera.pitch_aspect();
   plan.fit.estimator = EstimatorChoice::twin_shape;
   if (!design.display) return plan;
   plan.observer = "hvs-2";
@@ -77,6 +78,7 @@ inline ExperimentInputs inputs_of(const Plan& plan, const SensorSpec& sensor) {
   PlanParts parts = LoadedPlan::load(plan).value().parts();
   inputs.plates = parts.plates;
   inputs.observer = parts.observer;
+  inputs.observer.sample_aspect = sensor.pitch_aspect();
   inputs.sensor = sensor;
   inputs.sensor.microscan = plan.simulation.microscan;
   inputs.effects = full_plan(inputs.sensor, {}, {});

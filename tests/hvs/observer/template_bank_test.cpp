@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "acquisition/base/rng.h"
@@ -55,15 +56,19 @@ TEST(TemplateBank, ManyPatchesHaveTheScoresOfEach) {
   }
 }
 
-TEST(TemplateBank, TemplatesAreTheIdealTriangleThroughBoxAndGaussian) {
-  const double size = 2.2;
-  const auto bank = TemplateBank::build({}, triangle_alternatives(), size, 1);
+class TemplateBankOfSamples : public ::testing::TestWithParam<double> {};
+
+/// Of displayed samples as high as wide, and of higher and flatter ones.
+TEST_P(TemplateBankOfSamples, HasTheIdealTriangleThroughBoxAndGaussian) {
+  const double size = 2.2, aspect = GetParam();
+  const auto bank = TemplateBank::build({.sample_aspect = aspect}, triangle_alternatives(), size, 1);
+  ASSERT_TRUE(bank);
   // Independent second method: the same filter by supersampled area coverage (64 x 64 points per sample) and direct
   // convolution.
   const int ss = 16;
   const double sigma = 0.6;
   const int half = bank->window_samples() / 2;
-  const int n = (2 * half + 8) * ss;
+  const int n = static_cast<int>(std::ceil((2 * half + 8) * std::max(1.0, aspect))) * ss;
   cv::Mat1d shape(n, n, 0.0);
   const Polygon t = triangle(size, Apex::right);
   const auto inside = [&](double x, double y) {
@@ -85,13 +90,18 @@ TEST(TemplateBank, TemplatesAreTheIdealTriangleThroughBoxAndGaussian) {
       shape(j, i) = hits / 64.0;
     }
   }
-  std::vector<double> kernel;
   const int reach = 4 * ss;
-  for (int k = -reach; k <= reach; ++k) {
+  // Box * Gauss sampled at k / ss.
+  const auto kernel_of = [&](double box) {
+    std::vector<double> values;
     const auto cdf = [&](double x) { return 0.5 * std::erfc(-x / sigma / std::numbers::sqrt2); };
-    // box * Gauss sampled at k / ss
-    kernel.push_back((cdf(static_cast<double>(k) / ss + 0.5) - cdf(static_cast<double>(k) / ss - 0.5)) / ss);
-  }
+    for (int k = -reach; k <= reach; ++k) {
+      const double at = static_cast<double>(k) / ss;
+      values.push_back((cdf(at + box / 2) - cdf(at - box / 2)) / ss);
+    }
+    return values;
+  };
+  const std::vector<double> kernel = kernel_of(1), kernel_y = kernel_of(aspect);
   cv::Mat1d rows(n, n, 0.0), blurred(n, n, 0.0);
   for (int j = reach; j < n - reach; ++j) {
     for (int i = reach; i < n - reach; ++i) {
@@ -104,8 +114,8 @@ TEST(TemplateBank, TemplatesAreTheIdealTriangleThroughBoxAndGaussian) {
   for (int j = 0; j < 2 * half; ++j) {
     for (int i = 0; i < 2 * half; ++i) {
       const double x = (i - half + 0.5 - dx / 8.0) * ss + origin - 0.5;
-      const double y = (j - half + 0.5 - dy / 8.0) * ss + origin - 0.5;
-      // x and y fall between cells: average the two neighbours in each direction.
+      const double y = (j - half + 0.5 - dy / 8.0) * aspect * ss + origin - 0.5;
+      // x and y may fall between cells: linear between the two neighbours in each direction.
       double value = 0;
       for (const int a : {0, 1}) {
         for (const int b : {0, 1}) {
@@ -114,9 +124,10 @@ TEST(TemplateBank, TemplatesAreTheIdealTriangleThroughBoxAndGaussian) {
           double sum = 0;
           for (int k = -reach; k <= reach; ++k) {
             const int r = row - k;
-            if (r >= 0 && r < n) sum += kernel[static_cast<std::size_t>(k + reach)] * rows(r, column);
+            if (r >= 0 && r < n) sum += kernel_y[static_cast<std::size_t>(k + reach)] * rows(r, column);
           }
-          value += sum / 4;
+          const double share_x = x - std::floor(x), share_y = y - std::floor(y);
+          value += sum * (a == 0 ? 1 - share_x : share_x) * (b == 0 ? 1 - share_y : share_y);
         }
       }
       expected.push_back(value);
@@ -140,6 +151,9 @@ TEST(TemplateBank, TemplatesAreTheIdealTriangleThroughBoxAndGaussian) {
   // 3: 3e-3 / 4.
   EXPECT_LT(largest, 1e-3);
 }
+
+INSTANTIATE_TEST_SUITE_P(All, TemplateBankOfSamples, ::testing::Values(1.0, 1.25, 0.75),
+                         [](const auto& one) { return "Aspect" + std::to_string(static_cast<int>(100 * one.param)); });
 
 TEST(TemplateBank, ProjectionEqualsTheSumOfProducts) {
   const auto bank = TemplateBank::build({}, triangle_alternatives(), 1.3, 1);

@@ -113,8 +113,8 @@ TEST(PlateMapping, StaysASimilarityWithoutEvidenceAndFollowsATiltWithIt) {
     aslant.push_back(mapped(tilted, plate.back()) + error);
   }
 
-  const FittedMapping plain = fit_mapping(plate, straight, 0.38);
-  const FittedMapping keystone = fit_mapping(plate, aslant, 0.38);
+  const FittedMapping plain = fit_mapping(plate, straight, {.expected_scale_px_per_mm = 0.38});
+  const FittedMapping keystone = fit_mapping(plate, aslant, {.expected_scale_px_per_mm = 0.38});
 
   EXPECT_EQ(plain.mapping, PlateMapping::similarity);
   EXPECT_EQ(keystone.mapping, PlateMapping::homography);
