@@ -37,13 +37,18 @@ Json rows_of(const cv::Mat1d& values) {
   return rows;
 }
 
+/// The triangle in pitches of each axis.
+Polygon shape_of(const SensorSpec& spec, const RenderArguments& a) {
+  return placed(on_detectors(triangle(a.size_pitch, *apex_from(a.apex)), spec), 1, {a.x_pitch, a.y_pitch});
+}
+
 /// Renders a window of the degraded triangle for an infinite plane at 1 K, with a bound on its numerical error.
 ImageChain::InfinitePlane degraded(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy,
                                    const RenderArguments& a) {
   const double step = 1.0 / spec.samples_per_pitch();
   const int half_window = a.window / 2;
   const double first = -step * half_window;
-  const Polygon shape = triangle(a.size_pitch, *apex_from(a.apex), {a.x_pitch, a.y_pitch});
+  const Polygon shape = shape_of(spec, a);
   auto image = ImageChain(spec, plan, accuracy).infinite_plane(shape, {first, first}, step, {a.window, a.window});
   // Error of the band's wavelengths: the change for twice as many nodes.
   Accuracy finer = accuracy;
@@ -65,7 +70,7 @@ cv::Mat1d as_exposed(SensorSpec spec, const SensorPlan& plan, const Accuracy& ac
   const int centre = before + a.window / 2;
   const double step = 1.0 / n;
   const double first = -step * centre;
-  const Polygon shape = triangle(a.size_pitch, *apex_from(a.apex), {a.x_pitch, a.y_pitch});
+  const Polygon shape = shape_of(spec, a);
   cv::Mat1f signal;
   ImageChain(spec, plan, accuracy)
       .infinite_plane(shape, {first, first}, step, camera.size())
@@ -102,11 +107,13 @@ int run_render(Console& console, const RenderArguments& a, std::uint64_t seed) {
     image.values.convertTo(single, CV_32F);
     if (auto written = write_tiff(a.tiff, single); !written) return report_error(console, written.error());
   }
-  const double pitch_mrad = spec->ifov_mrad() / spec->samples_per_pitch();
+  const cv::Point2d pitch_mrad = sample_mrad(*spec);
   if (console.json()) {
-    console.object({{"values", rows_of(image.values)},
-                    {"pitch_mrad", pitch_mrad},
-                    {"max_error_estimate", json_number(image.max_error_estimate)}});
+    Json object{{"values", rows_of(image.values)},
+                {"pitch_mrad", pitch_mrad.x},
+                {"max_error_estimate", json_number(image.max_error_estimate)}};
+    if (spec->pitch_aspect() != 1) object["pitch_y_mrad"] = pitch_mrad.y;
+    console.object(object);
     return 0;
   }
   for (int j = 0; j < image.values.rows; ++j) {
@@ -116,8 +123,10 @@ int run_render(Console& console, const RenderArguments& a, std::uint64_t seed) {
     }
     console.text(line);
   }
-  console.text(fmt::format("contrast in K; sample spacing {:.6f} mrad; numerical error at most about {:.1e} K",
-                           pitch_mrad, image.max_error_estimate));
+  const std::string along_y =
+      spec->pitch_aspect() != 1 ? fmt::format(" along x, {:.6f} mrad along y", pitch_mrad.y) : "";
+  console.text(fmt::format("contrast in K; sample spacing {:.6f} mrad{}; numerical error at most about {:.1e} K",
+                           pitch_mrad.x, along_y, image.max_error_estimate));
   return 0;
 }
 
@@ -136,7 +145,9 @@ int run_mtf(Console& console, const MtfArguments& a) {
     optical.push_back(o);
     rows.push_back({fixed(f, 4), fixed(f / spec->ifov_mrad(), 4), fixed(o, 6)});
     for (const PitchAxis axis : {PitchAxis::x, PitchAxis::y}) {
-      const double along_x = axis == PitchAxis::x ? f : 0, along_y = axis == PitchAxis::y ? f : 0;
+      // One frequency in space for both axes, in cycles per pitch along x.
+      const double along_x = axis == PitchAxis::x ? f : 0,
+                   along_y = axis == PitchAxis::y ? f * spec->pitch_aspect() : 0;
       const double d = detector_mtf(along_x, along_y, spec->detector_pitch_ratio(PitchAxis::x),
                                     spec->detector_pitch_ratio(PitchAxis::y));
       detector[static_cast<int>(axis)].push_back(d);

@@ -39,6 +39,40 @@ TEST(RangeCommand, FindsTheClosedFormsOfAcquireAndTtpOnGivenCurves) {
   EXPECT_NEAR(one_object(ttp)["models"]["ttp"]["r75_m"].get<double>(), 405.68794744, 1e-5);
 }
 
+/// Commands whose mathematics needs square pixels say so, and the others take the shape from the file.
+TEST(UnlikePitches, AreRefusedBySentenceWhereTheyAreNotSupported) {
+  const TemporaryFolder folder;
+  folder.write("tall.toml",
+               "name = \"tall\"\nwidth = 320\nheight = 190\npitch_um = 47.5\npitch_y_um = 60\ndetector_um = 42.5\n"
+               "focal_length_mm = 36.3\nf_number = 1\nwavelength_min_um = 7.5\nwavelength_max_um = 13\nnetd_k = "
+               "0.07\nkelvin_per_count = 0.01\n");
+  const std::vector<std::vector<std::string>> refused{
+      {"mrtd", "--sensor", "tall.toml"},
+      {"dynamic", "--sensor", "tall.toml", "--speeds-mrad-s", "10"},
+      {"identify", "small-craft", "--sensor", "tall.toml", "--ranges", "400,600"}};
+  for (const auto& arguments : refused) {
+    const Ended ended = todbench(arguments, {.folder = folder.path()});
+    EXPECT_EQ(ended.code, 2) << arguments.front() << ": " << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("needs square pixels")) << arguments.front();
+  }
+
+  const Ended range =
+      todbench({"range", "--sensor", "tall.toml", "--size-m", "2.3", "--delta-t-k", "2", "--models", "ttp"},
+               {.folder = folder.path()});
+  const Ended render =
+      todbench({"render", "--sensor", "tall.toml", "--size-pitch", "3", "--json"}, {.folder = folder.path()});
+  const Ended mtf =
+      todbench({"mtf", "--sensor", "tall.toml", "--frequency-per-pitch", "0.3", "--json"}, {.folder = folder.path()});
+
+  EXPECT_EQ(range.code, 3) << range.err;  // no model has a range
+  EXPECT_THAT(range.out, HasSubstr("needs square pixels"));
+  ASSERT_EQ(render.code, 0) << render.err;
+  EXPECT_NEAR(one_object(render)["pitch_y_mrad"].get<double>(), 60 / 36.3, 1e-9);
+  // The detector along y is as high as along x wide: at one frequency in space both axes are equal.
+  ASSERT_EQ(mtf.code, 0) << mtf.err;
+  EXPECT_NEAR(one_object(mtf)["system_y"][0].get<double>(), one_object(mtf)["system"][0].get<double>(), 1e-12);
+}
+
 TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   const TemporaryFolder folder;
   folder.write("plan.toml", small_plan(8));

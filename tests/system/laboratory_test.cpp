@@ -56,6 +56,11 @@ class EmulatedLaboratory {
 class Laboratories : public ::testing::Test {
  protected:
   void write_plan(const std::string& plan) { folder_.write("plan.toml", plan); }
+  /// Returns the absolute path.
+  std::string write(const std::string& name, const std::string& text) {
+    folder_.write(name, text);
+    return (folder_.path() / name).string();
+  }
   Ended measure(const std::string& out = "m") {
     return todbench({"measure", "./plan.toml", "--out", out, "--json"}, {.folder = folder_.path()});
   }
@@ -98,6 +103,48 @@ TEST_F(Laboratories, AMeasurementOverTheNetworkIsAWholeSession) {
   const Json provenance = Json::parse(content_of(session() / "provenance.json"));
   EXPECT_EQ(provenance["camera"]["serial"], "T0042");
   EXPECT_EQ(provenance["camera"]["transport"], "GigE Vision");
+}
+
+/// The SC2000 with another pitch along y.
+std::string tall_sensor() {
+  return "name = \"tall\"\nwidth = 320\nheight = 190\npitch_um = 47.5\npitch_y_um = 60\ndetector_um = 42.5\n"
+         "detector_y_um = 54\nfocal_length_mm = 36.3\nf_number = 1\nwavelength_min_um = 7.5\nwavelength_max_um = 13\n"
+         "netd_k = 0.07\nkelvin_per_count = 0.01\n";
+}
+
+TEST_F(Laboratories, PixelsThatAreNotSquareHaveTheShapeOfTheSensor) {
+  EmulatedLaboratory laboratory({"--sensor", write("tall.toml", tall_sensor())});
+  const std::string square = laboratory.plan(8, "[measures]\ngeometry = true\n");
+  std::string tall = square;
+  tall.replace(tall.find("[simulation]\n"), 13, "[simulation]\nsensor = \"./tall.toml\"\n");
+  tall.replace(tall.find("phases = 4"), 10, "phases = 8");
+  write_plan(tall);
+
+  const Ended measured = measure();
+  const Ended simulated =
+      todbench({"simulate", "./plan.toml", "--out", "s", "--json"}, {.folder = session().parent_path()});
+
+  ASSERT_TRUE(completed(measured));
+  ASSERT_TRUE(completed(simulated));
+  const auto ln_s75 = [](const Ended& ended) {
+    return std::log(one_object(ended)["points"][0]["s75_mrad"].get<double>());
+  };
+  // Eight presentations of one mounting: five runs of either kind scatter by 0.8 %.
+  EXPECT_NEAR(ln_s75(measured), ln_s75(simulated), 0.05);
+  const Json lines = Json::parse(content_of(session() / "measures.json"))["main"]["quantities"];
+  const auto measure_of = [&](const std::string& name) {
+    for (const Json& line : lines)
+      if (line["measure"] == name) return line["value"].get<double>();
+    return 0.0;
+  };
+  EXPECT_NEAR(measure_of("aspect_ratio"), 47.5 / 60, 0.002);
+  EXPECT_NEAR(measure_of("ifov_y"), 60 / 36.3, 0.005);
+
+  write_plan(square);
+  const Ended believed = measure("believed");
+  EXPECT_EQ(believed.code, 6) << believed.err;
+  EXPECT_THAT(believed.err,
+              AllOf(HasSubstr("is stretched in the picture"), HasSubstr("whether the pixels are square")));
 }
 
 /// How far a value lies from the closed form, in half-widths of its 95 % interval.

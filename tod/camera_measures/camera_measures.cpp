@@ -172,6 +172,7 @@ class Run {
                                         .set_delta_t_k = delta_t_k,
                                         .distance_m = options_.measurement.distance_m,
                                         .stated_ifov_mrad = options_.measurement.ifov_mrad,
+                                        .pixel_aspect = where_.pixel_aspect,
                                         .picture = picture.kelvin.size(),
                                         .geometry = *std::move(found)};
   }

@@ -82,6 +82,7 @@ struct GeometryMeasure {
   double set_delta_t_k = 0;
   double distance_m = 0;        ///< to the plate
   double stated_ifov_mrad = 0;  ///< of the measurement
+  double pixel_aspect = 1;      ///< of the measurement: height of a pixel over its width
   cv::Size picture{0, 0};
   PlateGeometry geometry;
   std::optional<double> distance_relative_u{};                          ///< standard uncertainty; empty: not stated

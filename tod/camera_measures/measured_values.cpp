@@ -31,14 +31,16 @@ Estimate continued(const PlateGeometry& geometry) {
 }  // namespace
 
 Estimate GeometryMeasure::field_of_view_deg(EdgeAxis axis) const {
-  const double half_px = 0.5 * (axis == EdgeAxis::x ? picture.width : picture.height);
+  // In pixels along x, as the distortion.
+  const double unit = axis == EdgeAxis::x ? 1 : pixel_aspect;
+  const double half_px = 0.5 * (axis == EdgeAxis::x ? picture.width : picture.height) * unit;
   const auto angle_deg = [&](double mrad_per_px, double distortion_percent) {
     // Place without distortion that the lens moves to the border: r (1 + k (r / R)^2) = half_px.
     double r = half_px;
     constexpr int rounds = 50;  // the distortion of a lens converges in ten
     for (int i = 0; i < rounds; ++i)
       r = half_px / (1 + 0.01 * distortion_percent * std::pow(r / geometry.corner_px, 2));
-    return 2 * std::atan(1e-3 * mrad_per_px * r) * 180 / std::numbers::pi;
+    return 2 * std::atan(1e-3 * mrad_per_px * (r / unit)) * 180 / std::numbers::pi;
   };
   const Estimate ifov = ifov_mrad(axis), k = continued(geometry);
   const double value = angle_deg(ifov.value, k.value);

@@ -34,11 +34,13 @@ double step_of(int parameter) {
   return parameter < 6 ? 1e-3 : 1e-6;
 }
 
-/// Units of the fit: the plate in units of its half-height, so that all parameters are of one size.
+/// Units of the fit: the plate in units of its half-height, so that all parameters are of one size. Lengths in the
+/// picture of the lens are in pixels along x.
 struct Lens {
   double unit_mm = 1;
-  cv::Point2d centre;    ///< of the picture
-  double corner_px = 1;  ///< from the centre
+  cv::Point2d centre;       ///< of the picture
+  double corner_px = 1;     ///< from the centre
+  double pixel_aspect = 1;  ///< height of a pixel over its width
 
   [[nodiscard]] cv::Point2d undistorted(const LensParameters& p, cv::Point2d mm) const {
     const double x = mm.x / unit_mm, y = mm.y / unit_mm, w = p(6) * x + p(7) * y + 1;
@@ -47,7 +49,8 @@ struct Lens {
   /// A place on the plate in the picture.
   [[nodiscard]] cv::Point2d pixel(const LensParameters& p, cv::Point2d mm) const {
     const cv::Point2d q = undistorted(p, mm);
-    return centre + q * (1 + p(8) * q.dot(q) / (corner_px * corner_px));
+    const cv::Point2d shown = q * (1 + p(8) * q.dot(q) / (corner_px * corner_px));
+    return centre + cv::Point2d(shown.x, shown.y / pixel_aspect);
   }
 };
 
@@ -89,7 +92,8 @@ std::vector<LocatedTriangle> locate_triangles(const cv::Mat1d& picture, const Ta
 LensParameters start_of(const Registration& where, const Lens& lens) {
   // The homography in the units of the fit, with its last element 1.
   const cv::Matx33d to_unit(lens.unit_mm, 0, 0, 0, lens.unit_mm, 0, 0, 0, 1);
-  const cv::Matx33d to_middle(1, 0, -lens.centre.x, 0, 1, -lens.centre.y, 0, 0, 1);
+  const double a = lens.pixel_aspect;
+  const cv::Matx33d to_middle(1, 0, -lens.centre.x, 0, a, -a * lens.centre.y, 0, 0, 1);
   const cv::Matx33d h = to_middle * where.plate_to_pixel * to_unit;
   LensParameters p;
   for (int i = 0; i < 8; ++i) p(i) = h(i / 3, i % 3) / h(2, 2);
@@ -210,9 +214,9 @@ PlateGeometry described(const std::vector<LocatedTriangle>& located, const Lens&
   // A few residuals that are small by chance do not make a place more certain than its noise.
   const DerivedQuantity derived(fit, t * std::max(1.0, std::sqrt(fit.chi2 / freedom)));
   const double w = plate.width_mm / 2, h = plate.height_mm / 2;
-  const auto mm_per_px = [&](const cv::Vec2d& direction) {
-    return derived([&, direction](const LensParameters& p) {
-      return cv::norm(undistorted_scale(lens, p, {0, 0}).inv() * direction);
+  const auto mm_per_px = [&](const cv::Vec2d& pixel) {
+    return derived([&, pixel](const LensParameters& p) {
+      return cv::norm(undistorted_scale(lens, p, {0, 0}).inv() * pixel);
     });
   };
   const auto keystone = [&](cv::Point2d side) {
@@ -221,7 +225,7 @@ PlateGeometry described(const std::vector<LocatedTriangle>& located, const Lens&
     });
   };
   PlateGeometry out;
-  out.mm_per_px_x = mm_per_px({1, 0}), out.mm_per_px_y = mm_per_px({0, 1});
+  out.mm_per_px_x = mm_per_px({1, 0}), out.mm_per_px_y = mm_per_px({0, lens.pixel_aspect});
   out.centre_x_mm = derived([&](const LensParameters& p) { return centre_mm(lens, p).x; });
   out.centre_y_mm = derived([&](const LensParameters& p) { return centre_mm(lens, p).y; });
   out.rotation_deg = derived([&](const LensParameters& p) {
@@ -234,7 +238,8 @@ PlateGeometry described(const std::vector<LocatedTriangle>& located, const Lens&
   double squares = 0;
   for (std::size_t i = 0; i < located.size(); ++i) {
     out.places.push_back({located[i].triangle->name, located[i].pixel, fit.left_px[i]});
-    out.farthest_px = std::max(out.farthest_px, cv::norm(located[i].pixel - lens.centre));
+    const cv::Point2d off = located[i].pixel - lens.centre;
+    out.farthest_px = std::max(out.farthest_px, cv::norm(cv::Point2d(off.x, off.y * lens.pixel_aspect)));
     squares += fit.left_px[i].dot(fit.left_px[i]);
   }
   out.residual_px = std::sqrt(squares / freedom);
@@ -265,7 +270,8 @@ Result<PlateGeometry> plate_geometry(const cv::Mat1d& picture, const TargetPlate
   Lens lens;
   lens.unit_mm = 0.5 * std::max(mounted_plate.width_mm, mounted_plate.height_mm);
   lens.centre = {(picture.cols - 1) / 2.0, (picture.rows - 1) / 2.0};
-  lens.corner_px = 0.5 * std::hypot(picture.cols, picture.rows);
+  lens.pixel_aspect = where.pixel_aspect;
+  lens.corner_px = 0.5 * std::hypot(picture.cols, picture.rows * lens.pixel_aspect);
   LensParameters p = start_of(where, lens);
   // The second time with outlines bent by the lens.
   for (int round = 0;; ++round) {

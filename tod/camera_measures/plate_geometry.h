@@ -32,8 +32,8 @@ struct PlateGeometry {
   Estimate keystone_y_percent;  ///< excess at its lower border over that at its upper
   Estimate distortion_percent;  ///< k at the corner of the picture; positive: pincushion
   double residual_px = 0;       ///< root mean square of a coordinate, over the degrees of freedom
-  double farthest_px = 0;       ///< largest distance of a triangle from the middle of the picture
-  double corner_px = 0;         ///< distance of the corner
+  double farthest_px = 0;       ///< largest distance of a triangle from the middle of the picture, in pixels along x
+  double corner_px = 0;         ///< distance of the corner, in pixels along x
   std::vector<GeometryPlace> places;
 };
 

@@ -29,9 +29,15 @@ Plan unusual_plan() {
   plan.unit = "unit 17";
   plan.notes = "\x01";
   plan.seed = 9223372036854775807u;
-  plan.camera = {
-      "gige:FLIR-48000123", 1.0 / 3,   120,        1.5, {{"IRFormat", "TemperatureLinear10mK"}, {"Odd Key.x", "1"}}, 60,
-      ContrastUnit::kelvin, "640x512", "Calibrate"};
+  plan.camera = {.id = "gige:FLIR-48000123",
+                 .ifov_mrad = 1.0 / 3,
+                 .nuc_interval_s = 120,
+                 .nuc_wait_s = 1.5,
+                 .settings = {{"IRFormat", "TemperatureLinear10mK"}, {"Odd Key.x", "1"}},
+                 .reconnect_s = 60,
+                 .contrast = ContrastUnit::kelvin,
+                 .frame_size = "640x512",
+                 .nuc_command = "Calibrate"};
   plan.target.kind = TargetKind::scpi;
   plan.target.black_body = "10.0.0.7:5025";
   plan.target.stage = "[::1]:5026";
