@@ -119,12 +119,24 @@ if [ ! -e cut-1/manifest.json ]; then
   fi
 fi
 # A stop request ends the first part in another way: the failure of the last frame or target is recorded.
-"$program" measure plan.toml --out stopped --quiet >/dev/null 2>&1 &
-process=$!
-until_rows stopped $((rows / 2))
+# The run is held in its middle; one that ended before this is started again.
+attempt=0
+while
+  rm -rf stopped
+  "$program" measure plan.toml --out stopped --quiet >/dev/null 2>&1 &
+  process=$!
+  until_rows stopped $((rows / 4))
+  kill -STOP $process 2>/dev/null
+  attempt=$((attempt + 1))
+  [ -e stopped/manifest.json ] && [ $attempt -lt 20 ]
+do
+  kill -CONT $process 2>/dev/null
+  wait $process
+done
 "$program" measure --resume stopped --out too-early --quiet >/dev/null 2>said
 [ $? = 2 ] && grep -q 'is under way in another program' said || fail "a run that is under way: $(cat said)"
 kill -TERM $process
+kill -CONT $process
 wait $process
 "$program" measure --resume stopped --out whole-stopped --quiet >/dev/null 2>said || fail "resumed after a stop request: $(cat said)"
 problems=$(check stopped whole-stopped)
