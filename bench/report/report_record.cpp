@@ -108,14 +108,17 @@ Section identification_section(const ReportData& data) {
 Section set_up_section(const ReportData& data) {
   const double field_mm = data.ifov_mrad * data.distance_m;
   Section section{"Set-up and geometry", {}};
-  section.blocks.emplace_back(
-      ValueTable{"",
-                 {{data.collimated ? "Focal length of the collimator" : "Distance, entrance pupil to plate",
-                   number_or_missing(data.distance_m, 4, "m", not_in_plan)},
-                  {"IFOV of a pixel", number_or_missing(data.ifov_mrad, 4, "mrad", not_in_plan)},
-                  {"One pixel on the plate", number_or_missing(field_mm, 4, "mm", "needs distance and IFOV")},
-                  {"Target", text_or_missing(data.target, "not recorded")},
-                  {"Observer", text_or_missing(data.observer, "not recorded")}}});
+  ValueTable values{"",
+                    {{data.collimated ? "Focal length of the collimator" : "Distance, entrance pupil to plate",
+                      number_or_missing(data.distance_m, 4, "m", not_in_plan)},
+                     {"IFOV of a pixel", number_or_missing(data.ifov_mrad, 4, "mrad", not_in_plan)},
+                     {"One pixel on the plate", number_or_missing(field_mm, 4, "mm", "needs distance and IFOV")}}};
+  if (data.simulated_sensor && data.simulated_sensor->pitch_aspect() != 1)
+    values.values.push_back(
+        {"Height of a pixel", plain(significant(data.simulated_sensor->pitch_aspect(), 4) + " times its width")});
+  values.values.push_back({"Target", text_or_missing(data.target, "not recorded")});
+  values.values.push_back({"Observer", text_or_missing(data.observer, "not recorded")});
+  section.blocks.emplace_back(std::move(values));
   if (!data.plates.empty()) section.blocks.emplace_back(plate_table(data));
   if (data.camera) section.blocks.push_back(set_up_table(data));
   if (auto contrasts = target_table(data)) section.blocks.emplace_back(*std::move(contrasts));
