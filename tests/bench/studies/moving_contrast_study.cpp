@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bias and coverage of presentations with contrasts of their own, as docs/validation/coverage.md states them.
 // TODBENCH_STUDY_RUNS: runs of each design (200 without it). TODBENCH_STUDY_FOLDER: where they are kept; what is there
-// is not made again.
+// is not made again. TODBENCH_STUDY_SHARE: "1/2", every second run, for two processes at once, without figures.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -19,12 +19,20 @@ TEST_P(MovingContrastStudy, HoldsTheThresholdOfTheCamera) {
   const char* asked = std::getenv("TODBENCH_STUDY_RUNS");
   const int runs = asked == nullptr ? 200 : std::atoi(asked);
 
+  constexpr std::uint64_t first_seed = 7000;
+  const testing::StudyShare share = testing::study_share();
   const testing::TemporaryFolder temporary;
   const char* kept = std::getenv("TODBENCH_STUDY_FOLDER");
-  testing::MovingRecord record((kept != nullptr ? std::filesystem::path(kept) : temporary.path()) /
-                               "moving_contrasts.csv");
+  testing::MovingRecord record(
+      (kept != nullptr ? std::filesystem::path(kept) : temporary.path()) / "moving_contrasts.csv", share);
+  if (share.step > 1) {
+    testing::Surfaces surfaces;
+    for (auto seed = share.first; seed <= static_cast<std::uint64_t>(runs); seed += share.step)
+      (void)record.run(GetParam(), first_seed + seed - 1, surfaces);
+    return;
+  }
 
-  const auto summary = testing::study_of(GetParam(), 7000, runs, record, [](double delta_t_k) {
+  const auto summary = testing::study_of(GetParam(), first_seed, runs, record, [](double delta_t_k) {
     return testing::truth_of(GetParam().camera, delta_t_k, 6);
   });
 

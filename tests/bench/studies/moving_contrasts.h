@@ -28,6 +28,7 @@
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/sensor_model.h"
+#include "tests/bench/studies/graded_runs.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench::testing {
@@ -212,23 +213,18 @@ struct MovingSummary {
   int covered = 0, runs = 0;
 };
 
-/// Runs of studies in a file, one contrast a row: design; seed; contrast; ln S75; half of its interval.
+/// Runs of studies in a file, one contrast a row: design; seed; contrast; ln S75; half of its interval. A share has a
+/// file of its own, and knows those of the others.
 class MovingRecord {
  public:
-  explicit MovingRecord(std::filesystem::path file) : file_(std::move(file)) {
-    std::ifstream in(file_);
-    for (std::string line; std::getline(in, line);) {
-      const std::size_t end = line.find(';');
-      std::istringstream numbers(line.substr(end + 1));
-      std::uint64_t seed = 0;
-      char mark = 0;
-      MovingResult row;
-      numbers >> seed >> mark >> row.delta_t_k >> mark >> row.ln_s75 >> mark >> row.half;
-      if (numbers) runs_[{line.substr(0, end), seed}].push_back(row);
+  explicit MovingRecord(const std::filesystem::path& file, const StudyShare& share = {}) : file_(file) {
+    if (share.step > 1) file_.replace_extension("." + std::to_string(share.first) + file.extension().string());
+    for (const auto& entry : std::filesystem::directory_iterator(file.parent_path())) {
+      if (entry.path().filename().string().starts_with(file.stem().string() + ".")) read(entry.path());
     }
   }
 
-  /// The run of a seed, made and kept if the file has none.
+  /// The run of a seed, made and kept if the files have none.
   const std::vector<MovingResult>& run(const MovingContrasts& design, std::uint64_t seed, Surfaces& surfaces) {
     auto& rows = runs_[{design.name, seed}];
     if (!rows.empty()) return rows;
@@ -241,6 +237,19 @@ class MovingRecord {
   }
 
  private:
+  void read(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) {
+      const std::size_t end = line.find(';');
+      std::istringstream numbers(line.substr(end + 1));
+      std::uint64_t seed = 0;
+      char mark = 0;
+      MovingResult row;
+      numbers >> seed >> mark >> row.delta_t_k >> mark >> row.ln_s75 >> mark >> row.half;
+      if (numbers) runs_[{line.substr(0, end), seed}].push_back(row);
+    }
+  }
+
   std::filesystem::path file_;
   std::map<std::pair<std::string, std::uint64_t>, std::vector<MovingResult>> runs_;
 };
