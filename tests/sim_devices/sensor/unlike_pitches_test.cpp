@@ -11,6 +11,7 @@
 #include "sim_devices/prediction/camera_trials.h"
 #include "sim_devices/prediction/direct_estimate.h"
 #include "sim_devices/sensor/effect_distortion.h"
+#include "sim_devices/sensor/image_chain.h"
 #include "sim_devices/sensor/module_sensor.h"
 #include "sim_devices/sensor/sensor_model.h"
 #include "tod/plate/test_pattern.h"
@@ -86,6 +87,28 @@ TEST(UnlikePitches, MotionIsInPitchesOfEachAxis) {
   spec.time_constant_ms = 6;
   spec.exposure_ms = 4;
   expect_every_second_row(spec, {.x_mrad_s = 120, .y_mrad_s = 150}, 2e-4);
+}
+
+/// A shape that reaches far beyond the window: its tails are integrated in closed form, round in space.
+TEST(UnlikePitches, TheTailsOfAHugeShapeAreRoundInSpace) {
+  SensorSpec square = square_lattice();
+  square.halo_share = 0;
+  const SensorSpec tall = every_second_row(square);
+  const double size_pitch = 400;
+  const Polygon shape =
+      triangle(size_pitch, Apex::up, {0.4, 0.3 - triangle_centroid_to_base * size_pitch});  // its base is in the window
+  const auto plane = [&](const SensorSpec& spec, double first_y, int rows) {
+    return ImageChain(spec, full_plan(spec, {}, {}), Accuracy::normal())
+        .infinite_plane(on_detectors(shape, spec), {-3, first_y}, 1, {7, rows});
+  };
+
+  const auto of_square = plane(square, -4, 8), of_tall = plane(tall, -2, 4);
+
+  EXPECT_LT(difference(cv::Mat1f(of_tall.values), cv::Mat1f(of_square.values)),
+            of_square.max_error_estimate + of_tall.max_error_estimate);
+  EXPECT_LT(of_tall.max_error_estimate, 1e-4);
+  EXPECT_GT(of_tall.values(0, 3), 0.9);  // the window has inside and outside
+  EXPECT_LT(of_tall.values(3, 3), 0.1);
 }
 
 TEST(UnlikePitches, DistortionIsRadialInTheImageOfTheLens) {
