@@ -12,6 +12,7 @@
 #include "sim_devices/sensor/effect_quantisation.h"
 #include "sim_devices/sensor/scene_image.h"
 #include "sim_devices/sensor/sensor_key.h"
+#include "sim_devices/sensor/sensor_model.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
@@ -55,7 +56,7 @@ cv::Mat1f scene_picture_k(const PlateScene& scene, const SensorSpec& spec) {
   const cv::Size size(spec.width * fine, spec.height * fine);
   PlateScene finer = scene;
   finer.centre_px *= fine;
-  const cv::Point2d fine_mrad = cv::Point2d(spec.ifov_mrad(), spec.ifov_mrad(PitchAxis::y)) / fine;
+  const cv::Point2d fine_mrad = sample_mrad(spec) / fine;
   std::vector<PaintedPolygon> painted;
   const auto paint = [&](Polygon outline_on_plate_mm) {
     for (auto& corner : outline_on_plate_mm) corner = scene_pixel(finer, corner, fine_mrad, size);

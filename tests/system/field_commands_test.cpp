@@ -42,10 +42,7 @@ TEST(RangeCommand, FindsTheClosedFormsOfAcquireAndTtpOnGivenCurves) {
 /// Commands whose mathematics needs square pixels say so, and the others take the shape from the file.
 TEST(UnlikePitches, AreRefusedBySentenceWhereTheyAreNotSupported) {
   const TemporaryFolder folder;
-  folder.write("tall.toml",
-               "name = \"tall\"\nwidth = 320\nheight = 190\npitch_um = 47.5\npitch_y_um = 60\ndetector_um = 42.5\n"
-               "focal_length_mm = 36.3\nf_number = 1\nwavelength_min_um = 7.5\nwavelength_max_um = 13\nnetd_k = "
-               "0.07\nkelvin_per_count = 0.01\n");
+  folder.write("tall.toml", tall_sensor(42.5));
   const std::vector<std::vector<std::string>> refused{
       {"mrtd", "--sensor", "tall.toml"},
       {"dynamic", "--sensor", "tall.toml", "--speeds-mrad-s", "10"},

@@ -26,6 +26,14 @@ std::string small_plan(int phases, const std::string& more) {
          "\n[simulation]\naccuracy = \"draft\"\n" + more;
 }
 
+std::string tall_sensor(double detector_y_um) {
+  return "name = \"tall\"\nwidth = 320\nheight = 190\npitch_um = 47.5\npitch_y_um = 60\ndetector_um = 42.5\n"
+         "detector_y_um = " +
+         std::to_string(detector_y_um) +
+         "\nfocal_length_mm = 36.3\nf_number = 1\nwavelength_min_um = 7.5\nwavelength_max_um = 13\n"
+         "netd_k = 0.07\nkelvin_per_count = 0.01\n";
+}
+
 std::string small_measurement(int phases, const std::string& more) {
   return small_plan(phases, "phases = " + std::to_string(std::min(phases, 16)) +
                                 "\n[camera]\nid = \"sim:sc2000\"\nifov_mrad = 1.3085399449\n" + more);

@@ -21,6 +21,8 @@ using Json = nlohmann::json;
 /// A plan of one plate at one contrast in draft accuracy, to be simulated within a second: without a `[fit]` in `more`
 /// with a Weibull function, because that of the twin costs as much again. `more` is added at its end.
 [[nodiscard]] std::string small_plan(int phases, const std::string& more = "");
+/// File of the SC2000 with a pitch of 60 um along y and this side of the detectors along y.
+[[nodiscard]] std::string tall_sensor(double detector_y_um);
 /// The same, measured with the simulated camera.
 [[nodiscard]] std::string small_measurement(int phases, const std::string& more = "");
 
@@ -36,7 +38,7 @@ void expect_refused(const Ended& ended, int code, const std::string& sentence);
 [[nodiscard]] ::testing::AssertionResult completed(const Ended& ended);
 /// The two files have the same bytes; tells the first line that differs.
 [[nodiscard]] ::testing::AssertionResult same_content(const std::filesystem::path& a, const std::filesystem::path& b);
-/// Decisions by the names of the effects, from a JSON list of effects.
+/// Returns the decision on each effect by the name of the effect, from a JSON list of effects.
 [[nodiscard]] std::map<std::string, std::string> decisions_of(const Json& effects);
 /// How often `of` stands in `text`; overlapping ones count.
 [[nodiscard]] int occurrences(const std::string& text, const std::string& of);
