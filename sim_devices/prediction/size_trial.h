@@ -30,7 +30,7 @@ enum class ShownOrientations {
   all,        ///< for comparisons draw by draw between conditions that need one and conditions that need all
 };
 
-/// `invalid_input` if the displayed samples of the observer have another shape than the pixels of the sensor.
+/// Error: `invalid_input` if the samples of the observer do not have the shape of the sensor's pixels.
 [[nodiscard]] Result<void> check_sample_shape(const SensorSpec& sensor, const TemplateObserverSpec& observer);
 
 /// Conditions that all sizes and contrasts share.

@@ -21,8 +21,8 @@ struct PlateScene {
   SceneMotion motion{};              ///< of the whole plate; smears if the sensor has a time constant
 };
 
-/// Position in pixels (column, row; pixel centres are integers) of a place on the plate. `sample_mrad`: of a pixel
-/// along x and y.
+/// Position in pixels (column, row; pixel centres are integers) of a place on the plate.
+/// `sample_mrad`: angle of a pixel along x and y.
 [[nodiscard]] cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, cv::Point2d sample_mrad,
                                       cv::Size sensor);
 /// The same for square pixels.

@@ -69,7 +69,7 @@ class ImageChain {
   mutable std::map<int, std::shared_ptr<const FilterTable>> filters_;  ///< by period
 };
 
-/// A shape whose lengths are in pitches along x, in pitches of each axis: divides y by the ratio of the pitches.
+/// Converts a shape from pitches along x to pitches of each axis: divides y by pitch_aspect().
 [[nodiscard]] Polygon on_detectors(Polygon shape_pitch, const SensorSpec& spec);
 
 }  // namespace todbench

@@ -47,7 +47,7 @@ struct Registration {
 
   /// Pixel position of a place on the mounted plate.
   [[nodiscard]] cv::Point2d pixel(cv::Point2d plate_mm) const;
-  /// Pixels per millimetre along x at a place: square root of the area magnification times the aspect of a pixel.
+  /// Pixels per millimetre along x at a place: sqrt(m a), m the area magnification and a the aspect of a pixel.
   [[nodiscard]] double scale_at(cv::Point2d plate_mm) const;
   /// The same registration for a plate moved by `shift_mm` in its own plane.
   [[nodiscard]] Registration shifted(cv::Point2d shift_mm) const;

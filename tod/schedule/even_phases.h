@@ -19,7 +19,7 @@ struct PhasedTriangle {
   cv::Point2d position_px;  ///< of the centroid; a common displacement of all triangles has no effect
 };
 
-/// Triangles of a plate in one mounting, for a pixel of this width and height on the plate.
+/// Triangles of a plate in one mounting. `pixel_mm`: width and height of a pixel on the plate.
 [[nodiscard]] std::vector<PhasedTriangle> phased_triangles(const TargetPlate& plate, Mounting mounting,
                                                            cv::Size2d pixel_mm, std::size_t group);
 

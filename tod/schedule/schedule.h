@@ -49,7 +49,7 @@ struct ConstantStimuliOptions {
 
 /// Width and height of a pixel on the plate.
 [[nodiscard]] cv::Size2d pixel_of(const ConstantStimuliOptions& options);
-/// Shift in mm for a phase in pixels, of which the whole pixels are left out.
+/// Converts a phase in pixels to a shift in mm. Whole pixels are removed first.
 [[nodiscard]] cv::Point2d shift_of(cv::Point2d phase_px, const ConstantStimuliOptions& options);
 
 /// The first `count` points of the additive recurrence with the plastic number (Roberts 2018) in [0, 1)^2, from the
