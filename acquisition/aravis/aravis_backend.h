@@ -14,6 +14,7 @@
 
 namespace todbench {
 
+/// Transport of the cameras of a back end.
 enum class AravisTransport {
   gige_vision,  ///< scheme "gige"
   usb3_vision,  ///< scheme "u3v"
@@ -26,6 +27,7 @@ enum class PacketResend {
   always,     ///< a frame with a hole is delayed by up to 0.1 s
 };
 
+/// Options of aravis_backend().
 struct AravisOptions {
   AravisTransport transport = AravisTransport::gige_vision;
   /// PFNC name. Empty: the unpacked monochrome format with the most significant bits; Mono14 is preferred to

@@ -19,10 +19,11 @@
 
 namespace todbench {
 
+/// An open GigE Vision or USB3 Vision camera. One thread at a time, except stop().
 class AravisSource : public FrameSource {
  public:
-  /// `device_address`: IPv4 address of a GigE camera, empty for USB. `info` holds the identity; the rest is read from
-  /// the camera. Precondition: no other reference to the camera's device exists.
+  /// Opens a source on a camera. `device_address`: IPv4 address of a GigE camera, empty for USB. `info` holds the
+  /// identity; the rest is read from the camera. Precondition: no other reference to the camera's device exists.
   [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(GObjectPtr<ArvCamera> camera, AravisOptions options,
                                                                    SourceInfo info, std::string device_address);
   ~AravisSource() override;

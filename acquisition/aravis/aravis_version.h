@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Aravis that runs, which may differ from the one of the build, and what is known of its faults.
+// Version of the loaded Aravis library, which may differ from that of the build, and its known faults.
 #pragma once
 
 #include <string>

@@ -23,6 +23,7 @@ struct LinearMode {
   double kelvin_per_count = 0;
 };
 
+/// Feature names and settings of a family of cameras.
 struct CameraFamily {
   std::string name;                    ///< "FLIR Ax5"; "unlisted" for a camera that is not in the table
   std::vector<FeatureChoice> choices;  ///< set in this order when a camera is opened
@@ -49,8 +50,8 @@ struct CameraFamily {
 /// Returns the enumerations that control the time of corrections according to their names.
 [[nodiscard]] std::vector<std::string> correction_modes(const std::vector<std::string>& enumerations);
 
-/// Returns the entry of such an enumeration that restricts corrections to commands: "Manual" before "Off" before any
-/// entry that does not name automatic, external or periodic corrections; empty if there is none.
+/// Returns the entry of an enumeration of correction_modes() that restricts corrections to commands: "Manual" before
+/// "Off" before any entry that does not name automatic, external or periodic corrections; empty if there is none.
 [[nodiscard]] std::string commanded_entry(const std::vector<std::string>& entries);
 
 }  // namespace todbench

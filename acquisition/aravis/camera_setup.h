@@ -52,8 +52,8 @@ struct StreamFormat {
 /// omitted. Error: `disconnected` at the first read without an answer.
 [[nodiscard]] Result<std::map<std::string, std::string>> read_settings(ArvDevice* device);
 
-/// Commands that correct the non-uniformity, best first: those of the family; for a family without them, those that
-/// their names suggest.
+/// Commands that correct the non-uniformity, best first: those of the family, or, for a family without any, those that
+/// correction_commands() selects by name.
 [[nodiscard]] std::vector<std::string> nonuniformity_commands(ArvDevice* device, const CameraFamily& family);
 
 /// Disables automatic corrections, so that only commands correct. Returns a warning if the camera cannot disable them.

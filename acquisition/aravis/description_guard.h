@@ -18,6 +18,7 @@
 
 namespace todbench {
 
+/// Limits and progress of reading a description.
 struct DescriptionReading {
   std::chrono::milliseconds patience{30'000};  ///< for the whole transfer
   std::stop_token stop = {};
@@ -30,8 +31,8 @@ struct DescriptionReading {
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const std::string& ipv4,
                                                                        const DescriptionReading& reading);
 
-/// The same for a USB3 Vision camera, through the manifest in its registers; empty if no camera has these names or
-/// another program holds it.
+/// Same for a USB3 Vision camera, through the manifest in its registers; empty if no camera has these names or another
+/// program holds it.
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const UsbNames& names,
                                                                        const DescriptionReading& reading);
 
@@ -39,8 +40,8 @@ struct DescriptionReading {
 /// Call before any feature is requested. `expected`: text that the description must equal. Errors: `not_found`.
 [[nodiscard]] Result<void> guard_device(ArvDevice* device, const std::optional<std::string>& expected);
 
-/// Returns the reason why this feature must not be evaluated, as a sentence about it; empty if it may be. Reads the
-/// lengths of registers that only the camera knows, and guards a device that is not guarded yet.
+/// Returns the reason why this feature must not be evaluated, as a sentence about it; empty if it may be. Reads lengths
+/// of registers that are stored only in the camera, and guards a device that is not guarded yet.
 [[nodiscard]] std::optional<std::string> feature_fault(ArvDevice* device, const std::string& feature);
 
 }  // namespace todbench

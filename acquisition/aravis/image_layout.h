@@ -23,7 +23,7 @@ struct StatedImage {
 enum class ChunkLayout {
   none,           ///< no chunks: every byte belongs to the image
   big_endian,     ///< chunks, each followed by its id and length: GigE Vision
-  little_endian,  ///< the same: USB3 Vision
+  little_endian,  ///< chunks, each followed by its id and length: USB3 Vision
 };
 
 /// Bytes from the start of a row to the start of the next; 0: rows of a packed format without gaps, which share a byte

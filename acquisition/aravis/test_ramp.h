@@ -6,6 +6,7 @@
 
 namespace todbench {
 
+/// Verdict on a test ramp.
 enum class RampVerdict {
   in_order,  ///< counts rise along the rows
   swapped,   ///< counts rise along the rows if the bytes of every pixel are exchanged

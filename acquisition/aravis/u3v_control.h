@@ -19,6 +19,7 @@ struct UsbNames {
   std::string vendor, product, serial;
 };
 
+/// Limits and progress of reading a description.
 struct U3vReading {
   std::uint64_t most_bytes = 0;                ///< of the description as stored in the camera
   std::chrono::milliseconds patience{30'000};  ///< for the whole read
@@ -26,6 +27,7 @@ struct U3vReading {
   std::function<void(std::uint64_t done, std::uint64_t bytes)> on_bytes = {};  ///< on the reading thread
 };
 
+/// A description as stored in the camera.
 struct U3vDescriptionContent {
   std::string content;
   bool zipped = false;

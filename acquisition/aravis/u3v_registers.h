@@ -17,6 +17,7 @@ inline constexpr std::uint64_t most_payload_bytes = 64U << 20U;
 struct U3vIdentity {
   std::string vendor, model, version, serial;
 };
+/// Reads the identity.
 [[nodiscard]] U3vIdentity u3v_identity(ArvDevice* device);
 
 /// Checks that the stream registers of a USB3 Vision camera (USB3 Vision 1.0, table 5-8) are safe for Aravis, which

@@ -14,6 +14,7 @@
 
 namespace todbench {
 
+/// Owner of an Aravis camera.
 class WatchedCamera {
  public:
   /// `on_lost` is called on a thread of Aravis. It must not wait for the thread that destroys this object.

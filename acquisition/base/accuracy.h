@@ -27,8 +27,8 @@ struct Accuracy {
   [[nodiscard]] static Accuracy draft();
   [[nodiscard]] static Accuracy normal();
   [[nodiscard]] static Accuracy reference();
-  /// By name: "draft", "normal", "reference", or "auto" (for_tolerance() of the default tolerance); otherwise
-  /// `invalid_input`.
+  /// Returns a level by name: "draft", "normal", "reference", or "auto" (for_tolerance() of the default tolerance);
+  /// otherwise `invalid_input`.
   [[nodiscard]] static Result<Accuracy> named(std::string_view level);
 };
 

@@ -8,11 +8,11 @@
 
 namespace todbench {
 
-/// Runs `work` on a thread of its own. Only the end of the program waits for it, after main and before static objects
-/// are destroyed; so the work must end by itself within seconds. Any thread.
+/// Runs `work` on a thread of its own. The program waits for it only at its end, after main and before static objects
+/// are destroyed, so the work must end by itself within seconds. Any thread.
 void start_in_background(std::function<void()> work);
 
-/// The same for work that can be moved but not copied; it is destroyed on its thread after it has run.
+/// Same for work that can be moved but not copied; it is destroyed on its thread after it has run.
 template <typename Work>
 void finish_in_background(Work work) {
   start_in_background([held = std::make_shared<Work>(std::move(work))]() mutable {

@@ -48,7 +48,9 @@ class StopEvent {
   std::stop_callback<Signal> callback_;
 };
 
+/// Result of wait_on().
 enum class Waited { ready, timeout, stopped };
+/// Event that wait_on() waits for.
 enum class WaitFor { reading, writing };
 
 /// Waits until the descriptor can be read or written (or has an error or end of file to report), at most until

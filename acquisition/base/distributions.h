@@ -7,6 +7,7 @@
 
 namespace todbench::distribution {
 
+/// The normal distribution.
 struct Normal {
   explicit Normal(double m = 0, double s = 1) : mean(m), sd(s) {}
   double mean, sd;
@@ -18,6 +19,7 @@ struct StudentsT {
   double degrees_of_freedom;
 };
 
+/// The chi-squared distribution.
 struct ChiSquared {
   explicit ChiSquared(double freedom) : degrees_of_freedom(freedom) {}
   double degrees_of_freedom;
@@ -35,13 +37,14 @@ struct Complement {
   Law law;
   double value;  ///< of the variable in cdf(), a probability in quantile()
 };
+/// Makes a Complement.
 template <class Law>
 [[nodiscard]] Complement<Law> complement(const Law& law, double value) {
   return {law, value};
 }
 
-/// For the four distributions above. They throw std::domain_error as Boost.Math does: for degrees of freedom that are
-/// not positive or a probability outside 0..1.
+/// Distribution function, quantile and density of the four distributions above. They throw std::domain_error as
+/// Boost.Math does: for degrees of freedom that are not positive or a probability outside 0..1.
 template <class Law>
 [[nodiscard]] double cdf(const Law& law, double x);
 template <class Law>

@@ -6,7 +6,7 @@
 
 namespace todbench {
 
-/// A side without a value is unbounded.
+/// An interval. A side without a value is unbounded.
 struct Interval {
   std::optional<double> low, high;
 };

@@ -10,6 +10,7 @@ namespace todbench {
 /// Half a two-sided 95 % interval of a normal distribution, in standard deviations.
 inline constexpr double normal_z95 = 1.959963984540054;
 
+/// Density of the standard normal distribution.
 [[nodiscard]] inline double normal_density(double x) {
   return std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi);
 }

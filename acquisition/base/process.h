@@ -13,13 +13,15 @@
 
 namespace todbench {
 
-/// Descriptors that become the child's; -1: the child has ours (`at_three`: none). The caller closes its own.
+/// Descriptors that the child receives; -1: the child inherits that of this program (`at_three`: none). The caller
+/// closes its own.
 struct ChildStreams {
   int input = -1, output = -1, error = -1;
   int at_three = -1;  ///< becomes descriptor 3
 };
 
-/// Process group of a child: `ours` gets the Ctrl-C of our terminal; `own` can be ended with all its children.
+/// Process group of a child: `ours` receives Ctrl-C from the terminal of this program; `own` can be ended with all its
+/// children.
 enum class ChildGroup { ours, own };
 
 /// Starts a program by name or path, with all signals unblocked and SIGPIPE not ignored. Errors: `not_found` with the
@@ -31,19 +33,21 @@ enum class ChildGroup { ours, own };
 /// child).
 [[nodiscard]] Result<int> wait_for_program(pid_t process);
 
+/// Result of run_program().
 struct ProgramRun {
   int exit_code = 0;   ///< 128 + signal number if a signal ended it
   std::string output;  ///< at most 1 MiB; empty if it was shown
 };
 
+/// Destination of a child's output.
 enum class ProgramOutput {
   kept,             ///< standard output and standard error
   kept_but_errors,  ///< standard output; standard error is discarded
-  shown,            ///< on our own output: the program may ask a question
+  shown,            ///< on the output of this program: the child may ask a question
 };
 
-/// Runs a program with our standard input and waits for it. A stop request ends it with SIGTERM. Errors as
-/// start_program().
+/// Runs a program with the standard input of this program and waits for it. A stop request ends it with SIGTERM. Errors
+/// as start_program().
 [[nodiscard]] Result<ProgramRun> run_program(std::vector<std::string> words, ProgramOutput output,
                                              const std::stop_token& stop = {});
 
@@ -54,7 +58,7 @@ enum class ProgramOutput {
 struct Pipe {
   Descriptor read, write;
 };
-/// Errors: `internal`.
+/// Creates a pipe. Errors: `internal`.
 [[nodiscard]] Result<Pipe> make_pipe();
 
 /// /dev/null, to discard output or to give an empty input.

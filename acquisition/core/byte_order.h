@@ -7,9 +7,10 @@
 
 namespace todbench {
 
+/// Verdict on the byte order.
 enum class ByteOrderVerdict {
   as_stated,  ///< neighbouring pixels differ less than with their bytes swapped
-  swapped,    ///< the opposite
+  swapped,    ///< neighbouring pixels differ less with their bytes swapped
   undecided,  ///< flat, noise over the whole range, or only one byte varies
 };
 
@@ -25,14 +26,16 @@ struct ByteOrderEvidence {
   ByteOrderVerdict verdict = ByteOrderVerdict::undecided;
 };
 
+/// Options of byte_order_evidence().
 struct ByteOrderOptions {
   /// A |log_ratio| below this is undecided. Temporal or spatial noise of 16-bit counts with standard deviation sigma
   /// has V = 2 sigma / sqrt(pi), so the default allows for noise up to sigma = 7000 counts.
   double least_log_ratio = 1;
 };
 
-/// Examines up to 64 rows, evenly spread. A picture whose low byte is zero everywhere (8 bits shifted up) or whose high
-/// byte is zero everywhere (8 bits) is undecided, because both orders are equally smooth.
+/// Tests the byte order of a picture in up to 64 rows, evenly spread. A picture whose low byte is zero everywhere (8
+/// bits shifted up) or whose high byte is zero everywhere (8 bits) is undecided, because both orders are equally
+/// smooth.
 [[nodiscard]] ByteOrderEvidence byte_order_evidence(const cv::Mat1w& counts, const ByteOrderOptions& options);
 
 }  // namespace todbench

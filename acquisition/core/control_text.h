@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers as the text of a camera's control.
+// Conversion between numbers and the text values of camera features.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -18,8 +18,8 @@ namespace todbench {
 [[nodiscard]] std::optional<cv::Size> frame_size_of(std::string_view text);
 [[nodiscard]] std::string frame_size_text(cv::Size size);
 
-/// Features of a source that its camera does not have: the frame size that it is expected to send (frame_size_text()),
-/// and the name of its command that corrects the non-uniformity.
+/// Features that a source offers in addition to those of its camera: the frame size that the camera is expected to send
+/// (frame_size_text()), and the name of the camera's command for a non-uniformity correction.
 inline constexpr const char* frame_size_feature = "FrameSize";
 inline constexpr const char* nuc_command_feature = "NonuniformityCommand";
 

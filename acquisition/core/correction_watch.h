@@ -22,6 +22,7 @@ enum class CorrectionSign {
 };
 [[nodiscard]] std::string_view to_string(CorrectionSign sign);
 
+/// Limits of CorrectionWatch.
 struct CorrectionWatchOptions {
   /// Number of equal successive frames, the first included, that counts as a shutter.
   int frozen_frames = 3;
@@ -47,7 +48,7 @@ class CorrectionWatch {
   /// Returns the sign of a correction in this frame, if any. The frame must be complete and show the same scene as the
   /// one before it.
   [[nodiscard]] std::optional<CorrectionSign> see(const Frame& frame);
-  /// The same for a frame that is bit-identical to the one before it.
+  /// Same for a frame that is bit-identical to the one before it.
   [[nodiscard]] std::optional<CorrectionSign> see_frozen();
   /// Reports a change of the scene: the next frame is not compared.
   void scene_changed();

@@ -32,7 +32,7 @@ enum class Numbering : std::uint8_t {
   counted,    ///< from the numbers of the camera or its driver, which fit the elapsed time
   restarted,  ///< the numbers restarted or jumped against all clocks; the loss is estimated from time
   timed,      ///< the numbers continue, the time does not; the loss is estimated from time
-  unread,     ///< as counted; frames before this one found every buffer full, because the program did not take any
+  unread,     ///< as counted; frames before this one were lost because the program had left every buffer full
 };
 
 [[nodiscard]] std::string_view to_string(Numbering numbering);

@@ -25,7 +25,7 @@ struct FrameStamp {
   std::int64_t device_time_ns = 0;      ///< on the clock of the camera or driver; 0: none
   std::int64_t host_time_ns = 0;        ///< CLOCK_MONOTONIC at arrival
   bool may_pause = false;               ///< the camera corrects itself: it may be silent without losing exposures
-  bool after_unread = false;            ///< since the last frame, others found every buffer of the program full
+  bool after_unread = false;  ///< since the last frame, others were lost because every buffer of the program was full
 };
 
 /// Frame::sequence and its origin.

@@ -41,9 +41,10 @@ struct NumberingFaults {
   bool operator==(const NumberingFaults&) const = default;
 };
 
-/// One sentence about them; empty if there are none.
+/// One sentence about the faults; empty if there are none.
 [[nodiscard]] std::string describe(const NumberingFaults& faults);
 
+/// Options of IntegrityGate.
 struct IntegrityOptions {
   int width = 0, height = 0;          ///< expected geometry; 0: not checked
   double max_saturated_share = 0.01;  ///< of all pixels
@@ -67,7 +68,7 @@ class IntegrityGate {
   [[nodiscard]] const std::map<Rejection, std::uint64_t>& rejected_by_reason() const { return rejected_; }
   /// Exposures that never arrived: the sum of the gaps in the sequence, including NumberingFaults::unread.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
-  /// Disagreements of the camera's numbers with the elapsed time, and the part of lost() that is estimated from time.
+  /// Inconsistencies of the camera's numbers with the elapsed time, and the part of lost() that is estimated from time.
   [[nodiscard]] const NumberingFaults& numbering() const { return numbering_; }
 
  private:

@@ -22,7 +22,7 @@ inline constexpr std::uint64_t most_evaluations = 10'000;
 inline constexpr std::int64_t longest_register_bytes = 64 * 1024;
 inline constexpr std::size_t longest_formula = 16 * 1024;
 
-/// A value; any thread.
+/// A parsed description with its faults. A value; any thread.
 class Description {
  public:
   explicit Description(std::string_view xml);
@@ -32,8 +32,8 @@ class Description {
   /// Reasons why this feature must not be evaluated: it depends on a node that does not exist (and would count as 0),
   /// or on a division that traps the processor. Empty for a feature that does not exist.
   [[nodiscard]] std::vector<DescriptionFault> faults_of(const std::string& feature) const;
-  /// Nodes whose values, known only to the camera, are lengths of registers that this feature depends on; each after
-  /// the ones it depends on. Check that they are 1 ... 64 KiB before evaluating the feature.
+  /// Nodes whose values, known only to the camera, are lengths of registers that this feature depends on; each node
+  /// after the nodes it depends on. Check that they are 1 ... 64 KiB before evaluating the feature.
   [[nodiscard]] std::vector<std::string> lengths_of(const std::string& feature) const;
 
  private:

@@ -21,6 +21,7 @@ enum class DescriptionFaultKind {
   dangling,         ///< a reference to a node that does not exist
 };
 
+/// A fault and its place.
 struct DescriptionFault {
   DescriptionFaultKind kind = DescriptionFaultKind::not_xml;
   std::string node;      ///< printable name; empty: the description as a whole

@@ -20,6 +20,7 @@ namespace todbench {
 /// Maximum number of elements and text pieces of a description. The largest published one has 29 000 elements.
 inline constexpr std::size_t most_description_pieces = 400'000;
 
+/// Kinds of nodes.
 enum class NodeKind {
   other,        ///< Category, Port, Command, Converter and all elements without a rule of their own
   reg,          ///< Register, IntReg, MaskedIntReg, FloatReg, StringReg, StructReg
@@ -30,6 +31,7 @@ enum class NodeKind {
   int_swiss_knife,
 };
 
+/// Kinds of references between nodes.
 enum class ReferenceKind {
   value,      ///< pValue, pValueIndexed, pValueDefault: the value and, unless stated otherwise, its bounds
   part,       ///< pAddress, pIndex, pOffset, pVariable, pCommandValue: a part of the value
@@ -38,16 +40,19 @@ enum class ReferenceKind {
   condition,  ///< pIsImplemented, pIsAvailable, pIsLocked
 };
 
+/// A reference to another node.
 struct NodeReference {
   ReferenceKind kind = ReferenceKind::value;
   std::string target;  ///< name of a node, as in the text
   std::string name;    ///< of a pVariable: its name in formulas
 };
 
+/// A text with its name.
 struct NamedText {
   std::string name, text;
 };
 
+/// A node of a description.
 struct DescriptionNode {
   std::string name;     ///< empty: without name
   std::string element;  ///< "IntReg"
@@ -63,6 +68,7 @@ struct DescriptionNode {
   bool is_signed = false;              ///< <Sign>Signed
 };
 
+/// All nodes of a description.
 struct DescriptionNodes {
   std::vector<DescriptionNode> nodes;
   std::unordered_map<std::string, std::size_t> by_name;  ///< nodes that references can address

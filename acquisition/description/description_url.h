@@ -14,6 +14,7 @@ namespace todbench {
 /// reserves the stated size before it has read a byte.
 inline constexpr std::uint64_t most_description_bytes = 16U << 20U;
 
+/// Location of a description.
 struct DescriptionUrl {
   enum class Place {
     camera,  ///< in the camera's memory, at `address`

@@ -21,11 +21,13 @@ struct IntegerRange {
   bool operator==(const IntegerRange&) const = default;
 };
 
+/// Meaning of the operators in a formula.
 enum class FormulaMode {
   whole,  ///< IntSwissKnife: / and % are integer operations
   real,   ///< all others: only % is
 };
 
+/// Range of a formula.
 struct FormulaRange {
   IntegerRange value;
   bool may_trap = false;

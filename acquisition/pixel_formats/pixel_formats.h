@@ -25,8 +25,8 @@ enum class PixelFormat {
   yuyv,           ///< two bytes: the luma of the pixel, then a dropped byte
   mono10p,        ///< PFNC: 10 bits after 10 bits, the lowest bit first
   mono12p,        ///< PFNC: 12 bits after 12 bits, the lowest bit first
-  mono10_packed,  ///< GigE Vision: two pixels in three bytes, the middle one has their low bits
-  mono12_packed,  ///< the same with 12 bits
+  mono10_packed,  ///< GigE Vision: two pixels in three bytes, the middle byte contains the low bits of both
+  mono12_packed,  ///< GigE Vision: likewise with 12 bits
 };
 
 /// Names and codes of a format: the name of the GenICam Pixel Format Naming Convention (PFNC 2.4), the 32-bit code of
@@ -37,7 +37,7 @@ struct PixelFormatFacts {
   std::uint32_t pfnc;
   const char* fourcc;    ///< null: none
   int significant_bits;  ///< used bits of a pixel
-  int bits_per_pixel;    ///< bits that a pixel takes
+  int bits_per_pixel;    ///< bits that a pixel occupies
 };
 
 /// The formats that the back ends read and the emulated cameras send.
@@ -61,7 +61,7 @@ inline constexpr PixelFormatFacts pixel_format_table[] = {
   return pixel_format_table[0];  // not reached: every format has a line
 }
 
-/// Bytes of so many pixels one after another; the last byte of a packed format may be used in part.
+/// Bytes of `pixels` pixels one after another; the last byte of a packed format may be used in part.
 [[nodiscard]] constexpr std::size_t bytes_of_pixels(PixelFormat format, std::size_t pixels) {
   return (pixels * static_cast<std::size_t>(facts_of(format).bits_per_pixel) + 7) / 8;
 }
@@ -111,9 +111,9 @@ struct PixelLayout {
 /// integrity gate. Excess bytes are ignored. Errors: `invalid_input` as picture_bytes(), or too few bytes.
 [[nodiscard]] Result<cv::Mat1w> decode_pixels(std::span<const std::uint8_t> bytes, const PixelLayout& layout);
 
-/// The inverse, for devices that send pictures; padding and dropped bytes are zero (128, no colour, for yuyv). Returns
-/// exactly picture_bytes(). Errors: `invalid_input` as picture_bytes(), a picture of another size, or a pixel that
-/// exceeds significant_bits().
+/// The inverse of decode_pixels(), for devices that send pictures; padding and dropped bytes are zero (128, no colour,
+/// for yuyv). Returns exactly picture_bytes(). Errors: `invalid_input` as picture_bytes(), a picture of another size,
+/// or a pixel that exceeds significant_bits().
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_pixels(const cv::Mat1w& counts, const PixelLayout& layout);
 
 /// Rows of a frame with a separate meaning: picture for display, temperatures, telemetry.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a file is, by its first bytes. Names are not asked: cameras and programs use one suffix for several formats.
+// Kind of a file, by its first bytes. File names are not used, because cameras and programs use one suffix for several
+// formats.
 #pragma once
 
 #include <filesystem>
@@ -16,6 +17,7 @@ enum class FileKind {
   unknown,  ///< no known first bytes: raw counts, or damage
 };
 
+/// Content of a file.
 struct FileContent {
   FileKind kind = FileKind::unknown;
   std::string name{};   ///< of a foreign format, with its article: "a PNG picture"

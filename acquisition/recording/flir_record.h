@@ -24,7 +24,7 @@ class FlirBytes {
   explicit FlirBytes(std::string memory);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// As many of `length` bytes from `offset` as there are. A file that became shorter gives fewer.
+  /// Reads `length` bytes from `offset`, or fewer at the end of the bytes. A file that became shorter gives fewer.
   [[nodiscard]] std::string read(std::uint64_t offset, std::size_t length) const;
 
  private:
@@ -55,7 +55,7 @@ struct FlirObjectParameters {
   double relative_humidity = 0;  ///< 0 ... 1
 };
 
-/// The camera of a record and what it was set to.
+/// The camera of a record, with its settings.
 struct FlirCamera {
   FlirPlanck planck;
   FlirObjectParameters object;
@@ -76,7 +76,7 @@ struct FlirSeqFrame {
   bool big_endian = false;  ///< of raw pixels
   int width = 0, height = 0;
   std::int64_t device_time_ns = 0;           ///< the camera's clock, since 1970; 0: not stated
-  std::shared_ptr<const FlirCamera> camera;  ///< shared by frames with the same; null: not stated
+  std::shared_ptr<const FlirCamera> camera;  ///< shared by frames of one camera and settings; null: not stated
 };
 
 /// A record and where it ends.
@@ -85,7 +85,7 @@ struct FlirRecord {
   std::uint64_t end = 0;
 };
 
-/// Whether FFF or AFF, the first bytes of a record, begin the bytes.
+/// Whether the bytes begin with FFF or AFF, the first bytes of a record.
 [[nodiscard]] bool is_flir_record(std::string_view start);
 
 /// Reads the record at `begin` without its pixels. Errors: `invalid_input` (no record, truncated, blocks outside the

@@ -15,7 +15,7 @@ namespace todbench {
 /// Whether the first bytes of a file are those of a FLIR record or of a JPEG picture.
 [[nodiscard]] bool is_flir_file(std::string_view start);
 
-/// Finds every record. A record without constants of the camera has those of the one before. Errors: `io`,
+/// Finds every record. A record without camera constants has those of the previous record. Errors: `io`,
 /// `invalid_input` (not a FLIR file, a record that points outside the file, no frame, bytes that are no record).
 [[nodiscard]] Result<std::vector<FlirSeqFrame>> read_flir_seq(const std::filesystem::path& path);
 

@@ -12,6 +12,7 @@
 
 namespace todbench {
 
+/// A picture from a file.
 struct PictureFile {
   cv::Mat1d picture;
   /// Smallest and largest value of the file's integer type; empty for floating point.

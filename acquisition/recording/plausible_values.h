@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// What is known of the values of a file.
+/// Known properties of the values of a file.
 struct KnownValues {
   enum class Sign {
     assumed_unsigned,  ///< raw file, not stated
@@ -31,7 +31,7 @@ struct KnownValues {
 /// Adds warnings to the recording: temperatures outside 150 to 2000 K, values whose sign looks wrong. Every frame read
 /// later is tested for counts above the stated bits. Errors: `invalid_input` without the path (temperatures below 0 K,
 /// counts above the stated bits, a raw file that looks signed without a statement). A first frame that cannot be read
-/// is left to the reader.
+/// is not an error here: reading it fails later.
 [[nodiscard]] Result<void> check_values(Recording& recording, const KnownValues& known);
 
 }  // namespace todbench

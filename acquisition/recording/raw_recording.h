@@ -8,8 +8,9 @@
 
 namespace todbench {
 
+/// Byte order of the counts.
 enum class RawByteOrder { little, big };
-/// Signed values are raised by 32768.
+/// Whether the counts have a sign; signed values are raised by 32768.
 enum class RawSign { without, with };
 
 /// Format of a raw file, which has no header.

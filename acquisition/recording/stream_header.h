@@ -9,8 +9,9 @@
 
 namespace todbench {
 
+/// Writes a header.
 [[nodiscard]] std::string stream_header_text(const StreamHeader& header);
-/// Error: `invalid_input` with the key. Numbers read back exactly as written.
+/// Parses a header. Error: `invalid_input` with the key. Numbers read back exactly as written.
 [[nodiscard]] Result<StreamHeader> parse_stream_header(std::string_view text);
 
 }  // namespace todbench

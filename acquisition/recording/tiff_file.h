@@ -16,7 +16,7 @@
 
 namespace todbench {
 
-/// Not movable, because libtiff keeps the address of the message. One thread at a time.
+/// An open TIFF file. Not movable, because libtiff keeps the address of the message. One thread at a time.
 class TiffFile {
  public:
   /// `mode`: a reading mode of TIFFOpen(). Pipes and devices are not opened.
@@ -41,7 +41,7 @@ class TiffFile {
   std::uint64_t size_bytes_ = 0;
 };
 
-/// The tags of the current page; 0 or libtiff's defaults if absent.
+/// Tags of a page; 0 or libtiff's defaults if absent.
 struct TiffPage {
   std::uint32_t width = 0, height = 0;
   std::uint16_t bits = 1, samples = 1, kind = SAMPLEFORMAT_UINT;
@@ -51,6 +51,7 @@ struct TiffPage {
   [[nodiscard]] bool has_size() const { return width >= 1 && height >= 1 && width <= 65535 && height <= 65535; }
   [[nodiscard]] bool white_is_zero() const { return photometric == PHOTOMETRIC_MINISWHITE; }
 };
+/// Reads the tags of the current page.
 [[nodiscard]] TiffPage page_of(const TiffFile& file);
 
 /// Refuses everything but grey levels: colour tables, an invalid tag Orientation. Error: `invalid_input`.

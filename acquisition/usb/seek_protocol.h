@@ -19,6 +19,7 @@ namespace todbench {
 inline constexpr std::uint16_t seek_vendor_id = 0x289D;
 inline constexpr std::uint8_t seek_bulk_in_endpoint = 0x81;
 
+/// Models of the family.
 enum class SeekModel {
   compact,      ///< 289d:0010, picture 207 x 154
   compact_pro,  ///< 289d:0011, picture 320 x 240
@@ -37,6 +38,7 @@ struct SeekGeometry {
   }
   [[nodiscard]] std::size_t frame_bytes() const { return 2 * frame_words(); }
 };
+/// Returns the layout of a model.
 [[nodiscard]] const SeekGeometry& geometry(SeekModel model);
 [[nodiscard]] std::optional<SeekModel> seek_model(std::uint16_t vendor_id, std::uint16_t product_id);
 /// "Compact", "CompactPRO".
@@ -79,6 +81,7 @@ enum class SeekFrameKind : std::uint16_t {
   calibration = 4,  ///< the first after initialisation: dead pixels are zero
 };
 
+/// A frame as received.
 struct SeekFrame {
   std::uint16_t kind = 0;     ///< a SeekFrameKind, or another number
   std::uint16_t counter = 0;  ///< exposures, wraps at 2^16
@@ -93,8 +96,8 @@ struct SeekFrame {
 
 /// Pixels without a signal, and the neighbours that replace each. A pixel is dead if it is zero in the calibration
 /// frame or below half of the median of the pixels that are not zero. It gets the mean, rounded down, of those of its
-/// four neighbours that live or were filled before it. Larger defects are filled from the rim inwards, each ring from
-/// the ring outside it, so that the result does not depend on the order within a ring.
+/// four neighbours that are not dead or were filled before it. Larger defects are filled from the rim inwards, each
+/// ring from the ring outside it, so that the result does not depend on the order within a ring.
 class SeekDeadPixels {
  public:
   SeekDeadPixels() = default;  ///< none

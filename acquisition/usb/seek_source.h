@@ -14,6 +14,7 @@
 
 namespace todbench {
 
+/// An open Seek camera. One thread at a time, except stop().
 class SeekSource final : public FrameSource {
  public:
   /// Takes over the opened camera. Errors: `not_found`.

@@ -19,6 +19,7 @@ namespace todbench {
 
 /// Shared by every object created from it, because libusb requires that it is destroyed last.
 using UsbContext = std::shared_ptr<libusb_context>;
+/// Creates a context.
 [[nodiscard]] Result<UsbContext> usb_context();
 
 struct UsbDeviceDeleter {
@@ -35,6 +36,7 @@ struct SeekOnBus {
   SeekModel model = SeekModel::compact;
   std::string address;  ///< "/dev/bus/usb/001/004"
 };
+/// Lists the Seek cameras on the bus.
 [[nodiscard]] Result<std::vector<SeekOnBus>> seek_cameras(libusb_context* context);
 
 /// An opened camera with interface 0 claimed. Owns it and releases it on destruction. One thread at a time.

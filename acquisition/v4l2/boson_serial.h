@@ -39,7 +39,7 @@ struct BosonReply {
 /// escape, a wrong CRC, another channel, too short).
 [[nodiscard]] Result<BosonReply> boson_reply(std::string_view frame);
 
-/// Names of the modes, as the features GainMode and FFCMode have them; empty for an unknown number.
+/// Names of the modes, as used by the features GainMode and FFCMode; empty for an unknown number.
 [[nodiscard]] std::string_view boson_gain_mode(std::uint32_t number);
 [[nodiscard]] std::string_view boson_correction_mode(std::uint32_t number);
 

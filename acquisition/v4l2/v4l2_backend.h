@@ -9,6 +9,7 @@
 
 namespace todbench {
 
+/// Options of v4l2_backend().
 struct V4l2Options {
   /// PFNC name of the counts: "Mono16", "Mono14", "Mono8" ...; empty: the format with the most significant bits.
   std::string pixel_format;

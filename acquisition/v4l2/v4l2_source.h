@@ -21,6 +21,7 @@
 
 namespace todbench {
 
+/// An open V4L2 camera. One thread at a time, except stop().
 class V4l2Source final : public FrameSource {
  public:
   /// Sets the format and reads the result back. Errors: `not_found`.
@@ -63,7 +64,7 @@ class V4l2Source final : public FrameSource {
   void refresh();
   /// Opens the serial port of a Boson, if it has one.
   void open_serial_port();
-  /// Reads what a Boson states on its serial port into settings and warnings.
+  /// Reads the settings of a Boson from its serial port, for settings and warnings.
   void refresh_serial_port();
   /// Writes GainMode or FFCMode. Error: `not_found` with the accepted words.
   [[nodiscard]] Result<void> set_boson_mode(const std::string& feature, const std::string& value);

@@ -13,6 +13,7 @@
 
 namespace todbench {
 
+/// A control of a device.
 struct VideoControl {
   std::string name;  ///< the driver's, letters and digits only: "White Balance, Automatic" is "WhiteBalanceAutomatic"
   std::uint32_t id = 0, type = 0;

@@ -38,7 +38,7 @@ struct VideoBuffer {
 /// thread-safe: the source serialises.
 class VideoDevice {
  public:
-  /// `not_found`: absent, access denied, not a capture node.
+  /// Opens a node. Error: `not_found` (absent, access denied, not a capture node).
   [[nodiscard]] static Result<VideoDevice> open(const std::string& node);
   ~VideoDevice();
   VideoDevice(VideoDevice&&) noexcept = default;
@@ -54,7 +54,7 @@ class VideoDevice {
   [[nodiscard]] std::vector<VideoMode> modes(const std::optional<cv::Size>& also = {}) const;
   /// Sets the mode and fills in the driver's row length. Error: `not_found` (busy, or another mode was set).
   [[nodiscard]] Result<VideoLayout> set_format(VideoLayout layout);
-  /// Error if the present format is no longer that of the layout.
+  /// Fails if the present format differs from that of the layout.
   [[nodiscard]] Result<void> check_format(const VideoLayout& layout) const;
   /// Frames per second; 0 if the driver does not report them.
   [[nodiscard]] double frame_rate_hz() const;
@@ -95,7 +95,7 @@ class VideoDevice {
   [[nodiscard]] std::vector<VideoMode> listed_sizes(std::uint32_t fourcc) const;
   /// Sizes found by trying.
   [[nodiscard]] std::vector<VideoMode> tried_sizes(std::uint32_t fourcc) const;
-  /// The size that the driver would use for `wanted`; empty if it cannot be asked or would use another format.
+  /// The size that the driver would use for `wanted`; empty if the query fails or the driver would use another format.
   [[nodiscard]] std::optional<VideoMode> tried(VideoMode wanted) const;
 
   Descriptor fd_;

@@ -70,7 +70,7 @@ struct WantedLayout {
 /// A decoded frame.
 struct VideoPicture {
   cv::Mat1w counts;
-  bool begins_in_the_middle = false;  ///< of a frame with temperature rows: its two halves are displaced
+  bool begins_in_the_middle = false;  ///< the two halves of a frame with temperature rows are displaced
   std::optional<LeptonTelemetry> telemetry;
 };
 

@@ -43,6 +43,7 @@ struct VideoListing {
   std::vector<VideoNode> nodes;
   std::vector<std::string> unreadable;  ///< one sentence each
 };
+/// Lists the nodes with the identity of their devices.
 [[nodiscard]] Result<VideoListing> list_video_nodes();
 
 /// Arrival or removal of a video device.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Detection of compact patterns by the eye: d'^2 at contrast 1 is the integral of |H F|^2, with the spectrum F of the
-// pattern in square degrees. Over so small an area the sum has no limit, unlike that of a Gabor pattern.
+// pattern in square degrees. Over such a small area summation is not limited, unlike for a Gabor pattern.
 #pragma once
 
 #include "hvs/eye/contrast_sensitivity.h"

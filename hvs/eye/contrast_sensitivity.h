@@ -14,14 +14,14 @@ struct EyeParameters {
   double inhibition_per_degree = 7.36;  ///< u0: end of lateral inhibition, cycles per degree
   double critical_cycles = 3.44;        ///< n_c: detection sums over an area of pi (n_c / u)^2
   double area_exponent = 0.284;         ///< gamma: growth of the effective area beyond the critical one
-  double uncertainty_channels = 500;    ///< M: channels among which the person does not know the relevant ones
+  double uncertainty_channels = 500;    ///< M: channels among which the relevant ones are unknown to the person
   double contrast_noise = 0.03;         ///< kappa: noise in proportion to the response to the target
   double age_years = 30;
   double field_deg2 = 30;  ///< adapting field, for the pupil
   bool operator==(const EyeParameters&) const = default;
 };
 
-/// Error: `invalid_input` with the parameter that is out of its range.
+/// Checks the parameters. Error: `invalid_input` with the parameter that is out of its range.
 [[nodiscard]] Result<void> validate(const EyeParameters& eye);
 
 /// d' that a detector of `channels` equally sensitive channels needs for 84 % correct answers in two-alternative
@@ -39,8 +39,8 @@ class EyeFilter {
   /// H^2 at a frequency in cycles per degree, for detection of a known pattern: d'^2 per square of the contrast and
   /// square degree. 0 at frequency 0 and from the diffraction limit on.
   [[nodiscard]] double detection_power(double frequency_per_degree) const;
-  /// H^2 of identification: the detection power times (d'(M) / d'(1))^2 with M channels of uncertainty. Detection was
-  /// fitted with the uncertainty in it; an identifier that searches explicitly has less of it.
+  /// H^2 of identification: the detection power times (d'(M) / d'(1))^2 with M channels of uncertainty. The fit of
+  /// detection includes the uncertainty; an observer that searches explicitly has less uncertainty.
   [[nodiscard]] double identification_power(double frequency_per_degree) const {
     return identification_gain_ * detection_power(frequency_per_degree);
   }

@@ -11,7 +11,7 @@ namespace todbench {
 /// Effective light on the retina in troland, with the Stiles-Crawford effect (as in Barten's model).
 [[nodiscard]] double retinal_illuminance_td(double luminance_cd_m2, double pupil_mm);
 
-/// Frequency in cycles per degree above which a perfect eye with this pupil passes nothing, at 555 nm.
+/// Diffraction limit of an eye with this pupil at 555 nm, in cycles per degree: above it the modulation transfer is 0.
 [[nodiscard]] double diffraction_limit_per_degree(double pupil_mm);
 
 /// Mean radial modulation transfer of the best-corrected eye (Watson 2013, equations 3 to 5): 1 at frequency 0, 0 from

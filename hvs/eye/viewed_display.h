@@ -58,7 +58,7 @@ struct ViewedDisplay {
 /// Luminance contrast of a target of `delta_t_k` kelvin, without sign. With a fixed gain it is the mean of a hot and a
 /// cold target. `invalid_input` if the display cannot show it.
 [[nodiscard]] Result<double> luminance_contrast(const ViewedDisplay& display, double delta_t_k);
-/// The same for any contrast: one that cannot be shown is shown with the largest that can.
+/// Same for any contrast: a contrast that cannot be shown is replaced by the largest that can.
 [[nodiscard]] double shown_contrast(const ViewedDisplay& display, double delta_t_k);
 /// Transfer of the display at (u, w) cycles per displayed sample: hold or interpolation, and spot. Real and even.
 [[nodiscard]] double display_transfer(const ViewedDisplay& display, double u, double w);

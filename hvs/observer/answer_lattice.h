@@ -37,28 +37,28 @@ struct AnswerLogProbabilities {
 /// patches of a size and all nodes; the score of template t is <T_t, g> + s <T_t, z>. The component of z along the
 /// difference of the two best templates is integrated in closed form (conditioning, Owen 2013, 8.7). The largest score
 /// of an alternative is a convex function of that component, approximated as linear between 19 places half a standard
-/// deviation apart; the range in which an alternative is best has a normal probability. Each z is used with both
-/// signs. Half a draw is added, weighted with the probability that the alternative's best template wins, so that no
-/// probability is 0. Between the nodes ln p is interpolated by monotone cubics (Steffen 1990), along s, then along
-/// sigma; the probabilities are then normalised to sum to 1.
+/// deviation apart; the probability of each range in which an alternative is best follows from the normal distribution.
+/// Each z is used with both signs. Half a draw is added, weighted with the probability that the alternative's best
+/// template wins, so that no probability is 0. Between the nodes ln p is interpolated by monotone cubics (Steffen
+/// 1990), along s, then along sigma; the probabilities are then normalised to sum to 1.
 ///
-/// With an eye the two coordinates are the standard deviations of both noises of the observer instead: the noise of the
-/// eye in a score (EyeNoise::sd()) and white noise per sample. Scores of both noises together have one covariance at
-/// each ratio of the two, and the same computation.
+/// With an eye the two coordinates are the standard deviations of the observer's two noises: noise of the eye in a
+/// score (EyeNoise::sd()) and white noise per sample. The covariance of the scores depends only on the ratio of the
+/// two, up to a common factor, so that nodes of one ratio share their draws. The computation is otherwise the same.
 ///
 /// Nodes are computed on first use. One thread at a time.
 class AnswerLattice {
  public:
   struct Options {
-    int draws = 384;  ///< noise vectors across the direction, an even number
+    int draws = 384;  ///< number of noise vectors, even: one half drawn, the other half with the opposite sign
     std::uint64_t seed = 1;
   };
   static constexpr double least_sigma = 0.15, most_sigma = 3;    ///< displayed samples
   static constexpr double least_noise = 0.005, most_noise = 10;  ///< sd per sample, relative to the contrast
 
-  /// `spec` gives search and window. Error: `invalid_input` with the number of the patch, counted from 1 (not square,
-  /// smaller than the observer's window, not finite, contrast of 0, negative noise, size that the observer cannot
-  /// judge).
+  /// Creates a lattice; search and window are those of `spec`. Error: `invalid_input` with the number of the patch,
+  /// counted from 1 (not square, smaller than the observer's window, not finite, contrast of 0, negative noise, size
+  /// that the observer cannot judge).
   [[nodiscard]] static Result<AnswerLattice> create(const TemplateObserverSpec& spec, const Alternatives& alternatives,
                                                     std::vector<AnsweredPatch> patches, const Options& options);
   AnswerLattice(AnswerLattice&&) noexcept;
@@ -69,8 +69,8 @@ class AnswerLattice {
   [[nodiscard]] int alternatives() const;
   [[nodiscard]] const AnsweredPatch& patch(std::size_t index) const;
 
-  /// ln p of each alternative of a patch. Outside the domain: the value at its edge. `first`: sigma of the blur in
-  /// samples, or with an eye the noise of the eye in a score.
+  /// Returns ln p of each alternative of a patch. Outside the domain: the value at its edge. `first`: sigma of the blur
+  /// in samples, or with an eye the noise of the eye in a score.
   [[nodiscard]] AnswerLogProbabilities log_probabilities(std::size_t patch, double first, double noise);
   [[nodiscard]] bool has_eye() const;
   /// Noise of the eye in a score of this patch, for an eye of `gain` times the sensitivity. Precondition: has_eye().

@@ -12,7 +12,7 @@
 
 namespace todbench {
 
-/// Working memory, lent for a call.
+/// Working memory of a call, provided by the caller.
 struct AnswerRoom {
   std::span<float> rows;       ///< ScoreNoise::size() elements
   std::span<float> along;      ///< ScoreNoise::size() elements
@@ -31,7 +31,7 @@ struct AnswerRoom {
 /// Otherwise the noise is drawn in the directions across the difference of the two best alternatives' templates. Along
 /// it, where the decision varies most, it is drawn in eight strata of equal probability, one value in each (conditional
 /// and stratified sampling, Owen 2013, 8.7 and 8.4). `draws` is rounded up to a multiple of eight, at least 32.
-/// Allocates no memory. The same bits on every instruction set.
+/// Allocates no memory. Results are the same bits on every instruction set.
 [[nodiscard]] AnswerProbabilities answer_probabilities(const ScoreNoise& noise, std::span<const float> scores,
                                                        const ScoreNoiseLevels& levels, const RandomStream& stream,
                                                        int draws, const AnswerRoom& room);

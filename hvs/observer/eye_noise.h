@@ -12,7 +12,7 @@
 
 namespace todbench {
 
-/// Templates of an observer with an eye, as the continuous patterns that the eye has of them.
+/// Templates of an observer with an eye, as continuous patterns.
 struct EyeTemplates {
   Alternatives shapes{};      ///< of the target's size, in displayed samples
   int steps = 8;              ///< search places per sample
@@ -42,7 +42,7 @@ class EyeNoise {
   [[nodiscard]] double energy() const { return energy_; }
   /// Standard deviation of the noise in a score of the bank, in units of the contrast, for a target of `contrast_k`.
   [[nodiscard]] double sd(double contrast_k) const;
-  /// The same for an eye of `gain` times the sensitivity and another noise in proportion to the contrast.
+  /// Standard deviation for an eye of `gain` times the sensitivity, with another noise in proportion to the contrast.
   [[nodiscard]] double sd(double contrast_k, double gain, double contrast_noise) const;
   /// Number of independent normal numbers in one draw.
   [[nodiscard]] std::size_t rank() const { return columns_.size(); }

@@ -19,14 +19,14 @@ namespace todbench {
 /// One alternative: its edges from every side, in displayed samples, near the origin. Levels in any unit.
 using AlternativeAspects = std::vector<std::vector<StepEdge>>;
 
-/// A camera that the observer knows: transfer function in cycles per displayed sample, and its cut-off.
+/// A camera whose blur the templates include: transfer function in cycles per displayed sample, and its cut-off.
 struct KnownCamera {
   TransferFunction transfer;
   double band_per_sample = 3;
 };
 
-/// Returns a picture without its background: the mean, or for an eye that of the outermost samples, because the eye
-/// sees no uniform field but part of a large target's mean.
+/// Returns a picture minus its background. The background is the mean of the picture or, for an eye, of its outermost
+/// samples: an eye does not respond to a uniform field, but it responds to part of a large target's mean.
 [[nodiscard]] cv::Mat1f without_background(const TemplateObserverSpec& spec, cv::Mat1f picture);
 
 /// Side of the search window, in samples, even.
@@ -34,26 +34,26 @@ struct KnownCamera {
                                                 std::span<const AlternativeAspects> alternatives,
                                                 int samples_per_pitch);
 
-/// The template observer generalised from triangles. A template is again the ideal picture behind display and blur of
-/// the eye, without its mean and of unit norm, at every place of the search; the score of an alternative is the largest
+/// The template observer generalised from triangles. A template is the ideal picture behind display and blur of the
+/// eye, without its mean and of unit norm, at every place of the search; the score of an alternative is the largest
 /// over its sides and places.
 ///
-/// Blur affects the four orientations of one triangle alike, but makes one of several different shapes look like
-/// another. So an observer may know its alternatives behind a camera: the camera then replaces display and eye in the
-/// templates, and without noise the shown alternative has the largest score (Cauchy-Schwarz inequality).
+/// Blur affects the four orientations of a triangle equally, but it can make one shape similar to another. The
+/// templates can therefore include the blur of a known camera, which then replaces display and eye. Without noise the
+/// shown alternative then has the largest score (Cauchy-Schwarz inequality).
 ///
 /// The templates of one picture at all places, 289 in hvs-1, are sums of fewer orthonormal ones: 30 to 70 for triangles
 /// up to 4 samples. The residual of every template is below 1e-4 of its norm, so the error of a score is at most that
 /// fraction of the norm of the patch.
 ///
-/// With an eye (hvs-2) a template is the ideal picture behind display and eye, in units of its own norm behind the eye:
-/// as for triangles, which have equal norms, but different shapes do not. Cameras and aspects precede display and eye.
-/// The noise of the eye is white behind H; its scores are those of white pictures on a lattice that is fine enough for
-/// the eye, with the templates behind display and H once. Immutable, thread-safe.
+/// With an eye (hvs-2) a template is the ideal picture behind display and eye, divided by its own norm behind the eye:
+/// norms of triangles are equal, those of different shapes are not. Cameras and aspects precede display and eye. The
+/// noise of the eye is white behind H. Its scores are those of white pictures on a lattice that is fine enough for the
+/// eye, with templates to which display and H are applied once. Immutable, thread-safe.
 class IdentificationBank {
  public:
-  /// `camera`: empty for ideal templates, as for triangles. Error: `invalid_input` (fewer than two alternatives, one
-  /// without sides or without edges, or templates that need over 1 GiB).
+  /// Computes the templates. `camera`: empty for ideal templates, as for triangles. Error: `invalid_input` (fewer than
+  /// two alternatives, one without sides or without edges, or templates that need over 1 GiB).
   [[nodiscard]] static Result<IdentificationBank> build(const TemplateObserverSpec& spec,
                                                         std::span<const AlternativeAspects> alternatives,
                                                         int samples_per_pitch,

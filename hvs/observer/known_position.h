@@ -20,7 +20,7 @@ struct KnownPositionTask {
 /// a tensor Gauss-Legendre rule of nodes x nodes points. Error about 1e-4 at 16 nodes, 1e-7 at 192. Equal responses
 /// without noise share the probability.
 [[nodiscard]] double probability_correct(const KnownPositionTask& task, int nodes);
-/// The same with a given rule of gauss_legendre(), for many tasks.
+/// Same with a given rule of gauss_legendre(), for many tasks.
 [[nodiscard]] double probability_correct(const KnownPositionTask& task, std::span<const QuadratureNode> rule);
 
 }  // namespace todbench

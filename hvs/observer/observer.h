@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interface of observers, which answer the direction of a target. An observer knows only patches and alternatives, not
+// Interface of observers, which answer the direction of a target. Their input is patches and alternatives only, not
 // plates, files or cameras.
 #pragma once
 
@@ -73,7 +73,7 @@ class Observer {
   /// `invalid_input` for a size that it cannot judge.
   [[nodiscard]] virtual Result<std::shared_ptr<const PreparedObserver>> prepare(double size_samples,
                                                                                 int samples_per_pitch) = 0;
-  /// Why an external observer can no longer answer; choices made since then are invalid.
+  /// Error of an external observer that can no longer answer; choices made since then are invalid.
   [[nodiscard]] virtual std::optional<Error> failure() const { return std::nullopt; }
 };
 

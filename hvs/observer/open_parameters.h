@@ -15,13 +15,13 @@
 namespace todbench {
 
 /// An observer at both ends of the range of its open parameters together: sensitivity +-4 dB, uncertainty of 100 to
-/// 3000 channels, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2. A parameter beyond its range stays where it
-/// is. The acuity is monotone in each of them, so that these are the ends of the acuity as well.
+/// 3000 channels, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2. A parameter outside its range is not
+/// changed. The acuity is monotone in each of them, so that these are the ends of the acuity as well.
 struct OpenParameterRange {
   TemplateObserverSpec best, worst;
 };
 
-/// Empty for an observer without an eye.
+/// Returns the range; empty for an observer without an eye.
 [[nodiscard]] std::optional<OpenParameterRange> open_parameter_range(const TemplateObserverSpec& spec);
 /// The best and then the worst observer of the range; empty without an eye.
 [[nodiscard]] std::vector<TemplateObserverSpec> open_ends(const TemplateObserverSpec& spec);
@@ -43,8 +43,7 @@ template <typename Find>
 }
 
 /// Spread of a quantity: the smallest and the largest of its values at both ends and, if it is not monotone in the
-/// parameters, of the observer itself. Empty if one is missing. It is no confidence interval: no probability belongs to
-/// it.
+/// parameters, of the observer itself. Empty if one of them is missing. The spread is not a confidence interval.
 [[nodiscard]] std::optional<std::pair<double, double>> spread_of(std::initializer_list<std::optional<double>> values);
 
 }  // namespace todbench

@@ -21,13 +21,13 @@ struct ScoreNoiseLevels {
 /// Whether an observer adds white noise to the samples.
 enum class AddedWhiteNoise { no, yes };
 
-/// Scores of white noise of sd 1 per sample are jointly normal, with the products of the templates as covariance.
-/// Templates of one shape at neighbouring places are nearly equal, so this matrix has a small effective rank: a pivoted
-/// Cholesky decomposition (Harbrecht, Peters and Schneider 2012) ends when every template has at most `max_left_out` of
-/// its variance left. Immutable, thread-safe.
+/// Factor of the covariance of template scores. Scores of white noise of sd 1 per sample are jointly normal, with the
+/// products of the templates as covariance. Templates of one shape at neighbouring places are nearly equal, so this
+/// matrix has a small effective rank: a pivoted Cholesky decomposition (Harbrecht, Peters and Schneider 2012) ends when
+/// every template has at most `max_left_out` of its variance left. Immutable, thread-safe.
 ///
-/// An observer with an eye has the numbers of the eye's noise first, then those of white noise. weigh() gives them
-/// their shares.
+/// With an eye, the random numbers of the eye's noise come first, then those of white noise; weigh() scales both to
+/// their shares of the total.
 ///
 /// Rows of scores begin anew with each alternative: alternative o at place p is element o * row() + p.
 class ScoreNoise {

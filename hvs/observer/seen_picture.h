@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture as it is behind display and eye, for criteria that read the picture without templates.
+// Pictures behind display and eye, for criteria without templates.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,7 +14,8 @@ class SeenPicture {
  public:
   /// Square pictures of `side` samples. Precondition: an eye with a display.
   SeenPicture(const TemplateObserverSpec& spec, int side);
-  /// The background, the mean of the outermost samples, continues beyond the picture.
+  /// Returns a picture behind display and eye. Its background, the mean of its outermost samples, continues beyond its
+  /// border.
   [[nodiscard]] cv::Mat1f of(const cv::Mat1f& picture) const;
 
  private:

@@ -41,18 +41,18 @@ struct TemplateObserverSpec {
   bool operator==(const TemplateObserverSpec&) const = default;
 };
 
-/// Error: `invalid_input` with the parameter that is out of its range.
+/// Checks the parameters. Error: `invalid_input` with the parameter that is out of its range.
 [[nodiscard]] Result<void> validate(const TemplateObserverSpec& spec);
 
-/// Computes the input of an observer's templates: the patch without its background (the mean of the patch; with an eye,
-/// that of its outermost samples, because the eye sees no uniform field but part of a large target's mean), in units of
-/// the contrast, with the observer's own noise per sample drawn from the trial's `noise`. `seen` and `room` have one
-/// value for each sample of the patch.
+/// Computes the input of an observer's templates: the patch minus its background, in units of the contrast, with the
+/// observer's own noise per sample drawn from the trial's `noise`. The background is the mean of the patch or, with an
+/// eye, of its outermost samples (without_background()). `seen` and `room` have one value for each sample of the patch.
 void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
                 std::span<float> seen, std::span<float> room);
 /// Returns the alternative with the highest score; equal scores are decided by the trial's `noise`.
 [[nodiscard]] int winning_alternative(const Choice& choice, const RandomStream& noise);
 
+/// Observer that correlates a patch with ideal shapes at every place of its search.
 class TemplateObserver final : public Observer {
  public:
   /// Precondition: validate(spec) succeeds; 2..8 alternatives.

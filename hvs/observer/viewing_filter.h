@@ -10,13 +10,12 @@ namespace todbench {
 /// Filter of an observer's templates, in cycles per displayed sample, and how far it reaches.
 struct ViewingFilter {
   TransferFunction transfer;
-  double band_per_sample = 0;  ///< above it the filter passes nothing that counts
+  double band_per_sample = 0;  ///< above it the response of the filter is negligible
   double reach_samples = 0;    ///< beyond it its response is nearly 0
 };
 
-/// Without an eye: sample and hold times the Gaussian blur. With an eye: the square of display and H, because the
-/// display draws a sample of the patch, and the template is the shape behind display and eye. Precondition: an eye has
-/// a display.
+/// Without an eye: sample and hold times the Gaussian blur. With an eye: the square of display and H, because both act
+/// on the displayed patch and on the shape of the template. Precondition: an eye has a display.
 [[nodiscard]] ViewingFilter viewing_filter(const TemplateObserverSpec& spec);
 
 }  // namespace todbench

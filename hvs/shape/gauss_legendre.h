@@ -6,6 +6,7 @@
 
 namespace todbench {
 
+/// A node of a quadrature rule.
 struct QuadratureNode {
   double x = 0;       ///< in (-1, 1)
   double weight = 0;  ///< the weights sum to 2

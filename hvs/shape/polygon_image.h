@@ -58,7 +58,7 @@ class PolygonImage {
   /// Point (j, i) is at (i, j) / per_unit, periodic (negative positions wrap). Rows are padded: not continuous.
   /// Precondition: per_unit * period > 2 band.
   [[nodiscard]] cv::Mat1d fine_image(int per_unit) const;
-  /// The same for the points -reach <= x, y < reach, in units; the other points hold no image.
+  /// Same for the points -reach <= x, y < reach, in unit lengths; the other points of the result are undefined.
   [[nodiscard]] cv::Mat1d fine_image(int per_unit, int reach) const;
 
   /// This image rotated by quarter turns, (x, y) -> (-y, x) each; the image of the rotated polygon if turns_alike().

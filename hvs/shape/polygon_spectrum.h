@@ -23,13 +23,13 @@ struct FrequencyLattice {
 /// of turns, also for wave vectors perpendicular to an edge and at the origin.
 [[nodiscard]] std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w);
 
-/// The same on a lattice, half plane u >= 0 (the rest follows by symmetry): rows w = -band..band, columns u = 0..band.
-/// Phase factors are separable and tabulated per row and column; agrees with the single-frequency form to 1e-13 of the
-/// area.
+/// Fourier transform on a lattice, half plane u >= 0 (the rest follows by symmetry): rows w = -band..band, columns u =
+/// 0..band. Phase factors are separable and tabulated per row and column; agrees with the single-frequency form to
+/// 1e-13 of the area.
 [[nodiscard]] cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& polygon, const FrequencyLattice& lattice);
 
-/// The same row by row, with separate real and imaginary parts, for callers that filter a row while it is in the cache.
-/// One thread at a time.
+/// Fourier transform on a lattice row by row, with separate real and imaginary parts, for callers that filter a row
+/// while it is in the cache. One thread at a time.
 class PolygonSpectrumRows {
  public:
   PolygonSpectrumRows(const Polygon& polygon, FrequencyLattice lattice);

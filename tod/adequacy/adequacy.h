@@ -26,7 +26,7 @@ inline constexpr double immaterial_widening = 0.01;
 /// Permitted relative difference between the fit and an exact direct estimate: 1 % because the form is not that of the
 /// observer, 1 % for the error of the direct estimate.
 inline constexpr double direct_estimate_tolerance = 0.02;
-/// Below this standard deviation in counts the rounding error is not white noise.
+/// Standard deviation of the noise in counts below which the rounding error is not white noise.
 inline constexpr double least_noise_counts = 0.5;
 /// Correlation of successive frames above which trials are not independent.
 inline constexpr double most_lag1_correlation = 0.1;
@@ -38,7 +38,7 @@ inline constexpr double most_lag1_correlation = 0.1;
 /// Same for one fit.
 [[nodiscard]] Adequacy adequacy(std::span<const Level> levels, const PsychometricFit& fit, const FitOptions& options);
 
-/// Examines every point anew.
+/// Examines every point of a curve anew and replaces its findings.
 void examine(TodCurve& curve, const FitOptions& options);
 
 }  // namespace todbench

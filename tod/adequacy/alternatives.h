@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alternative functions for the same answers, and where they put the threshold.
+// Alternative functions for the same answers, and their thresholds.
 #pragma once
 
 #include <optional>

@@ -10,8 +10,9 @@ namespace todbench {
 
 /// Sum of squares of standardised residuals over its expectation under the model.
 struct Dispersion {
-  double ratio = 1;                ///< observed / expected
-  double degrees_of_freedom = 0;   ///< of the chi-square over its mean that the ratio follows; 0: no test is possible
+  double ratio = 1;  ///< observed / expected
+  /// Of the chi-square distribution that the ratio follows, over its mean; 0: no test is possible.
+  double degrees_of_freedom = 0;
   double denominator_freedom = 0;  ///< of an expectation estimated from clusters; 0: exact expectation
   /// Probability under the model of a ratio at least as large (p_more) or at most as large (p_less).
   [[nodiscard]] double p_more() const;
@@ -21,8 +22,8 @@ struct Dispersion {
   [[nodiscard]] double lower_limit(double probability) const;
 };
 
-/// The same answers as evidence of too much and of too little scatter. With clusters, each uses the more cautious of
-/// the expectation from clusters and that of independent trials.
+/// Tests of the same answers for too much and for too little scatter. With clusters, each test uses the more cautious
+/// of two expectations: from clusters, or from independent trials.
 struct Dispersions {
   Dispersion more, less;
 };

@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// Above this probability of guessing a threshold is unfit for a decision (matches the 95 % interval).
+/// Largest probability of guessing at which a threshold is fit for a decision (matches the 95 % interval).
 inline constexpr double false_alarms_of_guessing = 0.05;
 
 /// Upper bound, at most 1, of the probability that guesses (correct with 1/4) give at least as many correct answers at

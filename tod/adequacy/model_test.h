@@ -12,7 +12,7 @@
 
 namespace todbench {
 
-/// Of the tested directions of departure, the one that exceeds its limit most or comes nearest to it.
+/// The tested direction of departure that exceeds its limit most, or comes nearest to it.
 struct Departure {
   std::string towards;  ///< for a sentence: "towards the acuity form"
   double score = 0;     ///< in standard deviations
@@ -26,6 +26,7 @@ struct LapseTest {
   double limit = 0;      ///< exceeded by chance with the stated probability
 };
 
+/// Result of test_model().
 struct ModelTest {
   std::optional<Departure> departure;  ///< empty: too few sizes for any direction
   std::optional<LapseTest> lapse;      ///< empty: the fit has a free lapse, or the test is not possible
@@ -42,7 +43,8 @@ struct ModelTest {
                                    const FalseAlarms& probability);
 
 /// Whether a slope at the upper end of the domain is significant: few trials often form a perfect step by chance.
-/// Compares twice the gain in ln likelihood of the end over half of it with the limit for `probability`.
+/// Compares twice the gain in ln likelihood of a slope at the end of the domain over one of half the size with the
+/// limit for `probability`.
 [[nodiscard]] bool asks_for_steeper(std::span<const Level> levels, const PsychometricFit& fit,
                                     const FitOptions& options, double probability);
 

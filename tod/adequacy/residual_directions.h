@@ -35,8 +35,7 @@ struct ModelResiduals {
 [[nodiscard]] ModelResiduals model_residuals(const PooledCounts& counts, PsychometricForm form,
                                              const PsychometricPlace& place, const std::array<bool, 3>& fitted);
 
-/// ln(psi / (1 - psi)) of a function at every level of the residuals, limited to +-50; catch trials are kept as they
-/// are.
+/// ln(psi / (1 - psi)) of a function at every level of the residuals, limited to +-50. Values of catch trials are kept.
 [[nodiscard]] std::vector<double> logits_at(const ModelResiduals& model, PsychometricForm form,
                                             const PsychometricPlace& place);
 

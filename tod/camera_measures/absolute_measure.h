@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Camera before a black body of absolute temperature: accuracy, non-uniformity, range and repeatability.
+// Measurement of a camera in front of a black body of absolute temperature: accuracy, non-uniformity, range and
+// repeatability.
 #pragma once
 
 #include <functional>
@@ -17,17 +18,19 @@
 
 namespace todbench {
 
+/// Options of measure_absolute().
 struct AbsoluteOptions {
   std::string plate;                   ///< its cut-out fills the picture
   std::vector<double> temperatures_k;  ///< of the black body, at least three; shown in order and in reverse order
   int frames = 32;                     ///< averaged at each temperature and place
-  int shift_px = 8;         ///< of the source on the stage, to tell camera and source apart; 0: not told apart
-  double pixel_mm = 0;      ///< pixel pitch on the plate
+  int shift_px = 8;     ///< of the source on the stage, to separate the patterns of camera and source; 0: not separated
+  double pixel_mm = 0;  ///< pixel pitch on the plate
   double pixel_aspect = 1;  ///< height of a pixel over its width, which is pixel_mm
   double source_u_k = 0;    ///< standard uncertainty of the expected temperature
   /// Temperature that the camera's own sensor reports, in degrees Celsius; may be empty, or return nothing.
   std::function<std::optional<double>()> camera_temperature_c{};
-  /// Temperature that a correct camera shows for one of the black body, through a collimator; empty: the same.
+  /// Temperature that a correct camera shows for a temperature of the black body, through a collimator; empty: both are
+  /// equal.
   std::function<double(double black_body_k)> expected_k{};
 };
 
@@ -44,6 +47,7 @@ struct AbsoluteLevel {
   std::optional<double> camera_c{};
 };
 
+/// Result of measure_absolute().
 struct AbsoluteMeasure {
   std::string plate;
   int frames = 0;
@@ -56,9 +60,9 @@ struct AbsoluteMeasure {
   Estimate slope{}, offset_k{};
   double nonlinearity_percent = 0;
   Estimate prnu_percent{};  ///< standard deviation of the responsivity over the pixels, without shading
-  /// Fixed pattern at the middle temperature: of the camera alone and of the source; empty: not told apart.
+  /// Fixed pattern at the middle temperature: of the camera alone and of the source; empty: not separated.
   std::optional<Estimate> camera_pattern_k{}, source_pattern_k{};
-  /// Slope over the picture that is of the camera, the source or both; largest minus smallest value.
+  /// Slope over the picture that cannot be assigned to camera or source; largest minus smallest value.
   std::optional<double> undetermined_slope_k{};
   /// Temperatures of the lowest and the highest count, if the scale states them.
   std::optional<double> lowest_k{}, highest_k{};
@@ -77,8 +81,8 @@ struct AbsoluteMeasure {
 /// Shows the plate with the source shifted and at a temperature; returns once both are reached.
 using ShowTemperature = std::function<Result<PresentedTarget>(double temperature_k, cv::Point2d shift_mm)>;
 
-/// Errors: those of `show` and of FrameTaker::average(); `invalid_input` (fewer than three temperatures that do not
-/// saturate the camera).
+/// Measures the camera. Errors: those of `show` and of FrameTaker::average(); `invalid_input` (fewer than three
+/// temperatures that do not saturate the camera).
 [[nodiscard]] Result<AbsoluteMeasure> measure_absolute(FrameTaker& taker, const ShowTemperature& show,
                                                        const AbsoluteOptions& options, const std::stop_token& stop);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The observer before the bars and spots of a plate: frames in, thresholds out. No devices.
+// Judgement of the bars and spots of a plate by the observer: frames in, thresholds out. Uses no devices.
 #pragma once
 
 #include <optional>
@@ -16,17 +16,18 @@ namespace todbench {
 /// State in which a frame shows the plate.
 struct ShownBars {
   int set_up = 0;
-  std::size_t level = 0;  ///< of the contrast
+  std::size_t level = 0;  ///< number of the contrast
   double said_k = 0;      ///< reported by the target, signed
   Mounting mounting = Mounting::identity;
   Registration where;  ///< of the plate in this mounting and place
   double noise_k = 0;  ///< temporal noise of the camera, sd of a pixel in one frame
 };
 
+/// Judges frames one by one and computes the thresholds.
 class BarsJudge {
  public:
-  /// `where`: of the plate in identity mounting, for scale and direction. Errors: `invalid_input` (no pair that can be
-  /// judged), those of the observer's templates.
+  /// Prepares the observer. `where`: registration of the plate in identity mounting, for scale and direction. Errors:
+  /// `invalid_input` (no pair that can be judged), those of the observer's templates.
   [[nodiscard]] static Result<BarsJudge> create(const MrtdOptions& options, const Registration& where);
   /// Judges all places of one frame. Places whose window leaves the picture are left out from then on.
   void add(const cv::Mat1d& kelvin, const ShownBars& shown);
@@ -37,7 +38,7 @@ class BarsJudge {
   struct Scores {
     std::vector<IntervalScores> target, other;
   };
-  /// Of one observer.
+  /// Answers of one observer.
   struct Answers {
     Scores positive{}, negative{};
   };
@@ -79,10 +80,10 @@ class BarsJudge {
   [[nodiscard]] MrtdPoint point(const Place& place) const;
 
   MrtdOptions options_;
-  /// That of the plan; with an eye then those at the best and the worst end of its open parameters.
+  /// The observer of the plan; with an eye also those at the best and the worst end of its open parameters.
   std::vector<TemplateObserverSpec> observers_;
   std::vector<Place> places_;
-  /// Their targets and alternatives in turn, as rectangles, so that mounted() moves them.
+  /// Targets and alternatives of places_ in turn, as rectangles, so that mounted() moves them.
   TargetPlate positions_;
   std::vector<double> said_sum_k_;
   std::vector<int> said_count_;

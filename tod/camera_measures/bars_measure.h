@@ -37,17 +37,19 @@ struct BarsCtf {
   std::optional<BarsModel> model{};  ///< empty for a real camera
 };
 
+/// CTF of all groups of a plate.
 struct PlateBarsCtf {
   std::vector<BarsCtf> groups;         ///< x before y, low frequencies first
   double contrast_k = 0;               ///< of large areas, signed, in the unit of the picture
-  double far_spread = 0;               ///< share of it that the optics spread beyond the squares; corrected
+  double far_spread = 0;               ///< share of contrast_k that the optics spread beyond the squares; corrected
   std::vector<std::string> reasons{};  ///< sentences about groups that could not be measured
 };
 
-/// A group is slanted, so that each line of pixels has another phase. All pixels at least 3.5 pixels from its ends are
-/// samples of one profile along the normal: four bars with one common line spread, a cubic spline with knots every 0.15
-/// pitch, fitted by least squares (BarsFit). The profile is sampled once a pitch at 64 phases, and best, mean and worst
-/// modulation are read from it. Phases between those of the plate are interpolated; no phase depends on a single pixel.
+/// Measures the CTF of every group. A group is slanted, so that each line of pixels has another phase. All pixels at
+/// least 3.5 pixels from its ends are samples of one profile along the normal: four bars with one common line spread, a
+/// cubic spline with knots every 0.15 pitch, fitted by least squares (BarsFit). The profile is sampled once a pitch at
+/// 64 phases, and best, mean and worst modulation are read from it. Phases between those of the plate are interpolated;
+/// no phase depends on a single pixel.
 ///
 /// Contrast: centre of the plate's rectangles minus the area more than 5 pixels away from every cut-out. The light that
 /// the optics spread further is corrected to first order: an MTF that begins as 1 - a f spreads a / (4 pi^2 r^3) at a

@@ -28,6 +28,7 @@
 
 namespace todbench {
 
+/// Options of measure_camera().
 struct CameraMeasuresOptions {
   bool noise = false;                         ///< temporal noise, NETD and 3-D noise, at a contrast of 0
   int noise_frames = 64;                      ///< of the noise cube, at least 5
@@ -45,7 +46,7 @@ struct CameraMeasuresOptions {
   std::optional<TargetPlate> ctf_plate{};     ///< in identity mounting; empty: no CTF
   double ctf_delta_t_k = 10;                  ///< contrast at which it is shown
   int ctf_frames = 64;                        ///< averaged, at least 1
-  double ctf_frequency_per_pitch = 0.4;       ///< the nearest group is stated
+  double ctf_frequency_per_pitch = 0.4;       ///< the group nearest to it is stated
   std::optional<TargetPlate> source_plate{};  ///< in identity mounting; empty: no size-of-source effect
   double source_delta_t_k = 10;               ///< contrast at which it is shown
   int source_frames = 64;                     ///< averaged, at least 1; without contrast twice as many
@@ -67,6 +68,7 @@ struct TransferStep {
   double seen_delta_t_k = 0, seen_u_k = 0;       ///< by the camera's scale; u from the scatter over triangles
 };
 
+/// Signal transfer from contrast steps.
 struct TransferMeasure {
   int frames_each = 0;
   std::vector<TransferStep> steps;
@@ -97,6 +99,7 @@ struct GeometryMeasure {
   [[nodiscard]] Estimate aspect_ratio() const;
 };
 
+/// MTF from a plate with rectangles.
 struct MtfMeasure {
   std::string plate;
   int frames = 0;
@@ -106,6 +109,7 @@ struct MtfMeasure {
   std::vector<EdgeMtf> edges;      ///< the most central rectangle first
 };
 
+/// CTF from a plate with bars.
 struct CtfMeasure {
   std::string plate;
   int frames = 0;
@@ -118,6 +122,7 @@ struct CtfMeasure {
   [[nodiscard]] const BarsCtf* stated(EdgeAxis axis) const;
 };
 
+/// Size-of-source effect from a plate with square apertures.
 struct SourceSizeMeasure {
   std::string plate;
   int frames = 0;
@@ -143,7 +148,7 @@ struct PlateView {
   double temporal_noise_k = 0;  ///< of a pixel in one frame; 0: not known
 };
 
-/// The view of the camera and the picture that the sensor model makes of the plate at the same place.
+/// The view of the camera, and the sensor model's picture of the plate at the same place.
 struct PlatePicture {
   PlateView seen;
   cv::Mat1d expected_k;           ///< of the field, without noise; contrast, level and place are fitted
@@ -183,9 +188,9 @@ struct CameraMeasures {
   /// Temporal noise over the slope of the signal transfer. Empty if one of them is absent, or if the noise is below
   /// half a count and cannot be measured.
   [[nodiscard]] std::optional<double> netd_k() const;
-  /// Same with the slope on an extended source, SourceSizeMeasure::slope(), with the 95 % interval.
+  /// Same with the slope on an extended source, SourceSizeMeasure::slope(), with its 95 % interval.
   [[nodiscard]] std::optional<Estimate> netd_extended_k() const;
-  /// Relative half-width of its 95 % interval: root of the sum of squares of those of noise and slope.
+  /// Relative half-width of the 95 % interval of netd_k(): root of the sum of squares of those of noise and slope.
   [[nodiscard]] std::optional<double> netd_relative_half_width() const;
 };
 

@@ -20,19 +20,20 @@ struct DriftMeasure {
   DriftLaw law;
 };
 
+/// Options of measure_drift().
 struct DriftOptions {
   double drift_s = 20;       ///< duration of the observation, > 0
   double frame_rate_hz = 0;  ///< stated by the camera; 0: not stated
-  bool commanded = false;    ///< a correction was commanded just now; otherwise waits for the camera's own
+  bool commanded = false;    ///< a correction was commanded just now; false: wait for the camera's own
   /// For a sensor model: frames are made on request, time is that of its clock, and no correction is needed.
   bool simulated = false;
 };
 
-/// Takes the frames of `drift_s` in 20 groups of equal duration, up to the next correction; in shorter groups if that
-/// comes early. If no correction was commanded, waits at most `drift_s` for one that the camera reports or that its
-/// pictures show. Times are those of the camera's clock if it counts frames at the stated rate, otherwise of the host's
-/// clock. Errors: `integrity` (no correction, or the next one before eight groups), those of FrameTaker::next() and
-/// drift_law().
+/// Takes the frames of `drift_s` in 20 groups of equal duration, up to the next correction. If that comes early, the
+/// groups are shorter. If no correction was commanded, waits at most `drift_s` for one that the camera reports or that
+/// its pictures show. Times are those of the camera's clock if it counts frames at the stated rate, otherwise of the
+/// host's clock. Errors: `integrity` (no correction, or the next one before eight groups), those of FrameTaker::next()
+/// and drift_law().
 [[nodiscard]] Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, const DriftOptions& options,
                                                  const std::stop_token& stop);
 

@@ -37,6 +37,7 @@ struct EdgeMtf {
   [[nodiscard]] double high_at(double frequency_per_pitch) const;
 };
 
+/// MTF of the edges of a plate.
 struct PlateEdges {
   std::vector<EdgeMtf> edges;          ///< the rectangle nearest to the picture's centre first; x before y
   cv::Point2d moved_px{0, 0};          ///< shift of the plate relative to the mapping
@@ -46,7 +47,8 @@ struct PlateEdges {
 /// Locates the plate in the picture by its rectangles (normalised correlation, any sign of contrast), cuts a region
 /// round the middle of each nearly upright or level side, and takes the MTF of each (slanted_edge()). Opposite sides
 /// are averaged. The tails of the MTF come from the whole plate round each rectangle (plate_tails()); their part of the
-/// interval is common to the sides. An interval covers at least half of the difference between the sides.
+/// interval is common to the sides. Each side of an interval covers at least half of the difference between the
+/// measured sides.
 ///
 /// `where`: mapping of the plate's millimetres to pixels except for a shift, for example the registration of another
 /// plate in the same holder. Errors: `calibration` (rectangles not in the picture), `invalid_input` (plate without

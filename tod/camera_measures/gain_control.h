@@ -22,6 +22,7 @@ struct GainLevel {
   [[nodiscard]] Estimate gain() const;
 };
 
+/// Automatic gain: levels by contrast, and settling.
 struct GainControlMeasure {
   std::string unit;  ///< "count" or "K"
   int frames = 0;    ///< averaged at each contrast

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The windows of bars and spots that the observer judged, kept for people.
+// Windows of bars and spots that the observer judged, kept for human observers.
 #pragma once
 
 #include <cstddef>
@@ -31,6 +31,7 @@ struct KeptPicture {
   cv::Mat1f other;        ///< five bars, or an empty part of the plate
 };
 
+/// Kept windows and their places.
 struct KeptBars {
   std::vector<KeptPlace> places{};
   std::vector<KeptPicture> pictures{};

@@ -22,6 +22,7 @@
 
 namespace todbench {
 
+/// Options of measure_mrtd().
 struct MrtdOptions {
   TargetPlate plate{};  ///< in identity mounting, with bar_pairs()
   /// Magnitudes of the contrasts, shown at both polarities.
@@ -29,18 +30,18 @@ struct MrtdOptions {
   int frames = 16;  ///< judged at each contrast of each set-up, one by one
   int set_ups = 8;  ///< places of the plate between the pixels, shared by the mountings; at least 5
   std::vector<Mounting> mountings{Mounting::identity};
-  double frequency_per_pitch = 0.25;  ///< the nearest bars are stated
-  double spot_px = 3;                 ///< the nearest spot is stated
+  double frequency_per_pitch = 0.25;  ///< the bars nearest to it are stated
+  double spot_px = 3;                 ///< the spot nearest to it is stated
   double pitch_mrad = 0;              ///< IFOV of a pixel
   double locating_k = 4;              ///< contrast at which the plate is located
   int registration_frames = 32;       ///< averaged to locate it
-  int kept_frames = 0;                ///< of each contrast of each set-up, kept for people
+  int kept_frames = 0;                ///< frames of each contrast of each set-up that are kept for human observers
   double response = 1;                ///< observed contrast over the contrast that the target reports
   TemplateObserverSpec observer{};    ///< one with an eye has its display
   std::uint64_t seed = 1;             ///< of the observer's own noise
 };
 
-/// Threshold of one pair of groups of bars (MRTD), or of one spot against nothing (MDTD).
+/// Threshold of one pair of groups of bars (MRTD), or of one spot against an empty part of the plate (MDTD).
 struct MrtdPoint {
   std::string place;  ///< name of the group with four bars, or of the spot
   EdgeAxis axis = EdgeAxis::x;
@@ -49,12 +50,12 @@ struct MrtdPoint {
   /// Contrast for 75 % correct at each polarity; the negative one is below 0.
   std::optional<double> positive_k{}, negative_k{};
   std::optional<double> threshold_k{};  ///< half of their difference
-  Interval ci95{};                      ///< of it, by jackknife over the set-ups
+  Interval ci95{};                      ///< of threshold_k, by jackknife over the set-ups
   /// threshold_k between the ends of the open parameters of an observer with an eye (open_parameters.h), from the same
   /// frames; empty without an eye, or if an end has no threshold. No confidence interval.
   std::optional<std::pair<double, double>> spread_k{};
   std::string reason{};                  ///< of a missing threshold; empty if there is one
-  std::optional<double> best_phase_k{};  ///< threshold at the sampling phase that answers best; empty: not found
+  std::optional<double> best_phase_k{};  ///< threshold at the best sampling phase; empty: not found
   Interval best_phase_ci95{};
   /// Distance of the middle of the bars from a border of pixels, 0 to 0.5 pixels, where the plate was located.
   double best_phase = 0;
@@ -62,12 +63,13 @@ struct MrtdPoint {
   std::vector<double> positive_share{}, negative_share{};
 };
 
+/// Result of measure_mrtd().
 struct MrtdMeasure {
   std::string plate, observer;
   int frames = 0, set_ups = 0, mountings = 0;
   double pitch_mrad = 0;
   double frequency_per_pitch = 0, spot_px = 0;  ///< requested
-  std::vector<double> contrast_k{};             ///< that the target reported, mean magnitudes, rising
+  std::vector<double> contrast_k{};             ///< contrasts that the target reported: mean magnitudes, rising
   std::vector<MrtdPoint> bars{};                ///< x before y, low frequencies first
   std::vector<MrtdPoint> spots{};               ///< small ones first
   std::vector<std::string> reasons{};           ///< sentences about places that could not be judged
@@ -79,8 +81,8 @@ struct MrtdMeasure {
   [[nodiscard]] const MrtdPoint* stated_spot() const;
 };
 
-/// Highest frequency of an MRTD, with room for the error of the scale: a machine still distinguishes alias patterns of
-/// bars beyond Nyquist, a person does not see four bars.
+/// Highest frequency of an MRTD, with a margin for the error of the scale. Beyond Nyquist a model observer still
+/// distinguishes alias patterns of bars, but a person does not see four bars.
 inline constexpr double mrtd_cut_per_pitch = 0.505;
 
 /// The two alternatives of Bijl and Valeton: four bars, and five bars that fill a square of the same size.
@@ -106,14 +108,14 @@ struct MrtdPresentation {
   int set_up = 0;         ///< below 0: locates the plate
   std::size_t level = 0;  ///< in MrtdOptions::contrasts_k
 };
-/// `pixel_mm`: size of a pixel on the plate.
+/// Lists the presentations. `pixel_mm`: size of a pixel on the plate.
 [[nodiscard]] std::vector<MrtdPresentation> mrtd_presentations(const MrtdOptions& options, double pixel_mm);
 
-/// A decision has two intervals, one with four and one with five bars of the same square and contrast; the observer
-/// states which had four (Bijl and Valeton 1999: free of response bias). Every frame shows both groups. All pairs of
-/// frames are decided, as in virtual_mrtd(). A function of contrast (fit_contrast()) gives the threshold of each
-/// polarity; half of their difference does not contain the offset of the target. The interval is that of the jackknife
-/// over the set-ups, with Student's t. Spots are decided against an empty part of the plate.
+/// Measures the MRTD. A decision has two intervals, one with four and one with five bars of the same square and
+/// contrast; the observer states which had four (Bijl and Valeton 1999: free of response bias). Every frame shows both
+/// groups. All pairs of frames are decided, as in virtual_mrtd(). A function of contrast (fit_contrast()) gives the
+/// threshold of each polarity; half of their difference does not contain the offset of the target. The interval is that
+/// of the jackknife over the set-ups, with Student's t. Spots are decided against an empty part of the plate.
 ///
 /// `where`: of a plate in the same holder, in identity mounting; the plate itself is located to a whole pixel, and the
 /// observer searches for the rest. The noise of the camera, which an observer of limited efficiency enlarges, is that

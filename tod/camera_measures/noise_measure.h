@@ -30,12 +30,14 @@ struct NoiseMeasure {
   cv::Mat1d pattern_k{};                 ///< mean frame minus its mean and shading
 };
 
+/// Options of measure_series_noise().
 struct NoiseOptions {
   int frames = 64;                         ///< at least 5
   cv::Rect field;                          ///< part of the frame that the plate covers
   std::optional<cv::Rect> pixel_window{};  ///< kept of each frame to examine its pixels; empty: not kept
 };
 
+/// Result of measure_series_noise().
 struct NoiseSeries {
   NoiseMeasure noise;
   std::vector<cv::Mat1f> pixel_frames{};  ///< the pixel window of at most `most_pixel_frames` frames, in kelvin
@@ -47,7 +49,7 @@ struct NoiseSeries {
 [[nodiscard]] Result<NoiseSeries> measure_series_noise(FrameTaker& taker, const RadiometricScale& scale,
                                                        const NoiseOptions& options, const std::stop_token& stop);
 
-/// Kelvin of a count at a temperature; empty: the scale does not tell.
+/// Kelvin per count at a temperature; empty if the scale does not state it.
 [[nodiscard]] std::optional<double> kelvin_per_count_at(const RadiometricScale& scale, double at_k);
 
 }  // namespace todbench

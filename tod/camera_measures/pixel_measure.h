@@ -22,15 +22,17 @@ struct ZoneArea {
   [[nodiscard]] cv::Rect pixels(cv::Size frame) const;
 };
 
+/// Options of measure_pixels().
 struct PixelOptions {
   bool whole_frame = false;  ///< a flat field fills the frame; false: only the part covered by the plate is examined
   PixelDefectRules rules;
   std::vector<ZoneArea> zones{};  ///< in addition to the whole frame
 };
 
-/// Most frames of the cube that pixels are examined in: 80 MB of 320 x 240.
+/// Largest number of frames in which pixels are examined: 80 MB of 320 x 240.
 inline constexpr int most_pixel_frames = 256;
 
+/// Result of measure_pixels().
 struct PixelMeasure {
   struct Zone {
     ZoneArea area;
@@ -42,7 +44,8 @@ struct PixelMeasure {
   std::vector<Zone> zones;  ///< the whole frame first
 };
 
-/// `frames`: windows `field` of one cube of a flat field. Removes shading. Errors: those of pixel_defects().
+/// Finds and counts bad and substituted pixels, after removal of shading. `frames`: windows `field` of one cube of a
+/// flat field. Errors: those of pixel_defects().
 [[nodiscard]] Result<PixelMeasure> measure_pixels(std::span<const cv::Mat1f> frames, cv::Size frame,
                                                   const cv::Rect& field, PixelScene scene, const PixelOptions& options);
 

@@ -23,7 +23,7 @@ struct GeometryPlace {
 /// Picture of a plane through a lens: a homography (8 parameters), then radial distortion about the middle of the
 /// picture, q = c + (p - c)(1 + k r^2 / R^2), R half the picture's diagonal (Brown 1966, first term).
 struct PlateGeometry {
-  /// On the plate along the picture's rows and columns, at the middle of the plate, without distortion.
+  /// Scale on the plate along the picture's rows and columns, at the middle of the plate, without distortion.
   Estimate mm_per_px_x, mm_per_px_y;
   /// Place of the plate that the middle of the picture shows, from the middle of the plate: x along the plate's rows.
   Estimate centre_x_mm, centre_y_mm;
@@ -38,10 +38,10 @@ struct PlateGeometry {
 };
 
 /// Locates each triangle separately (fit_shift()) near its place by `where`. Triangles of at least 1.5 px that stand
-/// out of the noise count. Nine parameters are fitted by least squares; each triangle has the noise of its place and
-/// 0.004 px for the description of its edges. Intervals use Student's t and the residuals, or the noise if that is
-/// larger. A triangle that lies six medians off is left out. Errors: `calibration` (fewer than ten triangles, or they
-/// do not distinguish distortion from perspective).
+/// out from the noise are used. Nine parameters are fitted by least squares; the error of each place consists of its
+/// noise and 0.004 px for the description of the edges. Intervals use Student's t and the residuals, or the noise if
+/// that is larger. A triangle with a residual above six times the median is left out. Errors: `calibration` (fewer than
+/// ten triangles, or they do not distinguish distortion from perspective).
 [[nodiscard]] Result<PlateGeometry> plate_geometry(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                    const Registration& where);
 

@@ -20,6 +20,7 @@ enum class StepSignal {
   surround,  ///< level round the target, which follows its contrast only if the camera controls its gain
 };
 
+/// Options of measure_response().
 struct ResponseOptions {
   std::string plate;                   ///< plate of the steps, in identity mounting
   double delta_t_k = 10;               ///< the contrast steps between 0 and this
@@ -30,6 +31,7 @@ struct ResponseOptions {
   StepSignal signal = StepSignal::contrast;
 };
 
+/// Result of measure_response().
 struct ResponseMeasure {
   double delta_t_k = 0;   ///< of a step
   double frame_s = 0;     ///< by the camera's clock

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Size-of-source effect: what a small source loses, and an opaque spot gains, by light that the camera spreads far.
+// Size-of-source effect: signal that a small source loses, and an opaque spot gains, because the camera spreads light
+// far.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -19,7 +20,7 @@ struct SourceSizePoint {
   bool spot = false;   ///< an opaque spot (inverse method); otherwise an aperture (direct method)
   double size_px = 0;  ///< side of the square
   Estimate ratio;      ///< 1 for an aperture and 0 for a spot, if no light is spread
-  double fitted = 0;   ///< the same of the fitted tails
+  double fitted = 0;   ///< ratio by the fitted tails
   double model = -1;   ///< of a simulated sensor; below 0: not known
 };
 
@@ -47,7 +48,8 @@ struct SourceSize {
 struct SourcePictures {
   cv::Mat1d before, lit, after;
   /// Rise of the plate's own temperature from the outer two to the lit picture, over the contrast, both as reported by
-  /// the target. A radiator heats the plate before it, and the whole picture rises with the plate. 0: not reported.
+  /// the target. A radiator heats the plate in front of it, and the signal of the whole picture rises with the plate.
+  /// 0: not reported.
   double plate_rise = 0;
 };
 

@@ -23,6 +23,7 @@ struct FrameTimes {
   std::int64_t host_ns = 0;
 };
 
+/// Result of frame_timing().
 struct TimingMeasure {
   int frames = 0;
   std::optional<double> stated_rate_hz{};
@@ -30,40 +31,42 @@ struct TimingMeasure {
   Estimate rate_hz{};
   Estimate jitter_ms{};                ///< standard deviation of the times from a line over the numbers
   double largest_deviation_ms = 0;     ///< of a time from that line
-  std::optional<double> arrival_ms{};  ///< the same standard deviation for times of arrival
+  std::optional<double> arrival_ms{};  ///< standard deviation of the times of arrival from such a line
   std::uint64_t lost = 0;              ///< frames that never arrived
-  std::uint64_t longest_gap = 0;       ///< most successive ones
+  std::uint64_t longest_gap = 0;       ///< largest number of successive lost frames
 };
 
-/// Returns the numbers of frames in the order of their arrival. Errors: `invalid_input` (fewer than ten frames, times
-/// that do not rise).
+/// Returns the timing of frames, given in the order of their arrival. Errors: `invalid_input` (fewer than ten frames,
+/// times that do not rise).
 [[nodiscard]] Result<TimingMeasure> frame_timing(std::span<const FrameTimes> times);
 
 /// Takes frames and returns their timing. Errors: those of FrameTaker::next() and frame_timing().
 [[nodiscard]] Result<TimingMeasure> measure_timing(FrameTaker& taker, int frames, const std::stop_token& stop);
 
+/// Options of measure_latency().
 struct LatencyOptions {
   double speed_mm_s = 100;  ///< of the plate
   double travel_mm = 20;    ///< of a run
   int runs = 8;             ///< to the right and to the left in turn
 };
 
+/// Result of measure_latency().
 struct LatencyMeasure {
   double speed_mm_s = 0;
   std::vector<double> runs_ms{};    ///< of each run
   std::vector<double> frames_ms{};  ///< of each frame of the runs
-  /// Time from a place of the target to the time stamp of the frame that shows it, with the time constant of the
+  /// Time from a place of the target to the time stamp of the frame that shows it, including the time constant of the
   /// detector and half of its exposure. Positive: the frame is late.
   Estimate latency_ms{};
 };
 
-/// Place of the plate along x of the stage in a frame, in mm, as the camera sees it; empty: not found.
+/// Place of the plate along x of the stage in a frame, in mm, as the camera shows it; empty: not found.
 using PlaceInFrame = std::function<std::optional<double>(const Frame& frame, double expected_mm)>;
 /// Presents the plate at a place along x, in mm.
 using PutAt = std::function<Result<void>(double x_mm)>;
 
-/// Errors: those of stage and camera; `invalid_input` (a stage without runs or without the camera's clock, or too few
-/// frames of a run).
+/// Measures the latency in runs of the stage. Errors: those of stage and camera; `invalid_input` (a stage without runs
+/// or without the camera's clock, or too few frames of a run).
 [[nodiscard]] Result<LatencyMeasure> measure_latency(FrameTaker& taker, MovingTarget* stage, const PutAt& put,
                                                      const PlaceInFrame& place, const LatencyOptions& options,
                                                      const std::stop_token& stop);

@@ -14,6 +14,7 @@
 
 namespace todbench {
 
+/// Options of measure_warm_up().
 struct WarmUpOptions {
   double duration_s = 600;         ///< of the observation, > 0
   double start_s = 0;              ///< time of the first image since power-on; all times count from power-on
@@ -37,6 +38,7 @@ struct TemperatureDrift {
   double slope = 0, slope_u = 0;  ///< K of the picture per K of the camera, with standard uncertainty
 };
 
+/// Result of measure_warm_up().
 struct WarmUp {
   std::vector<WarmUpGroup> groups;
   /// Drift during the longest time without a correction; empty if it could not be fitted, then the reason is stated.
@@ -50,8 +52,8 @@ struct WarmUp {
 /// Returns the temperature of the camera in degrees Celsius; empty: not reported.
 using ReadCameraTemperature = std::function<std::optional<double>()>;
 
-/// Observes in 40 groups of equal duration, of at most 64 frames each. Commands no correction. Errors: those of
-/// FrameTaker::average().
+/// Observes the camera in 40 groups of equal duration with at most 64 frames each. Commands no correction. Errors:
+/// those of FrameTaker::average().
 [[nodiscard]] Result<WarmUp> measure_warm_up(FrameTaker& taker, const WarmUpOptions& options,
                                              const ReadCameraTemperature& temperature, const std::stop_token& stop);
 

@@ -18,6 +18,7 @@ namespace todbench {
 enum class ComparisonVerdict { equivalent, different, inconclusive };
 [[nodiscard]] std::string_view to_string(ComparisonVerdict verdict);
 
+/// Options of compare().
 struct ComparisonOptions {
   /// Equivalence margin m on the ratio of acuities, chosen beforehand: ratio within [1/(1+m), 1+m].
   double margin_percent = 10;
@@ -43,7 +44,7 @@ struct RatioOfPairs {
 
 /// One contrast. Ratio is acuity of A over acuity of B (= S75 of B over S75 of A). Its intervals combine the inflated
 /// profile intervals of both thresholds asymmetrically on the log scale (method of variance estimates recovery, Zou and
-/// Donner 2008). If a side of a threshold is open, the side of the ratio made of it is missing.
+/// Donner 2008). If a side of a threshold is open, the side of the ratio that depends on it is missing.
 struct ComparisonPoint {
   double set_delta_t_k = 0;
   double delta_t_a_k = 0, delta_t_b_k = 0;
@@ -61,10 +62,11 @@ struct ComparisonPoint {
   /// The threshold of A or of B is not fit for a decision, or their functions differ. Every verdict of this point,
   /// including that of the paired ratio, is then inconclusive.
   bool withheld = false;
-  /// Additional ratio if both saw the same phases; it then decides. Empty otherwise.
+  /// Additional ratio if both curves have the same phases; it then determines the verdict. Empty otherwise.
   std::optional<RatioOfPairs> paired{};
 };
 
+/// Result of compare().
 struct Comparison {
   std::vector<ComparisonPoint> points;
   /// Different if any point is, else inconclusive if any is, else equivalent. Uses the paired ratios if there are any.
@@ -97,9 +99,10 @@ struct ThresholdTest {
   double p_equivalence = 1;  ///< TOST, Wald, margin on the ratio; 1 without a standard error
   double ll_separate = 0, ll_common = 0;
 };
+/// Slopes of the two data sets.
 enum class SlopeModel { shared, separate };
-/// Errors: `invalid_input` (wrong levels, a margin that is not positive, a set without a threshold). A free lapse is
-/// free in each set.
+/// Tests whether two thresholds differ, and whether they are equivalent. Errors: `invalid_input` (wrong levels, a
+/// margin that is not positive, a set without a threshold). A free lapse is free in each set.
 [[nodiscard]] Result<ThresholdTest> test_thresholds(std::span<const Level> a, std::span<const Level> b,
                                                     SlopeModel slopes, double margin_percent,
                                                     const FitOptions& options);

@@ -40,8 +40,8 @@ struct OwnFunctions {
 /// cancel as well.
 ///
 /// The twin is shown the contrast that the camera measured once in each set-up. Over set-ups, the differences contain
-/// the scatter of this contrast; the part common to all set-ups (`contrast.shared_se_ln_acuity`) is added.
-/// Presentations and places do not contain it, so that all of `contrast.se_ln_acuity` is added.
+/// the scatter of this contrast; the part common to all set-ups (`contrast.shared_se_ln_acuity`) is added. The variance
+/// over presentations and places does not contain this scatter, so all of `contrast.se_ln_acuity` is added.
 ///
 /// `draws` is kept for the record. Verdict as in compare(), with Student's t; equivalent has priority. Errors:
 /// `invalid_input` (as twin_shape_estimate(), fewer than two clusters, a margin that is not positive, probabilities

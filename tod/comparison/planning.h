@@ -23,8 +23,8 @@ struct ExpectedFit {
   double threshold = 0, slope = 0, trials = 0;
   double se_ln_threshold = 0;  ///< from the information of the expected counts
 };
-/// Errors: `invalid_input` (a level out of range, or expected answers without a threshold; the message contains the
-/// verdict).
+/// Fits the expected counts. Errors: `invalid_input` (a level out of range, or expected answers without a threshold;
+/// the message contains the verdict).
 [[nodiscard]] Result<ExpectedFit> expected_fit(std::span<const PlannedLevel> design, const FitOptions& options);
 
 /// The design with proportions from a psychometric function at its sizes.
@@ -32,7 +32,7 @@ struct ExpectedFit {
                                                   double threshold, double slope, double lapse);
 
 /// Probability that two one-sided tests at 5 % find two acuities equivalent within `margin_percent` (ratio inside
-/// [1/(1+m), 1+m]). The logarithm of their ratio is estimated with standard error `se_ln_ratio` > 0 and is truly
+/// [1/(1+m), 1+m]). The logarithm of their ratio is estimated with standard error `se_ln_ratio` > 0; its true value is
 /// `true_ln_ratio`. Normal theory (Schuirmann 1987): exact for normal estimates, 0 if the 90 % interval is wider than
 /// the margin.
 [[nodiscard]] double equivalence_power(double se_ln_ratio, double margin_percent, double true_ln_ratio);
@@ -54,7 +54,7 @@ struct ComparisonOutlook {
   double trials_needed_a = 0;  ///< of A per contrast, largest over contrasts, rounded up
   [[nodiscard]] bool reaches_80_percent() const { return power >= 0.8; }
 };
-/// Precondition: at least one contrast, standard errors > 0.
+/// Computes the prospects. Precondition: at least one contrast, standard errors > 0.
 [[nodiscard]] ComparisonOutlook comparison_outlook(std::span<const PlannedComparison> contrasts, double margin_percent);
 
 }  // namespace todbench

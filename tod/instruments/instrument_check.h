@@ -12,6 +12,7 @@
 
 namespace todbench {
 
+/// Outcome of a step.
 enum class StepOutcome {
   answered,   ///< as the table states
   failed,     ///< no answer, or another one
@@ -26,6 +27,7 @@ struct InstrumentStep {
   std::string said;  ///< the answer in this program's units, or an error message
 };
 
+/// Result of check_instrument().
 struct InstrumentCheck {
   ScpiIdentity identity;  ///< empty if it was not reached
   bool reached = false;   ///< connected and identified
@@ -34,6 +36,7 @@ struct InstrumentCheck {
   [[nodiscard]] bool passed() const;
 };
 
+/// Commands that a check sends.
 enum class InstrumentCommands {
   none,      ///< queries only: nothing moves
   in_place,  ///< commands too, each with the instrument's present value

@@ -30,10 +30,10 @@ class InstrumentDevice {
 
   [[nodiscard]] Result<void> send(const std::string& text, const std::stop_token& stop);
   [[nodiscard]] Result<std::string> ask(const std::string& text, const std::stop_token& stop);
-  /// The numbers that answer a question, unconverted.
+  /// Returns the numbers in the answer to a query, unconverted.
   [[nodiscard]] Result<std::vector<double>> numbers(const NumberQuestion& question, std::size_t count,
                                                     const std::stop_token& stop);
-  /// True also if the instrument has no such query.
+  /// Whether the instrument is settled; true also if it has no such query.
   [[nodiscard]] Result<bool> is_settled(const std::stop_token& stop);
 
  private:
@@ -49,6 +49,7 @@ struct BlackBodyReading {
   std::optional<double> plate_k, radiator_k;
 };
 
+/// A black body. Differences and temperatures are in K.
 class BlackBodyDevice : public InstrumentDevice {
  public:
   using InstrumentDevice::InstrumentDevice;
@@ -64,11 +65,12 @@ class BlackBodyDevice : public InstrumentDevice {
 
   [[nodiscard]] std::string set_command(double delta_t_k) const;
 
-  /// Lowest and highest absolute set-point, in K. Precondition, also of command_absolute(): the table has one.
+  /// Lowest and highest absolute set-point, in K. Precondition, also of command_absolute(): the table has an absolute
+  /// set-point.
   [[nodiscard]] Result<std::array<double, 2>> absolute_limits(const std::stop_token& stop);
   [[nodiscard]] Result<void> command_absolute(double temperature_k, const std::stop_token& stop);
-  /// Reading of the radiator. Errors: also `invalid_input` for a reading far below the coldest set-point, which is in
-  /// degrees Celsius.
+  /// Reading of the radiator. Errors: also `invalid_input` for a reading so far below the coldest set-point that it
+  /// must be in degrees Celsius.
   [[nodiscard]] Result<double> radiator(double coldest_k, const std::stop_token& stop);
 
  private:
@@ -76,11 +78,13 @@ class BlackBodyDevice : public InstrumentDevice {
   [[nodiscard]] Result<double> difference(const NumberQuestion& question, const std::stop_token& stop);
 };
 
+/// Range of positions, and plates of a stage.
 struct StageLimits {
   cv::Point2d min_mm, max_mm;
   std::vector<std::string> plates;
 };
 
+/// A plate stage. Positions are in mm.
 class StageDevice : public InstrumentDevice {
  public:
   using InstrumentDevice::InstrumentDevice;

@@ -29,7 +29,7 @@ struct SerialSettings {
 };
 inline constexpr std::array serial_bauds{1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400};
 
-/// Protocol of an instrument of any kind. The defaults are those of IEEE 488.2 and SCPI.
+/// Protocol of an instrument. The defaults are those of IEEE 488.2 and SCPI.
 struct InstrumentSpeech {
   /// When the error query is sent.
   enum class ErrorsAsked {
@@ -78,9 +78,9 @@ struct NumberQuestion {
 /// Conditions for a settled instrument. All stated conditions must hold.
 struct SettledRule {
   std::string query;                 ///< empty: not queried
-  std::optional<int> bit;            ///< of a 16-bit register ...
-  bool bit_means_settling = true;    ///< ... that is set while settling (true) or once settled (false)
-  std::vector<std::string> answers;  ///< without a bit: answers that mean settled
+  std::optional<int> bit;            ///< number of a bit in a 16-bit register; empty: `answers` applies
+  bool bit_means_settling = true;    ///< the bit is set while settling (true) or once settled (false)
+  std::vector<std::string> answers;  ///< answers that mean settled, if `bit` is empty
   double dwell_s = 0;                ///< time that it has to stay within the tolerance
 };
 
@@ -122,12 +122,13 @@ struct StagePosition {
   double tolerance_mm = 0.005;
 };
 
-/// Runs along x at constant speed, in the unit of the position and that per second. Without it the stage cannot run.
+/// Runs along x at constant speed, in the unit of the position and in this unit per second. Without it the stage cannot
+/// run.
 struct StageRun {
   std::string set;        ///< "SOUR:SCAN {},{}": destination, speed
   NumberQuestion limits;  ///< lowest and highest speed; empty: limits_mm_s
   std::array<double, 2> limits_mm_s{};
-  /// From, to, speed, and start in seconds of the camera's clock; above 9e37: unknown.
+  /// Reported run: from, to, speed, and start in seconds of the camera's clock (above 9e37: unknown).
   NumberQuestion measured;
 };
 
@@ -150,10 +151,11 @@ struct StageWords {
   std::optional<StageRun> run;  ///< only with a position
 };
 
+/// Kind of an instrument.
 enum class InstrumentKind { black_body, stage };
 [[nodiscard]] std::string_view to_string(InstrumentKind kind);
 
-/// An instrument.
+/// Command table of an instrument.
 struct InstrumentTable {
   std::string name;         ///< of the file
   std::string description;  ///< make and model, for people

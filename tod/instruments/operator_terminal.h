@@ -25,7 +25,8 @@ class LineSource {
 /// may read or buffer it. Lines are truncated to 4096 characters.
 [[nodiscard]] std::unique_ptr<LineSource> descriptor_lines(int fd);
 
-/// Writes the steps and reads until an answer arrives: an empty line is `done`, "q" is `stop`. `out` must outlive it.
+/// Writes the steps and reads until an answer arrives: an empty line is `done`, "q" is `stop`. `out` must outlive the
+/// returned function.
 [[nodiscard]] AskOperator operator_at_terminal(std::ostream& out, std::shared_ptr<LineSource> answers);
 
 }  // namespace todbench

@@ -12,6 +12,7 @@
 
 namespace todbench {
 
+/// Options of prompt_target().
 struct PromptTargetOptions {
   /// Description of the manual equipment, for the report.
   std::string description = "set by hand by the operator";
@@ -19,9 +20,9 @@ struct PromptTargetOptions {
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
-/// present() requests the changes since the last state, waits for the answer and trusts it: PresentedTarget::state is
-/// the requested state, without temperatures. sets_shift is false: a new shift requests a slight movement, and
-/// registration measures it. The answer `stop` gives `interrupted`. After any failure the next request states
+/// present() requests the changes since the last state and waits for the answer. PresentedTarget::state is the
+/// requested state, unchecked and without temperatures. sets_shift is false: a new shift requests a slight movement,
+/// and registration measures it. The answer `stop` gives `interrupted`. After any failure the next request states
 /// everything again.
 [[nodiscard]] std::unique_ptr<Target> prompt_target(AskOperator ask, PromptTargetOptions options = {});
 

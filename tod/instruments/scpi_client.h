@@ -17,6 +17,7 @@
 
 namespace todbench {
 
+/// Limits of a connection.
 struct ScpiClientOptions {
   std::chrono::milliseconds connect_timeout{3000};
   std::chrono::milliseconds answer_timeout{1000};  ///< from sending a command to the last character of its answer
@@ -36,9 +37,9 @@ struct ScpiIdentity {
 /// connection is closed, because a late answer would be taken for the next one: connect again.
 class ScpiClient {
  public:
-  /// `endpoint`: as for instrument_address(). Clears the instrument's error queue and sends *IDN?, or the replacements
-  /// stated by `speech`. Errors: `invalid_input` (endpoint), `not_found` (no connection, or another instrument),
-  /// `interrupted`.
+  /// Connects to an instrument. `endpoint`: as for instrument_address(). Clears the instrument's error queue and sends
+  /// *IDN?, or the replacements stated by `speech`. Errors: `invalid_input` (endpoint), `not_found` (no connection, or
+  /// another instrument), `interrupted`.
   [[nodiscard]] static Result<ScpiClient> connect(const std::string& endpoint, const ScpiClientOptions& options,
                                                   const std::stop_token& stop, const InstrumentSpeech& speech = {});
 

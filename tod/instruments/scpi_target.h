@@ -16,6 +16,7 @@
 
 namespace todbench {
 
+/// Options of open_scpi_target().
 struct ScpiTargetOptions {
   std::string black_body;  ///< as for instrument_address()
   std::string stage;       ///< as for instrument_address()
@@ -26,7 +27,8 @@ struct ScpiTargetOptions {
   std::chrono::milliseconds report_interval{500};  ///< interval of on_wait, by `now`, also before the first call
   OnTargetWait on_wait{};
   double settling_band = 0.1;  ///< largest relative distance from the set contrast for ContrastWait::within_band
-  /// Largest relative rate of the contrast for it, 1/s: a lag of 0.1 s between the triangles of a plate is 0.6 %.
+  /// Largest relative rate of the contrast for ContrastWait::within_band, 1/s: a lag of 0.1 s between the triangles of
+  /// a plate is 0.6 %.
   double max_relative_rate_per_s = 0.06;
   /// States that a run will request: checked against the limits and the plates of the instruments when they are opened.
   std::vector<TargetState> requested{};

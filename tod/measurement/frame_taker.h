@@ -17,21 +17,22 @@
 
 namespace todbench {
 
-/// A frame that was not used, with the reason.
+/// A rejected frame, with the reason.
 struct RejectedFrame {
   std::uint64_t sequence = 0;
   Rejection reason = Rejection::incomplete;
-  std::optional<CorrectionSign> seen{};  ///< the picture that shows a correction
+  std::optional<CorrectionSign> seen{};  ///< sign of a correction in the picture, if the picture showed it
 };
 
+/// Options of FrameTaker.
 struct FrameTakerOptions {
   IntegrityOptions integrity;
   int frames_after_change = 2;       ///< exposures discarded after a change of the scene (frames in flight)
   double nuc_wait_s = 1;             ///< frames within this time after a correction are rejected
   double max_rejected_share = 0.05;  ///< a larger share, after 100 frames, gives `integrity`
   std::chrono::milliseconds frame_timeout{2000};            ///< longest silence of the camera, then `disconnected`
-  std::function<void(const RejectedFrame&)> on_rejected{};  ///< called for every one; may be empty
-  std::shared_ptr<const RadiometricScale> scale{};          ///< replaces that of every frame; null: each frame's own
+  std::function<void(const RejectedFrame&)> on_rejected{};  ///< called for every rejected frame; may be empty
+  std::shared_ptr<const RadiometricScale> scale{};  ///< replaces the scale of every frame; null: each frame's own
 };
 
 /// Average of good frames in kelvin, with noise from their differences.
@@ -42,17 +43,19 @@ struct AveragedPicture {
   /// Standard deviation per pixel and frame, sqrt(mean d^2 / 2) over successive frames without changes of the whole
   /// frame; 0 for a single frame.
   double temporal_noise_k = 0;
-  /// Of a pixel in successive frames (first_order_correlation()); empty: fewer than eight frames, or no noise.
+  /// Lag-1 correlation of a pixel's noise in successive frames (first_order_correlation()); empty: fewer than eight
+  /// frames, or no noise.
   std::optional<double> lag1_correlation;
   /// Unbiased variances per frame of the noise that is common to the pixels of a row or column and changes from frame
   /// to frame. May be negative by chance. Empty for a single frame.
   std::optional<double> row_variance_k2, column_variance_k2;
   /// Largest number that divides all differences between frames: above 1 if a format leaves bits empty or a camera
-  /// rounds more coarsely than it counts; 0: no differences.
+  /// rounds to steps of several counts; 0: no differences.
   int count_step = 0;
 };
 
-/// Noise of a pixel in one frame, in kelvin. Successive frames show only sqrt(1 - rho) of noise with memory.
+/// Returns the noise of a pixel in one frame, in kelvin: temporal_noise_k, over sqrt(1 - rho) if the lag-1 correlation
+/// rho is noticeable, because differences of successive frames show only that part of the noise.
 [[nodiscard]] double noise_of_one_frame(const AveragedPicture& picture);
 
 /// Takes frames from a started source. One thread at a time.
@@ -71,9 +74,9 @@ class FrameTaker {
   /// Returns the next good frame. Errors: `integrity` (too many rejected), `disconnected` (lost, or silent for the
   /// frame timeout), `interrupted`.
   [[nodiscard]] Result<Frame> next(std::stop_token stop);
-  /// Takes and judges frames while the target changes, until `enough` returns true; it is called before every call of
-  /// the source with the number of calls so far. The scene may move, and a silent source is not an error. Other errors
-  /// as next().
+  /// Takes and judges frames while the target changes, until `enough` returns true. `enough` is called before each
+  /// request to the source, with the number of requests so far. The scene may move, and a silent source is not an
+  /// error. Other errors: those of next().
   [[nodiscard]] Result<void> take_while_presenting(const std::function<bool(std::int64_t calls)>& enough);
   /// Returns the next good frame of a moving scene. No frame is discarded, and a changing picture is not taken for a
   /// correction. Errors: those of next().
@@ -101,10 +104,10 @@ class FrameTaker {
   enum class Scene { still, moving };
   [[nodiscard]] Result<Frame> from_source(const std::stop_token& stop);
   [[nodiscard]] Result<void> check_share() const;
-  /// Applies the gate, then the knowledge of corrections.
+  /// Applies the integrity gate, then the checks for corrections.
   [[nodiscard]] std::optional<RejectedFrame> judge(const Frame& frame, Scene scene);
-  /// Applies judge() and notifies everyone concerned. Returns whether the frame is good, or the error that ends the
-  /// run.
+  /// Applies judge(), counts the frame and calls on_rejected. Returns whether the frame is good, or the error that ends
+  /// the run.
   [[nodiscard]] Result<bool> accept(const Frame& frame, Scene scene);
   void note_told_correction(const Frame& frame);
   [[nodiscard]] std::optional<CorrectionSign> see_correction(const Frame& frame, std::optional<Rejection> rejection,
@@ -118,10 +121,10 @@ class FrameTaker {
   std::int64_t valid_from_ns_ = 0;            ///< host time of the last change of scene
   int to_discard_ = 0;                        ///< exposures in flight at the change
   std::optional<std::int64_t> nuc_ns_;        ///< host time of the last correction
-  std::optional<std::int64_t> known_nuc_ns_;  ///< of the last one commanded or reported by the camera
+  std::optional<std::int64_t> known_nuc_ns_;  ///< host time of the last correction that was commanded or reported
   std::uint64_t used_ = 0;
   std::uint64_t seen_ = 0;
-  std::uint64_t excused_ = 0;  ///< pictures of a moving scene that look bad
+  std::uint64_t excused_ = 0;  ///< rejections that do not count, because the scene moves
   bool told_of_corrections_ = false;
 };
 

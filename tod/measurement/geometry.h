@@ -32,6 +32,7 @@ struct TrianglesTooNear {
   TouchingWindow window;
 };
 
+/// Reason why a geometry cannot be measured.
 using Misfit = std::variant<PlateBeyondPicture, TrianglesTooNear>;
 
 /// Everything that cannot be measured with this geometry; empty if all fits. Plates that are too large come first,
@@ -39,6 +40,7 @@ using Misfit = std::variant<PlateBeyondPicture, TrianglesTooNear>;
 [[nodiscard]] Result<std::vector<Misfit>> find_misfits(const MeasurementOptions& options, Observer& observer,
                                                        cv::Size picture);
 
+/// One sentence, for example:
 /// "plate tcat-a: its 400 x 300 mm cover 800 x 600 pixels at 2.00 m, but the picture has 640 x 480 pixels"
 [[nodiscard]] std::string sentence(const Misfit& misfit);
 

@@ -17,7 +17,7 @@ namespace todbench {
 
 /// Unit in which the contrast of the large triangles is measured.
 enum class ContrastUnit {
-  kelvin,  ///< of the camera's temperature scale
+  kelvin,  ///< kelvin of the camera's temperature scale
   /// For a camera with gain control. The target gives the contrast in kelvin; the large triangles of every frame give
   /// it in grey levels.
   grey_levels,
@@ -61,8 +61,8 @@ struct GreyContrast {
   [[nodiscard]] double half_width() const;
 };
 
-/// effective_contrast() by means, with the uncertainty of rounding. Errors: those of effective_contrast();
-/// `calibration` for a single triangle, because its scatter is not known.
+/// Measures the contrast by effective_contrast() with mean levels and adds the uncertainty of rounding. Errors: those
+/// of effective_contrast(); `calibration` for a single triangle, because its scatter is not known.
 [[nodiscard]] Result<GreyContrast> grey_contrast(const cv::Mat1d& levels, const TargetPlate& mounted_plate,
                                                  const Registration& registration, double min_size_px,
                                                  const GreySteps& steps);

@@ -41,8 +41,9 @@ struct JudgedContrast {
 /// Whether any stage changed the frame.
 [[nodiscard]] bool behind_stages(const Frame& frame);
 
-/// Contrast of the large triangles of one judged frame by means, on the scale of its counts. Of a finer picture every
-/// samples_per_pixel-th sample is used. Errors: those of effective_contrast() and of the scale.
+/// Contrast of the large triangles of one judged frame by means, on the scale of its counts. If the judged picture is
+/// finer than the camera's, only every samples_per_pixel-th sample is used. Errors: those of effective_contrast() and
+/// of the scale.
 [[nodiscard]] Result<EffectiveContrast> judged_levels(const Frame& frame, const TargetPlate& mounted_plate,
                                                       const Registration& registration, double min_size_px);
 
@@ -70,8 +71,8 @@ class JudgedFrames {
         judged_noise_(frames) {}
 
   void add(const Frame& frame);
-  /// Empty without stages. `memory_ratio`: JudgedMemory::ratio(). Errors: those of judged_levels(); `not_identifiable`
-  /// (the judged pictures do not show the large triangles).
+  /// Returns the scale of the judged pictures; empty without stages. `memory_ratio`: JudgedMemory::ratio(). Errors:
+  /// those of judged_levels(); `not_identifiable` (the judged pictures do not show the large triangles).
   [[nodiscard]] Result<std::optional<JudgedScale>> scale(double memory_ratio) const;
   /// Average of the judged frames, on the camera's scale, and the registration in it. Empty without stages, or if the
   /// stages' pictures are finer.
@@ -97,7 +98,8 @@ class JudgedFrames {
   std::optional<Error> error_;
 };
 
-/// Gain of one frame if it changes. Errors: `not_identifiable` if it is less than three standard errors from 0.
+/// Returns the gain of one frame, for stages whose gain changes from frame to frame. Errors: `not_identifiable` if it
+/// is less than three standard errors from 0.
 [[nodiscard]] Result<double> judged_gain(const Frame& frame, const TargetPlate& mounted_plate,
                                          const Registration& registration, double min_size_px,
                                          const JudgedScale& scale);

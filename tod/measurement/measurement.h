@@ -33,12 +33,13 @@ namespace todbench {
 /// Picture from which the contrast of a set-up is about to be measured. Valid during the call only.
 struct SetUpPicture {
   const AveragedPicture& picture;
-  int frames = 1;  ///< averaged in it
+  int frames = 1;  ///< number of frames averaged
   const TargetPlate& mounted_plate;
   const Registration& registration;  ///< in this picture
   const TargetState& state;
 };
 
+/// Options of measure().
 struct MeasurementOptions {
   double ifov_mrad = 0;             ///< of one pixel, from the plan
   double distance_m = 0;            ///< entrance pupil to plate
@@ -49,7 +50,7 @@ struct MeasurementOptions {
   ContrastUnit contrast_unit = ContrastUnit::kelvin;  ///< grey_levels: the camera's temperature scale is not used
   int samples_per_pitch = 1;  ///< displayed samples per detector pitch (2: 2x2 microscan); the IFOV is that of a sample
   int judged_samples_per_pixel = 1;  ///< of JudgedPicture, in every frame; the IFOV stays that of a pixel
-  /// By plate name: response of effective_contrast() to a contrast of 1 K, blur included, from a simulated picture; 1
+  /// Response of effective_contrast() to a contrast of 1 K, blur included, by plate name, from a simulated picture; 1
   /// if unknown. Measured contrasts are divided by it.
   std::map<std::string, double> contrast_response;
   /// Called for every SetUpPicture if contrasts are in kelvin; the returned values replace those of contrast_response
@@ -58,7 +59,7 @@ struct MeasurementOptions {
   /// Transmittance of the air between target and camera for a contrast, recorded with every presentation; empty: not
   /// stated.
   std::optional<double> air_transmittance{};
-  static constexpr int graded_draws = 32;   ///< of the observer's own noise, for the probabilities of one frame
+  static constexpr int graded_draws = 32;   ///< draws of the observer's own noise for the probabilities of one frame
   AnswerKind answers = AnswerKind::binary;  ///< graded: also Trial::probability_correct
   int frames_per_presentation = 1;  ///< successive good frames over which graded answers are averaged; at least 1
   std::map<double, int> frames_at_contrast;  ///< by set contrast; replaces frames_per_presentation
@@ -67,7 +68,7 @@ struct MeasurementOptions {
   double nuc_wait_s = 1;                     ///< frames within this time after a correction are not measured
   /// Larger deviations of the target's reported contrast from the set-point give a note; 0: not checked.
   double max_readback_deviation_k = 0;
-  /// By set contrast: largest relative deviation of the observed contrast. A larger one, by four standard errors, ends
+  /// Largest relative deviation of the observed contrast, by set contrast. A larger one, by four standard errors, ends
   /// the run with `calibration`. Other contrasts, and grey levels, are not checked.
   std::map<double, double> max_contrast_error{};
   /// Largest distance of the plate from the requested place, if the target sets places. A larger one ends the run with
@@ -116,6 +117,7 @@ struct SetUpRecord {
   Registration registration;
 };
 
+/// Result of measure().
 struct MeasurementResult {
   std::vector<Trial> trials;
   std::vector<Presentation> presentations;
@@ -125,9 +127,9 @@ struct MeasurementResult {
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
   std::uint64_t frames_lost = 0;                         ///< gaps in the sequence
-  /// Per pixel, from differences of successive frames of the same presentation; 0: not measured.
+  /// Temporal noise per pixel, from differences of successive frames of the same presentation; 0: not measured.
   double temporal_noise_k = 0;
-  std::optional<double> temporal_noise_counts;  ///< the same in steps of the counts, near the surround
+  std::optional<double> temporal_noise_counts;  ///< temporal noise in steps of the counts, near the surround
   std::optional<double> lag1_correlation;       ///< of a pixel's noise in the same frames
   std::vector<std::string> notes;
   std::vector<Interruption> interruptions;

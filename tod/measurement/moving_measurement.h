@@ -16,24 +16,28 @@
 
 namespace todbench {
 
+/// Options of measure_moving().
 struct MovingMeasurementOptions {
-  /// As for a plate at rest; schedule, answers and corrections are ignored.
+  /// Options as for a plate at rest; schedule, answers and corrections are ignored.
   MeasurementOptions measurement;
   std::vector<Mounting> mountings;
-  /// Number of `mountings`, the first ones, that show each plate of `measurement`; empty: all of them.
+  /// For each plate of `measurement`, the number of `mountings` that show it, counted from the first one; empty: all of
+  /// them.
   std::vector<std::size_t> mountings_per_plate{};
   std::vector<double> delta_t_k;      ///< not 0; the plate is registered at the largest
   std::vector<double> speeds_mrad_s;  ///< 0 or more
-  int passes = 4;                     ///< of every plate, mounting, contrast and speed, right and left in turn
-  int frames = 8;                     ///< of a pass, successive
-  int lead_frames = 5;  ///< of motion before the first, until the detector has forgotten the plate at rest
+  int passes = 4;  ///< passes of each plate, mounting, contrast and speed, alternately to the right and left
+  int frames = 8;  ///< successive frames of a pass that are judged
+  /// Frames of motion before the first judged one, until the detector no longer shows the plate at rest.
+  int lead_frames = 5;
   PlaceSource places = PlaceSource::triangles;
 };
 
 /// One pass. Passes are the clusters of answers.
 struct MovingPassRecord {
   int pass = 0;  ///< over the whole measurement
-  int pair = 0;  ///< counts sampling phases of plates, mountings and contrasts: the same at every speed
+  /// Number of the sampling phase, counted over plates, mountings and contrasts: the same at every speed.
+  int pair = 0;
   std::string plate;
   Mounting mounting = Mounting::identity;
   double set_delta_t_k = 0, delta_t_k = 0;
@@ -46,19 +50,21 @@ struct MovingPassRecord {
   /// not the largest contrast.
   std::optional<double> lag_s;
   int left_out = 0;     ///< triangles whose window leaves the picture
-  std::string dropped;  ///< reason why there are no answers; empty: there are
+  std::string dropped;  ///< reason why the pass has no answers; empty: it has answers
 };
 
+/// Answer of one observer to one triangle of a pass.
 struct MovingAnswer {
   SequenceObserver observer = SequenceObserver::single_frame;
   double speed_mrad_s = 0;
   Trial trial;  ///< presentation: MovingPassRecord::pair, one pass at each speed
 };
 
+/// Result of measure_moving().
 struct MovingMeasurement {
   std::vector<MovingPassRecord> passes;
   std::vector<MovingAnswer> answers;
-  /// Of an observer with an eye: answers at the best and the worst end of its open parameters, to the same frames.
+  /// For an observer with an eye: answers to the same frames at the best and the worst end of its open parameters.
   std::array<std::vector<MovingAnswer>, 2> answers_at_ends;
   std::vector<SetUpRecord> set_ups;
   double frame_rate_hz = 0;
@@ -74,22 +80,23 @@ struct MovingMeasurement {
 /// Events of a run, on the measuring thread. Every function may be empty. An error returned by one ends the run with
 /// this error.
 struct MovingListener {
-  /// The plate is at rest and its contrast is known; before the passes of this contrast.
+  /// Called when the plate is at rest and its contrast is known, before the passes of this contrast.
   std::function<Result<void>(const Presentation&)> on_presentation{};
   std::function<Result<void>(const MovingAnswer&)> on_answer{};  ///< one by one, in the order of the result
   std::function<void(const MovingPassRecord&)> on_pass{};        ///< after its answers
 };
 
-/// Checks of measure_moving() before it starts the camera. Errors: `invalid_input` (a target that cannot run, speeds
+/// Checks of measure_moving() before it starts the camera. Errors: `invalid_input` (a target that cannot move, speeds
 /// above 5 pixels a frame, displayed samples finer than the detectors, contrasts in grey levels, sizes that do not
 /// fit), `calibration` (no temperature scale).
 [[nodiscard]] Result<void> check_moving(const SourceInfo& camera, Target& target, TemplateObserver& observer,
                                         const MovingMeasurementOptions& options);
 
-/// Treats set-ups as measure(), with its checks. A pass with lost frames or without a located plate is dropped, and its
-/// record states why; if at least a third are dropped, the run ends with `integrity`. A run that ended early after its
-/// first answers returns them with `ended_by`. Errors: `invalid_input` (a target that cannot run, speeds above 5 pixels
-/// a frame, runs beyond the stage, displayed samples finer than the detectors), those of measure().
+/// Measures a moving plate. Set-ups are prepared and checked as by measure(). A pass with lost frames or without a
+/// located plate is dropped, and its record states why; if at least four passes and at least a third are dropped, the
+/// run ends with `integrity`. A run that ended early after its first answers returns them with `ended_by`. Errors:
+/// `invalid_input` (a target that cannot move, speeds above 5 pixels a frame, a run longer than the travel of the
+/// stage, displayed samples finer than the detectors), those of measure().
 [[nodiscard]] Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
                                                        const MovingMeasurementOptions& options, RunController& host,
                                                        const MovingListener& listener, std::stop_token stop);

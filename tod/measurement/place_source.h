@@ -7,10 +7,10 @@
 
 namespace todbench {
 
-/// Place of the plate in a frame of a pass.
+/// Source of the place of the plate in a frame of a pass.
 enum class PlaceSource {
   triangles,  ///< place of the large triangles of that frame
-  stage,      ///< on the straight line at the stage's speed over device time, through the middle of those places
+  stage,      ///< a straight line over device time at the stage's speed, through the mean place of the large triangles
 };
 inline constexpr std::array all_place_sources{PlaceSource::triangles, PlaceSource::stage};
 [[nodiscard]] constexpr std::string_view to_string(PlaceSource source) {

@@ -18,6 +18,7 @@
 
 namespace todbench {
 
+/// Options of PlaceWatch.
 struct PlaceWatchOptions {
   /// A larger deviation ends the run with `calibration`; 0: not checked.
   double max_shift_error_px = 0;
@@ -32,7 +33,7 @@ struct ExpectedPicture {
 
 /// Place of the plate's middle, in pixels.
 struct PlateSeen {
-  cv::Point2d asked_px;
+  cv::Point2d asked_px;                ///< requested place
   std::optional<cv::Point2d> seen_px;  ///< in the frames of this presentation; empty: too little contrast
   cv::Point2d standard_error_px;       ///< of seen_px
   cv::Point2d used_off_px{0, 0};       ///< place by which frames are judged minus the requested one
@@ -47,11 +48,13 @@ class PlaceWatch {
  public:
   explicit PlaceWatch(PlaceWatchOptions options) : options_(options) {}
 
+  /// Whether places are checked.
   [[nodiscard]] bool looks() const { return options_.max_shift_error_px > 0; }
   /// Call after the plate was located anew.
   void set_up_located();
-  /// `base`: of the set-up at shift 0; `asked`: the same at the shift of this presentation. `frames`: of the
-  /// presentation, at least one. Errors: `calibration` with the likely cause.
+  /// Measures the place in one presentation. `base`: registration of the set-up at shift 0; `asked`: the same at the
+  /// shift of this presentation; `frames`: of the presentation, at least one. Errors: `calibration` with the likely
+  /// cause.
   [[nodiscard]] Result<PlateSeen> look(std::span<const Frame> frames, const TargetPlate& mounted_plate,
                                        const Registration& base, const Registration& asked,
                                        const ExpectedPicture& expected, std::int64_t presentation);

@@ -10,6 +10,7 @@
 
 namespace todbench {
 
+/// A plate with its observers.
 struct PreparedPlate {
   TargetPlate plate;                                               ///< identity mounting
   std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known

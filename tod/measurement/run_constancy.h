@@ -45,21 +45,22 @@ inline constexpr double transfer_false_alarm = 0.005;
 
 /// Relative change of the signal transfer between the first set-ups and the later ones, at the division of the run at
 /// which it is largest in units of its error. A set-up with several contrasts contributes the difference of its extreme
-/// ones, triangle by triangle: fixed pattern, row and column noise cancel. A set-up with one contrast may have a
-/// pattern common to its triangles, as large as the scatter of one. A set-up whose contrasts span less than half of the
-/// widest span is left out. The error contains the pooled scatter of the triangles within the set-ups (Student's t) and
-/// transfer_systematic_u; the divisions share the probability of a false alarm. Empty with fewer than two set-ups, or
-/// if no set-up has two triangles.
+/// ones, triangle by triangle: fixed pattern, row and column noise cancel. For a set-up with one contrast, the error
+/// includes a pattern common to its triangles, as large as the scatter of one triangle. A set-up whose contrasts span
+/// less than half of the widest span is left out. The error contains the pooled scatter of the triangles within the
+/// set-ups (Student's t) and transfer_systematic_u; the divisions share the probability of a false alarm. Empty with
+/// fewer than two set-ups, or if no set-up has two triangles.
 [[nodiscard]] std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasurement> measurements);
 
-/// ln of the noise of the last average over that of the first one of the same contrast, for the contrast with the
-/// largest change. The limit is ln 1.15: one standard error of the noise of 1000 pixels and 16 frames is 0.7 %; 15 %
-/// are eight times the error of a ratio of two of these pictures at a correlation of 0.5.
+/// ln of the noise of a later average over that of the first one of the same contrast, for the pair of averages with
+/// the largest change. The limit is ln 1.15: one standard error of the noise of 1000 pixels and 16 frames is 0.7 %; 15
+/// % are eight times the error of a ratio of two of these pictures at a correlation of 0.5.
 [[nodiscard]] std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise);
 inline constexpr double most_noise_change = 0.1397619;  ///< ln 1.15
 
-/// Difference of the lag-1 correlation in the same two averages. The limit is most_correlation_change: five standard
-/// errors of the difference for 16 frames of 120 rows if half of the noise variance is that of whole rows.
+/// Difference of the lag-1 correlation between the first and a later average of the same contrast, for the pair with
+/// the largest difference. The limit is most_correlation_change: five standard errors of the difference for 16 frames
+/// of 120 rows if half of the noise variance is that of whole rows.
 [[nodiscard]] std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> noise);
 inline constexpr double most_correlation_change = 0.2;
 
@@ -70,7 +71,8 @@ inline constexpr double most_correlation_change = 0.2;
 [[nodiscard]] std::optional<PictureResidue> picture_residue(const cv::Mat1d& before, const cv::Mat1d& first,
                                                             const cv::Mat1d& last, const cv::Mat1d& mean,
                                                             double noise_k);
-/// Above the residue of a fixed pattern that drifts between corrections, and of rounding.
+/// Smallest limit of a residue: above the residue that rounding, or a fixed pattern that drifts between corrections,
+/// can cause.
 inline constexpr double least_residue_share = 0.02;
 
 }  // namespace todbench

@@ -19,7 +19,7 @@ enum class Moment {
   corrected,       ///< the camera has carried out the command to correct
   scene_changed,   ///< the target is in place; frames from now on show it
   camera_lost,     ///< the camera failed
-  camera_back,     ///< the presentation in which it failed was repeated
+  camera_back,     ///< the presentation in which the camera failed was repeated
 };
 inline constexpr std::array all_moments{Moment::correction_due, Moment::corrected, Moment::scene_changed,
                                         Moment::camera_lost, Moment::camera_back};
@@ -28,13 +28,14 @@ inline constexpr std::array all_moments{Moment::correction_due, Moment::correcte
 /// Treatment of the frames that a camera sends while the target changes.
 enum class FramesWhilePresenting {
   leave,  ///< not requested: for a camera that exposes only on request
-  take,   ///< taken on a separate thread: no queue must hold minutes of frames, and no correction is missed
-  repeat  ///< taken as often as RunController::asked_while_presenting() returns: for a replay
+  take,   ///< taken on a separate thread, so that queues stay short and every correction is detected
+  repeat  ///< as many are requested as RunController::asked_while_presenting() returns: for a replay
 };
 
-/// Everything that a run obeys in addition to its plan. The answers decide which trials are made: a recording keeps
-/// every answer, and a replay returns the same ones. Called from the measuring thread, in the order of the measurement.
-/// An error of any function ends the run with this error. Must outlive the run.
+/// External inputs of a run: clock, pauses, frame requests and recovery of a lost camera. The returned values decide
+/// which trials are made: a recording stores all of them, and a replay returns the same ones. Called from the measuring
+/// thread, in the order of the measurement. An error of any function ends the run with this error. Must outlive the
+/// run.
 class RunController {
  public:
   virtual ~RunController() = default;
@@ -45,8 +46,8 @@ class RunController {
   [[nodiscard]] virtual Result<bool> rests(std::stop_token stop) = 0;
   /// Constant during a run.
   [[nodiscard]] virtual FramesWhilePresenting frames_while_presenting() const = 0;
-  /// Not called for FramesWhilePresenting::leave. Called after the target answered, with the number of frames requested
-  /// meanwhile (0 in a replay); returns that number, in a replay the recorded one.
+  /// Called after the target has presented a state, with the number of frames requested meanwhile (0 in a replay).
+  /// Returns this number; in a replay, the recorded one. Not called for FramesWhilePresenting::leave.
   [[nodiscard]] virtual Result<std::int64_t> asked_while_presenting(std::int64_t calls) = 0;
   /// Whether recover() may succeed. False: a lost camera ends the run, and recover() is not called.
   [[nodiscard]] virtual bool recovers() const = 0;

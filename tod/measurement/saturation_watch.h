@@ -10,7 +10,8 @@
 
 namespace todbench {
 
-/// Learns the ends of a camera's counts and the pixels that are always there. One thread at a time.
+/// Learns the ends of a camera's range of counts, and the defective pixels that are always at an end. One thread at a
+/// time.
 class SaturationWatch {
  public:
   /// Learns from the average of a set-up with the observed contrast `contrast_k`. Returns the number of pixels of the
@@ -22,7 +23,7 @@ class SaturationWatch {
   /// are far from that end; it is ignored until it changes.
   [[nodiscard]] int learn(const AveragedPicture& picture, const RadiometricScale& scale,
                           const TargetPlate& mounted_plate, const Registration& registration, double contrast_k);
-  /// Number of pixels of the window at an end of the counts, without those that always are.
+  /// Number of pixels of the window at an end of the counts, without the defective ones.
   [[nodiscard]] int saturated_pixels(const Frame& frame, const cv::Rect& window) const;
 
  private:

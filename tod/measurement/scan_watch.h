@@ -38,12 +38,12 @@ class ScanFrames {
   int differences_ = 0;
 };
 
-/// Elements of StageFit::seen_per_asked may differ from those of the unit matrix by this and four standard errors. A
+/// Elements of StageFit::seen_per_asked may differ from those of the unit matrix by this plus four standard errors. A
 /// scan of half the step differs by 0.5, frames at rest by 1.
 inline constexpr double most_scan_deviation = 0.25;
 
-/// Fixed pattern displaces the triangles of every place of the scan equally. It is therefore part of the common origin
-/// of a set-up, and standard errors are those of the temporal noise alone.
+/// Checks a scan from set-up to set-up. Fixed pattern displaces the triangles of every place of the scan equally. It is
+/// therefore part of the common origin of a set-up, and standard errors are those of the temporal noise alone.
 class ScanWatch {
  public:
   /// Adds a set-up or contrast. `registration`: in the mean of the frames. Errors: `calibration` if this one, or all so

@@ -30,7 +30,7 @@ inline constexpr std::array all_sequence_observers{SequenceObserver::single_fram
 /// One triangle in the frames of a pass.
 struct SeenSequence {
   std::span<const cv::Mat1f> frames;  ///< kelvin; whole frames, at least one
-  std::vector<cv::Point2d> places;    ///< of its centroid in each, pixel centres at integers
+  std::vector<cv::Point2d> places;    ///< places of its centroid in each frame, pixel centres at integers
   double contrast_k = 0;
   double noise_k = 0;  ///< of the sensor in one frame
 };
@@ -43,7 +43,7 @@ class SequenceJudge {
   [[nodiscard]] static Result<SequenceJudge> prepare(TemplateObserver& observer, std::span<const double> sizes);
 
   [[nodiscard]] std::size_t sizes() const { return sizes_.size(); }
-  /// Side in samples of the window that every observer of this size finds enough, its search included.
+  /// Side in samples of a window that is large enough for every observer at this size, search included.
   [[nodiscard]] int window_samples(std::size_t size) const;
   /// Returns the chosen alternative. Precondition: the windows round all places are in the frames.
   [[nodiscard]] int choose(SequenceObserver kind, std::size_t size, const SeenSequence& seen,

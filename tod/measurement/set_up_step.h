@@ -26,12 +26,12 @@ namespace todbench {
 [[nodiscard]] FrameTakerOptions taker_options(const MeasurementOptions& options, const SourceInfo& camera,
                                               std::function<void(const RejectedFrame&)> on_rejected = {});
 
-/// Call before the camera is started. Errors: `calibration` (counts without temperature for contrasts in kelvin),
-/// `invalid_input` (sizes or windows that do not fit; contrasts in grey levels with a plate that has fewer than two
-/// large enough triangles), those of the observer.
+/// Checks a measurement before the camera is started. Errors: `calibration` (counts without temperature for contrasts
+/// in kelvin), `invalid_input` (sizes or windows that do not fit; contrasts in grey levels with a plate that has fewer
+/// than two large enough triangles), those of the observer.
 [[nodiscard]] Result<void> check_before_measuring(const MeasurementOptions& options, Observer& observer,
                                                   const SourceInfo& camera);
-/// The part of it that needs the plates only.
+/// The part of check_before_measuring() that needs the plates only.
 [[nodiscard]] Result<void> check_grey_references(const MeasurementOptions& options);
 
 /// A contrast as used for judging.
@@ -45,14 +45,15 @@ struct SeenContrast {
   std::optional<JudgedScale> judged{};          ///< empty: no stage after the camera
 };
 
-/// One thread at a time. The arguments must outlive it.
+/// Locates plates and measures their effective contrasts. One thread at a time. The arguments must outlive it.
 class SetUpStep {
  public:
   SetUpStep(const MeasurementOptions& options, const FrameSource& camera, FrameTaker& taker,
             std::function<void(const std::string&)> note)
       : options_(options), camera_(camera), taker_(taker), note_(std::move(note)) {}
 
-  /// Whether the contrast of the next averages has settled: otherwise they are not compared with earlier pictures.
+  /// States whether the contrast of the next averages has settled: otherwise they are not compared with earlier
+  /// pictures.
   void expect(ContrastWait wait) { wait_ = wait; }
   /// Takes the frames in which a plate is located, and learns the noise from the first that show any.
   [[nodiscard]] Result<AveragedPicture> look(std::stop_token stop);
@@ -68,8 +69,8 @@ class SetUpStep {
   [[nodiscard]] Result<SeenContrast> contrast(const TargetPlate& mounted_plate, const Registration& registration,
                                               const TargetState& set, const PresentedTarget& said,
                                               std::stop_token stop);
-  /// The contrast of a presentation by its own frames, in place of that of `seen`, if it exceeds its noise. Errors:
-  /// those of effective_contrast(); `calibration` (pixels without a temperature).
+  /// Measures the contrast of a presentation in its own frames; it replaces that of `seen` if it exceeds its noise.
+  /// Errors: those of effective_contrast(); `calibration` (pixels without a temperature).
   [[nodiscard]] Result<SeenContrast> own_contrast(std::span<const Frame> frames, const TargetPlate& mounted_plate,
                                                   const Registration& registration, const TargetState& set,
                                                   SeenContrast seen) const;
@@ -82,19 +83,19 @@ class SetUpStep {
   /// judged_gain().
   [[nodiscard]] Result<double> gain_of(const Frame& frame, const TargetPlate& mounted_plate,
                                        const Registration& registration, const SeenContrast& seen) const;
-  /// Number of pixels of the window at an end of the counts, without those that always are.
+  /// Number of pixels of the window at an end of the counts, without the defective ones.
   [[nodiscard]] int saturated_pixels(const Frame& frame, const cv::Rect& window) const {
     return saturation_.saturated_pixels(frame, window);
   }
-  /// Same for the judged samples; the ends of stages may differ from those of the counts.
+  /// Same for samples of the judged picture, whose range of counts may differ from that of the camera.
   [[nodiscard]] int saturated_samples(const Frame& frame, const cv::Rect& window) const;
 
-  /// Per pixel and frame, from differences of successive frames; 0: not measured.
+  /// Temporal noise per pixel and frame, from differences of successive frames; 0: not measured.
   [[nodiscard]] double temporal_noise_k() const { return temporal_noise_k_; }
   [[nodiscard]] std::optional<double> noise_counts() const { return noise_counts_; }
   [[nodiscard]] std::optional<double> lag1_correlation() const { return lag1_correlation_; }
 
-  /// Constancy of the camera by the averages so far.
+  /// Results that show whether the camera stayed the same, from the averages so far.
   [[nodiscard]] const RunConstancy& constancy() const { return constancy_; }
 
  private:

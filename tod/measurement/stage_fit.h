@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Movement of the picture by a stage, from requested and observed places.
+// Fit of the picture's movement to the requested shifts of a stage.
 #pragma once
 
 #include <cstdint>
@@ -24,23 +24,24 @@ struct StageFit {
   cv::Matx22d seen_per_asked = cv::Matx22d::eye();  ///< rows: x and y observed; columns: x and y requested
   cv::Matx22d standard_error;
   double chi2 = 0;            ///< of seen_per_asked against the unit matrix, 4 degrees of freedom
-  double explained = 0;       ///< share of the squared deviations from the origins that the matrix explains
-  double largest_off_px = 0;  ///< of the requested shifts, from their middle
-  double largest_off_error_px = 0;
+  double explained = 0;       ///< share of the squared deviations (observed minus requested) that the matrix explains
+  double largest_off_px = 0;  ///< largest deviation of a fitted from its requested shift, without origins
+  double largest_off_error_px = 0;  ///< standard error of largest_off_px, per axis
 };
 
-/// Empty with fewer than four places, or if the shifts do not span both axes.
+/// Fits the movement. Empty with fewer than four places, or if the shifts do not span both axes.
 [[nodiscard]] std::optional<StageFit> fit_stage(std::span<const ShiftSeen> places);
 
-/// Whether no element of StageFit::seen_per_asked differs from that of the unit matrix by more than `most_deviation`
-/// and four standard errors.
+/// Whether every element of StageFit::seen_per_asked is within `most_deviation` plus four standard errors of that of
+/// the unit matrix.
 [[nodiscard]] bool moves_as_asked(const StageFit& fit, double most_deviation);
 
 /// The movement as a clause: "the stage moves along x with the wrong sign".
 [[nodiscard]] std::string motion_clause(const StageFit& fit);
 
-/// Likely cause of wrong places, as a clause: "the stage moves along x with the wrong sign". It needs about six places;
-/// with fewer it only states the last one.
+/// Likely cause of wrong places, as a clause: "the stage moves along x with the wrong sign". With fewer than six
+/// places, only a single displacement of the picture is detected. If no cause is found, the clause states the deviation
+/// of the last place. Precondition: not empty.
 [[nodiscard]] std::string likely_cause(std::span<const ShiftSeen> places);
 
 }  // namespace todbench

@@ -14,13 +14,14 @@ namespace todbench {
 struct TargetChange {
   Result<PresentedTarget> presented;
   Result<void> frames;  ///< frames taken meanwhile, if any
-  /// The camera failed first and the target was told to stop waiting: its error is then not a failure of its own.
+  /// The camera failed first, and the wait for the target was cancelled: the target's error is then not a failure of
+  /// its own.
   bool given_up = false;
 };
 
-/// Presents a state and treats frames meanwhile as the host states. If they are taken, a second thread takes them, and
-/// a camera failure ends the wait for the target: a black body may need minutes, and the state has to be presented
-/// again anyway. Errors: only those of the host.
+/// Presents a state and handles the frames sent meanwhile as RunController::frames_while_presenting() states. If they
+/// are taken, a second thread takes them, and a camera failure ends the wait for the target: a black body may need
+/// minutes, and the state has to be presented again anyway. Errors: only those of the host.
 [[nodiscard]] Result<TargetChange> change_target(Target& target, FrameTaker& taker, RunController& host,
                                                  const TargetState& state, std::stop_token stop);
 

@@ -17,7 +17,7 @@
 
 namespace todbench {
 
-/// A presentation as the judge needs it. Borrowed for the call.
+/// Input of TrialJudge::answers(). References are used during the call only.
 struct PresentationShown {
   const PreparedPlate& plate;
   const TargetPlate& mounted_plate;
@@ -27,23 +27,24 @@ struct PresentationShown {
   const SeenContrast& seen;
   std::int64_t presentation = 0;
   std::span<const Frame> first_frames;  ///< already taken; the others are taken from the camera
-  int frames = 1;                       ///< in all
+  int frames = 1;                       ///< total number of frames
 };
 
+/// Answers to one presentation.
 struct PresentationAnswers {
   std::vector<Trial> trials;     ///< one per triangle of the plate
   std::vector<Patch> patches;    ///< of the first frame, one per trial
   std::vector<GreyFrame> greys;  ///< one per frame if contrasts are in grey levels
 };
 
-/// Lets an observer judge the triangles of a presentation. One thread at a time. What it borrows must outlive it.
+/// Lets an observer judge the triangles of a presentation. One thread at a time. The arguments must outlive it.
 class TrialJudge {
  public:
   TrialJudge(const MeasurementOptions& options, Observer& observer, FrameTaker& taker, SetUpStep& step)
       : options_(options), observer_(observer), taker_(taker), step_(step) {}
 
   /// Returns the answers to all triangles. Errors: those of the camera; `calibration` (a window leaves the picture);
-  /// `internal` (frames of another sampling than the options state); that of the observer.
+  /// `internal` (frames of another sampling than the options state); those of the observer.
   [[nodiscard]] Result<PresentationAnswers> answers(const PresentationShown& shown, const std::stop_token& stop);
 
   /// Side of a window of the judged picture, in whole pixels, even as patch_window() requires.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pixels that respond differently from the others: which, why, and in which clusters.
+// Bad pixels of a picture: rules, reasons and clusters.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -22,6 +22,7 @@ struct PixelProperties {
   cv::Mat1d noise_sd{};      ///< temporal
 };
 
+/// Bad pixels, by rule, and their clusters.
 struct BadPixels {
   cv::Mat1b dead, noisy, offset;  ///< 255 if the rule holds
   cv::Mat1b bad;                  ///< any of them
@@ -31,8 +32,8 @@ struct BadPixels {
   double operability_percent = 100;
 };
 
-/// Errors: `invalid_input` (no picture, pictures of different sizes, a value that is not finite, or a median that
-/// leaves a rule without a scale).
+/// Finds bad pixels. Errors: `invalid_input` (no picture, pictures of different sizes, a value that is not finite, or a
+/// median of 0 that a rule needs as its scale).
 [[nodiscard]] Result<BadPixels> bad_pixels(const PixelProperties& pixels, const BadPixelRules& rules);
 
 }  // namespace todbench

@@ -38,11 +38,11 @@ struct DriftFit {
   std::vector<double> seen_k, fitted_k;   ///< by group
 };
 
-/// Growth after a correction.
+/// Drift of a camera: growth after a correction.
 struct DriftLaw {
   std::vector<double> time_s;  ///< of the groups
-  /// Mean of the picture. The pixels are a sample of those of the camera: the interval contains the deviation from 0 of
-  /// the mean of that many draws of the pattern.
+  /// Mean of the picture. Its interval includes the deviation from 0 that the mean of as many draws of the pattern as
+  /// the picture has pixels shows by chance.
   DriftFit level;
   /// Standard deviation over the pixels of their change since the first group, without white noise, mean and shading of
   /// second order. Its change is never negative; an interval that begins at 0 does not prove a change.
@@ -52,13 +52,15 @@ struct DriftLaw {
   [[nodiscard]] double per_minute(double change_k) const;
 };
 
+/// Fewest groups of drift_law().
 inline constexpr std::size_t least_drift_groups = 8;
 
-/// Groups are weighted by their frames. The level is fitted by least squares, the pattern by analysis of variance of
-/// the pixels' regressions on time, with modified large-sample intervals (Graybill and Wang 1980). An approach replaces
-/// a straight line whose residuals exceed chance (F test at 1 %; for the pattern, beyond the result of a search in the
-/// noise of its pixels); its time constant is that of least squares. Errors: `invalid_input` (fewer than eight groups,
-/// groups without frames, times that do not rise, pictures below 4 x 4 pixels or of different sizes).
+/// Fits both quantities over time, with groups weighted by their frames. The level is fitted by least squares, the
+/// pattern by analysis of variance of the pixels' regressions on time, with modified large-sample intervals (Graybill
+/// and Wang 1980). An approach, with the time constant of least squares, replaces a straight line whose residuals
+/// exceed chance (F test at 1 %; for the pattern, F is reduced by the gain that a search for a time constant finds in
+/// the noise of many pixels). Errors: `invalid_input` (fewer than eight groups, groups without frames, times that do
+/// not rise, pictures below 4 x 4 pixels or of different sizes).
 [[nodiscard]] Result<DriftLaw> drift_law(std::span<const DriftGroup> groups);
 
 }  // namespace todbench

@@ -40,11 +40,12 @@ struct EdgeSample {
 /// squares against the profile).
 [[nodiscard]] std::vector<double> row_offsets(const std::vector<EdgeSample>& samples, const Spline& profile, int rows);
 
-/// Parabola through the offsets of the rows: its coefficients, each with its standard uncertainty.
+/// Parabola through the offsets of the rows: its coefficients, and the standard uncertainty of the sag.
 struct RowTrend {
   double mean = 0, slope = 0;  ///< per row
   double sag = 0, sag_u = 0;   ///< middle against ends, positive towards positive offsets at the ends
 };
+/// Fits the parabola by least squares.
 [[nodiscard]] RowTrend trend_of(const std::vector<double>& offsets);
 
 }  // namespace todbench

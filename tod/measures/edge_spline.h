@@ -26,7 +26,8 @@ struct Spline {
   [[nodiscard]] double slope(double t) const;
 };
 
-/// Normal equations of a fit. They are sums over samples, so that those of a part can be subtracted again.
+/// Normal equations of a fit. They are sums over samples, so that the sums of a part of the samples can be subtracted
+/// again.
 class SplineSums {
  public:
   explicit SplineSums(const SplineGrid& grid);

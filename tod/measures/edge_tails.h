@@ -13,22 +13,23 @@
 
 namespace todbench {
 
-/// A picture of cut-outs with level D and step S is modelled as
+/// Model of a picture of cut-outs with level D and step S:
 ///     D + (S - sum beta - alpha / k) G + (alpha / k) C + sum beta_i H_i + shading,
-/// with G the cut-outs blurred by a narrow normal, C blurred with an MTF of exp(-k f), and H_i blurred by a normal of
-/// sigma_i = 2 ... 70 pitches, 23 steps of a constant ratio. alpha / S is the slope of the MTF at frequency 0 by
-/// diffraction, beta_i / S the share of a halo. Any positive mixture of normal halos is in the class, including
-/// exponential and power-law halos. The shapes must be right outside the core only: the core is measured from the
-/// residuals, without a model.
+/// G is the picture of the cut-outs blurred by a narrow normal, C the same blurred with an MTF of exp(-k f), and H_i
+/// the same blurred by a normal of sigma_i = 2 ... 70 pitches, 23 steps of a constant ratio. k is 2 pi cauchy_pitch, f
+/// the frequency in cycles per pitch. alpha / S is the slope of the MTF at frequency 0 by diffraction, beta_i / S the
+/// share of a halo. Any positive mixture of normal halos is in the class, including exponential and power-law halos.
+/// The shapes must be right outside the core only: the core is measured from the residuals, without a model.
 ///
 /// The MTF is relative to a source of the size of the picture. Halos with a sigma above TailBounds::widest_pitch are
-/// fitted, because they bend the picture. They lower the contrast of the whole picture and not the MTF: the contrast of
-/// the MTF is S - sum beta of the wide halos.
+/// fitted, because they distort the picture, but they do not belong to the MTF: they lower the contrast of the whole
+/// picture. The MTF therefore refers to the contrast S - sum beta over these wide halos.
 namespace edge_tails {
 constexpr std::size_t halos = 23;
 constexpr std::size_t level = 0, step = 1, slope = 2, first_halo = 3, first_shading = first_halo + halos;
 constexpr double narrow_sigma_pitch = 0.45;
-constexpr double cauchy_pitch = 0.5;  ///< c of C; its MTF is exp(-2 pi c f)
+constexpr double cauchy_pitch = 0.5;  ///< of C: its MTF is exp(-2 pi cauchy_pitch f)
+/// Sigma of halo i, from 0.
 [[nodiscard]] double halo_sigma_pitch(std::size_t i);
 }  // namespace edge_tails
 
@@ -66,17 +67,18 @@ struct TailBounds {
 /// Fit of the model to a picture outside the core of every edge.
 class TailFit {
  public:
-  /// The most likely unknowns.
+  /// Most likely values of the unknowns, in the order of the columns.
   [[nodiscard]] const std::vector<double>& best() const { return problem_->best(); }
-  /// The unknowns with the weakest tails among all with a chi-square of at most 1 above the minimum, so that an edge
-  /// without tails gives none.
+  /// Values of the unknowns with the weakest tails among all with a chi-square of at most 1 above the minimum. The
+  /// result for an edge without tails therefore contains none.
   [[nodiscard]] const std::vector<double>& stated() const { return stated_; }
-  /// The unknowns with the largest direction'x within 95 % (chi-square at most 5.99 above the minimum).
+  /// Values x of the unknowns with the largest scalar product of `direction` and x, among all with a chi-square of at
+  /// most 5.99 above the minimum (95 %).
   [[nodiscard]] std::vector<double> farthest(const std::vector<double>& direction) const;
-  /// Whether the halos reach the upper bound: the picture does not limit their share.
+  /// Whether the halos reach the upper bound, so that the picture does not limit their share.
   [[nodiscard]] bool at_most_halo(const std::vector<double>& x) const;
   [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
-  /// Largest share of the halos that belong to the MTF within 95 %.
+  /// Upper end of the 95 % interval of the share of halos that belong to the MTF.
   [[nodiscard]] double halo_allowance() const;
   /// Ends of the 95 % interval of the share of the step in halos that are too wide for the MTF.
   [[nodiscard]] double least_wide_share() const { return farthest_wide_share(-1); }
@@ -100,7 +102,7 @@ class TailSamples {
   explicit TailSamples(std::size_t shading_columns);
   /// Adds the mean of `pixels` pixels near one place. Samples of one `block` (from 0) are close together.
   void add(const std::vector<double>& columns, double value, int pixels, std::size_t block);
-  /// Empty with fewer than two samples for each unknown, or if one side of the edge has no samples.
+  /// Fits the model; empty with fewer than two samples for each unknown, or if one side of the edge has no samples.
   [[nodiscard]] std::optional<TailFit> fit(const TailBounds& bounds) const;
 
  private:

@@ -20,6 +20,7 @@ struct EdgeGroups {
   SplineSums all;
   std::vector<SplineSums> groups;
 };
+/// Groups of neighbouring rows.
 [[nodiscard]] EdgeGroups grouped(const std::vector<EdgeSample>& samples, const SplineGrid& grid, int rows);
 
 /// Tails of the edge's picture, and the profiles of the model's columns at the same pixels.
@@ -30,6 +31,7 @@ struct EdgeTails {
   double orientation = 1;       ///< -1: the bright side of the columns has t < 0
 };
 
+/// MTF at each frequency with its 95 % interval.
 struct EdgeTransfer {
   std::vector<double> mtf, low, high;
   std::vector<bool> low_known;  ///< false: only the bound on halos limits `low`
@@ -40,8 +42,8 @@ struct EdgeTransfer {
 ///
 /// 95 % intervals: the extremes over all tails within chi-square 5.99 of the best, combined with the noise (jackknife
 /// over the groups) and with `rounding`, the effect of counts without spreading noise on the profile, as a share of the
-/// step. `displacement_pitch2`: variance of the lines' places along the normal in excess of the straight edge; it
-/// lowers the measured MTF and raises the upper end. Empty if a part cannot be fitted.
+/// step. `displacement_pitch2`: variance of the lines' places along the normal in excess of the straight edge; because
+/// it lowers the measured MTF, the upper end is raised. Empty if a part cannot be fitted.
 [[nodiscard]] EdgeTransfer edge_transfer(const EdgeGroups& groups, const EdgeWindow& window,
                                          const std::vector<double>& frequency_per_pitch, const EdgeTails& tails,
                                          double rounding, double displacement_pitch2);

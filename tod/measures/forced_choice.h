@@ -22,7 +22,7 @@ struct ForcedChoice {
 struct ForcedChoiceThreshold {
   std::optional<double> positive_k{}, negative_k{};  ///< contrast for 75 % correct; the negative one is below 0
   std::optional<double> half_k{};                    ///< half of their difference
-  Interval ci95{};                                   ///< of it
+  Interval ci95{};                                   ///< of half_k
   std::map<int, double> half_k_without{};            ///< half_k without the answers of one set-up, by set-up
   double lapse = 0;                                  ///< share of answers given without regard to the picture
   int answers = 0, right = 0;
@@ -36,11 +36,11 @@ struct ForcedChoiceThreshold {
 /// Fewest answers at each polarity, and fewest set-ups, of a threshold.
 inline constexpr int least_choices = 24, least_choice_set_ups = 5;
 
-/// Fits 0.5 l + (1 - l) Phi(0.674 (c / t)^b) to the answers: the function that the model's answers get
+/// Fits 0.5 l + (1 - l) Phi(0.674 (c / t)^b) to the answers: the function that is fitted to the model's answers
 /// (two_intervals.h), with one exponent b (0.5 to 6) for both polarities and a share l of lapses (0 to 0.06), because a
-/// person lapses. At each of 36 pairs of b and l, ln t of each polarity is that of maximum likelihood; the result is
-/// their mean, weighted by the likelihood. t is a threshold without lapses, as that of the model. The half difference
-/// does not contain the offset of the target.
+/// person lapses. At each of 36 pairs of b and l, ln t of each polarity is fitted by maximum likelihood; the result is
+/// the mean over the pairs, weighted by the likelihood. t is a threshold without lapses, as for the model. The half
+/// difference does not contain the offset of the target.
 ///
 /// The interval is that of the jackknife over the set-ups, with Student's t, for ln half_k. Its variance is at least
 /// that of independent answers: the observed information at each pair, and the scatter between the pairs. A missing

@@ -6,14 +6,15 @@
 
 namespace todbench {
 
+/// Limits of blinking pixels.
 struct BlinkingRules {
   double medians = 3;   ///< multiple of the median over all pixels of the largest change of level
   double levels = 4.5;  ///< standard deviations between two levels
   double noise_sd = 0;  ///< of the median pixel, in the unit of the series
 };
 
-/// `series`: pixels of a picture of `size` as rows, in reading order, frames as columns, means of 0. Returns 255 for
-/// blinking pixels. Precondition: at least 16 frames.
+/// Finds blinking pixels: 255 in the result. `series`: pixels of a picture of `size` as rows, in reading order, frames
+/// as columns, means of 0. Precondition: at least 16 frames.
 [[nodiscard]] cv::Mat1b blinking_pixels(const cv::Mat1f& series, cv::Size size, const BlinkingRules& rules);
 
 }  // namespace todbench

@@ -15,18 +15,20 @@
 
 namespace todbench {
 
+/// Kinds of defects.
 enum class PixelDefect {
   stuck,         ///< the same value in every frame
   offset,        ///< dead or hot by its level in the flat field
   unresponsive,  ///< dead by its response to temperature
   noisy,
-  blinking,     ///< switches between two levels, or has another one for a stretch of frames
+  blinking,     ///< switches between two levels, or stays on another one for a stretch of frames
   substituted,  ///< equals a neighbour, or the mean of neighbours, in every frame: replaced by the camera
 };
 inline constexpr std::array pixel_defect_kinds{PixelDefect::stuck, PixelDefect::offset,   PixelDefect::unresponsive,
                                                PixelDefect::noisy, PixelDefect::blinking, PixelDefect::substituted};
 [[nodiscard]] std::string_view to_string(PixelDefect kind);
 
+/// Limits of defects.
 struct PixelDefectRules {
   BadPixelRules bad;     ///< dead_responsivity, noisy, offset
   double blinking = 3;   ///< largest change of level, in its own standard deviations, above this multiple of the median
@@ -34,13 +36,14 @@ struct PixelDefectRules {
   double chance = 1e-3;  ///< probability, over all pixels, of taking a live one for substituted
 };
 
-/// Further knowledge about the scene.
+/// Known properties of the scene.
 struct PixelScene {
   cv::Mat1d shading{};                     ///< subtracted from the mean frame before levels are compared; empty: none
   cv::Mat1d responsivity{};                ///< signal per kelvin; NaN if not measured; empty: nowhere measured
   std::optional<double> unit_per_count{};  ///< of the frames; empty: not known
 };
 
+/// Defective pixels of a cube of frames.
 struct PixelDefects {
   int frames = 0;
   std::array<cv::Mat1b, pixel_defect_kinds.size()> found;  ///< by kind: 255 for a defect
@@ -55,9 +58,9 @@ struct PixelDefects {
   [[nodiscard]] const cv::Mat1b& of(PixelDefect kind) const { return found[static_cast<std::size_t>(kind)]; }
 };
 
-/// Frames of one cube, in order, with no correction between them. Results are in the unit of the frames. Errors:
-/// `invalid_input` (fewer than 16 frames or than 8 rows or columns, frames of different sizes, a value that is not
-/// finite, no noise, or noise below half a count, which hides defects).
+/// Finds defective pixels in the frames of one cube, in order, with no correction between them. Results are in the unit
+/// of the frames. Errors: `invalid_input` (fewer than 16 frames or than 8 rows or columns, frames of different sizes, a
+/// value that is not finite, no noise, or noise below half a count, which hides defects).
 ///
 /// Stuck: a single value; tested if chance would leave less than 0.01 live pixels in this state. Offset, response and
 /// noise: bad_pixels(). Blinking, from 48 frames on, with the frames in at most 64 stretches: the largest difference
@@ -73,12 +76,12 @@ struct PixelDefects {
 /// Counts in a zone of the picture, in pixels.
 struct ZoneCount {
   int pixels = 0;    ///< of the zone in the picture
-  int measured = 0;  ///< of these
+  int measured = 0;  ///< number of these that were measured
   int bad = 0, substituted = 0;
   int clusters = 0;         ///< of at least two defective pixels, with a pixel in the zone
   int largest_cluster = 0;  ///< in pixels, including those outside the zone; 1: none touch
 };
-/// `zone` in pixels of the picture; `field`: examined part.
+/// Counts the pixels of a zone. `zone` in pixels of the picture; `field`: examined part.
 [[nodiscard]] ZoneCount count_zone(const PixelDefects& defects, const cv::Rect& field, const cv::Rect& zone);
 
 }  // namespace todbench

@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// In the unit of the frames. T frames; variances of a pixel over frames divide by T - 1.
+/// Temporal noise of one cube of T frames, in the unit of the frames. Variances of a pixel over frames divide by T - 1.
 struct PixelNoise {
   int frames = 0;
   double sd_rms = 0;                      ///< root of the mean variance of the pixels: the temporal noise
@@ -28,8 +28,8 @@ struct PixelNoise {
   cv::Mat1d mean_frame;  ///< over time
 };
 
-/// Frames of one cube, in order, with no correction between them. Errors: `invalid_input` (fewer than three frames or
-/// two pixels, frames of different sizes, a value that is not finite).
+/// Measures the noise in the frames of one cube, in order, with no correction between them. Errors: `invalid_input`
+/// (fewer than three frames or two pixels, frames of different sizes, a value that is not finite).
 [[nodiscard]] Result<PixelNoise> pixel_noise(std::span<const cv::Mat1d> frames);
 
 /// Smallest noise that can be measured. Below half a count rounding removes it, and the rest depends on the place of

@@ -7,18 +7,20 @@
 
 namespace todbench {
 
+/// Limits of substituted pixels.
 struct SubstitutionRules {
   double chance = 1e-3;       ///< probability, over all pixels, of taking a live pixel for substituted
   double unit_per_count = 0;  ///< rounding of the frames; 0: not known
 };
 
+/// Result of substituted_pixels().
 struct SubstitutedPixels {
   cv::Mat1b found;      ///< 255 for a substituted pixel
   bool tested = false;  ///< enough frames and a fine enough scale
 };
 
-/// `constant`: pixels that never change, and equal each other without being copies. Precondition: at least two frames,
-/// all of one size.
+/// Finds substituted pixels. `constant`: pixels that never change, and equal each other without being copies.
+/// Precondition: at least two frames, all of one size.
 [[nodiscard]] SubstitutedPixels substituted_pixels(std::span<const cv::Mat1f> frames, const cv::Mat1b& constant,
                                                    const SubstitutionRules& rules);
 

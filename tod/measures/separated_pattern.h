@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fixed pattern of a camera and unevenness of its source, told apart by shifting the source (data reference method).
+// Fixed pattern of a camera and unevenness of its source, separated by shifting the source (data reference method).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -16,7 +16,7 @@ struct ShiftedPicture {
 };
 
 /// picture = camera(x) + source(x - shift) + level of the picture. A linear slope can belong to the camera or to the
-/// source, because it changes only the levels; it is left out of both and stated.
+/// source, because it changes only the levels; it is removed from both and stated separately.
 struct SeparatedPattern {
   cv::Mat1d camera;  ///< mean 0, without slope
   cv::Mat1d source;  ///< larger than a picture by the span of the shifts; mean 0, without slope

@@ -29,12 +29,12 @@ struct SignalTransfer {
   std::optional<double> p{};        ///< probability of a larger chi2 for a straight line
   double largest_residual = 0;      ///< in the unit of the signal
   double nonlinearity_percent = 0;  ///< largest residual over the span of the line between the outermost steps
-  double r_squared = 0;             ///< hides a nonlinearity of 1 % behind 0.9999
+  double r_squared = 0;             ///< no measure of linearity: 0.9999 even with a nonlinearity of 1 %
   std::vector<double> residuals{};  ///< of each step
 };
 
-/// Errors: `invalid_input` (fewer than three steps, steps without spread, a value that is not finite, an uncertainty
-/// that is not positive or is stated for some steps only, or a constant signal).
+/// Fits the line. Errors: `invalid_input` (fewer than three steps, steps without spread, a value that is not finite, an
+/// uncertainty that is not positive or is stated for some steps only, or a constant signal).
 [[nodiscard]] Result<SignalTransfer> signal_transfer(std::span<const TemperatureStep> steps);
 
 }  // namespace todbench

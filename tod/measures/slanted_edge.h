@@ -27,9 +27,10 @@ struct PlateTails {
   double step = 1;      ///< signed step of the picture for a step of 1 of the model
 };
 
-/// Four times the error of the method: a smaller share of the step in wide halos does not count.
+/// Share of the step in wide halos above which they count: four times the error of the method.
 inline constexpr double least_wide_share = 0.002;
 
+/// Options of slanted_edge().
 struct SlantedEdgeOptions {
   std::optional<EdgeAxis> axis{};  ///< empty: across the edge in the picture
   TailBounds tails{};              ///< for tails fitted to the picture itself
@@ -40,7 +41,7 @@ struct SlantedEdgeOptions {
 /// The MTF along the normal of an edge.
 struct SlantedEdge {
   EdgeAxis axis = EdgeAxis::x;
-  /// From the axis to the edge's normal: the edge stands at x0 - (row - middle) tan(angle), and alike along y.
+  /// Angle from the axis to the edge's normal: the edge is at x0 - (row - middle) tan(angle); likewise for axis y.
   double angle_deg = 0;
   double edge_at_pitch = 0;    ///< place on the middle row (column), in pixels from the first pixel's centre
   double curvature_pitch = 0;  ///< distance of its middle from the straight line through its ends

@@ -19,6 +19,7 @@ struct StepSeries {
   std::vector<double> signal;  ///< in any linear unit
 };
 
+/// Properties of camera and target.
 struct StepResponseOptions {
   double frame_s = 0;     ///< frame interval, > 0; exposure and readout of a frame end within it
   double settling_s = 0;  ///< time in which the target completes its step up to `settling_left`
@@ -26,36 +27,38 @@ struct StepResponseOptions {
 /// Part of a step that may remain after the target's settling time.
 inline constexpr double settling_left = 0.001;
 
-/// With its 95 % interval.
+/// A time constant with its 95 % interval.
 struct StepTimeConstant {
   double value_s = 0, low_s = 0, high_s = 0;
   int steps = 0;
 };
 
-/// A fitted sample, as the remaining part of the step at `time_s` after the step, by the fit.
+/// A fitted sample: the remaining part of the step at `time_s` after the step, by the fit.
 struct StepPoint {
   double time_s = 0, left = 0;
   bool rising = true;
   bool operator==(const StepPoint&) const = default;
 };
 
+/// Result of step_response().
 struct StepResponse {
   StepTimeConstant both;
   std::optional<StepTimeConstant> rise{}, fall{};  ///< empty: cannot be determined separately
-  double p_first_order = 1;                        ///< of the fit's residuals, against a second-order term (F test)
-  double largest_left = 0;                         ///< remaining part of the step in its first fitted sample: median
-  int samples = 0;                                 ///< fitted samples
+  double p_first_order = 1;  ///< p value of the first-order fit against a second-order term (F test)
+  double largest_left = 0;   ///< remaining part of the step in its first fitted sample: median
+  int samples = 0;           ///< fitted samples
   std::vector<StepPoint> points;
 };
 
+/// Fewest steps of step_response().
 inline constexpr std::size_t least_steps = 4;
 
 /// Fits y = a + g exp(-t / T) with one T for all steps, by least squares. The time of the step is not known on the
-/// frame clock, so amplitudes are free. A step is fitted from the first frame on whose exposure began after the step: a
-/// frame and the settling time after the first that shows it. From there on successive differences fall by exp(-frame /
-/// T) for any exposure. The interval is the wider one of the range in which the sum of squares is compatible with
-/// chance (F, 95 %) and of a jackknife over the steps (Student's t); with a settling time it includes the rest of the
-/// target's own step.
+/// frame clock, so amplitudes are free. A step is fitted from the first frame whose exposure began after the step: one
+/// frame and the settling time after the first frame that shows the step. From there on successive differences fall by
+/// exp(-frame / T) for any exposure. The interval is the wider one of the range in which the sum of squares is
+/// compatible with chance (F, 95 %) and of a jackknife over the steps (Student's t); with a settling time it includes
+/// the rest of the target's own step.
 ///
 /// Errors: `invalid_input` (fewer than four steps, or samples that cannot be fitted), `calibration` if no time constant
 /// can be determined: no step above the noise; no signal left after the first frames (the camera is faster than its

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Temporal noise of pixels by a definition without a block length, and the memory of the noise.
+// Temporal noise of pixels by a definition that does not depend on the length of a block of frames, and its correlation
+// in time.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ struct TimedPicture {
   int segment = 0;  ///< changes at a correction of the camera; pictures of different segments are not compared
 };
 
-/// In the unit of the pictures.
+/// Result of temporal_noise(), in the unit of the pictures.
 struct TemporalNoise {
   /// Standard deviation of a pixel from successive frames, sqrt(mean d^2 / 2). It is the standard deviation of white
   /// noise; for noise with memory it is lower by sqrt(1 - lag1_correlation).
@@ -28,25 +29,28 @@ struct TemporalNoise {
   /// pair are left out; the first is that of `successive`.
   std::vector<int> lags;
   std::vector<double> structure;
-  /// Noise of a single frame, as far as it changes within the longest lag, over `successive`; without changes of whole
-  /// frames, which affect no decision. 1 for white noise.
+  /// Ratio of the structure function at the longest lag with enough pairs to `successive`, both without changes of
+  /// whole frames, which affect no decision: noise of a single frame over noise in successive frames, as far as it
+  /// changes within that lag. 1 for white noise.
   double whole_to_successive = 1;
   /// Lag-1 correlation of a pixel for noise of first order, without changes of whole frames; empty: too few frames.
   std::optional<double> lag1_correlation;
-  cv::Mat1b usable;  ///< 0: the scene moved there (more than twice the median pixel's), or the pixel never changes
+  /// 0: the pixel never changes, or the scene moved there (more than twice the median pixel's noise).
+  cv::Mat1b usable;
   double usable_share = 1;  ///< of the pixels
 };
 
 /// Longest lag of the structure function.
 inline constexpr int longest_lag = 64;
 
-/// Errors: `invalid_input` (no two pictures of one segment, pictures of different sizes, or no noise). Compares at most
-/// 128 pairs per lag, evenly spread over the sequence.
+/// Measures the temporal noise. Compares at most 128 pairs per lag, evenly spread over the sequence. Errors:
+/// `invalid_input` (no two pictures of one segment, pictures of different sizes, or no noise).
 [[nodiscard]] Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures);
 
-/// Whether the level of whole frames stays changed after a jump, as after a correction: the means of the levels of
-/// successive frames before and after it differ by more than six of their standard errors. True with fewer than five
-/// frames in total, because the test is then not possible.
+/// Whether the level of whole frames stays changed after a jump, as after a correction. `before` and `behind`: levels
+/// of successive frames before and after the jump. True if their means differ by more than six standard errors of the
+/// difference. Also true with fewer than five frames in total or no frames on one side, because the test is then not
+/// possible.
 [[nodiscard]] bool level_stays_changed(std::span<const double> before, std::span<const double> behind);
 
 /// Lag-1 correlation of noise of first order (Box and Jenkins 1970, 3.2.3) whose squared structure function at `lag` >=

@@ -29,7 +29,8 @@ struct ThreeDNoise {
   [[nodiscard]] double temporal() const;
 };
 
-/// Errors: `invalid_input` (fewer than two frames, rows or columns, or frames of different sizes).
+/// Computes the components. Errors: `invalid_input` (fewer than two frames, rows or columns, or frames of different
+/// sizes).
 [[nodiscard]] Result<ThreeDNoise> three_d_noise(std::span<const cv::Mat1f> frames);
 
 /// The components by name, in the order of every list.
@@ -57,10 +58,10 @@ struct NoiseTable {
   ByComponent mean_squares;        ///< in the square of the frames' unit
   ByComponent degrees_of_freedom;  ///< t T-1, v V-1, h H-1, and their products
   /// First-order correlation of tvh in successive frames that the estimates allow for; 0: the plain analysis of
-  /// variance with independent cells. T frames with memory contain less than their noise in time and leave more than a
-  /// T-th of it in the mean frame: E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 + 2 sum over k < T of (1
-  /// - k / T) rho^k and h = 1 - (g - 1) / (T - 1). Without the correction, rho = 0.8 and 64 frames give 6 % less noise
-  /// and an apparent fixed pattern of a third of it. Below 1.
+  /// variance with independent cells. In T frames with memory the variance in time is smaller than that of the noise,
+  /// and more than a T-th of it remains in the mean frame: E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 +
+  /// 2 sum over k < T of (1 - k / T) rho^k and h = 1 - (g - 1) / (T - 1). Without the correction, rho = 0.8 and 64
+  /// frames give 6 % less noise and an apparent fixed pattern of a third of the noise. The value is below 1.
   double pixel_memory = 0;
 };
 
@@ -77,6 +78,7 @@ struct ComponentEstimate {
   std::optional<double> p_absent{};
 };
 
+/// Estimates one component.
 [[nodiscard]] ComponentEstimate estimate_of(const NoiseTable& table, NoiseComponent component);
 /// All variation in time: the mean variance of the pixels over frames (t, tv, th and tvh together), with the interval
 /// of a sum of mean squares (Graybill and Wang 1980).
@@ -94,8 +96,8 @@ class NoiseCube {
   [[nodiscard]] int frames() const { return frames_; }
   /// Errors: `invalid_input` (fewer than two frames, rows or columns).
   [[nodiscard]] Result<NoiseTable> table() const;
-  /// Same after removal of a fixed picture, for example the shading of the field, from v, h and vh. Precondition:
-  /// `fixed` has the frames' size.
+  /// Same after a fixed picture, for example the shading of the field, is subtracted, which changes v, h and vh.
+  /// Precondition: `fixed` has the frames' size.
   [[nodiscard]] Result<NoiseTable> table_without(const cv::Mat1d& fixed) const;
   /// Mean over all frames. Precondition: at least one frame.
   [[nodiscard]] cv::Mat1d mean_frame() const { return first_ + change_ / frames_; }
@@ -108,8 +110,8 @@ class NoiseCube {
   [[nodiscard]] double pixel_memory() const;
   /// Index of the first frame that differs from the previous one by more than the others do, pixel by pixel, because of
   /// a correction or a moved scene. The statistic is the mean square of the difference without its rows, columns and
-  /// mean, whose expectation is the same for every pair for noise with any memory. Limit: 1.69 times the median pair's,
-  /// exceeded by chance in less than 1e-9 of all recordings. Empty: no such frame, or fewer than five frames.
+  /// mean. Its expectation is the same for every pair, whatever the memory of the noise. Limit: 1.69 times the median
+  /// pair's, exceeded by chance in less than 1e-9 of all recordings. Empty: no such frame, or fewer than five frames.
   [[nodiscard]] std::optional<int> abrupt_change() const;
 
  private:
@@ -119,7 +121,7 @@ class NoiseCube {
   int frames_ = 0;
   cv::Mat1d first_;                               ///< reference of every frame
   cv::Mat1d change_;                              ///< sum over frames of change - mean change of its frame
-  double squares_ = 0;                            ///< sum of the squares of the same
+  double squares_ = 0;                            ///< sum of the squares of these changes
   cv::Mat1d last_;                                ///< change of the last frame without its mean
   std::vector<double> steps_;                     ///< mean square of each successive difference
   std::vector<double> frame_means_;               ///< mean change of each frame

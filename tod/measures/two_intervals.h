@@ -15,6 +15,7 @@ using IntervalScores = std::vector<std::vector<float>>;
 /// Share of correct decisions that defines a threshold.
 inline constexpr double threshold_share = 0.75;
 
+/// Share of pairs with its standard error.
 struct ShareOfPairs {
   double mean = 0, standard_error = 0;
 };
@@ -29,13 +30,14 @@ struct PassedContrast {
   std::optional<double> contrast_k;
   double relative_error = 0;
 };
+/// Finds the crossing; empty if the shares do not cross 75 %.
 [[nodiscard]] PassedContrast passed_contrast(std::span<const double> contrasts_k, std::span<const ShareOfPairs> shares);
 
 /// Psychometric function of contrast, Phi(z75 (c / threshold)^exponent): the distance between sensitivity and contrast
 /// grows as a power (Foley and Legge 1981). Sampling changes the energy of a pattern with its phase p, by the
 /// interference of its spectrum with the repeats at whole cycles per sample. The threshold falls with the root of the
-/// energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi p)). The sine lets the phases be those
-/// of a pattern whose place is known but for a part of a sample.
+/// energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi p)). The sine term is needed if the
+/// place of the pattern is known only up to an offset of a part of a sample.
 struct ContrastFunction {
   double level_k = 0;             ///< threshold of the mean energy over the phases
   double exponent = 1;            ///< between 0.3 and 8
@@ -54,6 +56,7 @@ struct ContrastShare {
   double phase = 0;  ///< of the pattern against the samples, in samples
 };
 
+/// Whether the swing over phases is fitted.
 enum class PhaseFit { none, swing };
 
 /// Weighted least squares over the shares within a factor of `fitted_span` of `near_k`; weights by binomial variance.

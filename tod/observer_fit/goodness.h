@@ -26,6 +26,7 @@ inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, Misf
                                              MisfitKind::calibration, MisfitKind::surprise, MisfitKind::wrong_answers};
 [[nodiscard]] std::string_view to_string(MisfitKind kind);
 
+/// One test of the fitted model.
 struct MisfitTest {
   double statistic = 0;
   double expected = 0;  ///< mean over the replicates
@@ -39,6 +40,7 @@ struct AnswerCell {
   double expected = 0, sd = 0;  ///< of the number correct under the fitted model
 };
 
+/// Result of goodness_of().
 struct Goodness {
   std::array<MisfitTest, all_misfit_kinds.size()> tests{};  ///< by MisfitKind
   /// Share of replicates of the fitted model whose smallest p is at most the observed one: the joint test.
@@ -48,13 +50,14 @@ struct Goodness {
   std::array<std::array<double, 4>, 4> confusion{}, expected_confusion{};  ///< [truth][answer]
 };
 
+/// Options of goodness_of().
 struct GoodnessOptions {
   int replicates = 299;  ///< of the bootstrap, at least 19
   std::uint64_t seed = 1;
 };
 
-/// Parametric bootstrap: the fitted model answers the same patches and is fitted to its own answers, which gives the
-/// distribution of every statistic. Errors: `interrupted`.
+/// Tests a fit by parametric bootstrap: the fitted model answers the same patches and is fitted to its own answers,
+/// which gives the distribution of every statistic. Errors: `interrupted`.
 [[nodiscard]] Result<Goodness> goodness_of(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
                                            const PersonFit& fit, const GoodnessOptions& options, std::stop_token stop);
 

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Kind of the fitted observer, which decides about its first two parameters.
+/// Kind of the fitted observer: meaning of its first two parameters.
 enum class FittedKind {
   blurred,  ///< blur_sigma_samples and internal_noise
   eye,      ///< gain on the sensitivity of the eye, and its contrast_noise
@@ -26,13 +26,14 @@ inline constexpr std::size_t observer_key_count = all_observer_keys.size();
 /// Name of a parameter of this kind of observer.
 [[nodiscard]] std::string_view parameter_name(ObserverKey key, FittedKind kind);
 
-/// By ObserverKey.
+/// Values of the parameters, in the order of ObserverKey.
 using ObserverValues = std::array<double, observer_key_count>;
 
 /// Limits of the search, by ObserverKey.
 struct ObserverLimits {
   ObserverValues least{}, most{};
 };
+/// Returns the limits for a kind of observer.
 [[nodiscard]] constexpr ObserverLimits observer_limits(FittedKind kind) {
   if (kind == FittedKind::eye) return {{0.05, 1e-3, 1, 0}, {20, 1, 10, 0.5}};
   return {{AnswerLattice::least_sigma, AnswerLattice::least_noise, 1, 0}, {AnswerLattice::most_sigma, 5, 10, 0.5}};
@@ -40,8 +41,9 @@ struct ObserverLimits {
 
 /// Coordinates of the search: logarithms of the first three parameters, the lapse itself.
 using ObserverPlace = std::array<double, observer_key_count>;
-/// Values below the limits are taken as the limits.
+/// Converts values to coordinates; values below the limits are replaced by the limits.
 [[nodiscard]] ObserverPlace place_of(const ObserverValues& values, FittedKind kind = FittedKind::blurred);
+/// Converts coordinates to values.
 [[nodiscard]] ObserverValues values_at(const ObserverPlace& place);
 
 /// An answer to a patch of the lattice.

@@ -13,7 +13,7 @@ namespace todbench {
 /// One parameter over several people, by ln of its value (the lapse itself).
 struct PeopleSpread {
   int persons = 0;             ///< those with a standard error; others are ignored
-  std::optional<double> mean;  ///< as a value, the geometric mean if by logarithms; empty below two persons
+  std::optional<double> mean;  ///< mean value, geometric if by logarithms; empty below two persons
   Interval mean_ci95;          ///< Hartung and Knapp 2001, Student's t with persons - 1
   /// Standard deviation between people in excess of the standard errors, of ln of the value (of the lapse itself), by
   /// restricted maximum likelihood (Viechtbauer 2005).

@@ -13,15 +13,17 @@
 
 namespace todbench {
 
+/// Options of fit_person().
 struct PersonFitOptions {
   ObserverValues start{0.6, 0.07, 1, 0};  ///< start of the search, and values of the parameters that are not free
   std::array<bool, observer_key_count> free{};
   enum class Intervals {
-    none,  ///< no intervals, and a few steps from the start instead of several climbs: for answers with a near maximum
+    none,  ///< no intervals, and only a few steps from the start: for answers whose maximum is near it
     profile,
   } intervals = Intervals::profile;
 };
 
+/// Result of fit_person().
 struct PersonFit {
   ObserverValues values{};  ///< by ObserverKey
   std::array<bool, observer_key_count> free{};
@@ -31,7 +33,7 @@ struct PersonFit {
   /// Inverse of the expected information for ln sigma, ln n, ln f and the lapse; 0 for parameters that are not free.
   /// Empty if it is singular: the answers do not separate the parameters.
   std::optional<std::array<std::array<double, observer_key_count>, observer_key_count>> covariance;
-  /// At an end of the domain.
+  /// Whether a parameter is at an end of the domain.
   std::array<bool, observer_key_count> at_limit{};
   double log_likelihood = 0;
   std::size_t answers = 0;
@@ -42,8 +44,8 @@ struct PersonFit {
 /// Standard error of ln of the value (of the lapse itself); empty if there is none.
 [[nodiscard]] std::optional<double> standard_error(const PersonFit& fit, std::size_t key);
 
-/// Maximum likelihood from several starts. Errors: `invalid_input` (no answers, no free parameter, a start outside the
-/// domain).
+/// Fits the parameters by maximum likelihood from several starts. Errors: `invalid_input` (no answers, no free
+/// parameter, a start outside the domain).
 [[nodiscard]] Result<PersonFit> fit_person(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
                                            const PersonFitOptions& options);
 

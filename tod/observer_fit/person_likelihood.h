@@ -23,6 +23,7 @@ struct AnswerExpansion {
 /// Probabilities of the four answers of one patch: p = lapse / 4 + (1 - lapse) p_observer. Sums to 1.
 [[nodiscard]] std::array<double, 4> answer_shares(AnswerLattice& lattice, std::size_t patch,
                                                   const ObserverValues& values);
+/// Computes probabilities and derivatives at a place of the search.
 [[nodiscard]] AnswerExpansion answer_expansion(AnswerLattice& lattice, std::size_t patch, const ObserverPlace& place);
 
 /// ln likelihood of the answers, its gradient, and minus the expected information as second derivatives (for Fisher's

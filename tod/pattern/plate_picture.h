@@ -9,14 +9,15 @@
 
 namespace todbench {
 
+/// Pixels of a display.
 struct DisplayGeometry {
   cv::Size size_px;
   double pixel_mm = 1;  ///< centre to centre, square
 };
 
-/// A pixel has the mean over its area of `ground`, and of `pattern` within triangles and rectangles. The plate's origin
-/// is the middle of the display, moved by `shift_mm` (x right, y down). Errors: `invalid_input` (a cut-out outside the
-/// display, a level outside 0 to 1, a display without pixels).
+/// Draws a plate with the level `pattern` within triangles and rectangles and `ground` elsewhere; a pixel has the mean
+/// over its area. The plate's origin is the middle of the display, moved by `shift_mm` (x right, y down). Errors:
+/// `invalid_input` (a cut-out outside the display, a level outside 0 to 1, a display without pixels).
 [[nodiscard]] Result<cv::Mat1d> plate_picture(const TargetPlate& mounted_plate, cv::Point2d shift_mm,
                                               const DisplayGeometry& display, double ground, double pattern);
 

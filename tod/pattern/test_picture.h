@@ -19,7 +19,7 @@ struct TodPicture {
   std::vector<double> sizes_px;  ///< square roots of area, one row each; empty: as many as fit, in steps of 1.205
   std::uint64_t seed = 1;
 };
-/// Groups of four bars, 7 : 1, upright and lying, one pair for each frequency.
+/// Groups of four bars (length to width 7 : 1), upright and lying, one pair of groups for each frequency.
 struct MrtdPicture {
   std::vector<double> frequencies_per_px{0.05, 0.1, 0.2, 0.3, 0.4, 0.5};
 };
@@ -27,20 +27,24 @@ struct MrtdPicture {
 struct EdgePicture {
   double angle_deg = 5;
 };
-/// Brighter to the right; a pixel has the level of its centre, which is its mean.
+/// A linear ramp, bright at the right; each pixel has the level at its centre, which is its mean.
 struct RampPicture {};
-/// Wedges round the middle out to the nearest border, straight at their outer ends; the first begins to the right.
+/// A Siemens star round the middle: wedges to the nearest border, with straight outer ends, the first one clockwise
+/// from the direction to the right.
 struct SiemensPicture {
   int spokes = 36;
 };
+/// A uniform picture.
 struct FlatPicture {
   double level = 0.5;
 };
+/// Pattern of a test picture.
 using PictureKind = std::variant<TodPicture, MrtdPicture, EdgePicture, RampPicture, SiemensPicture, FlatPicture>;
 
+/// Input of drawn_picture().
 struct PictureRequest {
   cv::Size size;
-  double low = 0, high = 1;  ///< levels of ground and pattern, 0 to 1
+  double low = 0, high = 1;  ///< levels of background and pattern, 0 to 1; not used for FlatPicture
   PictureKind kind;
 };
 
@@ -57,8 +61,8 @@ struct TestPicture {
   std::vector<BarGroup> bars;
 };
 
-/// Errors: `invalid_input` in one sentence (a size without room for a pattern, invalid levels, a triangle that does not
-/// fit).
+/// Draws a test picture. Errors: `invalid_input` in one sentence (a size without room for a pattern, invalid levels, a
+/// triangle that does not fit).
 [[nodiscard]] Result<TestPicture> drawn_picture(const PictureRequest& request);
 
 /// Outline of a triangle of the plate in pixels from the upper left corner.

@@ -28,7 +28,7 @@ struct PlateRectangle {
   cv::Size2d size_mm;       ///< before rotation
   double angle_deg = 0;     ///< rotation, clockwise
 };
-/// Its corners, clockwise from the one that is top left before rotation.
+/// Corners of a rectangle, clockwise from the one that is top left before rotation.
 [[nodiscard]] Polygon outline_mm(const PlateRectangle& rectangle);
 
 /// Four cut-outs with spaces of the same width: a square wave of 1 / (2 bar_mm) cycles per millimetre.
@@ -58,11 +58,11 @@ struct TargetPlate {
   std::vector<PlateBars> bars{};             ///< without trials
 };
 
-/// Its rectangles, then the bars of its groups one by one ("NAME, bar 1").
+/// Rectangles of a plate, then the bars of its groups one by one ("NAME, bar 1").
 [[nodiscard]] std::vector<PlateRectangle> straight_cut_outs(const TargetPlate& plate);
 
-/// Errors: `invalid_input` (an empty plate, a size that is not positive, a repeated name, or a cut-out that leaves the
-/// plate or touches another).
+/// Checks a plate. Errors: `invalid_input` (an empty plate, a size that is not positive, a repeated name, or a cut-out
+/// that leaves the plate or touches another).
 [[nodiscard]] Result<void> validate(const TargetPlate& plate);
 
 /// The mounting that results from both, in either order (the Klein four-group: each is its own inverse).

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps, with values, by which an operator brings a state in front of the camera. The user interface words them.
+// Steps, with values, by which an operator brings a state in front of the camera. The user interface formulates the
+// sentences.
 #pragma once
 
 #include <functional>
@@ -15,30 +16,32 @@
 
 namespace todbench {
 
+/// Puts a plate into the holder.
 struct PutInPlate {
   std::string plate;
   Mounting mounting = Mounting::identity;
   bool operator==(const PutInPlate&) const = default;
 };
 
-/// The plate stays in place.
+/// Mounts the plate that is in place in another way.
 struct Remount {
   Mounting mounting = Mounting::identity;
   bool operator==(const Remount&) const = default;
 };
 
+/// Sets the contrast of the black body.
 struct SetContrast {
   double delta_t_k = 0;  ///< black body minus plate
   bool operator==(const SetContrast&) const = default;
 };
 
-/// The actual distance is measured.
+/// Moves the plate by about this distance; the actual distance is measured.
 struct MoveSlightly {
   cv::Point2d by_mm;  ///< as the camera sees the plate, x right, y down
   bool operator==(const MoveSlightly&) const = default;
 };
 
-/// An object much warmer than the plate, next to it in the picture.
+/// Brings an object much warmer than the plate into the picture, next to the plate, or takes it out.
 struct MoveHotBar {
   bool in = true;
   bool operator==(const MoveHotBar&) const = default;
@@ -50,6 +53,7 @@ struct CheckAgain {
   bool operator==(const CheckAgain&) const = default;
 };
 
+/// One step of a request.
 using OperatorStep = std::variant<PutInPlate, Remount, SetContrast, MoveSlightly, MoveHotBar, CheckAgain>;
 
 /// One request to the operator, to be done in the order of its steps.
@@ -58,6 +62,7 @@ struct OperatorRequest {
   bool operator==(const OperatorRequest&) const = default;
 };
 
+/// Answer of the operator.
 enum class OperatorAnswer { done, stop };
 
 /// Shows a request to the operator and waits for the answer. Called from the thread of the run. Errors: `interrupted`

@@ -9,6 +9,7 @@
 
 namespace todbench {
 
+/// Record of a presentation.
 struct Presentation {
   std::int64_t presentation = 0;  ///< as in Trial; a repeated presentation has the same number
   TargetState set;                ///< requested state

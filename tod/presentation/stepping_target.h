@@ -13,8 +13,8 @@ namespace todbench {
 class SteppingTarget {
  public:
   virtual ~SteppingTarget() = default;
-  /// Steps from the presented state to another contrast at a moment within the next frame that is unknown to the
-  /// camera; returns before it. Errors: `invalid_input` (a contrast that it cannot show), `interrupted`.
+  /// Steps from the presented state to another contrast, at a moment within the next frame that the camera cannot
+  /// predict. Returns before the step. Errors: `invalid_input` (a contrast that it cannot show), `interrupted`.
   [[nodiscard]] virtual Result<void> step_to(double delta_t_k, std::stop_token stop) = 0;
 };
 

@@ -18,8 +18,8 @@ namespace todbench {
 /// Contrast for which a target waits before a presentation.
 enum class ContrastWait {
   settled,      ///< reached and stable
-  within_band,  ///< within the settling band of the set-point and slow; the frames show it
-  none,         ///< on its way; the frames show it
+  within_band,  ///< within the settling band of the set-point and changing slowly; measured in the frames
+  none,         ///< still changing; measured in the frames
 };
 
 /// State to be shown.
@@ -44,10 +44,10 @@ struct PresentedTarget {
   bool operator==(const PresentedTarget&) const = default;
 };
 
-/// What a target can do by itself.
+/// Capabilities of a target.
 struct TargetCapabilities {
   std::string description;  ///< instruments with their serial numbers, for the report
-  /// False: the hand moves the plate slightly, and registration measures the sub-pixel phases.
+  /// False: an operator moves the plate slightly, and registration measures the sub-pixel phases.
   bool sets_shift = false;
 };
 
@@ -59,8 +59,9 @@ class Target {
   /// Returns when the state is reached and stable, or when `stop` is requested (`interrupted`, within a second).
   /// Errors: `timeout` (does not settle), `disconnected`, `not_found`, `invalid_input` (a state it cannot show).
   [[nodiscard]] virtual Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) = 0;
-  /// Called if the frames contradict the last report of present(), with the reason. True: present() asks for the state
-  /// again, because a hand can slip; the same presentation is then repeated. False: the contradiction ends the run.
+  /// Called if the frames contradict the last report of present(), with the reason. True: present() requests the state
+  /// again, because manual changes can fail; the same presentation is then repeated. False: the contradiction ends the
+  /// run.
   [[nodiscard]] virtual bool asks_again(const std::string& /*reason*/) { return false; }
   /// The same target if it can run, else null. Lives as long as the target.
   [[nodiscard]] virtual MovingTarget* moving() { return nullptr; }

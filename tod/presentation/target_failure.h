@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Failures of the target, which a caller has to tell from failures of the camera.
+// Failures of the target, distinguished from failures of the camera.
 #pragma once
 
 #include <string_view>

@@ -11,13 +11,14 @@
 
 namespace todbench {
 
+/// State of a wait.
 struct TargetWait {
   TargetState asked;
   TargetState reached;          ///< as measured last
   bool contrast_there = false;  ///< the requested contrast is reached and settled
   bool plate_there = false;     ///< plate, mounting and place are the requested ones and at rest
   double waited_s = 0;
-  double timeout_s = 0;  ///< the target then reports an error
+  double timeout_s = 0;  ///< value of waited_s at which the target reports an error
 };
 
 /// Called about twice a second while a target is on its way, and with an empty value when the wait is over. Called from

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One question, one answer, and everything needed to judge or repeat it.
+// One answer to one triangle, with everything needed to evaluate or repeat it.
 #pragma once
 
 #include <array>
@@ -28,6 +28,7 @@ struct PlaceInPicture {
   bool operator==(const PlaceInPicture&) const = default;
 };
 
+/// One answer of an observer.
 struct Trial {
   std::int64_t presentation = 0;  ///< counts states shown; trials of one presentation share frame and phase
   std::string plate;
@@ -46,11 +47,11 @@ struct Trial {
   std::int64_t device_time_ns = 0;
   std::int64_t host_time_ns = 0;
   double since_nuc_s = -1;   ///< since the last known non-uniformity correction; < 0: none known
-  int saturated_pixels = 0;  ///< of the window, at either end of the counts; those that always are there are left out
+  int saturated_pixels = 0;  ///< of the window, at either end of the counts, without defective ones
   /// Probability of the right answer given the patch, over the observer's own noise, averaged over the frames. Empty:
   /// the observer gives the answer only.
   std::optional<double> probability_correct{};
-  int frames = 1;  ///< successive good frames for probability_correct; the answer is that to the first
+  int frames = 1;  ///< successive good frames for probability_correct; the answer is that to the first frame
   std::optional<PlaceInPicture> centroid{};  ///< of the triangle; empty: not stated, as in earlier versions
 
   [[nodiscard]] bool correct() const { return truth == answer; }

@@ -25,6 +25,7 @@ struct ParameterBox {
   std::array<double, N> lower{}, upper{};
 };
 
+/// Result of climb().
 template <std::size_t N>
 struct Maximum {
   std::array<double, N> place{};
@@ -87,6 +88,7 @@ template <std::size_t N>
   return free;
 }
 
+/// Whether value, gradient and second derivatives are finite.
 template <std::size_t N>
 [[nodiscard]] bool is_finite(const Expansion<N>& e) {
   if (!std::isfinite(e.value)) return false;

@@ -23,10 +23,10 @@ struct AnswerScore {
   double residual = 0;                              ///< (answer - mu) / sqrt(v)
   int presentation = 0;                             ///< whole number, at least 0
   int place = 0;                                    ///< in the picture (picture_places.h)
-  int set_up = 0;                                   ///< of the plate and its mounting: a presentation has one
+  int set_up = 0;                                   ///< number of plate and mounting; each presentation has one
 };
 
-/// Knowledge of the scatter of single answers.
+/// Source of the scatter of single answers.
 enum class AnswerScatter {
   estimated,  ///< graded answers: from their residuals
   binomial,   ///< right and wrong answers: from chance
@@ -36,7 +36,7 @@ enum class AnswerScatter {
 struct ClusteredVariance {
   IntervalKind kind = IntervalKind::two_way;  ///< set_ups or two_way
   double variance = 0;
-  double independent = 0;         ///< the same for binomial answers: the inverse information
+  double independent = 0;         ///< variance of independent binomial answers: the inverse information
   double degrees_of_freedom = 1;  ///< of the variance, at least 1
   double dispersion = 1;          ///< mean squared residual over answers minus parameters: 1 for binomial answers
 };
@@ -45,23 +45,24 @@ struct ClusteredVariance {
 /// correction CR2 of the clusters (Bell and McCaffrey 2002). It may be below the binomial variance if answers scatter
 /// less.
 ///
-/// Graded answers: the phases of one set-up are spread evenly from one start, and contrast and registration are
-/// measured once in it. Set-ups therefore contain the variation common to presentations, and the phases make the
-/// scatter over set-ups much smaller than that over single answers; it counts as at least a hundredth of the latter.
-/// From `least_set_ups` on, set-ups are the clusters. Set-ups that put triangles before the same detectors share their
-/// fixed pattern: the covariance of answers of different set-ups at one place in the picture is added, V_place -
-/// V_triangle, in which a triangle is the part of a place that one set-up shows (two-way, Cameron, Gelbach and Miller
-/// 2011); a negative value is set to zero. With fewer set-ups, presentations and places are two-way clusters,
-/// V_presentation + V_place - V_answer, at least the variance of either alone: safe, but too large if evenly spread
-/// phases cancel.
+/// Graded answers: the phases of one set-up are evenly spaced from one start, and its contrast and registration are
+/// measured once. Set-ups therefore contain the variation common to presentations, and even spacing makes the scatter
+/// over set-ups much smaller than the scatter over single answers. A lower limit of a hundredth of the latter is
+/// applied. From `least_set_ups` on, set-ups are the clusters. Set-ups that image triangles onto the same detectors
+/// share their fixed pattern: the covariance of answers of different set-ups at one place in the picture is added,
+/// V_place - V_triangle, in which a triangle is the part of a place that one set-up shows (two-way, Cameron, Gelbach
+/// and Miller 2011); a negative value is set to zero. With fewer set-ups, presentations and places are two-way
+/// clusters, V_presentation + V_place - V_answer, at least the variance of either alone: safe, but too large if evenly
+/// spread phases cancel.
 ///
-/// Right and wrong answers: chance scatters them far more than the common variation of a set-up does, and a variance
+/// Right and wrong answers: their binomial scatter is far larger than the variation common to a set-up, and a variance
 /// over eight set-ups itself scatters by a quarter. For `binomial` answers, presentations and triangles are two-way
 /// clusters for any number of set-ups, with at least the binomial variance. If there is only one cluster of a kind, the
 /// other kind is used.
 ///
-/// Degrees of freedom: clusters minus one, with (sum of shares)^2 / sum of squared shares of the information as their
-/// number (Satterthwaite 1946); for two-way clusters, those of the fewer ones.
+/// Degrees of freedom: number of clusters minus one, in which the number of clusters is the effective one, (sum of
+/// shares)^2 / sum of squared shares of the information (Satterthwaite 1946). For two-way clusters, the smaller number
+/// counts.
 ///
 /// The variance is infinite if the information is singular, or if there are fewer than two clusters of a required kind.
 [[nodiscard]] ClusteredVariance clustered_variance(std::span<const AnswerScore> answers, std::size_t parameters,

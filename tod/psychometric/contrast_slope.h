@@ -20,10 +20,10 @@ namespace todbench {
 /// Degrees of freedom of TodPoint::delta_t_se_k; empty if not stated.
 [[nodiscard]] std::optional<double> freedom_of_contrast(const TodPoint& point);
 
-/// Magnitude of the slope of ln acuity over ln |effective contrast| at each point: of S75^2 = A + B / C + D / C^2
-/// through the point and its neighbours of the same sign (the constant of resolution and the contributions of noise);
-/// with two points the larger of the slopes of A + B / C and A + D / C^2. 1, the slope of an acuity in proportion to
-/// the contrast, if no neighbour has a threshold.
+/// Returns for each point the magnitude of the slope of ln acuity over ln |effective contrast|. The slope is that of
+/// S75^2 = A + B / C + D / C^2 through the point and its neighbours of the same sign (C: contrast; A: resolution; B, D:
+/// noise). With two points it is the larger of the slopes of A + B / C and A + D / C^2. If no neighbour has a threshold
+/// it is 1: acuity in proportion to the contrast.
 [[nodiscard]] std::vector<double> contrast_slopes(const TodCurve& curve);
 
 /// Uncertainty of the acuity from the scatter of the measurements of a contrast.
@@ -32,7 +32,7 @@ struct ContrastScatter {
   double shared_se_ln_acuity = 0;              ///< part of it that the scatter over set-ups does not contain
   std::optional<double> degrees_of_freedom{};  ///< empty: not stated
 };
-/// At each point: the standard error of the contrast times contrast_slopes().
+/// Returns for each point the standard error of the contrast times contrast_slopes().
 [[nodiscard]] std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve);
 
 }  // namespace todbench

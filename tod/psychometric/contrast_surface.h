@@ -13,12 +13,12 @@ namespace todbench {
 /// Sources of noise that decide how the function changes with the contrast.
 struct ContrastNoise {
   double noise_k = 0;         ///< temporal noise of a pixel
-  double internal_noise = 0;  ///< of the observer, relative to the contrast; 0: 0.07, that of hvs-1
+  double internal_noise = 0;  ///< of the observer, relative to the contrast; 0: 0.07 as in hvs-1
 };
 
-/// Bend of a curve over contrast: u = ln(hypot(noise_k / |dT|, n) / n) / ln 5, n the internal noise; 0 where the
-/// observer decides, 1 at about a fifth of the contrast where both are equal. The function of a sensor depends on the
-/// contrast through it alone, as long as the counts are fine enough.
+/// Position u of a contrast on the curve: u = ln(hypot(noise_k / |dT|, n) / n) / ln 5, n the internal noise. u is 0
+/// where the observer's own noise dominates and 1 at about a fifth of the contrast at which both noises are equal. The
+/// function of a sensor depends on the contrast through u alone, as long as the counts are fine enough.
 [[nodiscard]] double contrast_bend(const ContrastNoise& noise, double delta_t_k);
 /// Contrasts, decreasing, from `strongest_k` to `weakest_k`, at which tables describe the function: steps of at most
 /// 0.1 in u.
@@ -31,17 +31,18 @@ struct TableAtContrast {
   ProportionTable table;
 };
 
-/// Immutable, cheap to copy.
+/// Proportion correct over size and contrast. Immutable, cheap to copy.
 class ContrastSurface {
  public:
-  /// At least two contrasts of one sign and different u. Errors: `invalid_input`, those of TwinShape::of().
+  /// Makes a surface from at least two contrasts of one sign and different u. Errors: `invalid_input`, those of
+  /// TwinShape::of().
   [[nodiscard]] static Result<ContrastSurface> of(std::span<const TableAtContrast> tables, const ContrastNoise& noise);
 
   /// ln of the size at 75 %: cubic in u between the contrasts of the tables, constant beyond the strongest.
   [[nodiscard]] double ln_threshold(double delta_t_k) const;
   /// Change of ln_threshold() for a contrast that is 1 % stronger, per unit of ln contrast.
   [[nodiscard]] double slope(double delta_t_k) const;
-  /// At ln(size / mrad): the functions of the neighbouring tables, shifted to the same threshold.
+  /// Value at ln(size / mrad), by the functions of the neighbouring tables, shifted to the same threshold.
   [[nodiscard]] TwinShape::Value at(double ln_size, double delta_t_k) const;
   [[nodiscard]] const ContrastNoise& noise() const { return noise_; }
   /// Standard error of ln_threshold() from that of the nearest table.

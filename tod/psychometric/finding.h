@@ -23,12 +23,12 @@ enum class FindingKind {
   clipping,         ///< saturated pixels in windows of triangles; share of trials
   rounding,         ///< a count is wider than the noise; standard deviation of the noise in counts
   temporal_correlation,  ///< successive frames share noise; correlation
-  surrogate,             ///< pictures that no optics of the twin's kind can give; chi-square, its limit
-  identity,            ///< two curves on other plates, of the same answers, or fitted with other functions; no figures
+  surrogate,             ///< pictures that the optics model of the twin cannot produce; chi-square, its limit
+  identity,  ///< curves of different plates, of the same answers, or fitted with different functions; no figures
   contrast_deviation,  ///< effective contrast differs from the set one; percent, tolerance by the budget
   transfer_change,     ///< set-ups of one run differ in contrast; percent, tolerance by their errors
-  noise_change,        ///< of a pixel during the run; percent, tolerance
-  correlation_change,  ///< of successive frames during the run; difference of correlations
+  noise_change,        ///< the noise of a pixel changed during the run; percent, tolerance
+  correlation_change,  ///< the correlation of successive frames changed during the run; difference of correlations
   picture_residue,     ///< pictures still changed while they were measured; percent of the change
   setting_change,      ///< a setting of the camera changed during the run; no figures
   orientation,         ///< thresholds of upright and level triangles differ; percent, limit

@@ -16,21 +16,22 @@ struct ClusterEffect {
 
 /// Cluster-robust variance (Liang and Zeger 1986): inverse information times the sum over clusters of squared scores
 /// times inverse information, times G/(G-1), over the model variance. In a set with clusters, each trial of a row
-/// without a cluster is a cluster. If the fit has no information (step, one-sided data), the design effect of the
-/// counts about their level means (Rao and Scott 1992) is used.
+/// without a cluster is a cluster of its own. If the fit has no information (step, one-sided data), the design effect
+/// of the counts about their level means (Rao and Scott 1992) is used.
 [[nodiscard]] ClusterEffect cluster_effect(std::span<const Level> levels, const PooledCounts& counts,
                                            PsychometricForm form, const Maximum<3>& maximum,
                                            std::optional<double> se_t);
 
-/// Same for graded answers, with their dispersion.
+/// Effect of clusters on graded answers, with their dispersion.
 struct GradedEffect {
   ClusterEffect clusters;  ///< effective number; the inflation may be below 1
   IntervalKind kind = IntervalKind::two_way;
   std::optional<double> dispersion;  ///< as in PsychometricFit::dispersion
 };
 
-/// From the variance over presentations and places (clustered_variance.h). If the fit has no information, or there are
-/// too few clusters of either kind, uses the smaller number of clusters and the inflation of single answers.
+/// Computes the effect from the variance over presentations and places (clustered_variance.h). If the fit has no
+/// information, or there are too few clusters of either kind, the smaller number of clusters and the inflation of
+/// single answers are used.
 [[nodiscard]] GradedEffect graded_effect(std::span<const GradedAnswer> answers, const PooledCounts& counts,
                                          PsychometricForm form, const Maximum<3>& maximum, std::optional<double> se_t);
 

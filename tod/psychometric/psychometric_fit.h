@@ -22,7 +22,7 @@ struct Level {
   int cluster = -1;    ///< trials that share phase, frame or fixed pattern; < 0: independent
 };
 
-/// One graded answer: the probability of the right one for the patch.
+/// One graded answer: the probability of the correct answer to the patch.
 struct GradedAnswer {
   double size = 0;                 ///< > 0
   double probability_correct = 0;  ///< 0 to 1
@@ -53,6 +53,7 @@ enum class FitVerdict {
 };
 [[nodiscard]] std::string_view to_string(FitVerdict verdict);
 
+/// Options of a fit.
 struct FitOptions {
   PsychometricForm form = PsychometricForm::size;
   std::optional<double> fixed_lapse = 0.0;  ///< empty: free in [0, 0.1]
@@ -60,6 +61,7 @@ struct FitOptions {
   bool graded = false;  ///< levels are of graded answers: their counts need not be whole
 };
 
+/// Posterior of the threshold.
 struct Posterior {
   double median = 0;
   double low = 0, high = 0;  ///< equal-tailed 95 %
@@ -96,7 +98,7 @@ enum class EstimatorReason {
   twin,           ///< there is a simulated twin, whose function it is
   no_twin,        ///< counts without a simulated sensor
   person,         ///< a person answered, with a function of their own
-  modules,        ///< the function of the sensor alone differs from that of the chain after it
+  modules,        ///< modules follow the sensor: the function of the sensor alone does not describe the chain
   package,        ///< likewise with an enhancement package
   moving_target,  ///< the twin's function is that of a target at rest
   irregular,      ///< the Weibull fit has no usable threshold (verdict)
@@ -109,7 +111,7 @@ inline constexpr std::array all_estimator_reasons{EstimatorReason::plan,        
                                                   EstimatorReason::moving_target, EstimatorReason::irregular,
                                                   EstimatorReason::no_function,   EstimatorReason::ended_early};
 [[nodiscard]] std::string_view to_string(EstimatorReason reason);
-/// For a sentence: "there is a simulated twin".
+/// Reason for a sentence: "there is a simulated twin".
 [[nodiscard]] std::string_view in_words(EstimatorReason reason);
 
 /// Proportion correct over size of a simulated sensor, without an assumed form, averaged over phases and noise.
@@ -122,13 +124,13 @@ struct ProportionTable {
 
 /// Result of a fit with the function of a twin (twin_shape.h).
 struct TwinShapeUse {
-  double size_ratio = 1;      ///< size at 75 %, of these answers over that of the twin
-  double slope_ratio = 1;     ///< slope at 75 %, likewise
+  double size_ratio = 1;      ///< ratio of the sizes at 75 %: these answers over the twin
+  double slope_ratio = 1;     ///< ratio of the slopes at 75 %, likewise
   bool slope_fitted = false;  ///< the answers required their own slope
   /// t of a further parameter: the slope, or a bend if the slope was fitted.
   double departure = 0;
-  double departure_limit = 0;        ///< of its magnitude, exceeded by chance in 1 %
-  double departure_shift = 0;        ///< of ln threshold, with that parameter
+  double departure_limit = 0;        ///< for the magnitude of departure; exceeded by chance in 1 %
+  double departure_shift = 0;        ///< change of ln threshold by that parameter
   double shape_se_ln_threshold = 0;  ///< contribution of the standard errors of the table
   double lapse_inflation = 1;        ///< of a free lapse: its clustered variance over that of independent answers
   ProportionTable table;
@@ -143,8 +145,8 @@ struct PsychometricFit {
   Interval ci95;
   Interval ci90;                ///< profile likelihood (drop 2.71), for equivalence tests
   std::optional<double> slope;  ///< b
-  /// The slope is at the upper end of its domain, 50: the data call for a steeper one, and the likelihood ratio of the
-  /// interval is that of the domain. If the gap of a step is too narrow for the domain, the interval contains the gap.
+  /// The slope is at the upper end of its domain, 50: the data require a steeper one, and the intervals are limited to
+  /// slopes within the domain. If the gap of a step is too narrow for the domain, the interval contains the gap.
   bool slope_at_cap = false;
   double lapse = 0;
   std::optional<double> log_likelihood;  ///< without binomial coefficients
@@ -165,11 +167,11 @@ struct PsychometricFit {
   double joined_u = 0;
   double contrast_u = 0;  ///< part of joined_u from the scatter of the effective contrast
   double lag_u = 0;       ///< part of joined_u from the lag between the triangles while the contrast changes
-  /// Mean squared residual of graded answers over that of right and wrong ones; empty for right and wrong answers.
+  /// Mean squared residual of graded answers over that of binary answers; empty for binary answers.
   std::optional<double> dispersion;
   std::optional<TwinShapeUse> twin_shape;  ///< empty: a Weibull function
 
-  /// ok or extrapolated with both sides of ci95.
+  /// Whether the verdict is ok or extrapolated and ci95 has both ends.
   [[nodiscard]] bool usable() const;
 };
 

@@ -61,7 +61,7 @@ inline constexpr std::size_t place_t = 0, place_q = 1, place_lapse = 2;
 
 /// ln likelihood without binomial coefficients.
 [[nodiscard]] double log_likelihood(const PooledCounts& counts, PsychometricForm form, const PsychometricPlace& place);
-/// With first and second derivatives in (t, q, lapse).
+/// Likelihood with first and second derivatives in (t, q, lapse).
 [[nodiscard]] Expansion<3> expand_likelihood(const PooledCounts& counts, PsychometricForm form,
                                              const PsychometricPlace& place);
 /// Gradient of ln psi (for one right answer) and of ln(1 - psi) (one wrong answer) in (t, q, lapse) at a relative ln
@@ -69,6 +69,7 @@ inline constexpr std::size_t place_t = 0, place_q = 1, place_lapse = 2;
 struct Scores {
   std::array<double, 3> right{}, wrong{};
 };
+/// Scores at a relative ln size.
 [[nodiscard]] Scores scores_at(PsychometricForm form, const PsychometricPlace& place, double ln_size);
 
 /// Deviance of the model against one free probability per level, summed level by level so that large counts do not
@@ -77,8 +78,8 @@ struct Scores {
 /// ln likelihood with one free probability per level (the blank level included).
 [[nodiscard]] double saturated(const PooledCounts& counts);
 
-/// Limits of the likelihood at the edges of the model (Prins 2019): the supremum may be one of these, and no maximum
-/// exist.
+/// Limits of the likelihood at the edges of the model (Prins 2019). If one of them is the supremum, there is no
+/// maximum.
 struct LikelihoodLimits {
   double chance = 0;   ///< threshold -> infinity: psi = g everywhere
   double ceiling = 0;  ///< threshold -> 0: psi = 1 - lapse at every positive size; -infinity with an error at lapse 0
@@ -91,9 +92,9 @@ struct StepExtent {
   bool any = false;
   std::optional<double> low, high;
 };
-/// `lapse` as in likelihood_limits().
+/// Finds the steps. `lapse` as in likelihood_limits().
 [[nodiscard]] StepExtent step_extent(const PooledCounts& counts, std::optional<double> lapse, double least);
-/// `lapse` fixed, or free in [0, 0.1] if not given.
+/// Computes the limits. `lapse`: fixed, or free in [0, 0.1] if not given.
 [[nodiscard]] LikelihoodLimits likelihood_limits(const PooledCounts& counts, std::optional<double> lapse);
 
 }  // namespace todbench

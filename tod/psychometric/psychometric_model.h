@@ -31,8 +31,8 @@ struct Link {
 struct LogProbabilities {
   double right = 0, wrong = 0;
 };
-/// At u, without the rounding of psi to 1: ln(1 - psi) is exact down to the largest double. Arguments above 700 count
-/// as 700.
+/// Computes both at u without rounding psi to 1: ln(1 - psi) is exact down to the largest double. Arguments above 700
+/// count as 700.
 [[nodiscard]] LogProbabilities log_probabilities(const Link& link, double u);
 
 /// Value and partial derivatives of ln psi or ln(1 - psi) in w = ln z and in the lapse at constant w.
@@ -43,7 +43,8 @@ struct LogTerm {
 struct AnswerTerms {
   LogTerm right, wrong;
 };
-/// At u; above 300 as at 300, so that second derivatives times counts never overflow.
+/// Computes the contributions at u. Values above 300 count as 300, so that second derivatives times counts never
+/// overflow.
 [[nodiscard]] AnswerTerms answer_terms(const Link& link, double u);
 
 }  // namespace todbench

@@ -14,7 +14,7 @@ struct ProfileRequest {
   double start_t = 0;          ///< the maximum, or any place of the supremum region
   double supremum = 0;         ///< of the log-likelihood
   std::optional<double> se_t;  ///< standard error of t, for the first steps
-  LikelihoodLimits limits;     ///< state in advance whether a side closes
+  LikelihoodLimits limits;     ///< decide in advance whether a side has a crossing
   double wide_drop = 0;        ///< 2 (supremum - profile) at the outer crossing
   double narrow_drop = 0;      ///< at the inner crossing, <= wide_drop
 };
@@ -29,6 +29,7 @@ struct ProfileCrossings {
   std::optional<Maximum<3>> better;
 };
 
+/// Follows the profile likelihood from the start to its crossings on both sides.
 [[nodiscard]] ProfileCrossings profile_crossings(const PooledCounts& counts, PsychometricForm form,
                                                  const ScanGrid& grid, std::optional<double> lapse,
                                                  const ProfileRequest& request);

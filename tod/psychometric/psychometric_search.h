@@ -54,6 +54,7 @@ struct ScanGrid {
   std::vector<double> q;
   std::vector<LinkTable> tables;  ///< one for each lapse
 };
+/// Grid for a fixed lapse, or for a free one if `lapse` is empty.
 [[nodiscard]] ScanGrid scan_grid(PsychometricForm form, std::optional<double> lapse);
 
 /// A scanned place with its tabulated likelihood.
@@ -66,8 +67,8 @@ struct LikelihoodScan {
   std::vector<ScanNode> nodes;  ///< for each slope of the grid the best over threshold and lapse
   std::vector<ScanNode> peaks;  ///< maxima over threshold and slope: further starts of Newton steps
 };
-/// Thresholds are spaced by the width of the function at that slope. They lie around every level, in every gap and
-/// outside the ends, so that no step between two levels and no ridge outside them is missed.
+/// Scans the whole domain. Thresholds are spaced by the width of the function at that slope. They lie around every
+/// level, in every gap and outside the ends, so that no step between two levels and no ridge outside them is missed.
 [[nodiscard]] LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid);
 
 /// The maximum over the domain, from its scan. If the likelihood rises towards a slope limit, the place is at that

@@ -28,25 +28,27 @@ struct RampValue {
   ClusteredVariance variance;  ///< of ln S75, over set-ups
 };
 
-/// Difference of ln S75 between ramps up and down.
+/// Difference of ln S75 between ramps up and down; zeros if its fit failed.
 struct RampDifference {
   double ln_up_over_down = 0, standard_error = 0;
-  double limit = 0;  ///< of its magnitude: chance exceeds it in 1 %
+  double limit = 0;  ///< critical value of |ln_up_over_down| at 1 %, two-sided
   [[nodiscard]] bool beyond() const;
 };
 
-/// P(S, dT) = F(S exp(-a(u)), dT), a(u) = a0 + a1 u + a2 u^2, F the surface and u its contrast_bend(). ln S75(dT) =
-/// ln S75 of the surface + a(u). Quasi-likelihood as fit_twin_shape(). The stretch is constant if the u of the answers
-/// span less than 0.05, and straight below 0.3.
+/// Fit of P(S, dT) = F(S exp(-a(u)), dT) with a(u) = a0 + a1 u + a2 u^2, F the surface and u its contrast_bend().
+/// ln S75(dT) = ln S75 of the surface + a(u). Quasi-likelihood as in fit_twin_shape(). The stretch a(u) is constant if
+/// the u of the answers span less than 0.05, and linear if they span less than 0.3.
 class RampFit {
  public:
   /// Errors: `invalid_input` (no answers, or none that determine the stretch).
   [[nodiscard]] static Result<RampFit> of(std::vector<RampAnswer> answers, ContrastSurface surface);
 
+  /// ln S75 at a contrast, with its variance.
   [[nodiscard]] RampValue at(double delta_t_k) const;
   /// Stretch in ln size at a contrast.
   [[nodiscard]] double stretch(double delta_t_k) const;
-  /// By a further parameter of opposite sign in both directions.
+  /// Returns the difference of ln S75 between ramps up and down. The fit is repeated with one more parameter, which is
+  /// added to ln S75 with the factor +1/2 for ramps up and -1/2 for ramps down. If that fit fails, all members are 0.
   [[nodiscard]] RampDifference up_against_down() const;
 
  private:

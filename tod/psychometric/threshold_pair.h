@@ -16,14 +16,15 @@ struct PairMaxima {
   std::optional<double> se_ln_ratio;  ///< from the observed information; empty if it is singular
 };
 
-/// A free lapse is free in each set. Precondition: levels are valid and each set has a positive size.
+/// Joint fit of two data sets. A free lapse is free in each set. Precondition: levels are valid and each set has a
+/// positive size.
 class ThresholdPair {
  public:
   ThresholdPair(std::span<const Level> a, std::span<const Level> b, const FitOptions& options);
 
-  /// One slope for both sets, with a common threshold and with separate ones.
+  /// Fits one slope for both sets, with a common threshold and with separate ones.
   [[nodiscard]] PairMaxima shared_slope() const;
-  /// A slope for each set, with a common threshold and with separate ones.
+  /// Fits a slope for each set, with a common threshold and with separate ones.
   [[nodiscard]] PairMaxima separate_slopes() const;
 
  private:

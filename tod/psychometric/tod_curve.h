@@ -21,7 +21,7 @@ enum class AnswersReason {
   plan,               ///< stated by the plan
   twin,               ///< graded: the model observer judges, and the function of the twin is fitted
   weibull,            ///< the error of a Weibull function exceeds the interval of graded answers
-  lapse,              ///< the plan has a lapse; graded answers are those of an observer without
+  lapse,              ///< the plan has a lapse; graded answers are those of an observer without one
   adaptive,           ///< in sessions of earlier versions: the schedule is adaptive
   grey_levels,        ///< intervals of graded answers are not validated for contrasts in grey levels
   few_presentations,  ///< too few to estimate the scatter of graded answers
@@ -35,13 +35,13 @@ inline constexpr std::array all_answers_reasons{
     AnswersReason::adaptive, AnswersReason::grey_levels, AnswersReason::few_presentations, AnswersReason::no_function,
     AnswersReason::person,   AnswersReason::package,     AnswersReason::moving_target};
 [[nodiscard]] std::string_view to_string(AnswersReason reason);
-/// For a sentence: "the plan names them".
+/// Reason for a sentence: "the plan names them".
 [[nodiscard]] std::string_view in_words(AnswersReason reason);
 
-/// The kind of answers behind a threshold.
+/// Answers from which a threshold was fitted.
 struct AnswersTaken {
   AnswerKind kind = AnswerKind::binary;
-  int frames = 1;  ///< of a presentation, over which graded answers are averaged
+  int frames = 1;  ///< frames of a presentation over which graded answers are averaged
   AnswersReason reason = AnswersReason::plan;
   bool operator==(const AnswersTaken&) const = default;
 };
@@ -50,7 +50,7 @@ struct AnswersTaken {
 struct DirectionAnswers {
   int trials = 0;
   double correct = 0;  ///< sum of the probabilities, or number of right answers
-  double percent = 0;  ///< threshold over that of all directions, minus 1, to first order
+  double percent = 0;  ///< threshold over that of all directions, minus 1, in percent, to first order
 };
 
 /// Thresholds by the direction of the triangles in the picture (tod/adequacy/orientation.h).
@@ -59,26 +59,26 @@ struct Orientations {
   double axes_percent = 0;     ///< threshold of up and down over that of left and right, minus 1
   double axes_se_percent = 0;  ///< standard error, from the scatter over plates and mountings
   int set_ups = 0;             ///< number of plates and mountings
-  double p = 1;                ///< of a larger difference by chance
+  double p = 1;                ///< probability of a larger difference by chance
 };
 
 /// One contrast of a TOD curve.
 struct TodPoint {
   double set_delta_t_k = 0;  ///< set contrast: points are paired by it
   double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
-  /// Standard error of that mean, contrast_error(): over its measurements (one per set-up and set-point) and their
-  /// triangles, or over the measurements alone if no triangles are recorded; then 0 for a single measurement, whose
-  /// scatter is not known: contrast_se_k().
+  /// Standard error of delta_t_k by contrast_error(), over its measurements (one per set-up and set-point) and their
+  /// triangles. If no triangles are recorded, it is over the measurements alone; it is then 0 for a single measurement,
+  /// whose scatter is not known (contrast_se_k()).
   double delta_t_se_k = 0;
-  double delta_t_shared_se_k = 0;           ///< part of it that the scatter over measurements does not contain
-  int delta_t_measurements = 0;             ///< number of measurements; 0: not stated
+  double delta_t_shared_se_k = 0;  ///< part of delta_t_se_k that the scatter over measurements does not contain
+  int delta_t_measurements = 0;    ///< number of measurements; 0: not stated
   std::optional<double> delta_t_freedom{};  ///< degrees of freedom of that error; empty: measurements minus one
   std::vector<Level> levels;                ///< data of the fit: counts, one row per size and cluster
   PsychometricFit fit;                      ///< in mrad
   /// Reason for a Weibull function or for that of the twin; empty: not stated.
   std::optional<EstimatorReason> estimator_reason;
   std::optional<AnswersTaken> answers;            ///< empty: not stated
-  std::optional<PsychometricFit> free_lapse_fit;  ///< the same with a free lapse, as a check
+  std::optional<PsychometricFit> free_lapse_fit;  ///< fit of the same answers with a free lapse, as a check
   bool lapse_warning = false;             ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
   std::optional<Adequacy> adequacy;       ///< findings against the threshold; empty: not examined
   std::optional<double> direct_s75_mrad;  ///< simulated sensors only: no psychometric form assumed
@@ -117,7 +117,7 @@ inline constexpr double boundary_drop = 2.705543454095404;
 /// a group are graded, it is fitted by fit_graded(), with both clusterings in one variance.
 [[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
 
-/// The same trials as right and wrong answers to one frame each.
+/// Converts trials to right and wrong answers to one frame each.
 [[nodiscard]] std::vector<Trial> as_binary(std::span<const Trial> trials);
 
 /// Answers with their presentations and places; right and wrong ones as probabilities of 1 and 0.

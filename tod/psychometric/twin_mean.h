@@ -13,12 +13,13 @@ namespace todbench {
 using TwinPlace = std::array<double, 4>;
 inline constexpr std::size_t twin_size = 0, twin_slope = 1, twin_bend = 2, twin_lapse = 3;
 
-/// Without a bend.
+/// Place of a fit, without a bend.
 [[nodiscard]] TwinPlace twin_place(const TwinShapeUse& use, double lapse);
 
 /// Largest lapse at which the table contains the size with 75 % correct answers; at most max_free_lapse.
 [[nodiscard]] double largest_twin_lapse(const TwinShape& shape);
 
+/// Mean of an answer:
 /// mu(S) = 1/4 + r (F(c + k d + e d^2) - 1/4), d = ln S - ln S75, r = 1 - lapse / (3/4), F(c) = 1/4 + 1/2 / r, so that
 /// mu(S75) = 3/4 for every lapse. Keeps a reference to the shape.
 class TwinMean {
@@ -29,7 +30,7 @@ class TwinMean {
     double value = 0;
     std::array<double, 4> gradient{};  ///< per unit of each parameter
   };
-  /// At ln(size / mrad).
+  /// Value at ln(size / mrad).
   [[nodiscard]] Value at(double ln_size) const;
 
  private:

@@ -24,7 +24,7 @@ class TwinShape {
     double proportion = 0;
     double derivative = 0;  ///< per unit of ln size
   };
-  /// At ln(size / mrad).
+  /// Value at ln(size / mrad).
   [[nodiscard]] Value at(double ln_size) const;
   /// ln of the size at 75 %.
   [[nodiscard]] double ln_threshold() const { return ln_threshold_; }
@@ -42,8 +42,8 @@ class TwinShape {
 /// Proportion of right answers of a camera whose function is `use`, with a lapse, at ln(size / mrad).
 [[nodiscard]] double twin_proportion(const TwinShape& shape, const TwinShapeUse& use, double lapse, double ln_size);
 
-/// Fits the same answers with the function of the twin. The parameter is the ratio of sizes; a second one, the ratio of
-/// slopes at 75 %, is added if the answers require it (t test, 1 %). A lapse l changes a proportion P of the twin to
+/// Fits the answers again with the function of the twin. The parameter is the ratio of sizes; a second one, the ratio
+/// of slopes at 75 %, is added if the answers require it (t test, 1 %). A lapse l changes a proportion P of the twin to
 /// 1/4 + (3/4 - l) (P - 1/4) / (3/4); a free one (`options.fixed_lapse` empty) is a further parameter from 0 to 0.1.
 /// S75 is the size at 75 % with the lapse. `weibull` is the fit of the same answers by the Weibull function of
 /// `options`; if it has no regular maximum (verdict other than ok and extrapolated) it is returned unchanged.
@@ -57,8 +57,8 @@ class TwinShape {
                                                      const PsychometricFit& weibull, const ProportionTable& table,
                                                      const FitOptions& options);
 
-/// Fits the answers of `fit` (from fit_twin_shape(), with a fixed lapse) with a free lapse and the same number of other
-/// parameters: a check. Errors: `invalid_input` (a fit without a function of a twin).
+/// Fits the answers of `fit` (from fit_twin_shape(), with a fixed lapse) again with a free lapse and the same number of
+/// other parameters, as a check. Errors: `invalid_input` (a fit without a function of a twin).
 [[nodiscard]] Result<PsychometricFit> twin_fit_with_free_lapse(std::span<const GradedAnswer> answers,
                                                                const PsychometricFit& fit, PsychometricForm form);
 

@@ -30,7 +30,7 @@ struct BarModulation {
   int bars_separated_at_best = 1;        ///< 1 + number of gaps that are lower than both neighbours
   double share_of_four = 0;              ///< share of the phases that show four bars
 };
-/// Phases (i + 1/2) / phases - 1/2 pitch. Precondition: phases >= 1.
+/// Computes the modulation at the phases (i + 1/2) / phases - 1/2 pitch. Precondition: phases >= 1.
 [[nodiscard]] BarModulation bar_modulation(const BlurredBars& bars, int phases = 64);
 /// Same for any profile over the place in pitches, for example a measured one; it is evaluated up to 7 / (4 f) + 1 / 2
 /// from the middle.

@@ -32,12 +32,13 @@ using ResolvedPerMrad = std::function<std::optional<double>(double apparent_cont
 /// TTP: the integral of sqrt(C / CTF) over the frequencies at which CTF < C, in 1/mrad.
 [[nodiscard]] ResolvedPerMrad resolved_values(LogLinearCurve ctf);
 
+/// Criterion of a range: number of cycles or values on the target for a probability of 50 %.
 struct Criterion {
   double at_half = 0;  ///< N50 or V50, > 0
   ProbabilityForm form = ProbabilityForm::johnson;
 };
 
-/// Which one has the larger effect at the range of the probability, for the same relative change of size or contrast.
+/// Quantity with the larger effect on the range of a probability, for the same relative change of size or contrast.
 enum class DominantLimit { resolution, contrast };
 [[nodiscard]] std::string_view to_string(DominantLimit limit);
 
@@ -48,7 +49,8 @@ struct RangeSensitivity {
     return to_contrast > to_size ? DominantLimit::contrast : DominantLimit::resolution;
   }
 };
-/// By differences of 1 % of a function from (size factor, contrast factor) to a range; empty if it has no value.
+/// Computes both by differences of 1 % of a function from (size factor, contrast factor) to a range; empty if the
+/// function has no value.
 [[nodiscard]] std::optional<RangeSensitivity> sensitivity_of(
     const std::function<std::optional<double>(double size_factor, double contrast_factor)>& range);
 

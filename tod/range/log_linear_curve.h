@@ -11,6 +11,7 @@
 
 namespace todbench {
 
+/// One point of a curve.
 struct CurvePoint {
   double frequency = 0;  ///< >= 0, in the unit of the curve
   double value = 0;      ///< > 0
@@ -24,7 +25,7 @@ class LogLinearCurve {
   [[nodiscard]] static Result<LogLinearCurve> of(std::span<const CurvePoint> points, std::string_view what);
 
   [[nodiscard]] std::span<const CurvePoint> points() const { return points_; }
-  /// Empty outside the points.
+  /// Value at a frequency; empty outside the points.
   [[nodiscard]] std::optional<double> at(double frequency) const;
   /// The highest frequency whose value is at most `value`; empty if every point lies above.
   [[nodiscard]] std::optional<double> highest_frequency_at(double value) const;

@@ -12,11 +12,13 @@
 
 namespace todbench {
 
+/// Probability at one range.
 struct ModelRangePoint {
   double range_m = 0;
   std::optional<double> probability;
 };
 
+/// Result of a range model.
 struct ModelRange {
   std::string name;       ///< "tod", "acquire", "ttp", "mtdp"
   std::string title;      ///< "TOD"
@@ -28,14 +30,14 @@ struct ModelRange {
   std::string display{};           ///< contrast on the display that the model assumes: a sentence
   std::optional<double> r50_m{}, r75_m{};
   Interval r75_ci95_m{};  ///< of the curve and the air; a side is open if unknown
-  /// Over the open parameters of the observer of a TOD curve (RangePrediction); not a confidence interval.
+  /// R75 over the open parameters of the observer of a TOD curve (RangePrediction); not a confidence interval.
   std::optional<std::pair<double, double>> r75_spread_m{};
   std::optional<RangeSensitivity> sensitivity{};
   std::string reason{};              ///< why there is no r75_m; else empty
   std::vector<std::string> notes{};  ///< assumptions of this model
   std::vector<ModelRangePoint> curve{};
 
-  /// Without a range: the contrast was lost, or the air is not known.
+  /// Dominant limit; empty without a range, because the contrast was lost or the air is not known.
   [[nodiscard]] std::optional<DominantLimit> dominant() const {
     return sensitivity ? std::optional(sensitivity->dominant()) : std::nullopt;
   }

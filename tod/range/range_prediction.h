@@ -25,7 +25,7 @@ struct TodThreshold {
   /// Magnitude of the set contrast of `delta_t_k`: the name of this point; 0: not known.
   double set_delta_t_k = 0;
   std::optional<Adequacy> adequacy{};  ///< findings against the threshold; empty: not examined
-  /// Over the open parameters of an observer with an eye, low and high; empty: no open parameters, or not varied.
+  /// S75 over the open parameters of an observer with an eye, low and high; empty: no open parameters, or not varied.
   std::optional<std::pair<double, double>> s75_spread_mrad{};
 };
 
@@ -53,6 +53,7 @@ struct RangePoint {
   Interval probability_ci95;
 };
 
+/// Result of predict_range().
 struct RangePrediction {
   std::optional<double> r75_m;  ///< empty if the target line does not meet the TOD curve
   Interval r75_ci95_m;          ///< from the intervals of the thresholds
@@ -73,6 +74,7 @@ struct ThresholdSelection {
   std::vector<TodThreshold> thresholds;
   std::vector<std::string> notes;
 };
+/// Selects the thresholds of a curve for a target.
 [[nodiscard]] ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k);
 
 /// Acuity 1 / S75 in 1/mrad at a contrast. ln acuity is linear in ln contrast between neighbouring thresholds and
@@ -81,9 +83,9 @@ struct ThresholdSelection {
 [[nodiscard]] std::optional<double> interpolated_acuity_per_mrad(std::span<const TodThreshold> sorted,
                                                                  double delta_t_k);
 
-/// The contrast by which the curve is read for a target. If a point has this set or effective contrast
-/// (same_contrast(), as in a comparison of curves), the contrast of that point, the nearest of several; otherwise the
-/// contrast itself. Points without a set contrast are not matched.
+/// Returns the contrast at which the curve is read for a target. If points have this set or effective contrast
+/// (same_contrast(), as in a comparison of curves), it is that of the nearest of these points; otherwise the contrast
+/// itself. Points without a set contrast are not matched.
 [[nodiscard]] double contrast_on_curve(std::span<const TodThreshold> thresholds, double delta_t_k);
 
 /// Solves M(R) = (size / R) acuity(contrast tau(R)) = M75 for the smallest R; tau is exp(-extinction R) or that of the
@@ -92,7 +94,7 @@ struct ThresholdSelection {
 /// of its range, both extinction and air, no thresholds, thresholds that are not positive and finite, or two at one
 /// contrast).
 [[nodiscard]] Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& task);
-/// Same at one range; contrast 0 beyond the end of the air's table. Errors: as predict_range().
+/// Computes one range; contrast 0 beyond the end of the air's table. Errors: as predict_range().
 [[nodiscard]] Result<RangePoint> range_point(std::span<const TodThreshold> thresholds, const RangeTask& task,
                                              double range_m);
 

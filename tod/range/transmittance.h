@@ -20,21 +20,21 @@ struct TransmittancePoint {
 /// effective extinction -ln(tau) / R falls with range. Immutable, thread-safe.
 class Transmittance {
  public:
-  /// exp(-K R).
+  /// Transmittance exp(-K R).
   [[nodiscard]] static Transmittance beer_lambert(double extinction_per_km);
-  /// Rows with range increasing and transmittance not increasing; a row at 0 m has 1. Between rows ln(-ln tau) is
-  /// linear in ln R, and continues so below the first row towards tau = 1; next to a row of exactly 1, -ln tau is
-  /// linear in R. Rows below 1e-8 are dropped, because programs have a floor there. Undefined beyond the last row.
-  /// Errors: `invalid_input` in one sentence (no rows, fewer than two usable ones above 0 m, unsorted or repeated
-  /// ranges, a transmittance outside 0 to 1 or one that increases).
+  /// Interpolates rows with range increasing and transmittance not increasing; a row at 0 m has 1. Between rows ln(-ln
+  /// tau) is linear in ln R, and continues so below the first row towards tau = 1; next to a row of exactly 1, -ln tau
+  /// is linear in R. Rows below 1e-8 are dropped, because programs that write tables have a floor there. Undefined
+  /// beyond the last row. Errors: `invalid_input` in one sentence (no rows, fewer than two usable ones above 0 m,
+  /// unsorted or repeated ranges, a transmittance outside 0 to 1 or one that increases).
   [[nodiscard]] static Result<Transmittance> of_table(std::span<const TransmittancePoint> rows);
   /// The mean of exp(-k_i R) with weights: Beer and Lambert at every wavelength. Exact at every range. Preconditions:
   /// as many weights as extinctions, at least one; weights >= 0 and not all 0, extinctions >= 0, all finite.
   [[nodiscard]] static Transmittance of_spectrum(std::vector<double> weights, std::vector<double> extinction_per_km);
 
-  /// -ln tau; empty beyond end_m(). Precondition: range_m >= 0.
+  /// Optical depth -ln tau; empty beyond end_m(). Precondition: range_m >= 0.
   [[nodiscard]] std::optional<double> optical_depth(double range_m) const;
-  /// tau; empty beyond end_m().
+  /// Transmittance tau; empty beyond end_m().
   [[nodiscard]] std::optional<double> at(double range_m) const;
   /// The last range of the table; infinite without a table.
   [[nodiscard]] double end_m() const;

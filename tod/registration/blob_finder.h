@@ -7,7 +7,7 @@
 
 namespace todbench {
 
-/// A spot that stands out of its surround.
+/// A spot that stands out from its surround.
 struct Blob {
   cv::Point2d centre;   ///< centre of mass above the background, accurate to about 0.3 px
   double size_px = 0;   ///< square root of the area above half its height

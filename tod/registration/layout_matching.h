@@ -26,8 +26,8 @@ struct LayoutMatch {
   cv::Matx33d plate_to_pixel = cv::Matx33d::eye();         ///< mm -> pixels
   std::vector<std::pair<std::size_t, std::size_t>> pairs;  ///< index of triangle, index of blob
   int missing = 0;                                         ///< triangles inside the picture without a blob
-  /// More pairs are better; with equally many, fewer missing. Missing ones do not count against pairs, because a layout
-  /// pushed half out of the picture has none.
+  /// More pairs are better; with equally many pairs, fewer missing triangles. Missing triangles are not weighed against
+  /// pairs, because a layout pushed half out of the picture has none.
   [[nodiscard]] bool better_than(const LayoutMatch& other) const {
     if (pairs.size() != other.pairs.size()) return pairs.size() > other.pairs.size();
     return missing < other.missing;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plate laid over a picture in one mounting: which large triangles show where the layout has them.
+// Attempt to match a plate in one mounting with a picture.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 namespace todbench {
 
 inline constexpr double first_blur_px = 0.45;        ///< optics, detector and sampling box of a focused camera
-inline constexpr double searched_scale_range = 0.3;  ///< searched, relative, so that a wrong scale can be reported
+inline constexpr double searched_scale_range = 0.3;  ///< relative; wide enough to report a wrong scale
 inline constexpr int credible_pairs = 4;             ///< fewer blobs fit any layout by chance
-inline constexpr double agreement_needed = 0.75;     ///< of the large triangles must point as the plate states
+inline constexpr double agreement_needed = 0.75;  ///< share of the large triangles that must point as the plate states
 
-/// Data that all attempts at one scale share. Borrows picture and options.
+/// Data that all attempts at one scale share. Picture and options must outlive it.
 struct PlateSearch {
   const cv::Mat1d& picture;
   const RegistrationOptions& options;

@@ -18,11 +18,11 @@ struct FittedMapping {
 
 /// Similarity (4 parameters) by least squares. Affine (6) or homography (8) if the sum of squares falls by more than
 /// chance explains (F test at 1 %), there are at least two triangles more than necessary, and they do not lie along one
-/// line. With one place: translation at the expected scale. The similarity and the residual are those of a picture
-/// whose pixels have their height: y times `pixel_aspect`.
+/// line. With one place: translation at the expected scale. The similarity and the residual refer to a picture with
+/// square pixels: y times `pixel_aspect`.
 [[nodiscard]] FittedMapping fit_mapping(std::span<const cv::Point2d> plate_mm, std::span<const cv::Point2d> pixels,
                                         const RegistrationOptions& options);
-/// The mapping to a picture whose pixels are as high as wide, for one whose pixels have this aspect, and back.
+/// Converts a mapping to pixels of this aspect into one to square pixels; with_own_pixels() converts it back.
 [[nodiscard]] cv::Matx33d with_square_pixels(const cv::Matx33d& mapping, double pixel_aspect);
 [[nodiscard]] cv::Matx33d with_own_pixels(const cv::Matx33d& mapping, double pixel_aspect);
 

@@ -12,6 +12,7 @@
 
 namespace todbench {
 
+/// Options of register_plate().
 struct RegistrationOptions {
   double expected_scale_px_per_mm = 0;  ///< along x, from distance and IFOV of the plan, > 0
   double pixel_aspect = 1;              ///< expected height of a pixel over its width
@@ -98,13 +99,14 @@ struct EffectiveContrast {
   std::vector<ReferenceTriangle> references;  ///< those used
 };
 
-/// Over the triangles of at least `min_size_px`: median of the inside (0.45 of the inscribed radius, at most 1.25 px,
-/// away from the edge) minus median of a ring 3 px wide that begins 1.5 px outside; means if `level` states so.
+/// Measures the contrast of every triangle of at least `min_size_px`: median of the inside (0.45 of the inscribed
+/// radius, at most 1.25 px, away from the edge) minus median of a ring 3 px wide that begins 1.5 px outside; means if
+/// `level` states so.
 ///
 /// Blur reduces the result, mostly in the corners: for a total blur of 0.40 px (standard deviation, box included) by
 /// 0.4 % at 4 px, 0.04 % at 5 px and less than 0.01 % from 6 px, each the mean over sampling phases. If the blur is
 /// known, divide by the result for a simulated picture. Errors: `invalid_input` (no triangle is that large),
-/// `calibration` (one leaves the picture).
+/// `calibration` (a triangle leaves the picture).
 [[nodiscard]] Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                            const Registration& registration, double min_size_px,
                                                            LevelEstimate level = LevelEstimate::median);

@@ -27,22 +27,22 @@ struct ShiftFit {
 /// for each. Each is compared in its bounding box and 3 px round it; other objects should be farther away. Empty if a
 /// window leaves the picture, the shift exceeds `reach_px` from `start`, or the picture is flat.
 ///
-/// More precise than the centre of mass: that weighs noise with the distance from the centre (0.14 px for S = 5 px at
-/// contrast / noise = 13), the fit only along the edges (0.023 px).
+/// The fit is more precise than the centre of mass, in which noise has a weight that grows with the distance from the
+/// centre (0.14 px for S = 5 px at contrast / noise = 13). Only noise along the edges affects the fit (0.023 px).
 [[nodiscard]] std::optional<ShiftFit> fit_shift(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                 double blur_px, cv::Point2d start, double reach_px);
 
 /// First-order displacement of polygons of one contrast from their given places.
 struct PlaceFit {
   double amplitude = 0, amplitude_error = 0;  ///< common contrast, in the unit of the picture
-  cv::Point2d shift, standard_error;          ///< of all of them, px
+  cv::Point2d shift, standard_error;          ///< of all polygons together, px
   double turn_rad = 0, turn_error_rad = 0;    ///< about `centre`, clockwise in the picture; 0 for fewer than 3 polygons
   double residual_rms = 0;                    ///< unit of the picture
 };
 
-/// One Gauss-Newton step from the given places. It is linear in the picture, so that it is unbiased and has a known
-/// error even if the noise hides every single polygon; a shift above half a pixel is underestimated. The standard error
-/// is the largest of three: pixels independent, rows in common, columns in common (sandwich estimate). Empty if a
+/// Computes one Gauss-Newton step from the given places. It is linear in the picture, so that it is unbiased and has a
+/// known error even if the noise hides every single polygon; a shift above half a pixel is underestimated. The standard
+/// error is the largest of three: pixels independent, rows in common, columns in common (sandwich estimate). Empty if a
 /// window leaves the picture or the polygons do not determine a shift.
 [[nodiscard]] std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                 double blur_px, cv::Point2d centre);

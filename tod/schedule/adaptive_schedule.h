@@ -17,6 +17,7 @@ namespace todbench {
 /// Presentations of a contrast before it can be settled.
 inline constexpr int least_adaptive_presentations = 8;
 
+/// Options of AdaptiveSchedule.
 struct AdaptiveOptions {
   /// Plates, mountings, contrasts, pixel and costs of changes. `phases`: presentations per visit, which is one contrast
   /// in one set-up before something else is changed.
@@ -56,7 +57,7 @@ class AdaptiveSchedule final : public TrialSchedule {
   [[nodiscard]] std::size_t planned() const override { return static_cast<std::size_t>(options_.max_presentations); }
   void observe(std::span<const Trial> trials) override;
 
-  /// In the order of the contrasts, highest first.
+  /// Progress of the contrasts, highest first.
   [[nodiscard]] std::vector<ContrastProgress> progress() const;
 
  private:

@@ -10,20 +10,22 @@
 
 namespace todbench {
 
+/// Options of PsiPlacement.
 struct PsiOptions {
   PsychometricForm form = PsychometricForm::size;
   double first_size = 1;  ///< prior of the threshold: uniform in its logarithm between these two, > 0
   double last_size = 10;
-  double size_step = 0.05;          ///< of the candidate sizes, in ln
-  double selection_lapse = 0.01;    ///< in the selection model only, so that one slip cannot exclude the truth
-  double lapse_probe_share = 0.05;  ///< share of trials at 2.5 thresholds, where only a lapse gives a wrong answer
-  double slope_probe_share = 0.1;   ///< share of trials at 45 % correct, which determine the slope
+  double size_step = 0.05;        ///< of the candidate sizes, in ln
+  double selection_lapse = 0.01;  ///< in the selection model only, so that one slip cannot exclude the truth
+  /// Share of trials at 2.5 times the threshold, where only a lapse gives a wrong answer.
+  double lapse_probe_share = 0.05;
+  double slope_probe_share = 0.1;  ///< share of trials at 45 % correct, which determine the slope
 };
 
 /// Chooses sizes one after the other: the size whose answer is expected to leave the least entropy in the marginal of
 /// the threshold (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013). The posterior is stored on
 /// a grid of ln threshold and ln slope in logarithms. If its spread falls below two grid steps, the grid is centred
-/// anew and halved; if it leans on an edge, the grid moves; the posterior is then recomputed from all answers. For
+/// anew and halved; if it reaches an edge, the grid moves; the posterior is then recomputed from all answers. For
 /// placing trials only: thresholds come from fit_psychometric(). For answers placed one by one use its posterior
 /// interval: the coverage of its profile interval is up to 2.6 points below 95 % (docs/method/uncertainty.md). One
 /// thread at a time.

@@ -16,6 +16,7 @@ namespace todbench {
 /// every 0.2 s only 3 of 10.
 inline constexpr double ramp_step_s = 0.5;
 
+/// Options of RampSchedule.
 struct RampOptions {
   /// Plates, mountings and pixel; `delta_t_k` are the contrasts of the points, `phases` is not used.
   ConstantStimuliOptions stimuli;
@@ -28,8 +29,8 @@ struct RampOptions {
 /// Relative rate of the contrast, 1/s.
 [[nodiscard]] double ramp_relative_rate(const RampOptions& options);
 
-/// Every set-up with one ramp down and one up: shifts by an additive recurrence with a random start, which is even over
-/// every stretch of the ramp. The first presentation waits for `from_k`, no other waits for a contrast.
+/// Returns one ramp down and one up for every set-up. The shifts are an additive recurrence with a random start, which
+/// is even over every stretch of the ramp. The first presentation waits for `from_k`, no other waits for a contrast.
 [[nodiscard]] std::vector<TargetState> ramp_presentations(const RampOptions& options, const RandomStream& stream);
 
 /// Shows ramp_presentations(). A slow black body lags behind its set-points: the end of a ramp down is presented again,

@@ -34,7 +34,7 @@ struct ConstantStimuliOptions {
   /// counts as one triangle in its middle.
   std::vector<TargetPlate> drawings{};
   std::vector<Mounting> mountings;
-  /// Number of `mountings`, the first ones, that show each of `plates`; empty: all of them.
+  /// For each of `plates`, the number of `mountings` that show it, counted from the first one; empty: all of them.
   std::vector<std::size_t> mountings_per_plate{};
   std::vector<double> delta_t_k;
   int phases = 16;                              ///< sub-pixel shifts per plate, mounting and contrast
@@ -56,8 +56,8 @@ struct ConstantStimuliOptions {
 /// origin.
 [[nodiscard]] std::vector<cv::Point2d> plastic_points(int count);
 
-/// `count` sub-pixel shifts in [0, 1)^2, spread evenly for every count (additive recurrence with the plastic number,
-/// Roberts 2018), from a random start drawn from `stream`.
+/// Returns `count` sub-pixel shifts in [0, 1)^2, spread evenly for every count (additive recurrence with the plastic
+/// number, Roberts 2018), from a random start drawn from `stream`.
 [[nodiscard]] std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream);
 
 /// Presentations nested so that the slowest change is made least often. Within a contrast group the highest contrast
