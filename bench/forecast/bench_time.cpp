@@ -25,7 +25,7 @@ double time_constant_s(const Plan& plan) {
 /// Wait for a contrast. Within a band it ends when a first-order approach is near and slow enough; a lag of 0.1 s is
 /// assumed if the plan states none.
 double contrast_wait_s(const Plan& plan, const TargetState* before, const TargetState& state) {
-  if (state.wait == ContrastWait::settled) return plan.target.contrast_change_s;
+  if (state.wait == ContrastWait::settled || state.wait == ContrastWait::held) return plan.target.contrast_change_s;
   if (state.wait == ContrastWait::none || before == nullptr) return 0;
   constexpr double default_band_percent = 10, default_rate_per_s = 0.06;
   const double tau_s = time_constant_s(plan);
@@ -42,7 +42,8 @@ std::vector<TargetState> with_ramp_ends(const Plan& plan, const RampOptions& ram
   if (!(tau_s > 0) || plan.target.kind == TargetKind::scene) return states;
   double contrast = ramp.from_k;
   for (std::size_t k = 1; k < steps; ++k)
-    contrast = states[k].delta_t_k + (contrast - states[k].delta_t_k) * std::exp(-ramp_step_s / tau_s);
+    contrast =
+        states[ramp_hold + k].delta_t_k + (contrast - states[ramp_hold + k].delta_t_k) * std::exp(-ramp_step_s / tau_s);
   std::size_t more = 0;
   constexpr double arrived = 1.1;
   for (; more < 3 * steps && contrast / ramp.to_k > arrived; ++more)
@@ -50,7 +51,7 @@ std::vector<TargetState> with_ramp_ends(const Plan& plan, const RampOptions& ram
   std::vector<TargetState> out;
   for (std::size_t k = 0; k < states.size(); ++k) {
     out.push_back(states[k]);
-    if (k % (2 * steps) != steps - 1) continue;
+    if (k < ramp_hold || (k - ramp_hold) % (2 * steps) != steps - 1) continue;
     for (std::size_t i = 0; i < more; ++i) {
       TargetState again = states[k];
       again.shift_mm.x += static_cast<double>(i % 2 + 1);  // another shift

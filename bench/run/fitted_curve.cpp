@@ -53,29 +53,28 @@ void withhold(TodCurve& curve) {
 
 }  // namespace
 
-std::optional<AdequacyFinding> take_ramp_of(TodCurve& curve, TwinShapesOutcome& said, const MeasurementResult& run,
-                                            const FittedTrials& fitted, const Plan& plan) {
-  if (plan.schedule.kind != ScheduleKind::ramp) return std::nullopt;
+std::vector<AdequacyFinding> take_ramp_of(TodCurve& curve, TwinShapesOutcome& said, const MeasurementResult& run,
+                                          const FittedTrials& fitted, const Plan& plan) {
+  if (plan.schedule.kind != ScheduleKind::ramp) return {};
   if (!fitted.surface || said.ended_by) {
     withhold(curve);
     said.notes.emplace_back(
         "the ramp ended early: its answers belong to contrasts between the set ones, so no threshold is stated");
-    return std::nullopt;
+    return {};
   }
   auto taken = take_ramp(curve, run, *fitted.surface, plan);
   if (!taken) {
     said.ended_by = with_context("the ramp", taken.error());
-    return std::nullopt;
+    return {};
   }
   said.notes.insert(said.notes.end(), taken->notes.begin(), taken->notes.end());
-  return std::move(taken->finding);
+  return std::move(taken->findings);
 }
 
-void examine_all(TodCurve& curve, const Plan& plan, const std::optional<AdequacyFinding>& of_all) {
+void examine_all(TodCurve& curve, const Plan& plan, const std::vector<AdequacyFinding>& of_all) {
   examine(curve, fit_options(plan));
-  if (!of_all) return;
   for (TodPoint& point : curve.points)
-    if (point.adequacy) point.adequacy->findings.push_back(*of_all);
+    if (point.adequacy) point.adequacy->findings.insert(point.adequacy->findings.end(), of_all.begin(), of_all.end());
 }
 
 void report_fit(const MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,

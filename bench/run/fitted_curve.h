@@ -44,12 +44,12 @@ struct FittedTrials {
                                            std::stop_token stop);
 
 /// Gives the curve the fit over all contrasts of a ramp. Returns its finding; notes and errors go to `said`.
-[[nodiscard]] std::optional<AdequacyFinding> take_ramp_of(TodCurve& curve, TwinShapesOutcome& said,
-                                                          const MeasurementResult& run, const FittedTrials& fitted,
-                                                          const Plan& plan);
+[[nodiscard]] std::vector<AdequacyFinding> take_ramp_of(TodCurve& curve, TwinShapesOutcome& said,
+                                                        const MeasurementResult& run, const FittedTrials& fitted,
+                                                        const Plan& plan);
 
 /// Tests every point, and adds the finding that concerns all of them.
-void examine_all(TodCurve& curve, const Plan& plan, const std::optional<AdequacyFinding>& of_all);
+void examine_all(TodCurve& curve, const Plan& plan, const std::vector<AdequacyFinding>& of_all);
 
 /// Reports that a complete run is now fitted with the functions of the simulated sensor.
 void report_fit(const MeasurementResult& result, const Plan& plan, const ExperimentInputs& inputs,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "acquisition/base/distributions.h"
@@ -16,6 +17,7 @@
 #include "bench/twin/twin_shapes.h"
 #include "hvs/observer/template_observer.h"
 #include "sim_devices/prediction/direct_estimate.h"
+#include "tod/measurement/contrast_lag.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/ramp_fit.h"
 
@@ -43,9 +45,13 @@ std::map<std::int64_t, RampDirection> directions_of(std::span<const Presentation
 
 std::vector<RampAnswer> ramp_answers(const MeasurementResult& run) {
   const auto directions = directions_of(run.presentations);
+  std::set<std::int64_t> held;  // for the lag only: they would give one set-up more weight than the others
+  for (const Presentation& shown : run.presentations)
+    if (shown.set.wait == ContrastWait::held) held.insert(shown.presentation);
   const std::vector<GradedAnswer> answers = graded_answers(run.trials);
   std::vector<RampAnswer> out;
   for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (held.contains(run.trials[i].presentation)) continue;
     const auto direction = directions.find(run.trials[i].presentation);
     out.push_back({.answer = answers[i],
                    .delta_t_k = run.trials[i].delta_t_k,
@@ -55,10 +61,10 @@ std::vector<RampAnswer> ramp_answers(const MeasurementResult& run) {
 }
 
 /// Relative rate of the contrast, 1/s: the largest of that of the plan and the median of that observed.
-double relative_rate(const MeasurementResult& run, const RampOptions& ramp) {
+double relative_rate(std::span<const Presentation> presentations, const RampOptions& ramp) {
   std::vector<double> rates{0};
   const Presentation* before = nullptr;
-  for (const Presentation& shown : run.presentations) {
+  for (const Presentation& shown : presentations) {
     if (before != nullptr && before->host_time_ns && shown.host_time_ns && before->delta_t_k && shown.delta_t_k &&
         before->set.plate == shown.set.plate && before->set.mounting == shown.set.mounting) {
       const double seconds = static_cast<double>(*shown.host_time_ns - *before->host_time_ns) * 1e-9;
@@ -113,13 +119,50 @@ void add_direction(RampOutcome& outcome, const RampFit& fit) {
       fmt::format("S75 of ramps up and down differs by {:+.2f} %, chance allows {:.2f} %", percent, limit);
   outcome.notes.push_back(sentence);
   if (!found.beyond()) return;
-  outcome.finding = AdequacyFinding{.kind = FindingKind::ramp_direction,
-                                    .value = percent,
-                                    .limit = limit,
-                                    .sentence = sentence +
-                                                ": small and large triangles of the plate do not have the "
-                                                "same contrast while it changes",
-                                    .unfit = true};
+  outcome.findings.push_back({.kind = FindingKind::ramp_direction,
+                              .value = percent,
+                              .limit = limit,
+                              .sentence = sentence + ": small and large triangles of the plate do not have the "
+                                                     "same contrast while it changes",
+                              .unfit = true});
+}
+
+/// A simulated scene takes no time: its ramps have the time of their steps.
+std::vector<Presentation> timed(const MeasurementResult& run, const Plan& plan) {
+  std::vector<Presentation> out = run.presentations;
+  if (plan.target.kind != TargetKind::scene) return out;
+  for (Presentation& shown : out) shown.host_time_ns.reset();
+  return out;
+}
+
+/// A lag that the frames show beyond the stated one is not in the interval.
+void add_lag(RampOutcome& outcome, std::span<const Presentation> presentations, double stated_s) {
+  const auto lag = contrast_lag(presentations, ramp_step_s);
+  if (!lag) {
+    outcome.notes.emplace_back(
+        "the frames of the ramps do not determine the lag of the small triangles: too few of "
+        "their presentations have a contrast");
+    return;
+  }
+  const auto text = [](const LagEstimate& one) {
+    return fmt::format("{:+.4f} s, chance allows {:.4f} s", one.lag_s, one.chance_s());
+  };
+  std::string sentence = "the small triangles of the plate change later than the large ones by " + text(lag->all);
+  if (lag->down && lag->up)
+    sentence += "; against the held contrast by " + text(*lag->down) + " in a ramp down and by " + text(*lag->up) +
+                " in a ramp up";
+  sentence += fmt::format("; the plan states at most {:.4f} s", stated_s);
+  outcome.notes.push_back(sentence);
+  const LagEstimate* worst = nullptr;
+  for (const LagEstimate* one : {&lag->all, lag->down ? &*lag->down : nullptr, lag->up ? &*lag->up : nullptr})
+    if (one != nullptr && one->exceeds(stated_s) && (worst == nullptr || std::abs(one->lag_s) > std::abs(worst->lag_s)))
+      worst = one;
+  if (worst != nullptr)
+    outcome.findings.push_back({.kind = FindingKind::contrast_lag,
+                                .value = worst->lag_s,
+                                .limit = stated_s,
+                                .sentence = sentence,
+                                .unfit = true});
 }
 
 }  // namespace
@@ -194,7 +237,8 @@ Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run, con
                               const Plan& plan) {
   TODBENCH_TRY(auto fit, RampFit::of(ramp_answers(run), surface));
   const RampOptions ramp = ramp_options(plan, {}, 1);
-  const double lag = plan.target.max_contrast_lag_s.value_or(0) * relative_rate(run, ramp);
+  const std::vector<Presentation> presentations = timed(run, plan);
+  const double lag = plan.target.max_contrast_lag_s.value_or(0) * relative_rate(presentations, ramp);
   RampOutcome outcome;
   for (TodPoint& point : curve.points) {
     take_value(point.fit, interval_at(fit, surface, point.delta_t_k), surface.ln_threshold(point.delta_t_k));
@@ -211,6 +255,7 @@ Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run, con
     curve.continuous.push_back({delta_t_k, *one.threshold, one.ci95});
   }
   add_direction(outcome, fit);
+  add_lag(outcome, presentations, plan.target.max_contrast_lag_s.value_or(0));
   const double ln_step = std::log(ramp.from_k / ramp.to_k) / static_cast<double>(ramp_steps(ramp) - 1);
   if (const LostContrasts lost = lost_contrasts(run.presentations, ln_step); lost.lost > 0)
     outcome.notes.push_back(fmt::format(

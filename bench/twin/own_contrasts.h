@@ -28,7 +28,7 @@ namespace todbench {
 /// What a ramp says beside its curve.
 struct RampOutcome {
   std::vector<std::string> notes{};
-  std::optional<AdequacyFinding> finding{};  ///< S75 of ramps up and down differs
+  std::vector<AdequacyFinding> findings{};  ///< `ramp_direction`, `contrast_lag`
 };
 
 /// Gives the points of a curve threshold and interval of the fit over all contrasts of a ramp, and adds the continuous

@@ -352,6 +352,7 @@ class Run {
                                      .delta_t_k = seen ? std::optional(seen_.contrast_k) : std::nullopt,
                                      .delta_t_se_k = seen ? seen_.standard_error_k : std::nullopt,
                                      .reference_triangles = seen ? static_cast<int>(seen_.references.size()) : 0,
+                                     .small_delta_t_k = seen ? seen_.small_contrast_k : std::nullopt,
                                      .air_transmittance = options_.air_transmittance,
                                      .asked_px = plate_seen_ ? std::optional(plate_seen_->asked_px) : std::nullopt,
                                      .seen_px = plate_seen_ ? plate_seen_->seen_px : std::nullopt,

@@ -276,6 +276,7 @@ Result<SeenContrast> SetUpStep::own_contrast(std::span<const Frame> frames, cons
       sum += *kelvin;
   }
   const cv::Mat1d mean = sum / static_cast<double>(frames.size());
+  seen.small_contrast_k.reset();
   const auto measured = effective_contrast(mean, mounted_plate, registration, options_.min_reference_px);
   if (!measured) return fail("measuring the contrast of a presentation", measured.error());
   if (!(measured->value * set.delta_t_k > 0) || std::abs(measured->value) < visible * measured->standard_error)
@@ -284,6 +285,7 @@ Result<SeenContrast> SetUpStep::own_contrast(std::span<const Frame> frames, cons
   seen.references = measured->references;
   for (ReferenceTriangle& reference : seen.references) reference.value /= response(set.plate);
   if (measured->triangles > 1) seen.standard_error_k = measured->standard_error / response(set.plate);
+  seen.small_contrast_k = contrast_of_small_triangles(mean, mounted_plate, registration, options_.min_reference_px);
   return seen;
 }
 

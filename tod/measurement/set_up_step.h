@@ -42,6 +42,7 @@ struct SeenContrast {
   GreySteps steps{};                            ///< if the contrast is in grey levels
   std::optional<double> standard_error_k{};     ///< as in Presentation
   std::vector<ReferenceTriangle> references{};  ///< in kelvin; empty if the contrast is in grey levels
+  std::optional<double> small_contrast_k{};     ///< as Presentation::small_delta_t_k
   std::optional<JudgedScale> judged{};          ///< empty: no stage after the camera
 };
 

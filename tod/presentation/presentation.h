@@ -20,6 +20,9 @@ struct Presentation {
   /// contrast in grey levels, which every frame measures separately.
   std::optional<double> delta_t_se_k{};
   int reference_triangles = 0;  ///< number of these triangles; 0: not stated
+  /// Contrast of the smaller triangles in the frames of this presentation, up to a factor that blur and plate give it;
+  /// empty: the presentation has no contrast of its own.
+  std::optional<double> small_delta_t_k{};
   /// Transmittance of the air between target and camera for a contrast; empty: not stated.
   std::optional<double> air_transmittance{};
   /// Requested place of the plate's middle in the picture, and its place in the frames of this presentation with the

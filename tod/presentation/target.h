@@ -18,6 +18,7 @@ namespace todbench {
 /// Contrast for which a target waits before a presentation.
 enum class ContrastWait {
   settled,      ///< reached and stable
+  held,         ///< reached and stable, and measured in the frames: the reference for a contrast that changes
   within_band,  ///< within the settling band of the set-point and changing slowly; measured in the frames
   none,         ///< still changing; measured in the frames
 };

@@ -45,6 +45,8 @@ std::string_view to_string(FindingKind kind) {
       return "orientation";
     case FindingKind::ramp_direction:
       return "ramp_direction";
+    case FindingKind::contrast_lag:
+      return "contrast_lag";
   }
   return "unknown";
 }

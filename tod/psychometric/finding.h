@@ -33,6 +33,7 @@ enum class FindingKind {
   setting_change,      ///< a setting of the camera changed during the run; no figures
   orientation,         ///< thresholds of upright and level triangles differ; percent, limit
   ramp_direction,      ///< S75 of ramps up and down differ; percent, limit
+  contrast_lag,        ///< small triangles lag large ones in a ramp by more than stated; seconds, stated seconds
 };
 inline constexpr std::array all_finding_kinds{FindingKind::deviance,           FindingKind::lapse,
                                               FindingKind::overdispersion,     FindingKind::underdispersion,
@@ -43,7 +44,8 @@ inline constexpr std::array all_finding_kinds{FindingKind::deviance,           F
                                               FindingKind::transfer_change,    FindingKind::noise_change,
                                               FindingKind::correlation_change, FindingKind::picture_residue,
                                               FindingKind::setting_change,     FindingKind::surrogate,
-                                              FindingKind::orientation,        FindingKind::ramp_direction};
+                                              FindingKind::orientation,        FindingKind::ramp_direction,
+                                              FindingKind::contrast_lag};
 [[nodiscard]] std::string_view to_string(FindingKind kind);
 
 /// One finding against a number.

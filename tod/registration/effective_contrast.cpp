@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// effective_contrast: inside minus surround of the large triangles.
+// effective_contrast: inside minus surround of the large triangles; contrast_of_small_triangles: their sums.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -97,7 +97,55 @@ Samples samples(const cv::Mat1d& picture, const std::vector<Polygon>& outlines, 
   return result;
 }
 
+/// Sum over a triangle and `margin` px round it, minus its surround: sum and area for the unit contrast. The surround
+/// is the mean of a ring; empty: a pixel of both leaves the picture, or the ring touches another triangle.
+std::optional<double> summed_contrast(const cv::Mat1d& picture, const std::vector<Polygon>& outlines,
+                                      std::size_t which) {
+  constexpr double margin_px = 2, reach_px = margin_px + ring_width_px;
+  cv::Point2d low = outlines[which][0], high = low;
+  for (const cv::Point2d& p : outlines[which]) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  const int left = static_cast<int>(std::floor(low.x - reach_px)), top = static_cast<int>(std::floor(low.y - reach_px));
+  const int right = static_cast<int>(std::ceil(high.x + reach_px));
+  const int bottom = static_cast<int>(std::ceil(high.y + reach_px));
+  if (left < 0 || top < 0 || right >= picture.cols || bottom >= picture.rows) return std::nullopt;
+  double sum = 0, ring = 0, pixels = 0, ring_pixels = 0;
+  for (int y = top; y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) {
+      const cv::Point2d at(x, y);
+      const double d = depth(outlines[which], at);
+      if (d < -reach_px) continue;
+      for (std::size_t k = 0; k < outlines.size(); ++k)
+        if (k != which && depth(outlines[k], at) > -margin_px) return std::nullopt;
+      (d >= -margin_px ? sum : ring) += picture(y, x);
+      (d >= -margin_px ? pixels : ring_pixels) += 1;
+    }
+  }
+  return sum - pixels * ring / ring_pixels;
+}
+
 }  // namespace
+
+std::optional<double> contrast_of_small_triangles(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
+                                                  const Registration& registration, double below_px) {
+  constexpr double least_px = 2;
+  std::vector<Polygon> outlines;
+  for (const PlateTriangle& t : mounted_plate.triangles)
+    outlines.push_back(outline_in_picture(registration.plate_to_pixel, t, t.apex));
+  double sum = 0, area_px = 0;
+  for (std::size_t k = 0; k < outlines.size(); ++k) {
+    const PlateTriangle& t = mounted_plate.triangles[k];
+    const double size_px = t.size_mm * registration.scale_at(t.position_mm);
+    if (size_px < least_px || size_px >= below_px) continue;
+    const auto one = summed_contrast(picture, outlines, k);
+    if (!one) continue;
+    sum += *one;
+    area_px += size_px * size_px;
+  }
+  return area_px > 0 ? std::optional(sum / area_px) : std::nullopt;
+}
 
 Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                              const Registration& registration, double min_size_px,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -110,5 +111,13 @@ struct EffectiveContrast {
 [[nodiscard]] Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                            const Registration& registration, double min_size_px,
                                                            LevelEstimate level = LevelEstimate::median);
+
+/// Mean contrast of the triangles from 2 px up to `below_px`, each with the weight of its area: the sum of the picture
+/// minus its surround over a triangle and 2 px round it, divided by the area. Sampling phases do not change it; blur
+/// and neighbours give it a factor that does not depend on the contrast. Only its changes are of use. Empty: no such
+/// triangle has a free surround in the picture.
+[[nodiscard]] std::optional<double> contrast_of_small_triangles(const cv::Mat1d& picture,
+                                                                const TargetPlate& mounted_plate,
+                                                                const Registration& registration, double below_px);
 
 }  // namespace todbench

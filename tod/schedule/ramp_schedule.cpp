@@ -34,16 +34,25 @@ std::vector<TargetState> ramp_presentations(const RampOptions& options, const Ra
   set_ups.phases = 1;
   const std::size_t steps = ramp_steps(options);
   const auto phases = plastic_points(static_cast<int>(2 * steps));
+  const auto phases_of_hold = plastic_points(static_cast<int>(ramp_hold));
   std::vector<TargetState> out;
   std::uint64_t set_up = 0;
   for (TargetState state : constant_stimuli(set_ups, stream)) {
     const RandomStream start = stream.sub(++set_up);
+    const cv::Point2d first(start.uniform(0), start.uniform(1));
+    state.delta_t_k = options.from_k;
+    state.point_delta_t_k = nearest_point(options.stimuli.delta_t_k, options.from_k);
+    state.wait = ContrastWait::held;
+    for (std::size_t k = 0; set_up == 1 && k < ramp_hold; ++k) {
+      state.shift_mm = shift_of(phases_of_hold[k] + first, options.stimuli);
+      out.push_back(state);
+    }
     for (std::size_t k = 0; k < 2 * steps; ++k) {
       const std::size_t below = k < steps ? k : 2 * steps - 1 - k;
       const double share = static_cast<double>(below) / static_cast<double>(steps - 1);
       state.delta_t_k = options.from_k * std::pow(options.to_k / options.from_k, share);
       state.point_delta_t_k = nearest_point(options.stimuli.delta_t_k, state.delta_t_k);
-      state.shift_mm = shift_of(phases[k] + cv::Point2d(start.uniform(0), start.uniform(1)), options.stimuli);
+      state.shift_mm = shift_of(phases[k] + first, options.stimuli);
       state.wait = k == 0 ? ContrastWait::within_band : ContrastWait::none;
       out.push_back(state);
     }
@@ -73,7 +82,7 @@ std::optional<TargetState> RampSchedule::next() {
 
 void RampSchedule::observe(std::span<const Trial> trials) {
   const std::size_t steps = ramp_steps(options_);
-  const bool at_the_end = position_ > 0 && (position_ - 1) % (2 * steps) == steps - 1;
+  const bool at_the_end = position_ > ramp_hold && (position_ - 1 - ramp_hold) % (2 * steps) == steps - 1;
   if (!at_the_end || trials.empty() || repeated_here_ >= longest_end * steps) return;
   repeats_ = std::abs(trials.front().delta_t_k) > (1 + arrived) * std::abs(options_.to_k);
 }

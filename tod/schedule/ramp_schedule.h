@@ -16,6 +16,9 @@ namespace todbench {
 /// every 0.2 s only 3 of 10.
 inline constexpr double ramp_step_s = 0.5;
 
+/// Presentations at the first contrast, settled, before the first ramp: ramps are compared with them (contrast_lag.h).
+inline constexpr std::size_t ramp_hold = 20;
+
 /// Options of RampSchedule.
 struct RampOptions {
   /// Plates, mountings and pixel; `delta_t_k` are the contrasts of the points, `phases` is not used.
@@ -29,8 +32,9 @@ struct RampOptions {
 /// Relative rate of the contrast, 1/s.
 [[nodiscard]] double ramp_relative_rate(const RampOptions& options);
 
-/// Returns one ramp down and one up for every set-up. The shifts are an additive recurrence with a random start, which
-/// is even over every stretch of the ramp. The first presentation waits for `from_k`, no other waits for a contrast.
+/// Returns `ramp_hold` presentations at `from_k`, and then one ramp down and one up for every set-up. The shifts are an
+/// additive recurrence with a random start, which is even over every stretch of a ramp. The first presentation of a
+/// ramp waits until `from_k` is near; no other of a ramp waits for a contrast.
 [[nodiscard]] std::vector<TargetState> ramp_presentations(const RampOptions& options, const RandomStream& stream);
 
 /// Shows ramp_presentations(). A slow black body lags behind its set-points: the end of a ramp down is presented again,

@@ -93,7 +93,7 @@ TEST(RampThatEndedEarly, HasNoThresholds) {
   ASSERT_TRUE(point.fit.usable());
   TwinShapesOutcome said;
 
-  EXPECT_FALSE(take_ramp_of(curve, said, {}, {}, plan));
+  EXPECT_TRUE(take_ramp_of(curve, said, {}, {}, plan).empty());
 
   EXPECT_FALSE(point.fit.threshold);
   EXPECT_FALSE(point.fit.usable());

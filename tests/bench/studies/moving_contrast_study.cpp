@@ -38,13 +38,16 @@ TEST_P(MovingContrastStudy, HoldsTheThresholdOfTheCamera) {
 
   for (const auto& one : summary) {
     std::printf(
-        "%-32s %6.2f K  bias %+.2f +- %.2f %%  sd %.2f  half %.2f  covered %d of %d, truth %.5f mrad +- %.3f %%\n",
+        "%-32s %6.2f K  bias %+.2f +- %.2f %%  sd %.2f  half %.2f  covered %d of %d, truth %.5f mrad +- %.3f %%, "
+        "findings %d\n",
         GetParam().name.c_str(), one.delta_t_k, one.bias_percent, one.se_percent, one.sd_percent, one.half_percent,
-        one.covered, one.runs, one.truth_mrad, one.truth_se_percent);
+        one.covered, one.runs, one.truth_mrad, one.truth_se_percent, one.findings);
     std::fflush(stdout);
     // Of 200 runs at 95 %, 99.9 % have 180 or more covered; biases are judged by eye in the document.
     const double least = runs >= 200 ? 0.9 * one.runs : 0;
     EXPECT_GE(one.covered, least) << one.delta_t_k;
+    // Each of two kinds of findings in 1 % of right runs, and three standard errors.
+    EXPECT_LE(one.findings, 0.02 * one.runs + 3 * std::sqrt(0.02 * one.runs)) << one.delta_t_k;
   }
 }
 

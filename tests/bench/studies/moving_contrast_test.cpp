@@ -37,6 +37,20 @@ TEST(MovingContrasts, WithinABandTheThresholdIsThatAtTheSetContrast) {
   expect_truth(testing::moving_designs().front());
 }
 
+TEST(MovingContrasts, ALagThatThePlanDoesNotStateIsFound) {
+  testing::MovingContrasts design{.name = "lag", .lag_s = 0.1, .stated_lag_s = 0.03};
+  testing::Surfaces surfaces;
+  std::vector<AdequacyFinding> findings;
+
+  (void)testing::moving_run(design, 100, surfaces, &findings);
+
+  // The black body of 2.2 s changes by up to a share of 0.45 in a second: small triangles differ by up to 4.5 %.
+  const auto lag = std::ranges::find(findings, FindingKind::contrast_lag, &AdequacyFinding::kind);
+  ASSERT_NE(lag, findings.end());
+  EXPECT_NEAR(*lag->value, 0.1, 0.03) << lag->sentence;
+  EXPECT_TRUE(lag->unfit);
+}
+
 TEST(MovingContrasts, ARampHoldsTheCurveAtContrastsThatThePlanDoesNotName) {
   expect_truth(testing::moving_designs()[1]);
 }

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/core/forwarding_source.h"
 #include "bench/devices/devices.h"
 #include "bench/plan/plan_options.h"
 #include "bench/twin/camera_surrogate.h"
@@ -44,18 +45,62 @@ class SlowBlackBody final : public Target {
     constexpr double band = 0.1, rate_per_s = 0.06;
     const double near = std::min(band, rate_per_s * time_constant_s_) * std::abs(state.delta_t_k);
     if (state.wait == ContrastWait::settled) body_k_ = state.delta_t_k;
+    if (state.wait == ContrastWait::held) body_k_ = state.delta_t_k;
     const double away_k = body_k_ - state.delta_t_k;
     if (state.wait == ContrastWait::within_band && std::abs(away_k) > near)
       body_k_ = state.delta_t_k + std::copysign(near, away_k);
     body_k_ = state.delta_t_k + (body_k_ - state.delta_t_k) * std::exp(-presentation_s_ / time_constant_s_);
+    rate_k_per_s_ = (state.delta_t_k - body_k_) / time_constant_s_;
+    state_ = state;
     TargetState shown = state;
     shown.delta_t_k = body_k_;
     return scene_->present(shown, stop);
   }
 
+  [[nodiscard]] const TargetState& state() const { return state_; }
+  /// Of the black body during the last presentation.
+  [[nodiscard]] double rate_k_per_s() const { return rate_k_per_s_; }
+
  private:
+  TargetState state_;
+  double rate_k_per_s_ = 0;
   std::unique_ptr<Target> scene_;
   double time_constant_s_, presentation_s_, body_k_ = 0;
+};
+
+/// A camera that looks at a plate whose triangles below 4 px change later than the others by `lag_s`: their contrast is
+/// that of the black body minus lag times rate.
+class LaggingTriangles final : public ForwardingSource {
+ public:
+  LaggingTriangles(std::unique_ptr<FrameSource> camera, const SlowBlackBody& body, const SensorModel& model,
+                   std::vector<TargetPlate> plates, double distance_m, double lag_s)
+      : ForwardingSource(std::move(camera)), body_(body), model_(model), distance_m_(distance_m), lag_s_(lag_s) {
+    const double most_mm = 4 * distance_m * model.spec().ifov_mrad();
+    for (TargetPlate& plate : plates) {
+      std::erase_if(plate.triangles, [&](const PlateTriangle& triangle) { return triangle.size_mm >= most_mm; });
+      small_.emplace(plate.name, std::move(plate));
+    }
+  }
+  [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
+    auto frame = ForwardingSource::next(timeout);
+    if (!frame || body_.state().plate.empty()) return frame;
+    const TargetState& state = body_.state();
+    PlateScene scene{.plate = mounted(small_.at(state.plate), state.mounting), .delta_t_k = 1};
+    scene.distance_m = distance_m_;
+    scene.shift_mm = state.shift_mm;
+    const cv::Mat1d late = -lag_s_ * body_.rate_k_per_s() / model_.spec().kelvin_per_count * *model_.unit_signal(scene);
+    cv::Mat1d counts;
+    frame->counts.convertTo(counts, CV_64F);
+    counts += late;
+    counts.convertTo(frame->counts, CV_16U);
+    return frame;
+  }
+
+ private:
+  const SlowBlackBody& body_;
+  const SensorModel& model_;
+  std::map<std::string, TargetPlate> small_;
+  double distance_m_, lag_s_;
 };
 
 /// A sensor without a name is not valid, so that no surrogate could have its values.
@@ -73,6 +118,7 @@ struct MovingContrasts {
   double time_constant_s = 2.2;
   int phases = 6;
   std::vector<int> frames{4}, mountings_per_plate{0};
+  double lag_s = 0, stated_lag_s = 0;                    ///< of the triangles below 4 px; that of the plan
   std::vector<double> judged_k{10, 3.5, 1.2, 0.5, 0.3};  ///< contrasts of the result; of a ramp, none of the plan
 };
 
@@ -94,7 +140,7 @@ inline Plan plan_of(const MovingContrasts& design, std::uint64_t seed) {
     plan.schedule.ramp_k_per_s = 7.3;  // 10 s from 16.9 to 0.23 K
     plan.schedule.from_delta_t_k = 16.9;
     plan.schedule.to_delta_t_k = 0.23;
-    plan.target.max_contrast_lag_s = 0;
+    plan.target.max_contrast_lag_s = design.stated_lag_s;
   } else {
     plan.target.contrast_settling_band_percent = 10;
     plan.target.delta_t_k = design.judged_k;
@@ -102,7 +148,7 @@ inline Plan plan_of(const MovingContrasts& design, std::uint64_t seed) {
   return plan;
 }
 
-/// ln S75 of a run at a contrast, and half of its interval.
+/// ln S75 of a run at a contrast, and half of its interval. At a contrast of 0: the number of findings of the ramps.
 struct MovingResult {
   double delta_t_k = 0, ln_s75 = 0, half = 0;
 };
@@ -135,7 +181,8 @@ inline std::vector<MovingResult> results_of(const TodCurve& curve, const MovingC
 }
 
 /// One run of the program's own measurement, with the surrogate that it learns from the frames.
-inline std::vector<MovingResult> moving_run(const MovingContrasts& design, std::uint64_t seed, Surfaces& surfaces) {
+inline std::vector<MovingResult> moving_run(const MovingContrasts& design, std::uint64_t seed, Surfaces& surfaces,
+                                            std::vector<AdequacyFinding>* findings = nullptr) {
   const Plan plan = plan_of(design, seed);
   PlanParts parts = LoadedPlan::load(plan).value().parts();
   parts.sensor = design.twin;
@@ -148,6 +195,9 @@ inline std::vector<MovingResult> moving_run(const MovingContrasts& design, std::
                                                          inputs.accuracy, 100'000 + seed);
   OpenedBench bench = simulated_bench(model, loaded.shown_plates(), plan.target.distance_m, {});
   SlowBlackBody target(std::move(bench.target), design.time_constant_s, design.ramp ? ramp_step_s : 0.24);
+  if (design.lag_s != 0)
+    bench.camera = std::make_unique<LaggingTriangles>(std::move(bench.camera), target, *model, loaded.shown_plates(),
+                                                      plan.target.distance_m, design.lag_s);
   MeasurementOptions options = camera_options(plan, inputs.plates);
   take_answers(options, plan, inputs);
   options.free_running = false;
@@ -174,7 +224,14 @@ inline std::vector<MovingResult> moving_run(const MovingContrasts& design, std::
   TodCurve curve = tod_curve(trials, fit_options(plan)).value();
   if (design.ramp) {
     const auto taken = take_ramp(curve, *run, *surface, plan);
-    if (!taken) ADD_FAILURE() << taken.error().message;
+    if (!taken) {
+      ADD_FAILURE() << taken.error().message;
+      return {};
+    }
+    if (findings != nullptr) *findings = taken->findings;
+    auto results = results_of(curve, design);
+    results.push_back({.delta_t_k = 0, .ln_s75 = static_cast<double>(taken->findings.size())});
+    return results;
   } else {
     const auto said = fit_twin_shapes(curve, trials, lent ? *lent : inputs, fit_options(plan),
                                       direct_options(curve, inputs, {}, seed, {}));
@@ -210,6 +267,7 @@ inline MovingTruth truth_of(const SensorSpec& sensor, double delta_t_k, int part
 struct MovingSummary {
   double delta_t_k = 0, bias_percent = 0, se_percent = 0, sd_percent = 0, half_percent = 0;
   double truth_mrad = 0, truth_se_percent = 0;
+  int findings = 0;  ///< runs with a finding of the ramps, the same at every contrast
   int covered = 0, runs = 0;
 };
 
@@ -260,9 +318,14 @@ inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::u
                                            const std::function<MovingTruth(double delta_t_k)>& truth_at) {
   Surfaces surfaces;
   std::map<double, std::vector<MovingResult>> by_contrast;
+  int findings = 0;
   for (int i = 0; i < runs; ++i)
-    for (const MovingResult& one : record.run(design, first_seed + static_cast<std::uint64_t>(i), surfaces))
-      by_contrast[one.delta_t_k].push_back(one);
+    for (const MovingResult& one : record.run(design, first_seed + static_cast<std::uint64_t>(i), surfaces)) {
+      if (one.delta_t_k == 0)
+        findings += one.ln_s75 > 0 ? 1 : 0;
+      else
+        by_contrast[one.delta_t_k].push_back(one);
+    }
   std::vector<MovingSummary> out;
   for (const auto& [delta_t_k, results] : by_contrast) {
     const MovingTruth truth = truth_at(delta_t_k);
@@ -270,6 +333,7 @@ inline std::vector<MovingSummary> study_of(const MovingContrasts& design, std::u
     MovingSummary sum{.delta_t_k = delta_t_k,
                       .truth_mrad = std::exp(truth.ln_s75),
                       .truth_se_percent = 100 * truth.se,
+                      .findings = findings,
                       .runs = static_cast<int>(results.size())};
     double squares = 0;
     for (const MovingResult& one : results) {

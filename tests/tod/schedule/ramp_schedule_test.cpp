@@ -37,9 +37,9 @@ TEST(RampSchedule, EverySetUpFallsFromTheFirstContrastToTheLastAndRisesAgain) {
 
   const auto states = ramp_presentations(ramp, RandomStream(1, "test"));
 
-  ASSERT_EQ(states.size(), 8 * 2 * steps);
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const std::size_t k = i % (2 * steps);
+  ASSERT_EQ(states.size(), ramp_hold + 8 * 2 * steps);
+  for (std::size_t i = ramp_hold; i < states.size(); ++i) {
+    const std::size_t k = (i - ramp_hold) % (2 * steps);
     EXPECT_EQ(states[i].wait, k == 0 ? ContrastWait::within_band : ContrastWait::none) << i;
     EXPECT_EQ(states[i].point_delta_t_k, states[i].delta_t_k * states[i].delta_t_k > 10 ? 10 : 1) << i;
     const double ends[] = {k == 0 || k == 2 * steps - 1 ? 10.0 : 0, k == steps - 1 || k == steps ? 1.0 : 0};
@@ -51,11 +51,28 @@ TEST(RampSchedule, EverySetUpFallsFromTheFirstContrastToTheLastAndRisesAgain) {
   }
 }
 
+TEST(RampSchedule, TheFirstContrastIsHeldOnceWhereTheFirstRampBegins) {
+  const RampOptions ramp = ramp_of_eight_set_ups();
+
+  const auto states = ramp_presentations(ramp, RandomStream(1, "test"));
+
+  for (std::size_t i = 0; i < ramp_hold; ++i) {
+    EXPECT_EQ(states[i].wait, ContrastWait::held) << i;
+    EXPECT_EQ(states[i].delta_t_k, 10) << i;
+    EXPECT_EQ(states[i].point_delta_t_k, 10) << i;
+    EXPECT_EQ(states[i].plate, states[ramp_hold].plate) << i;
+    EXPECT_EQ(states[i].mounting, states[ramp_hold].mounting) << i;
+    EXPECT_NE(states[i].shift_mm, states[i + 1].shift_mm) << i;
+  }
+  for (std::size_t i = ramp_hold; i < states.size(); ++i) EXPECT_NE(states[i].wait, ContrastWait::held) << i;
+}
+
 TEST(RampSchedule, ShiftsAreEvenOverEveryQuarterOfARamp) {
   const RampOptions ramp = ramp_of_eight_set_ups();
   const std::size_t steps = ramp_steps(ramp), quarter = steps / 4;
 
-  const auto states = ramp_presentations(ramp, RandomStream(1, "test"));
+  auto states = ramp_presentations(ramp, RandomStream(1, "test"));
+  states.erase(states.begin(), states.begin() + ramp_hold);
 
   // Of six independent phases, the length of the mean vector exp(2 pi i x) is 1 / sqrt(6) = 0.41 in the root mean
   // square; the additive recurrence stays below it in every stretch.
@@ -84,7 +101,7 @@ TEST(RampSchedule, TheLowEndIsShownAgainUntilTheCameraSeesItsContrast) {
     shown.push_back(*state);
   }
 
-  const std::size_t again = shown.size() - 16 * ramp_steps(ramp);
+  const std::size_t again = shown.size() - ramp_hold - 16 * ramp_steps(ramp);
   // In equilibrium the body is 1 / (1 - 0.2 x 3) = 2.5 times as warm as its set-point; from 2.5 to 1.1 K it takes
   // 3 ln(1.5 / 0.1) = 8.1 s, 16 presentations, in each of eight set-ups.
   EXPECT_NEAR(static_cast<double>(again), 8 * 16, 16);
@@ -104,7 +121,7 @@ TEST(RampSchedule, ATargetThatNeverArrivesEndsTheRamp) {
     ++shown;
   }
 
-  EXPECT_EQ(shown, 8 * 5 * ramp_steps(ramp));
+  EXPECT_EQ(shown, ramp_hold + 8 * 5 * ramp_steps(ramp));
 }
 
 }  // namespace
