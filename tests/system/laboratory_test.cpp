@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bench/session/session_folder.h"
 #include "bench/session/trials_csv.h"
 #include "tests/system/system_test_support.h"
 
@@ -138,6 +139,59 @@ TEST_F(Laboratories, PixelsThatAreNotSquareHaveTheShapeOfTheSensor) {
   EXPECT_EQ(believed.code, 6) << believed.err;
   EXPECT_THAT(believed.err,
               AllOf(HasSubstr("is stretched in the picture"), HasSubstr("whether the pixels are square")));
+}
+
+/// S75 in mrad of hvs-1 with the SC2000 at 10 and 1.93 K, without trials; standard error 0.05 %.
+constexpr double s75_at_10_k = 2.09153, s75_at_1_93_k = 2.13759;
+
+void expect_ln_s75(const Json& point, double s75_mrad) {
+  const Json& interval = point["ci95_mrad"];
+  EXPECT_GT(point["s75_mrad"].get<double>(), 0);
+  // One run: four standard errors, half of the interval each two of them.
+  const double half = 0.5 * std::log(interval[1].get<double>() / interval[0].get<double>());
+  EXPECT_NEAR(std::log(point["s75_mrad"].get<double>() / s75_mrad), 0, 2 * half) << point.dump();
+  EXPECT_LT(half, 0.1);
+}
+
+TEST_F(Laboratories, ContrastsWithinASettlingBandGiveTheThresholdAtTheSetContrast) {
+  EmulatedLaboratory laboratory({"--black-body-time-constant-s", "2"});
+  std::string plan = laboratory.plan(6, "contrast_settling_band_percent = 10\n");
+  plan.replace(plan.find("mountings = [\"identity\"]"), 24, "mountings = [\"identity\", \"rotated_180\"]");
+  plan.replace(plan.find("[16.9]"), 6, "[16.9, 1.93]");
+  write_plan(plan);
+
+  const Ended ended = measure();
+
+  ASSERT_TRUE(completed(ended));
+  const Json run = one_object(ended);
+  expect_ln_s75(run["points"][1], s75_at_1_93_k);
+  // The read-back of a presentation that began within the band has not settled.
+  bool on_the_way = false;
+  const auto targets = read_session(session());
+  ASSERT_TRUE(targets) << targets.error().message;
+  for (const Presentation& shown : targets->presentations)
+    on_the_way = on_the_way || std::abs(shown.said.state.delta_t_k - shown.set.delta_t_k) > 0.01;
+  EXPECT_TRUE(on_the_way);
+}
+
+TEST_F(Laboratories, ARampStatesTheCurveAndTheLagOfThePlate) {
+  EmulatedLaboratory laboratory({"--black-body-time-constant-s", "0.5", "--plates", "tcat-a,tcat-b"});
+  std::string plan = laboratory.plan(
+      6,
+      "max_contrast_lag_s = 0.05\nmountings_per_plate = [3, 2]\n[schedule]\nkind = \"ramp\"\nramp_k_per_s = 6\n"
+      "from_delta_t_k = 16.9\nto_delta_t_k = 4\n");
+  plan.replace(plan.find("plates = [\"tcat-a\"]\nmountings = [\"identity\"]"), 44, "plates = [\"tcat-a\", \"tcat-b\"]");
+  plan.replace(plan.find("[16.9]"), 6, "[10]");
+  write_plan(plan);
+
+  const Ended ended = measure();
+
+  ASSERT_TRUE(completed(ended));
+  const Json run = one_object(ended);
+  expect_ln_s75(run["points"][0], s75_at_10_k);
+  EXPECT_THAT(run["notes"].dump(), HasSubstr("change later than the large ones by"));
+  EXPECT_THAT(run["points"][0]["adequacy"]["findings"].dump(), ::testing::Not(HasSubstr("contrast_lag")));
+  EXPECT_GE(run["curve"].size(), 40u);
 }
 
 /// How far a value lies from the closed form, in half-widths of its 95 % interval.

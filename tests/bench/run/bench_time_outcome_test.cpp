@@ -82,7 +82,7 @@ class TimedTarget final : public Target {
     if (wait == ContrastWait::none) return 0;
     const double percent = plan_.target.contrast_settling_band_percent;
     const double band = std::min(percent > 0 ? percent / 100 : 0.1, 0.06 * tau_s_);
-    const double near_k = wait == ContrastWait::settled ? settled_k : band * std::abs(set_k_);
+    const double near_k = wait == ContrastWait::within_band ? band * std::abs(set_k_) : settled_k;
     const double away_k = std::abs(body_k_ - set_k_);
     return away_k > near_k ? tau_s_ * std::log(away_k / near_k) : 0;
   }
