@@ -53,6 +53,21 @@ PlotSeries tod_series(const NamedCurve& curve, PlotTone tone, double sign) {
   return series;
 }
 
+/// Adds the curve of a ramp with its 95 % band. The points then have no line of their own.
+void add_continuous_curve(Plot& plot, const TodCurve& curve, PlotTone tone) {
+  PlotSeries middle{.tone = tone, .marker = PlotMarker::none, .line = PlotLine::solid};
+  PlotSeries low = middle, high = middle;
+  low.line = high.line = PlotLine::dotted;
+  for (const ContinuousPoint& point : curve.continuous) {
+    const Interval acuity = acuity_interval(point.ci95);
+    const double contrast = std::abs(point.delta_t_k);
+    low.points.push_back({acuity.low, contrast, {}, {}});
+    middle.points.push_back({1 / point.s75_mrad, contrast, {}, {}});
+    high.points.push_back({acuity.high, contrast, {}, {}});
+  }
+  for (PlotSeries* series : {&low, &high, &middle}) plot.series.push_back(std::move(*series));
+}
+
 PlotSeries limit_series(std::span<const DrawnLimit> limits) {
   PlotSeries series;
   series.label = "limit (minimum acuity)";
@@ -178,8 +193,11 @@ Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<con
   if (!limits.empty()) plot.series.push_back(limit_series(limits));
   for (const auto& [curve, tone] : {std::pair{&second, PlotTone::second}, std::pair{&first, PlotTone::first}}) {
     if (curve->curve == nullptr) continue;
+    const bool continuous = !curve->curve->continuous.empty();
+    if (continuous) add_continuous_curve(plot, *curve->curve, tone);
     for (const double sign : {-1.0, 1.0}) {
       PlotSeries series = tod_series(*curve, tone, sign);
+      if (continuous) series.legend_line = std::exchange(series.line, PlotLine::none);
       if (!series.points.empty()) plot.series.push_back(std::move(series));
     }
   }

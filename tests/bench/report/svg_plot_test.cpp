@@ -367,6 +367,23 @@ TEST(TodFigures, NegativeContrastsAreASeriesOfTheirOwn) {
   EXPECT_DOUBLE_EQ(*plot.series[0].points[0].y, 1.8);
 }
 
+TEST(TodFigures, ARampIsALineWithItsBand) {
+  TodCurve curve;
+  curve.points = {sample_point(10, 9.9, 2, 0.03)};
+  for (const double delta_t_k : {16.9, 1.0, 0.2}) curve.continuous.push_back({delta_t_k, 2, {1.6, 2.5}});
+
+  const Plot plot = tod_figure({"measured", &curve}, {"", nullptr}, {});
+
+  ASSERT_THAT(plot.series, SizeIs(4));
+  EXPECT_DOUBLE_EQ(*plot.series[0].points[2].x, 0.4);
+  EXPECT_DOUBLE_EQ(*plot.series[1].points[2].x, 0.625);
+  EXPECT_DOUBLE_EQ(*plot.series[2].points[2].x, 0.5);
+  EXPECT_DOUBLE_EQ(*plot.series[2].points[2].y, 0.2);
+  EXPECT_EQ(plot.series[3].line, PlotLine::none);
+  EXPECT_LT(plot.y.low, 0.2);
+  EXPECT_GT(plot.y.high, 16.9);
+}
+
 TEST(TodFigures, TheAxisHoldsTheSizesThatARunIsGoingToShow) {
   TodPoint point = sample_point(20, 16.9, 2.083, 0.026);
   point.levels.resize(1);
