@@ -2,6 +2,7 @@
 #include "bench/report/accuracy_bill.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -217,20 +218,6 @@ void add_least(AccuracyBill& bill, const BillInput& input) {
   add_least_time(bill, input, share_needed);
 }
 
-void add_left_out(AccuracyBill& bill, const SensorPlan& effects) {
-  std::string names;
-  double largest = 0;
-  for (const EffectDecision& decision : effects.decisions) {
-    if (decision.decision != Decision::skip || decision.predicted_change_percent.value_or(0) == 0) continue;
-    names += (names.empty() ? "" : ", ") + words(to_string(decision.effect));
-    largest = std::max(largest, std::abs(*decision.predicted_change_percent));
-  }
-  bill.sentences.push_back(names.empty()
-                               ? std::string("The simulation left out no effect that changes the acuity.")
-                               : fmt::format("The simulation left out: {}. Each changes the acuity by at most {} %.",
-                                             names, significant(largest, 2)));
-}
-
 }  // namespace
 
 AccuracyBill accuracy_bill(const BillInput& input) {
@@ -243,8 +230,37 @@ AccuracyBill accuracy_bill(const BillInput& input) {
         fmt::format("The simulation of the twin took {} s after the run.", significant(input.twin_s, 2)));
   add_floor(bill, input);
   add_least(bill, input);
-  add_left_out(bill, input.effects);
+  for (std::string& sentence : left_out_sentences(input.effects)) bill.sentences.push_back(std::move(sentence));
   return bill;
+}
+
+std::vector<std::string> left_out_sentences(const SensorPlan& effects) {
+  std::vector<std::string> below, requested, neutral;
+  for (const EffectDecision& decision : effects.decisions) {
+    if (decision.decision != Decision::skip) continue;
+    const std::string name = words(to_string(decision.effect));
+    const std::optional<double>& change = decision.predicted_change_percent;
+    if (decision.changes_nothing())
+      neutral.push_back(name);
+    else if (change && !decision.on_request())
+      below.push_back(fmt::format("{} (at most {} %)", name, significant(*change, 2)));
+    else
+      requested.push_back(change ? fmt::format("{} (predicted change {} %)", name, significant(*change, 2))
+                                 : name + " (the change is not bounded)");
+  }
+  std::vector<std::string> sentences;
+  if (below.empty() && requested.empty())
+    sentences.emplace_back("The simulation leaves out no effect that changes the acuity.");
+  if (!below.empty())
+    sentences.push_back(
+        fmt::format("The simulation leaves out, because the change of the acuity is below the tolerance: {}.",
+                    fmt::join(below, ", ")));
+  if (!requested.empty())
+    sentences.push_back(fmt::format("The simulation leaves out on request: {}.", fmt::join(requested, ", ")));
+  if (!neutral.empty())
+    sentences.push_back(
+        fmt::format("Not in this sensor or scene, and therefore without a change: {}.", fmt::join(neutral, ", ")));
+  return sentences;
 }
 
 std::string presentations_part(double set_delta_t_k) {

@@ -49,6 +49,10 @@ struct BillInput {
 /// least one presentation of each set-up.
 [[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);
 
+/// Returns the effects that the simulation leaves out, one sentence for each reason: below the tolerance with the bound
+/// of its change, on request with the planner's estimate if it has one, neutral in this sensor and scene. Never empty.
+[[nodiscard]] std::vector<std::string> left_out_sentences(const SensorPlan& effects);
+
 /// Names of the parts that a plan forecasts too.
 inline constexpr std::string_view changes_part = "Changes of the target";
 inline constexpr std::string_view location_part = "Location of the plate, contrasts";

@@ -164,22 +164,30 @@ TEST(AccuracyBill, SaysWhatNoPresentationReducesAndWhatTheDecisionNeeds) {
   EXPECT_THAT(text, HasSubstr("the acuity at 16.9 K needs about 2 of the 6 presentations"));
   // ln(0.3333 / 0.3175) = 4.87 %, less the budget 4.46 %: (4 / 4.46)^2 = 0.80 of 6.
   EXPECT_THAT(text, HasSubstr("the acuity at 0.5 K needs about 5 of the 6 presentations"));
-  EXPECT_THAT(text, HasSubstr("left out no effect"));
+  EXPECT_THAT(text, HasSubstr("leaves out no effect"));
 }
 
-TEST(AccuracyBill, NamesTheEffectsThatWereLeftOut) {
-  const auto presentations = run_of_twelve();
-  const TodCurve curve = curve_of_two();
-  SensorPlan effects;
-  effects.decisions = {{Effect::quantisation, Decision::skip, "below the tolerance", 0.3},
-                       {Effect::distortion, Decision::skip, "neutral", {}},
-                       {Effect::detector, Decision::simulate, "always", {}}};
+TEST(AccuracyBill, NamesTheEffectsThatWereLeftOutWithTheReasonOfEach) {
+  const SensorPlan effects{.decisions = {{Effect::quantisation, Decision::skip, "below the tolerance", 0.3},
+                                         {Effect::temporal_noise, Decision::skip, "below the tolerance", 0.064},
+                                         {Effect::distortion, Decision::skip, "neutral", 0.0},
+                                         {Effect::display, Decision::skip, "skipped on request; predicted", 4.21},
+                                         {Effect::diffraction, Decision::simulate, "always", {}}}};
 
-  const AccuracyBill bill =
-      accuracy_bill({.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60});
+  EXPECT_THAT(left_out_sentences(effects),
+              ElementsAre("The simulation leaves out, because the change of the acuity is below the tolerance: "
+                          "quantisation (at most 0.30 %), temporal noise (at most 0.064 %).",
+                          "The simulation leaves out on request: display (predicted change 4.2 %).",
+                          "Not in this sensor or scene, and therefore without a change: distortion."));
+}
 
-  ASSERT_EQ(bill.sentences.size(), 1u);
-  EXPECT_EQ(bill.sentences[0], "The simulation left out: quantisation. Each changes the acuity by at most 0.30 %.");
+TEST(AccuracyBill, NamesAnEffectSkippedOnRequestWithoutABound) {
+  const SensorPlan effects = full_plan(SensorSpec{}, {Effect::detector}, {});
+
+  const auto sentences = left_out_sentences(effects);
+
+  ASSERT_FALSE(sentences.empty());
+  EXPECT_EQ(sentences[0], "The simulation leaves out on request: detector (the change is not bounded).");
 }
 
 }  // namespace
