@@ -185,6 +185,8 @@ AccuracyBill bill_of(const ExperimentOutcome& outcome, const RunShown& shown) {
                                      .verdict = &outcome.verdict,
                                      .effects = outcome.effects,
                                      .wall_s = outcome.figures.wall_s,
+                                     .measures_s = outcome.figures.measures_s,
+                                     .quantities = outcome.measures ? measure_lines(*outcome.measures).lines.size() : 0,
                                      .twin_s = outcome.twin_s});
   if (shown.forecast && outcome.forecast) add_forecast(bill, *outcome.forecast);
   return bill;

@@ -2,6 +2,7 @@
 #include "bench/forecast/bill_forecast.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -17,29 +18,32 @@ namespace {
 void add_rows(AccuracyBill& bill, const Plan& plan, const BenchTime& time, double frame_rate_hz,
               const std::vector<ContrastPrediction>& contrasts) {
   const auto seconds = [&](std::uint64_t frames) { return static_cast<double>(frames) / frame_rate_hz; };
-  bill.rows.push_back({std::string(changes_part), time.changes_s,
+  bill.rows.push_back({std::string(changes_part), time.changes_s - time.all_measures.changes_s - time.warm_up_s,
                        fmt::format("{} set-ups, {} contrasts, {} places of the plate in the picture",
                                    set_ups_of(plan.target), contrasts.size(), time.presentations)});
   bill.rows.push_back(
       {std::string(location_part), seconds(time.looking_frames), "place of the plate and effective contrasts"});
-  std::uint64_t counted = time.looking_frames;
   for (const ContrastPrediction& contrast : contrasts) {
     const auto found = time.presentation_frames.find(contrast.delta_t_k);
     const std::uint64_t frames = found != time.presentation_frames.end() ? found->second : 0;
-    counted += frames;
     bill.rows.push_back({presentations_part(contrast.delta_t_k), seconds(frames),
                          contrast.uncertainty_percent
                              ? fmt::format("S75 to ± {:.2g} % (95 %) or better", *contrast.uncertainty_percent)
                              : "no interval of S75"});
   }
-  bill.rows.push_back({"Rest of the run", seconds(time.frames - counted) + time.corrections_s,
-                       "physical measures, corrections of the camera; without computing"});
-  if (time.measures.empty()) return;
-  std::vector<std::string> measures;
-  for (const MeasureTime& one : time.measures)
-    measures.push_back(fmt::format("{} {:.1f} s", one.measure, one.changes_s + seconds(one.frames)));
-  bill.sentences.push_back(
-      fmt::format("Physical measures with their changes of the target: {}.", fmt::join(measures, ", ")));
+  if (!time.measures.empty()) {
+    std::vector<std::string> measures;
+    for (const MeasureTime& one : time.measures)
+      measures.push_back(fmt::format("{} {:.1f} s", one.measure, one.changes_s + seconds(one.frames)));
+    bill.rows.push_back({std::string(measures_part), time.all_measures.changes_s + seconds(time.all_measures.frames),
+                         fmt::format("with their changes of the target: {}", fmt::join(measures, ", "))});
+  }
+  // A run waits for them within its presentations and measures, so its bill has no such row.
+  if (time.corrections_s > 0)
+    bill.rows.push_back({"Corrections of the camera", time.corrections_s, "within the rows above in a run"});
+  if (time.warm_up_s > 0)
+    bill.sentences.push_back(
+        fmt::format("The warm-up of the camera takes at least {:.0f} s before the run.", time.warm_up_s));
 }
 
 }  // namespace
@@ -52,7 +56,7 @@ Result<AccuracyBill> bill_forecast(const Plan& asked, const ExperimentInputs& in
   const double frame_rate_hz = inputs.sensor.frame_rate_hz;
   const auto presentations = expected_presentations(plan, inputs.plates, prediction.contrasts);
   const BenchTime time = bench_time(plan, inputs.plates, frame_rate_hz, presentations);
-  bill.total_s = time.total_s();
+  bill.total_s = time.total_s() - time.warm_up_s;
   if (frame_rate_hz > 0) add_rows(bill, plan, time, frame_rate_hz, prediction.contrasts);
   TODBENCH_TRY(const auto floors, floors_ln(plan, prediction));
   for (std::size_t i = 0; i < floors.size(); ++i) {

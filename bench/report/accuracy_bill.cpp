@@ -141,9 +141,14 @@ double add_rows(AccuracyBill& bill, const BillInput& input) {
     known_s += seconds.value_or(0);
     bill.rows.push_back({presentations_part(point.set_delta_t_k), seconds, presentations_bought(input, point)});
   }
-  bill.rows.push_back(
-      times ? BillRow{"Rest of the run", std::max(0.0, input.wall_s - known_s), "start, physical measures, fits"}
-            : BillRow{"Computing", input.wall_s, "all of the rows above: the scene is simulated"});
+  if (input.measures_s > 0) {
+    bill.rows.push_back({std::string(measures_part), input.measures_s,
+                         fmt::format("{} quantities, with their changes of the target", input.quantities)});
+    known_s += input.measures_s;
+  }
+  const double rest_s = std::max(0.0, input.wall_s - known_s);
+  bill.rows.push_back(times ? BillRow{"Rest of the run", rest_s, "start, fits"}
+                            : BillRow{"Computing", rest_s, "all rows above without a time: the scene is simulated"});
   return known_s;
 }
 

@@ -2,6 +2,7 @@
 // What the time of a run bought, what no time can buy, and what was left out.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,15 +39,17 @@ struct BillInput {
   const CurveUncertainty* uncertainty = nullptr;  ///< null: the plan has no budget
   const Verdict* verdict = nullptr;               ///< null: not judged
   const SensorPlan& effects;
-  double wall_s = 0;  ///< of the run with its physical measures, without the twin
-  double twin_s = 0;  ///< of the simulation of the twin, which follows the run; 0: none
+  double wall_s = 0;           ///< of the run with its physical measures, without the twin
+  double measures_s = 0;       ///< part of wall_s: physical measures with their changes of the target; 0: none
+  std::size_t quantities = 0;  ///< of the physical measures
+  double twin_s = 0;           ///< of the simulation of the twin, which follows the run; 0: none
 };
 
 /// Divides the time of a run. A presentation begins when the target is in place and ends when its next change begins.
 /// The first presentation of a set-up or a contrast also locates the plate and measures the contrast: the excess over
-/// the median presentation of the same contrast is that time. If the presentations have no times, all time is
-/// computing. The least time for the verdict assumes a half-width that falls with the root of the presentations, at
-/// least one presentation of each set-up.
+/// the median presentation of the same contrast is that time. If the presentations have no times, all time beside the
+/// physical measures is computing. The least time for the verdict assumes a half-width that falls with the root of the
+/// presentations, at least one presentation of each set-up.
 [[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);
 
 /// Returns the effects that the simulation leaves out, one sentence for each reason: below the tolerance with the bound
@@ -56,6 +59,7 @@ struct BillInput {
 /// Names of the parts that a plan forecasts too.
 inline constexpr std::string_view changes_part = "Changes of the target";
 inline constexpr std::string_view location_part = "Location of the plate, contrasts";
+inline constexpr std::string_view measures_part = "Physical measures";
 [[nodiscard]] std::string presentations_part(double set_delta_t_k);
 
 /// Adds the times of a forecast to the rows of the same parts, and the total.

@@ -101,13 +101,16 @@ Document report_document(const ReportData& data) {
   add(set_up_section(data));
   add(effects_section(data));
   if (const TodCurve* timed = timed_curve(data)) {
-    add(bill_section(accuracy_bill({.presentations = data.presentations,
-                                    .curve = *timed,
-                                    .uncertainty = data.uncertainty ? &*data.uncertainty : nullptr,
-                                    .verdict = data.verdict ? &*data.verdict : nullptr,
-                                    .effects = data.plan,
-                                    .wall_s = data.wall_s,
-                                    .twin_s = data.twin_s})));
+    add(bill_section(
+        accuracy_bill({.presentations = data.presentations,
+                       .curve = *timed,
+                       .uncertainty = data.uncertainty ? &*data.uncertainty : nullptr,
+                       .verdict = data.verdict ? &*data.verdict : nullptr,
+                       .effects = data.plan,
+                       .wall_s = data.wall_s,
+                       .measures_s = data.measures_s,
+                       .quantities = data.measures && data.measures->main ? data.measures->main->lines.size() : 0,
+                       .twin_s = data.twin_s})));
   }
   if (data.cost) add(cost_section(*data.cost));
   add(frames_section(data));

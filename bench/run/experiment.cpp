@@ -185,6 +185,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
     return abandon(open, plan, provenance, run.error());
   }
   std::optional<CameraMeasures> measures;
+  const auto begin = Clock::now();
   if (!run->result.ended_by) {
     auto found = simulated_measures(loaded, inputs, open, stop);
     if (found)
@@ -193,7 +194,9 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
       run->result.ended_by = found.error();
   }
   run->result.notes.insert(run->result.notes.end(), inputs.warnings.begin(), inputs.warnings.end());
-  provenance.run = run_record(run->result, run->wall_s);
+  const double measures_s = plan.measures.any() ? seconds_since(begin) : 0;
+  provenance.run = run_record(run->result, run->wall_s + measures_s);
+  provenance.run->measures_s = measures_s;
   ExperimentOutcome outcome =
       outcome_of(open, std::move(run->curve), run->result, std::move(measures), inputs, *provenance.run);
   add_display(outcome, provenance, plan, inputs, open, stop);
@@ -297,6 +300,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
     }
   }
   provenance.run = run_record(result, wall_s);
+  provenance.run->measures_s = measured->measures_s;
   ExperimentOutcome outcome = outcome_of(open, fitted.curve, result, std::move(measures), inputs, *provenance.run);
   if (forecast) outcome.forecast = *std::move(forecast);
   if (!outcome.ended_by) {

@@ -129,6 +129,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   if (provenance.run) {
     data.set_ups = provenance.run->set_ups;
     data.wall_s = provenance.run->wall_s;
+    data.measures_s = provenance.run->measures_s;
     data.frames_used = provenance.run->frames_used;
     data.frames_rejected = provenance.run->frames_rejected;
     data.frames_lost = provenance.run->frames_lost;

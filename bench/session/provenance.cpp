@@ -76,6 +76,7 @@ void run_fields(JsonFields& json, RunRecord& run) {
     item.value("reason", interruption.reason);
   });
   json.value("ended_by", run.ended_by);
+  json.later("measures_s", run.measures_s);
 }
 
 void instrument_fields(JsonFields& json, InstrumentPlan& instrument) {
@@ -187,11 +188,12 @@ RunRecord run_record(const MeasurementResult& result, double wall_s) {
           result.set_ups,
           result.notes,
           result.interruptions,
-          result.ended_by ? result.ended_by->message : std::string()};
+          result.ended_by ? result.ended_by->message : std::string(),
+          0};
 }
 
 RunFigures figures_of(const RunRecord& run) {
-  return {run.wall_s, run.frames_used, run.frames_rejected};
+  return {run.wall_s, run.frames_used, run.frames_rejected, run.measures_s};
 }
 
 std::string utc_now() {

@@ -47,6 +47,7 @@ struct RunRecord {
   std::vector<std::string> notes;
   std::vector<Interruption> interruptions;  ///< camera losses that the run survived
   std::string ended_by;                     ///< reason of an early end; empty: complete
+  double measures_s = 0;                    ///< part of wall_s: physical measures with their changes of the target
 };
 [[nodiscard]] RunRecord run_record(const MeasurementResult& result, double wall_s);
 [[nodiscard]] RunFigures figures_of(const RunRecord& run);

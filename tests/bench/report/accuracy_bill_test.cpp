@@ -98,6 +98,30 @@ TEST(AccuracyBill, DividesTheTimeOfARunWithoutARest) {
   EXPECT_THAT(bill.rows[1].bought, HasSubstr("0.20 %"));
 }
 
+TEST(AccuracyBill, SeparatesThePhysicalMeasuresFromTheRest) {
+  auto presentations = run_of_twelve();
+  const TodCurve curve = curve_of_two();
+  const SensorPlan effects;
+  const auto bill_of_run = [&] {
+    return accuracy_bill({.presentations = presentations,
+                          .curve = curve,
+                          .effects = effects,
+                          .wall_s = 60,
+                          .measures_s = 5,
+                          .quantities = 7});
+  };
+
+  const AccuracyBill bill = bill_of_run();
+  for (Presentation& shown : presentations) shown.host_time_ns.reset();
+  const AccuracyBill simulated = bill_of_run();
+
+  EXPECT_EQ(seconds_of(bill, measures_part), 5);
+  EXPECT_THAT(bill.rows[bill.rows.size() - 2].bought, HasSubstr("7 quantities"));
+  EXPECT_NEAR(seconds_of(bill, "Rest"), 3, 1e-6);
+  EXPECT_EQ(seconds_of(simulated, measures_part), 5);
+  EXPECT_EQ(seconds_of(simulated, "Computing"), 55);
+}
+
 TEST(AccuracyBill, PutsTheForecastBesideTheOutcome) {
   const auto presentations = run_of_twelve();
   const TodCurve curve = curve_of_two();

@@ -154,6 +154,26 @@ double outcome_over_forecast(const std::string& name, Plan plan, int seeds) {
   return sum;
 }
 
+double forecast_of(const AccuracyBill& bill, std::string_view part) {
+  for (const BillRow& row : bill.rows) {
+    if (row.part == part) return row.seconds.value_or(NAN);
+  }
+  return 0;
+}
+
+TEST(BillForecast, SeparatesPhysicalMeasuresAndLeavesOutTheWarmUp) {
+  Plan plan = bench_plan();
+  const AccuracyBill trials = bill_forecast(plan, inputs_for(plan)).value();
+  plan.measures.noise = true;
+  plan.camera.warm_up.time_s = 1800;
+
+  const AccuracyBill bill = bill_forecast(plan, inputs_for(plan)).value();
+
+  EXPECT_EQ(forecast_of(bill, changes_part), forecast_of(trials, changes_part));
+  EXPECT_GT(forecast_of(bill, measures_part), 2 * plan.target.contrast_change_s);
+  EXPECT_NEAR(forecast_of(bill, measures_part), bill.total_s - trials.total_s, 1e-9);
+}
+
 TEST(BenchTimeOutcome, OfConstantStimuliIsTheForecast) {
   EXPECT_NEAR(outcome_over_forecast("constant", bench_plan(), 1), 1, 0.1);
 }

@@ -42,6 +42,7 @@ RunRecord full_run() {
   set_up.registration.contrast_sign = -1;
   run.set_ups = {set_up};
   run.notes = {"a note"};
+  run.measures_s = 2.5;
   return run;
 }
 
