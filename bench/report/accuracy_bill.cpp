@@ -223,6 +223,14 @@ void add_least(AccuracyBill& bill, const BillInput& input) {
   add_least_time(bill, input, share_needed);
 }
 
+void add_forecast(AccuracyBill& bill, const TimeForecast& forecast) {
+  bill.forecast_s = forecast.total_s;
+  for (BillRow& row : bill.rows) {
+    const auto found = forecast.parts_s.find(row.part);
+    if (found != forecast.parts_s.end()) row.forecast_s = found->second;
+  }
+}
+
 }  // namespace
 
 AccuracyBill accuracy_bill(const BillInput& input) {
@@ -230,6 +238,7 @@ AccuracyBill accuracy_bill(const BillInput& input) {
   const double known_s = add_rows(bill, input);
   // The presentations of a resumed run were taken in more than one run.
   bill.total_s = std::max(input.wall_s, known_s);
+  if (input.forecast != nullptr) add_forecast(bill, *input.forecast);
   if (input.twin_s > 0)
     bill.sentences.push_back(
         fmt::format("The simulation of the twin took {} s after the run.", significant(input.twin_s, 2)));
@@ -272,12 +281,13 @@ std::string presentations_part(double set_delta_t_k) {
   return "Presentations at " + stated(set_delta_t_k) + " K";
 }
 
-void add_forecast(AccuracyBill& bill, const AccuracyBill& forecast) {
-  for (BillRow& row : bill.rows) {
-    const auto found = std::ranges::find(forecast.rows, row.part, &BillRow::part);
-    if (found != forecast.rows.end()) row.forecast_s = found->seconds;
+std::optional<TimeForecast> time_forecast(const AccuracyBill& forecast) {
+  if (!(forecast.total_s > 0)) return std::nullopt;
+  TimeForecast out{.total_s = forecast.total_s, .parts_s = {}};
+  for (const BillRow& row : forecast.rows) {
+    if (row.seconds) out.parts_s[row.part] = *row.seconds;
   }
-  if (forecast.total_s > 0) bill.forecast_s = forecast.total_s;
+  return out;
 }
 
 std::string forecast_and_outcome(const AccuracyBill& bill) {
@@ -307,12 +317,21 @@ Json bill_json(const AccuracyBill& bill) {
 Section bill_section(const AccuracyBill& bill) {
   Table table;
   table.caption = "Time of the run and the accuracy that it bought";
-  table.header = {"Part", "Time (s)", "Result"};
+  table.header = {"Part", "Time (s)"};
+  if (bill.forecast_s) table.header.emplace_back("Forecast (s)");
+  table.header.emplace_back("Result");
+  const auto add = [&](RichText part, RichText time, RichText forecast, const std::string& bought) {
+    std::vector<RichText> row{std::move(part), std::move(time)};
+    if (bill.forecast_s) row.push_back(std::move(forecast));
+    row.push_back(plain(bought));
+    table.rows.push_back(std::move(row));
+  };
   for (const BillRow& row : bill.rows) {
-    table.rows.push_back(
-        {plain(row.part), row.seconds ? plain(shown(*row.seconds, 1)) : missing("not separate"), plain(row.bought)});
+    add(plain(row.part), row.seconds ? plain(shown(*row.seconds, 1)) : missing("not separate"),
+        row.forecast_s ? plain(shown(*row.forecast_s, 1)) : plain(""), row.bought);
   }
-  table.rows.push_back({strong("Total"), strong(shown(bill.total_s, 1)), plain("")});
+  add(strong("Total"), strong(shown(bill.total_s, 1)), bill.forecast_s ? strong(shown(*bill.forecast_s, 1)) : plain(""),
+      bill.forecast_s ? "forecast without computing" : "");
   Section section{"Accuracy and time", {std::move(table)}};
   section.blocks.emplace_back(list_of(bill.sentences));
   return section;

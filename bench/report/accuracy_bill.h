@@ -11,6 +11,7 @@
 
 #include "bench/judgement/verdict.h"
 #include "bench/report/document.h"
+#include "bench/session/provenance.h"
 #include "bench/text/json.h"
 #include "sim_devices/sensor/sensor_plan.h"
 #include "tod/presentation/presentation.h"
@@ -42,7 +43,8 @@ struct BillInput {
   double wall_s = 0;           ///< of the run with its physical measures, without the twin
   double measures_s = 0;       ///< part of wall_s: physical measures with their changes of the target; 0: none
   std::size_t quantities = 0;  ///< of the physical measures
-  double twin_s = 0;           ///< of the simulation of the twin, which follows the run; 0: none
+  const TimeForecast* forecast = nullptr;  ///< of the plan; null: none that is comparable
+  double twin_s = 0;                       ///< of the simulation of the twin, which follows the run; 0: none
 };
 
 /// Divides the time of a run. A presentation begins when the target is in place and ends when its next change begins.
@@ -62,8 +64,8 @@ inline constexpr std::string_view location_part = "Location of the plate, contra
 inline constexpr std::string_view measures_part = "Physical measures";
 [[nodiscard]] std::string presentations_part(double set_delta_t_k);
 
-/// Adds the times of a forecast to the rows of the same parts, and the total.
-void add_forecast(AccuracyBill& bill, const AccuracyBill& forecast);
+/// Returns the times of a forecast; empty if it has none.
+[[nodiscard]] std::optional<TimeForecast> time_forecast(const AccuracyBill& forecast);
 /// Returns a sentence with the total and every part of a bill, forecast beside outcome. Empty without a forecast.
 [[nodiscard]] std::string forecast_and_outcome(const AccuracyBill& bill);
 

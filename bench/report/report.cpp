@@ -110,6 +110,7 @@ Document report_document(const ReportData& data) {
                        .wall_s = data.wall_s,
                        .measures_s = data.measures_s,
                        .quantities = data.measures && data.measures->main ? data.measures->main->lines.size() : 0,
+                       .forecast = data.forecast ? &*data.forecast : nullptr,
                        .twin_s = data.twin_s})));
   }
   if (data.cost) add(cost_section(*data.cost));

@@ -137,6 +137,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
     data.notes.insert(data.notes.end(), provenance.run->notes.begin(), provenance.run->notes.end());
     data.interruptions = provenance.run->interruptions;
   }
+  data.forecast = provenance.forecast;
   data.manifest_sha256 = session.manifest_sha256;
   data.accepted_changes = session.accepted_changes;
   data.cut_off = session.cut_off;

@@ -131,6 +131,11 @@ void origin_fields(JsonFields& json, OriginRecord& origin) {
   json.value("resumed", origin.resumed);
 }
 
+void forecast_fields(JsonFields& json, TimeForecast& forecast) {
+  json.value("total_s", forecast.total_s);
+  json.value("parts_s", forecast.parts_s);
+}
+
 void provenance_fields(JsonFields& json, Provenance& provenance) {
   json.derived("schema", "todbench-provenance-1");
   json.value("state", provenance.state, states);
@@ -151,6 +156,7 @@ void provenance_fields(JsonFields& json, Provenance& provenance) {
   json.later("modules", provenance.modules, module_fields);
   effects_fields(json, provenance.effects);
   json.value("run", provenance.run, run_fields);
+  json.if_any("forecast", provenance.forecast, forecast_fields);
   json.value("twin_run", provenance.twin_run, run_fields);
   json.if_any("camera_optics", provenance.camera_optics, optics_fields);
   json.if_any("selftest", provenance.selftest, selftest_fields);

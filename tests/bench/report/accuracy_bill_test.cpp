@@ -126,19 +126,42 @@ TEST(AccuracyBill, PutsTheForecastBesideTheOutcome) {
   const auto presentations = run_of_twelve();
   const TodCurve curve = curve_of_two();
   const SensorPlan effects;
-  AccuracyBill bill = accuracy_bill({.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60});
-  EXPECT_EQ(forecast_and_outcome(bill), "");
-  EXPECT_FALSE(bill_json(bill).contains("forecast_s"));
   AccuracyBill forecast;
+  EXPECT_FALSE(time_forecast(forecast));
   forecast.total_s = 50;
   forecast.rows = {{std::string(changes_part), 25, ""}, {presentations_part(16.9), 5, ""}, {"Another part", 3, ""}};
+  const auto times = time_forecast(forecast);
+  ASSERT_TRUE(times);
+  BillInput input{.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60};
 
-  add_forecast(bill, forecast);
+  const AccuracyBill alone = accuracy_bill(input);
+  input.forecast = &*times;
+  const AccuracyBill bill = accuracy_bill(input);
 
+  EXPECT_EQ(forecast_and_outcome(alone), "");
+  EXPECT_FALSE(bill_json(alone).contains("forecast_s"));
   EXPECT_EQ(bill_json(bill)["forecast_s"], 50);
   EXPECT_EQ(forecast_and_outcome(bill),
             "forecast of the plan and outcome of the run: 50.0 s without computing, and 60.0 s (1.2 times); Changes of "
             "the target: 25.0 s, and 24.0 s; Presentations at 16.9 K: 5.00 s, and 6.00 s");
+}
+
+TEST(AccuracyBill, HasAColumnOfTheForecastInTheReport) {
+  const auto presentations = run_of_twelve();
+  const TodCurve curve = curve_of_two();
+  const SensorPlan effects;
+  const TimeForecast forecast{.total_s = 50, .parts_s = {{std::string(changes_part), 25}}};
+  BillInput input{.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60};
+  const auto table_of = [&] { return std::get<Table>(bill_section(accuracy_bill(input)).blocks.front()); };
+
+  const Table alone = table_of();
+  input.forecast = &forecast;
+  const Table beside = table_of();
+
+  EXPECT_EQ(alone.header.size(), 3u);
+  EXPECT_EQ(alone.rows.front().size(), 3u);
+  EXPECT_THAT(beside.header, ElementsAre("Part", "Time (s)", "Forecast (s)", "Result"));
+  for (const auto& row : beside.rows) EXPECT_EQ(row.size(), 4u);
 }
 
 TEST(AccuracyBill, OfASimulatedSceneIsComputing) {
