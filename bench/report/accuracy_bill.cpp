@@ -162,8 +162,11 @@ double floor_percent(const PointUncertainty& point) {
 }
 
 void add_floor(AccuracyBill& bill, const BillInput& input) {
-  if (input.uncertainty == nullptr) return;
-  for (const PointUncertainty& point : input.uncertainty->points) {
+  const std::vector<PointUncertainty> none;
+  const auto& points = input.uncertainty == nullptr ? none : input.uncertainty->points;
+  if (std::ranges::none_of(points, [](const PointUncertainty& point) { return floor_percent(point) > 0; }))
+    bill.sentences.emplace_back(no_budget_sentence);
+  for (const PointUncertainty& point : points) {
     const auto half = half_width_percent(point.statistical_mrad);
     const double floor = floor_percent(point);
     if (!half || !(floor > 0)) continue;
@@ -185,10 +188,11 @@ std::optional<double> needed_share(const Demand& demand, const BillInput& input)
       input.uncertainty == nullptr ? nullptr : point_at(*input.uncertainty, *demand.delta_t_k);
   const double floor = stated_u == nullptr ? 0 : floor_percent(*stated_u);
   const double margin = 100 * std::abs(std::log(*demand.result / *demand.limit));
-  if (!(margin > floor)) return std::nullopt;
+  const auto share = share_for_decision(*half, margin, floor);
+  if (!share) return std::nullopt;
   const double presentations = static_cast<double>(count_at(input, *demand.delta_t_k));
   const double least = static_cast<double>(set_ups_at(input, *demand.delta_t_k)) / presentations;
-  return std::clamp(*half * *half / (margin * margin - floor * floor), least, 1.0);
+  return std::clamp(*share, least, 1.0);
 }
 
 /// Time of the run with the presentations that the decisions on acuity need, and with all of it.
@@ -209,6 +213,11 @@ void add_least_time(AccuracyBill& bill, const BillInput& input, const std::map<d
 
 void add_least(AccuracyBill& bill, const BillInput& input) {
   if (input.verdict == nullptr) return;
+  const auto has_limit = [](const Demand& demand) { return demand.kind == DemandKind::acuity && demand.limit; };
+  if (std::ranges::none_of(input.verdict->demands, has_limit)) {
+    bill.sentences.emplace_back(no_limit_sentence);
+    return;
+  }
   std::map<double, double> share_needed;
   for (const Demand& demand : input.verdict->demands) {
     const auto share = needed_share(demand, input);
@@ -220,6 +229,11 @@ void add_least(AccuracyBill& bill, const BillInput& input) {
     bill.sentences.push_back(fmt::format("The decision on the acuity at {} K needs about {} of the {} presentations.",
                                          stated(*demand.delta_t_k), needed, all));
   }
+  if (share_needed.empty())
+    bill.sentences.emplace_back(
+        "The demands on acuity have no least time: they are open, or the rows of the budget exceed the distance from "
+        "the "
+        "limit.");
   add_least_time(bill, input, share_needed);
 }
 
@@ -275,6 +289,11 @@ std::vector<std::string> left_out_sentences(const SensorPlan& effects) {
     sentences.push_back(
         fmt::format("Not in this sensor or scene, and therefore without a change: {}.", fmt::join(neutral, ", ")));
   return sentences;
+}
+
+std::optional<double> share_for_decision(double half_width, double margin, double floor) {
+  if (!(margin > floor)) return std::nullopt;
+  return half_width * half_width / (margin * margin - floor * floor);
 }
 
 std::string presentations_part(double set_delta_t_k) {

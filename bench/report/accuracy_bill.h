@@ -58,6 +58,17 @@ struct BillInput {
 /// of its change, on request with the planner's estimate if it has one, neutral in this sensor and scene. Never empty.
 [[nodiscard]] std::vector<std::string> left_out_sentences(const SensorPlan& effects);
 
+/// Returns the share of the presentations that decides with this distance from the limit; above 1: more than there are.
+/// The half-width of the trials falls with the root of the presentations, the floor stays. All in percent of the
+/// acuity. Empty: the floor exceeds the distance.
+[[nodiscard]] std::optional<double> share_for_decision(double half_width, double margin, double floor);
+
+/// Lines in place of those that need a budget or a limit.
+inline constexpr std::string_view no_budget_sentence =
+    "The plan states no row of a budget, so it is not known what no presentation reduces.";
+inline constexpr std::string_view no_limit_sentence =
+    "The plan has no limit on an acuity, so there is no least time for a verdict.";
+
 /// Names of the parts that a plan forecasts too.
 inline constexpr std::string_view changes_part = "Changes of the target";
 inline constexpr std::string_view location_part = "Location of the plate, contrasts";

@@ -214,6 +214,19 @@ TEST(AccuracyBill, SaysWhatNoPresentationReducesAndWhatTheDecisionNeeds) {
   EXPECT_THAT(text, HasSubstr("leaves out no effect"));
 }
 
+TEST(AccuracyBill, SaysSoWithoutABudgetAndWithoutALimit) {
+  const auto presentations = run_of_twelve();
+  const TodCurve curve = curve_of_two();
+  const SensorPlan effects;
+  const Verdict verdict;
+
+  const AccuracyBill bill = accuracy_bill(
+      {.presentations = presentations, .curve = curve, .verdict = &verdict, .effects = effects, .wall_s = 60});
+
+  EXPECT_THAT(bill.sentences, ElementsAre(std::string(no_budget_sentence), std::string(no_limit_sentence),
+                                          "The simulation leaves out no effect that changes the acuity."));
+}
+
 TEST(AccuracyBill, NamesTheEffectsThatWereLeftOutWithTheReasonOfEach) {
   const SensorPlan effects{.decisions = {{Effect::quantisation, Decision::skip, "below the tolerance", 0.3},
                                          {Effect::temporal_noise, Decision::skip, "below the tolerance", 0.064},
