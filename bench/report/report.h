@@ -14,6 +14,7 @@
 #include "bench/judgement/verdict.h"
 #include "bench/plan/letterhead.h"
 #include "bench/plan/order.h"
+#include "bench/report/accuracy_bill.h"
 #include "bench/report/document.h"
 #include "bench/report/plot.h"
 #include "bench/session/bars_people.h"
@@ -119,6 +120,9 @@ struct ReportData {
 [[nodiscard]] std::vector<Plot> psychometric_plots(const ReportData& data);
 /// Returns the psychometric functions of person and model; empty without a person.
 [[nodiscard]] std::vector<Plot> human_plots(const ReportData& data);
+
+/// Returns the bill of the run; empty if it has no curve or no time.
+[[nodiscard]] std::optional<AccuracyBill> bill_of(const ReportData& data);
 
 /// Returns the report as a document for page and PDF. A pure function.
 [[nodiscard]] Document report_document(const ReportData& data);
