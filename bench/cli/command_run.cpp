@@ -132,7 +132,7 @@ int run_measure(Console& console, const MeasureArguments& asked, const Program& 
                                });
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
-  return show_run(console, *outcome, {.forecast = true});
+  return show_run(console, *outcome);
 }
 
 int run_resume(Console& console, const MeasureArguments& asked, const Program& program) {

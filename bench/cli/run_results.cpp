@@ -178,16 +178,17 @@ void print_curve(const Console& console, const TodCurve& curve) {
     print_findings(console, point.adequacy, fixed(point.set_delta_t_k, 3) + " K: ");
 }
 
-AccuracyBill bill_of(const ExperimentOutcome& outcome, const RunShown& shown) {
-  AccuracyBill bill = accuracy_bill({.presentations = outcome.presentations,
-                                     .curve = outcome.curve,
-                                     .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
-                                     .verdict = &outcome.verdict,
-                                     .effects = outcome.effects,
-                                     .wall_s = outcome.figures.wall_s,
-                                     .twin_s = outcome.twin_s});
-  if (shown.forecast && outcome.forecast) add_forecast(bill, *outcome.forecast);
-  return bill;
+AccuracyBill bill_of(const ExperimentOutcome& outcome) {
+  return accuracy_bill({.presentations = outcome.presentations,
+                        .curve = outcome.curve,
+                        .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
+                        .verdict = &outcome.verdict,
+                        .effects = outcome.effects,
+                        .wall_s = outcome.figures.wall_s,
+                        .measures_s = outcome.figures.measures_s,
+                        .quantities = outcome.measures ? measure_lines(*outcome.measures).lines.size() : 0,
+                        .forecast = outcome.forecast ? &*outcome.forecast : nullptr,
+                        .twin_s = outcome.twin_s});
 }
 
 void add_verdict(Json& json, const Verdict& verdict) {
@@ -218,7 +219,7 @@ void print_run(const Console& console, const ExperimentOutcome& outcome, const R
   print_uncertainty(console, outcome);
   print_measures(console, outcome);
   print_display(console, outcome);
-  print_bill(console, bill_of(outcome, shown));
+  print_bill(console, bill_of(outcome));
   print_verdict(console, outcome);
 }
 
@@ -227,7 +228,7 @@ int show_run(Console& console, const ExperimentOutcome& outcome, const RunShown&
     Json json = curve_json(outcome.curve, outcome.effects, outcome.figures);
     if (outcome.uncertainty) add_uncertainty(json, *outcome.uncertainty);
     add_verdict(json, outcome.verdict);
-    json["bill"] = bill_json(bill_of(outcome, shown));
+    json["bill"] = bill_json(bill_of(outcome));
     add_measures(json, outcome);
     add_display(json, outcome);
     console.object(json);

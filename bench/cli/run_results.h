@@ -11,9 +11,8 @@ namespace todbench {
 
 /// Parts of the output that not every command has.
 struct RunShown {
-  bool curve = true;      ///< printed; the JSON object has it always
-  bool effects = false;   ///< of the simulated sensor, printed
-  bool forecast = false;  ///< beside the bill, if the run has one
+  bool curve = true;     ///< printed; the JSON object has it always
+  bool effects = false;  ///< of the simulated sensor, printed
 };
 
 /// Prints curve, comparison, uncertainty, measures, bill and verdict of a run, or its JSON object, and returns the exit
@@ -25,7 +24,7 @@ void print_run(const Console& console, const ExperimentOutcome& outcome, const R
 [[nodiscard]] int finish_run(Console& console, const ExperimentOutcome& outcome);
 
 void print_curve(const Console& console, const TodCurve& curve);
-[[nodiscard]] AccuracyBill bill_of(const ExperimentOutcome& outcome, const RunShown& shown = {});
+[[nodiscard]] AccuracyBill bill_of(const ExperimentOutcome& outcome);
 /// Adds the verdict to the JSON of a run.
 void add_verdict(Json& json, const Verdict& verdict);
 

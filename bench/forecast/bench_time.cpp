@@ -88,6 +88,8 @@ class Walk {
   void measure(const TargetState& last, const std::string& first_plate, double plate_width_mm) {
     const MeasuresPlan& measures = plan_.measures;
     if (!measures.any()) return;
+    const double trials_changes_s = time_.changes_s;
+    const std::uint64_t trials_frames = time_.frames;
     const TargetPlan& target = plan_.target;
     const auto change = [&](double seconds, int frames) {
       time_.changes_s += seconds;
@@ -141,6 +143,7 @@ class Walk {
     });
     add("absolute", measures.absolute, [&] { add_absolute(new_plate_s); });
     add("mrtd", measures.mrtd, [&] { count_mrtd(measures, target); });
+    time_.all_measures = {"", time_.changes_s - trials_changes_s, time_.frames - trials_frames};
   }
 
   /// Both passes over the temperatures, then both halves of the shifted pictures, in the order of measure_absolute().
@@ -166,7 +169,8 @@ class Walk {
     }
     // The warm-up of the camera precedes the run; a drift adds at least its window.
     const WarmUpPlan& warm_up = plan_.camera.warm_up;
-    time_.changes_s += std::max(warm_up.time_s, warm_up.drift_k_per_min > 0 ? warm_up.window_s : 0);
+    time_.warm_up_s = std::max(warm_up.time_s, warm_up.drift_k_per_min > 0 ? warm_up.window_s : 0);
+    time_.changes_s += time_.warm_up_s;
     time_.frames_s = frame_rate_hz > 0 ? static_cast<double>(time_.frames) / frame_rate_hz : 0;
     const double running = time_.changes_s + time_.frames_s;
     if (plan_.camera.nuc_interval_s > 0)

@@ -35,6 +35,8 @@ struct BenchTime {
   std::map<double, std::uint64_t> presentation_frames{};
   double frames_s = 0;
   std::vector<MeasureTime> measures{};  ///< parts of changes_s and frames, in the order of the run
+  MeasureTime all_measures{};           ///< the same of all measures, with the change of the target before the first
+  double warm_up_s = 0;                 ///< part of changes_s: before the run, at least
   double corrections_s = 0;             ///< waiting time after commanded corrections of the camera
   [[nodiscard]] double total_s() const { return changes_s + frames_s + corrections_s; }
 };

@@ -2,13 +2,17 @@
 #include "bench/forecast/bill_forecast.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/decision_forecast.h"
 #include "bench/forecast/precision_frontier.h"
+#include "bench/report/number_format.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -17,29 +21,92 @@ namespace {
 void add_rows(AccuracyBill& bill, const Plan& plan, const BenchTime& time, double frame_rate_hz,
               const std::vector<ContrastPrediction>& contrasts) {
   const auto seconds = [&](std::uint64_t frames) { return static_cast<double>(frames) / frame_rate_hz; };
-  bill.rows.push_back({std::string(changes_part), time.changes_s,
+  bill.rows.push_back({std::string(changes_part), time.changes_s - time.all_measures.changes_s - time.warm_up_s,
                        fmt::format("{} set-ups, {} contrasts, {} places of the plate in the picture",
                                    set_ups_of(plan.target), contrasts.size(), time.presentations)});
   bill.rows.push_back(
       {std::string(location_part), seconds(time.looking_frames), "place of the plate and effective contrasts"});
-  std::uint64_t counted = time.looking_frames;
   for (const ContrastPrediction& contrast : contrasts) {
     const auto found = time.presentation_frames.find(contrast.delta_t_k);
     const std::uint64_t frames = found != time.presentation_frames.end() ? found->second : 0;
-    counted += frames;
     bill.rows.push_back({presentations_part(contrast.delta_t_k), seconds(frames),
                          contrast.uncertainty_percent
                              ? fmt::format("S75 to ± {:.2g} % (95 %) or better", *contrast.uncertainty_percent)
                              : "no interval of S75"});
   }
-  bill.rows.push_back({"Rest of the run", seconds(time.frames - counted) + time.corrections_s,
-                       "physical measures, corrections of the camera; without computing"});
-  if (time.measures.empty()) return;
-  std::vector<std::string> measures;
-  for (const MeasureTime& one : time.measures)
-    measures.push_back(fmt::format("{} {:.1f} s", one.measure, one.changes_s + seconds(one.frames)));
+  if (!time.measures.empty()) {
+    std::vector<std::string> measures;
+    for (const MeasureTime& one : time.measures)
+      measures.push_back(fmt::format("{} {:.1f} s", one.measure, one.changes_s + seconds(one.frames)));
+    bill.rows.push_back({std::string(measures_part), time.all_measures.changes_s + seconds(time.all_measures.frames),
+                         fmt::format("with their changes of the target: {}", fmt::join(measures, ", "))});
+  }
+  // A run waits for them within its presentations and measures, so its bill has no such row.
+  if (time.corrections_s > 0)
+    bill.rows.push_back({"Corrections of the camera", time.corrections_s, "within the rows above in a run"});
+  if (time.warm_up_s > 0)
+    bill.sentences.push_back(
+        fmt::format("The warm-up of the camera takes at least {:.0f} s before the run.", time.warm_up_s));
+}
+
+/// Returns the share of the presentations that decides the limit for a camera of the predicted acuity, and adds its
+/// sentence. `floor_ln`: half-width of the stated rows; `least`: share of one presentation of each set-up.
+std::optional<double> add_decision(AccuracyBill& bill, const AcuityLimit& limit, const ContrastPrediction& contrast,
+                                   double floor_ln, double least) {
+  const std::string at = number_text(contrast.delta_t_k) + " K";
+  if (!contrast.s75_mrad || !contrast.uncertainty_percent) {
+    bill.sentences.push_back("No least time for the decision at " + at + ": no interval of S75 is predicted.");
+    return std::nullopt;
+  }
+  const double margin = 100 * std::abs(std::log(*contrast.s75_mrad * limit.least_acuity_per_mrad));
+  const auto needed = share_for_decision(100 * std::log1p(*contrast.uncertainty_percent / 100), margin, 100 * floor_ln);
+  if (!needed) {
+    bill.sentences.push_back(
+        fmt::format("No time decides the predicted acuity at {}: it is {} % from its limit, and the stated rows of the "
+                    "budget make ± {} %.",
+                    at, significant(margin, 2), significant(100 * floor_ln, 2)));
+    return std::nullopt;
+  }
+  const double share = std::max(*needed, least);
   bill.sentences.push_back(
-      fmt::format("Physical measures with their changes of the target: {}.", fmt::join(measures, ", ")));
+      fmt::format("The decision on the predicted acuity at {} needs about {} % of the presentations of the plan.", at,
+                  significant(100 * share, 2)));
+  return share;
+}
+
+/// Adds what the plan's limits on acuity need. `floors_ln`: half-widths of the stated rows, one for each contrast.
+void add_least(AccuracyBill& bill, const Plan& plan, const BenchTime& time, const PlanPrediction& prediction,
+               const std::vector<double>& floors_ln) {
+  if (plan.limits.acuity.empty()) {
+    bill.sentences.emplace_back(no_limit_sentence);
+    return;
+  }
+  const double least = static_cast<double>(set_ups_of(plan.target) * prediction.contrasts.size()) /
+                       static_cast<double>(std::max<std::uint64_t>(1, time.presentations));
+  const auto seconds_of = [&](std::string_view part) {
+    const auto row = std::ranges::find(bill.rows, part, &BillRow::part);
+    return row == bill.rows.end() ? 0 : row->seconds.value_or(0);
+  };
+  bool decided = false;
+  double needed_s = seconds_of(changes_part) + seconds_of(location_part), all_s = needed_s;
+  for (std::size_t i = 0; i < prediction.contrasts.size(); ++i) {
+    const ContrastPrediction& contrast = prediction.contrasts[i];
+    double most = 0;
+    for (const AcuityLimit& limit : plan.limits.acuity) {
+      if (!same_contrast(limit.delta_t_k, contrast.delta_t_k)) continue;
+      const auto share = add_decision(bill, limit, contrast, floors_ln[i], least);
+      decided = decided || share;
+      most = std::max(most, share.value_or(0));
+    }
+    const double contrast_s = seconds_of(presentations_part(contrast.delta_t_k));
+    needed_s += most * contrast_s;
+    all_s += contrast_s;
+  }
+  if (!decided) return;
+  bill.sentences.push_back(
+      fmt::format("The decisions on acuity alone need about {} s; {} s are planned for changes, location and "
+                  "presentations.",
+                  significant(needed_s, 2), significant(all_s, 2)));
 }
 
 }  // namespace
@@ -52,15 +119,19 @@ Result<AccuracyBill> bill_forecast(const Plan& asked, const ExperimentInputs& in
   const double frame_rate_hz = inputs.sensor.frame_rate_hz;
   const auto presentations = expected_presentations(plan, inputs.plates, prediction.contrasts);
   const BenchTime time = bench_time(plan, inputs.plates, frame_rate_hz, presentations);
-  bill.total_s = time.total_s();
+  bill.total_s = time.total_s() - time.warm_up_s;
   if (frame_rate_hz > 0) add_rows(bill, plan, time, frame_rate_hz, prediction.contrasts);
   TODBENCH_TRY(const auto floors, floors_ln(plan, prediction));
+  if (std::ranges::none_of(floors, [](double floor) { return floor > 0; }))
+    bill.sentences.emplace_back(no_budget_sentence);
   for (std::size_t i = 0; i < floors.size(); ++i) {
     if (!(floors[i] > 0)) continue;
     bill.sentences.push_back(
         fmt::format("At {} K the stated rows of the budget make ± {:.2g} %, which no presentation reduces.",
                     number_text(prediction.contrasts[i].delta_t_k), 100 * std::expm1(floors[i])));
   }
+  add_least(bill, plan, time, prediction, floors);
+  for (std::string& sentence : left_out_sentences(inputs.effects)) bill.sentences.push_back(std::move(sentence));
   return bill;
 }
 

@@ -2,6 +2,7 @@
 #include "bench/report/accuracy_bill.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -140,9 +141,14 @@ double add_rows(AccuracyBill& bill, const BillInput& input) {
     known_s += seconds.value_or(0);
     bill.rows.push_back({presentations_part(point.set_delta_t_k), seconds, presentations_bought(input, point)});
   }
-  bill.rows.push_back(
-      times ? BillRow{"Rest of the run", std::max(0.0, input.wall_s - known_s), "start, physical measures, fits"}
-            : BillRow{"Computing", input.wall_s, "all of the rows above: the scene is simulated"});
+  if (input.measures_s > 0) {
+    bill.rows.push_back({std::string(measures_part), input.measures_s,
+                         fmt::format("{} quantities, with their changes of the target", input.quantities)});
+    known_s += input.measures_s;
+  }
+  const double rest_s = std::max(0.0, input.wall_s - known_s);
+  bill.rows.push_back(times ? BillRow{"Rest of the run", rest_s, "start, fits"}
+                            : BillRow{"Computing", rest_s, "all rows above without a time: the scene is simulated"});
   return known_s;
 }
 
@@ -156,8 +162,11 @@ double floor_percent(const PointUncertainty& point) {
 }
 
 void add_floor(AccuracyBill& bill, const BillInput& input) {
-  if (input.uncertainty == nullptr) return;
-  for (const PointUncertainty& point : input.uncertainty->points) {
+  const std::vector<PointUncertainty> none;
+  const auto& points = input.uncertainty == nullptr ? none : input.uncertainty->points;
+  if (std::ranges::none_of(points, [](const PointUncertainty& point) { return floor_percent(point) > 0; }))
+    bill.sentences.emplace_back(no_budget_sentence);
+  for (const PointUncertainty& point : points) {
     const auto half = half_width_percent(point.statistical_mrad);
     const double floor = floor_percent(point);
     if (!half || !(floor > 0)) continue;
@@ -179,10 +188,11 @@ std::optional<double> needed_share(const Demand& demand, const BillInput& input)
       input.uncertainty == nullptr ? nullptr : point_at(*input.uncertainty, *demand.delta_t_k);
   const double floor = stated_u == nullptr ? 0 : floor_percent(*stated_u);
   const double margin = 100 * std::abs(std::log(*demand.result / *demand.limit));
-  if (!(margin > floor)) return std::nullopt;
+  const auto share = share_for_decision(*half, margin, floor);
+  if (!share) return std::nullopt;
   const double presentations = static_cast<double>(count_at(input, *demand.delta_t_k));
   const double least = static_cast<double>(set_ups_at(input, *demand.delta_t_k)) / presentations;
-  return std::clamp(*half * *half / (margin * margin - floor * floor), least, 1.0);
+  return std::clamp(*share, least, 1.0);
 }
 
 /// Time of the run with the presentations that the decisions on acuity need, and with all of it.
@@ -203,6 +213,11 @@ void add_least_time(AccuracyBill& bill, const BillInput& input, const std::map<d
 
 void add_least(AccuracyBill& bill, const BillInput& input) {
   if (input.verdict == nullptr) return;
+  const auto has_limit = [](const Demand& demand) { return demand.kind == DemandKind::acuity && demand.limit; };
+  if (std::ranges::none_of(input.verdict->demands, has_limit)) {
+    bill.sentences.emplace_back(no_limit_sentence);
+    return;
+  }
   std::map<double, double> share_needed;
   for (const Demand& demand : input.verdict->demands) {
     const auto share = needed_share(demand, input);
@@ -214,21 +229,20 @@ void add_least(AccuracyBill& bill, const BillInput& input) {
     bill.sentences.push_back(fmt::format("The decision on the acuity at {} K needs about {} of the {} presentations.",
                                          stated(*demand.delta_t_k), needed, all));
   }
+  if (share_needed.empty())
+    bill.sentences.emplace_back(
+        "The demands on acuity have no least time: they are open, or the rows of the budget exceed the distance from "
+        "the "
+        "limit.");
   add_least_time(bill, input, share_needed);
 }
 
-void add_left_out(AccuracyBill& bill, const SensorPlan& effects) {
-  std::string names;
-  double largest = 0;
-  for (const EffectDecision& decision : effects.decisions) {
-    if (decision.decision != Decision::skip || decision.predicted_change_percent.value_or(0) == 0) continue;
-    names += (names.empty() ? "" : ", ") + words(to_string(decision.effect));
-    largest = std::max(largest, std::abs(*decision.predicted_change_percent));
+void add_forecast(AccuracyBill& bill, const TimeForecast& forecast) {
+  bill.forecast_s = forecast.total_s;
+  for (BillRow& row : bill.rows) {
+    const auto found = forecast.parts_s.find(row.part);
+    if (found != forecast.parts_s.end()) row.forecast_s = found->second;
   }
-  bill.sentences.push_back(names.empty()
-                               ? std::string("The simulation left out no effect that changes the acuity.")
-                               : fmt::format("The simulation left out: {}. Each changes the acuity by at most {} %.",
-                                             names, significant(largest, 2)));
 }
 
 }  // namespace
@@ -238,25 +252,61 @@ AccuracyBill accuracy_bill(const BillInput& input) {
   const double known_s = add_rows(bill, input);
   // The presentations of a resumed run were taken in more than one run.
   bill.total_s = std::max(input.wall_s, known_s);
+  if (input.forecast != nullptr) add_forecast(bill, *input.forecast);
   if (input.twin_s > 0)
     bill.sentences.push_back(
         fmt::format("The simulation of the twin took {} s after the run.", significant(input.twin_s, 2)));
   add_floor(bill, input);
   add_least(bill, input);
-  add_left_out(bill, input.effects);
+  for (std::string& sentence : left_out_sentences(input.effects)) bill.sentences.push_back(std::move(sentence));
   return bill;
+}
+
+std::vector<std::string> left_out_sentences(const SensorPlan& effects) {
+  std::vector<std::string> below, requested, neutral;
+  for (const EffectDecision& decision : effects.decisions) {
+    if (decision.decision != Decision::skip) continue;
+    const std::string name = words(to_string(decision.effect));
+    const std::optional<double>& change = decision.predicted_change_percent;
+    if (decision.changes_nothing())
+      neutral.push_back(name);
+    else if (change && !decision.on_request())
+      below.push_back(fmt::format("{} (at most {} %)", name, significant(*change, 2)));
+    else
+      requested.push_back(change ? fmt::format("{} (predicted change {} %)", name, significant(*change, 2))
+                                 : name + " (the change is not bounded)");
+  }
+  std::vector<std::string> sentences;
+  if (below.empty() && requested.empty())
+    sentences.emplace_back("The simulation leaves out no effect that changes the acuity.");
+  if (!below.empty())
+    sentences.push_back(
+        fmt::format("The simulation leaves out, because the change of the acuity is below the tolerance: {}.",
+                    fmt::join(below, ", ")));
+  if (!requested.empty())
+    sentences.push_back(fmt::format("The simulation leaves out on request: {}.", fmt::join(requested, ", ")));
+  if (!neutral.empty())
+    sentences.push_back(
+        fmt::format("Not in this sensor or scene, and therefore without a change: {}.", fmt::join(neutral, ", ")));
+  return sentences;
+}
+
+std::optional<double> share_for_decision(double half_width, double margin, double floor) {
+  if (!(margin > floor)) return std::nullopt;
+  return half_width * half_width / (margin * margin - floor * floor);
 }
 
 std::string presentations_part(double set_delta_t_k) {
   return "Presentations at " + stated(set_delta_t_k) + " K";
 }
 
-void add_forecast(AccuracyBill& bill, const AccuracyBill& forecast) {
-  for (BillRow& row : bill.rows) {
-    const auto found = std::ranges::find(forecast.rows, row.part, &BillRow::part);
-    if (found != forecast.rows.end()) row.forecast_s = found->seconds;
+std::optional<TimeForecast> time_forecast(const AccuracyBill& forecast) {
+  if (!(forecast.total_s > 0)) return std::nullopt;
+  TimeForecast out{.total_s = forecast.total_s, .parts_s = {}};
+  for (const BillRow& row : forecast.rows) {
+    if (row.seconds) out.parts_s[row.part] = *row.seconds;
   }
-  if (forecast.total_s > 0) bill.forecast_s = forecast.total_s;
+  return out;
 }
 
 std::string forecast_and_outcome(const AccuracyBill& bill) {
@@ -286,12 +336,21 @@ Json bill_json(const AccuracyBill& bill) {
 Section bill_section(const AccuracyBill& bill) {
   Table table;
   table.caption = "Time of the run and the accuracy that it bought";
-  table.header = {"Part", "Time (s)", "Result"};
+  table.header = {"Part", "Time (s)"};
+  if (bill.forecast_s) table.header.emplace_back("Forecast (s)");
+  table.header.emplace_back("Result");
+  const auto add = [&](RichText part, RichText time, RichText forecast, const std::string& bought) {
+    std::vector<RichText> row{std::move(part), std::move(time)};
+    if (bill.forecast_s) row.push_back(std::move(forecast));
+    row.push_back(plain(bought));
+    table.rows.push_back(std::move(row));
+  };
   for (const BillRow& row : bill.rows) {
-    table.rows.push_back(
-        {plain(row.part), row.seconds ? plain(shown(*row.seconds, 1)) : missing("not separate"), plain(row.bought)});
+    add(plain(row.part), row.seconds ? plain(shown(*row.seconds, 1)) : missing("not separate"),
+        row.forecast_s ? plain(shown(*row.forecast_s, 1)) : plain(""), row.bought);
   }
-  table.rows.push_back({strong("Total"), strong(shown(bill.total_s, 1)), plain("")});
+  add(strong("Total"), strong(shown(bill.total_s, 1)), bill.forecast_s ? strong(shown(*bill.forecast_s, 1)) : plain(""),
+      bill.forecast_s ? "forecast without computing" : "");
   Section section{"Accuracy and time", {std::move(table)}};
   section.blocks.emplace_back(list_of(bill.sentences));
   return section;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "bench/report/accuracy_bill.h"
 #include "bench/report/cost_figure.h"
 #include "bench/report/html.h"
 #include "bench/report/measures_section.h"
@@ -75,6 +74,21 @@ ReportVerdict report_verdict(const ReportData& data) {
   return limits_asked(*data.verdict) ? ReportVerdict::pass : ReportVerdict::not_judged;
 }
 
+std::optional<AccuracyBill> bill_of(const ReportData& data) {
+  const TodCurve* timed = timed_curve(data);
+  if (timed == nullptr) return std::nullopt;
+  return accuracy_bill({.presentations = data.presentations,
+                        .curve = *timed,
+                        .uncertainty = data.uncertainty ? &*data.uncertainty : nullptr,
+                        .verdict = data.verdict ? &*data.verdict : nullptr,
+                        .effects = data.plan,
+                        .wall_s = data.wall_s,
+                        .measures_s = data.measures_s,
+                        .quantities = data.measures && data.measures->main ? data.measures->main->lines.size() : 0,
+                        .forecast = data.forecast ? &*data.forecast : nullptr,
+                        .twin_s = data.twin_s});
+}
+
 Document report_document(const ReportData& data) {
   Document document{.title = data.title + (data.session.empty() ? "" : " – " + data.session),
                     .heading = data.title,
@@ -100,15 +114,7 @@ Document report_document(const ReportData& data) {
   add(mrtd_section(data));
   add(set_up_section(data));
   add(effects_section(data));
-  if (const TodCurve* timed = timed_curve(data)) {
-    add(bill_section(accuracy_bill({.presentations = data.presentations,
-                                    .curve = *timed,
-                                    .uncertainty = data.uncertainty ? &*data.uncertainty : nullptr,
-                                    .verdict = data.verdict ? &*data.verdict : nullptr,
-                                    .effects = data.plan,
-                                    .wall_s = data.wall_s,
-                                    .twin_s = data.twin_s})));
-  }
+  if (const auto bill = bill_of(data)) add(bill_section(*bill));
   if (data.cost) add(cost_section(*data.cost));
   add(frames_section(data));
   add(provenance_section(data));

@@ -14,12 +14,14 @@
 #include "bench/judgement/verdict.h"
 #include "bench/plan/letterhead.h"
 #include "bench/plan/order.h"
+#include "bench/report/accuracy_bill.h"
 #include "bench/report/document.h"
 #include "bench/report/plot.h"
 #include "bench/session/bars_people.h"
 #include "bench/session/display_record.h"
 #include "bench/session/human_record.h"
 #include "bench/session/measures_record.h"
+#include "bench/session/provenance.h"
 #include "bench/session/signature.h"
 #include "hvs/eye/viewed_display.h"
 #include "sim_devices/prediction/cost_frontier.h"
@@ -88,8 +90,10 @@ struct ReportData {
   SensorPlan plan;                   ///< of the simulated sensor
   std::optional<CostFrontier> cost;  ///< cost of accuracy in time; empty: not measured, no section
 
-  double wall_s = 0;  ///< of the run with its physical measures, without the twin; 0: not stated
-  double twin_s = 0;  ///< of the simulation of the twin; 0: not stated
+  double wall_s = 0;                       ///< of the run with its physical measures, without the twin; 0: not stated
+  double measures_s = 0;                   ///< part of wall_s: physical measures; 0: none, or not stated
+  std::optional<TimeForecast> forecast{};  ///< of the plan; empty: none that is comparable
+  double twin_s = 0;                       ///< of the simulation of the twin; 0: not stated
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
   std::uint64_t frames_lost = 0;
@@ -116,6 +120,9 @@ struct ReportData {
 [[nodiscard]] std::vector<Plot> psychometric_plots(const ReportData& data);
 /// Returns the psychometric functions of person and model; empty without a person.
 [[nodiscard]] std::vector<Plot> human_plots(const ReportData& data);
+
+/// Returns the bill of the run; empty if it has no curve or no time.
+[[nodiscard]] std::optional<AccuracyBill> bill_of(const ReportData& data);
 
 /// Returns the report as a document for page and PDF. A pure function.
 [[nodiscard]] Document report_document(const ReportData& data);

@@ -47,18 +47,14 @@ Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
   return {};
 }
 
-/// Forecast of the plan beside the outcome of the run, which has ended. Empty for a simulated scene, and for recorded
-/// frames, whose presentations were before the run. `begin_ns`: start of the run, on the clock of the presentations.
-std::string forecast_beside_outcome(const AccuracyBill& forecast, const MeasurementResult& result,
-                                    const TodCurve& curve, const SensorPlan& effects, double wall_s,
-                                    std::int64_t begin_ns) {
+/// Whether the times of the run are comparable with the forecast of its plan: not of a run that ended early, of a
+/// simulated scene, nor of recorded frames, whose presentations were before the run. `begin_ns`: start of the run, on
+/// the clock of the presentations.
+bool has_times_of_plan(const MeasurementResult& result, double wall_s, std::int64_t begin_ns) {
   const auto& shown = result.presentations;
-  if (result.ended_by || shown.empty() || !shown.front().host_time_ns || !shown.back().host_time_ns) return "";
+  if (result.ended_by || shown.empty() || !shown.front().host_time_ns || !shown.back().host_time_ns) return false;
   const double span_s = static_cast<double>(*shown.back().host_time_ns - *shown.front().host_time_ns) * 1e-9;
-  if (*shown.front().host_time_ns < begin_ns || span_s > wall_s) return "";
-  AccuracyBill bill = accuracy_bill({.presentations = shown, .curve = curve, .effects = effects, .wall_s = wall_s});
-  add_forecast(bill, forecast);
-  return forecast_and_outcome(bill);
+  return *shown.front().host_time_ns >= begin_ns && span_s <= wall_s;
 }
 
 /// Adds what stands beside the results for an observer with an eye. Without it the session is complete, too.
@@ -185,6 +181,7 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
     return abandon(open, plan, provenance, run.error());
   }
   std::optional<CameraMeasures> measures;
+  const auto begin = Clock::now();
   if (!run->result.ended_by) {
     auto found = simulated_measures(loaded, inputs, open, stop);
     if (found)
@@ -193,7 +190,9 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
       run->result.ended_by = found.error();
   }
   run->result.notes.insert(run->result.notes.end(), inputs.warnings.begin(), inputs.warnings.end());
-  provenance.run = run_record(run->result, run->wall_s);
+  const double measures_s = plan.measures.any() ? seconds_since(begin) : 0;
+  provenance.run = run_record(run->result, run->wall_s + measures_s);
+  provenance.run->measures_s = measures_s;
   ExperimentOutcome outcome =
       outcome_of(open, std::move(run->curve), run->result, std::move(measures), inputs, *provenance.run);
   add_display(outcome, provenance, plan, inputs, open, stop);
@@ -289,16 +288,21 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   const FittedCurve& fitted = fit->get(stop);
   keep_shape(result, fitted.said, open);
   const double wall_s = seconds_since(begin);
-  if (forecast) {
-    const auto sentence = forecast_beside_outcome(*forecast, result, fitted.curve, inputs.effects, wall_s, begin_ns);
-    if (!sentence.empty()) {
-      note(folder, listener, sentence);
-      result.notes.push_back(sentence);
-    }
+  if (forecast && has_times_of_plan(result, wall_s, begin_ns)) provenance.forecast = time_forecast(*forecast);
+  if (provenance.forecast) {
+    const auto sentence = forecast_and_outcome(accuracy_bill({.presentations = result.presentations,
+                                                              .curve = fitted.curve,
+                                                              .effects = inputs.effects,
+                                                              .wall_s = wall_s,
+                                                              .measures_s = measured->measures_s,
+                                                              .forecast = &*provenance.forecast}));
+    note(folder, listener, sentence);
+    result.notes.push_back(sentence);
   }
   provenance.run = run_record(result, wall_s);
+  provenance.run->measures_s = measured->measures_s;
   ExperimentOutcome outcome = outcome_of(open, fitted.curve, result, std::move(measures), inputs, *provenance.run);
-  if (forecast) outcome.forecast = *std::move(forecast);
+  outcome.forecast = provenance.forecast;
   if (!outcome.ended_by) {
     FromCamera camera{.curve = &fitted.curve,
                       .functions = &fitted.functions_of_twin(),

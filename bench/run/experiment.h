@@ -17,7 +17,6 @@
 #include "bench/judgement/verdict.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/plan/plan_options.h"
-#include "bench/report/accuracy_bill.h"
 #include "bench/session/display_record.h"
 #include "bench/session/json_output.h"
 #include "bench/session/provenance.h"
@@ -66,7 +65,7 @@ struct ExperimentOutcome {
   std::optional<DisplayRecord> at_display{};      ///< beside the results; at_display()
   RunFigures figures;                             ///< of `curve`
   double twin_s = 0;                              ///< of the simulation of `twin`
-  std::optional<AccuracyBill> forecast{};         ///< of a measured run; made before its first presentation
+  std::optional<TimeForecast> forecast{};         ///< made before the first presentation; as Provenance::forecast
   std::optional<Error> ended_by;                  ///< of an early stop; the folder is valid and marked interrupted
   std::vector<Presentation> presentations{};      ///< of `curve`
   std::optional<CurveUncertainty> uncertainty{};  ///< of `curve`; empty if the plan has no budget

@@ -6,6 +6,7 @@
 
 #include "acquisition/base/try.h"
 #include "bench/devices/warm_up_gate.h"
+#include "bench/judgement/run_findings.h"
 #include "bench/run/grey_results.h"
 #include "bench/run/physical_measures.h"
 #include "bench/run/trial_recorder.h"
@@ -68,8 +69,11 @@ std::optional<CameraMeasures> measures_of_camera(MeasuredRun& measured, const Pl
                                                  std::stop_token stop) {
   std::optional<Error>& ended_by = measured.result.ended_by;
   if (ended_by) return std::nullopt;
+  const auto begin = std::chrono::steady_clock::now();
   auto measures = physical_measures(plan, measured.options, inputs, bench, open, std::move(stop));
   if (!measures) ended_by = measures.error();
+  if (plan.measures.any())
+    measured.measures_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (recording != nullptr && !ended_by) {
     if (auto kept = recording->verified_frames(); !kept) ended_by = with_context("recording", kept.error());
   }

@@ -28,6 +28,7 @@ struct MeasuredRun {
   MeasurementOptions options;
   std::map<double, ProportionTable> functions{};  ///< of an adaptive schedule's stopping rule
   std::vector<ChangedSetting> changed{};          ///< of the camera, from its opening to the last frame
+  double measures_s = 0;                          ///< of the physical measures; 0: none were taken
 };
 
 /// Returns the response of the contrast estimator for the plates, by the twin of the plan.
@@ -45,8 +46,8 @@ struct MeasuredRun {
                                                const Plan& plan, const ExperimentInputs& inputs, const SourceInfo& info,
                                                const OpenSession& open);
 
-/// Takes the camera's physical measures, then checks that the recording is complete on disk. `recording`: null if none
-/// is made. An error ends the run.
+/// Takes the camera's physical measures and their time, then checks that the recording is complete on disk.
+/// `recording`: null if none is made. An error ends the run.
 [[nodiscard]] std::optional<CameraMeasures> measures_of_camera(MeasuredRun& measured, const Plan& plan,
                                                                const ExperimentInputs& inputs, OpenedBench& bench,
                                                                FrameStreamWriter* recording, const OpenSession& open,

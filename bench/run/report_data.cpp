@@ -129,6 +129,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
   if (provenance.run) {
     data.set_ups = provenance.run->set_ups;
     data.wall_s = provenance.run->wall_s;
+    data.measures_s = provenance.run->measures_s;
     data.frames_used = provenance.run->frames_used;
     data.frames_rejected = provenance.run->frames_rejected;
     data.frames_lost = provenance.run->frames_lost;
@@ -136,6 +137,7 @@ Result<ReportData> report_data(const Session& session, const std::string& name) 
     data.notes.insert(data.notes.end(), provenance.run->notes.begin(), provenance.run->notes.end());
     data.interruptions = provenance.run->interruptions;
   }
+  data.forecast = provenance.forecast;
   data.manifest_sha256 = session.manifest_sha256;
   data.accepted_changes = session.accepted_changes;
   data.cut_off = session.cut_off;

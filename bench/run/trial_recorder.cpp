@@ -129,6 +129,9 @@ Result<MeasurementResult> record_trials(const OpenSession& open, OpenedBench& be
   if (result && kept == AnswerKind::binary) {
     for (Trial& trial : result->trials) trial = binary(std::move(trial));
   }
+  if (result && bench.simulated) {
+    for (Presentation& shown : result->presentations) shown.host_time_ns.reset();
+  }
   if (result) result->notes.insert(result->notes.end(), scale_notes.begin(), scale_notes.end());
   files.sync();
   if (files.error()) {

@@ -18,6 +18,7 @@ struct RunFigures {
   double wall_s = 0;
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
+  double measures_s = 0;                                 ///< part of wall_s: physical measures
 };
 /// Returns the output of `measure PLAN --json` and `simulate PLAN --json`; the plan of a measured curve has no effects.
 [[nodiscard]] Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures& figures);

@@ -76,6 +76,7 @@ void run_fields(JsonFields& json, RunRecord& run) {
     item.value("reason", interruption.reason);
   });
   json.value("ended_by", run.ended_by);
+  json.later("measures_s", run.measures_s);
 }
 
 void instrument_fields(JsonFields& json, InstrumentPlan& instrument) {
@@ -130,6 +131,11 @@ void origin_fields(JsonFields& json, OriginRecord& origin) {
   json.value("resumed", origin.resumed);
 }
 
+void forecast_fields(JsonFields& json, TimeForecast& forecast) {
+  json.value("total_s", forecast.total_s);
+  json.value("parts_s", forecast.parts_s);
+}
+
 void provenance_fields(JsonFields& json, Provenance& provenance) {
   json.derived("schema", "todbench-provenance-1");
   json.value("state", provenance.state, states);
@@ -150,6 +156,7 @@ void provenance_fields(JsonFields& json, Provenance& provenance) {
   json.later("modules", provenance.modules, module_fields);
   effects_fields(json, provenance.effects);
   json.value("run", provenance.run, run_fields);
+  json.if_any("forecast", provenance.forecast, forecast_fields);
   json.value("twin_run", provenance.twin_run, run_fields);
   json.if_any("camera_optics", provenance.camera_optics, optics_fields);
   json.if_any("selftest", provenance.selftest, selftest_fields);
@@ -187,11 +194,12 @@ RunRecord run_record(const MeasurementResult& result, double wall_s) {
           result.set_ups,
           result.notes,
           result.interruptions,
-          result.ended_by ? result.ended_by->message : std::string()};
+          result.ended_by ? result.ended_by->message : std::string(),
+          0};
 }
 
 RunFigures figures_of(const RunRecord& run) {
-  return {run.wall_s, run.frames_used, run.frames_rejected};
+  return {run.wall_s, run.frames_used, run.frames_rejected, run.measures_s};
 }
 
 std::string utc_now() {

@@ -47,6 +47,7 @@ struct RunRecord {
   std::vector<std::string> notes;
   std::vector<Interruption> interruptions;  ///< camera losses that the run survived
   std::string ended_by;                     ///< reason of an early end; empty: complete
+  double measures_s = 0;                    ///< part of wall_s: physical measures with their changes of the target
 };
 [[nodiscard]] RunRecord run_record(const MeasurementResult& result, double wall_s);
 [[nodiscard]] RunFigures figures_of(const RunRecord& run);
@@ -84,6 +85,13 @@ struct OriginRecord {
   bool operator==(const OriginRecord&) const = default;
 };
 
+/// Times of the bench that the plan forecast before the run.
+struct TimeForecast {
+  double total_s = 0;                     ///< without computing
+  std::map<std::string, double> parts_s;  ///< by part of the bill (bench/report/accuracy_bill.h)
+  bool operator==(const TimeForecast&) const = default;
+};
+
 struct Provenance {
   std::string program_version, git_commit, compiler;
   std::string host;
@@ -99,7 +107,9 @@ struct Provenance {
   std::vector<ModuleRecord> modules{};  ///< behind camera or twin; the observer last
   SensorPlan effects;                   ///< of the simulated curve
   std::optional<RunRecord> run;         ///< of trials.csv
-  std::optional<RunRecord> twin_run;    ///< of trials_simulated.csv
+  /// Comparable with the times of `run`; empty: not measured, a simulated scene, recorded frames, or an early end.
+  std::optional<TimeForecast> forecast{};
+  std::optional<RunRecord> twin_run;  ///< of trials_simulated.csv
   std::optional<CameraOpticsRecord> camera_optics{};
   /// The last self-test of this program on this computer; empty: none.
   std::optional<SelftestRecord> selftest{};

@@ -25,12 +25,13 @@ struct ThresholdEstimate {
   std::optional<double> standard_error_pitch{};  ///< as the estimate states it
 };
 
-/// One way of computing the thresholds, with its time and its error.
+/// One way of computing the thresholds, with its time and its error. The computing time is that of one thread on an
+/// idle machine: the smaller of wall time and processor time.
 struct CostPoint {
   std::string knob;     ///< "wavelengths", "phases", "wrap", "band", "draws", "trials", "tolerance", "planner"
   std::string setting;  ///< value of the knob: "4", "1.5e-05", "5 %", "normal"
   bool paired = false;  ///< same random numbers as its reference: the error is that of the knob alone
-  std::optional<double> wall_s{};         ///< processor time; empty, as the following ones, if not measured
+  std::optional<double> wall_s{};         ///< computing time; empty, as the following ones, if not measured
   std::optional<double> error_percent{};  ///< of the 75 % acuity against the reference; the largest over contrasts
   std::optional<double> standard_error_percent{};  ///< stated by the estimate; the largest over contrasts
   std::string not_measured{};                      ///< reason, a clause; empty if measured
@@ -49,7 +50,7 @@ struct CostPoint {
 struct CostFrontier {
   std::vector<CostPoint> points;
   std::vector<ThresholdEstimate> reference;  ///< empty, like `points`, if no contrast has a threshold
-  double reference_s = 0;                    ///< processor time of the reference, as CostPoint::wall_s
+  double reference_s = 0;                    ///< computing time of the reference
   int reference_draws = 0;
   int paired_draws = 0;  ///< of the paired points and of their reference
   double reference_standard_error_percent = 0;
@@ -99,7 +100,7 @@ struct CostListener {
 /// The error of wavelengths, phases, wrap and band is relative to the reference level with the same number of draws and
 /// the same random numbers, so it is that of the knob alone. The error of draws, trials, tolerance and planner is
 /// relative to the whole reference. It contains the variation of their random numbers, so their standard error is
-/// stated, too. Wall times are those of one thread on the machine as loaded: the shorter of two runs if there is time.
+/// stated, too. Computing times are the shorter of two runs if there is time.
 ///
 /// The budget is kept. The reference uses at most a third of it, if necessary with fewer draws and a note. A point that
 /// does not fit is left unmeasured with a reason. The planner's chosen point comes first.

@@ -170,9 +170,9 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
   for (auto& d : out.plan.decisions) {
     if (contains(options.skip, d.effect)) {
       d.decision = Decision::skip;
-      d.reason = "skipped on request; " + (d.predicted_change_percent
-                                               ? fmt::format("predicted change {:.3g} %", *d.predicted_change_percent)
-                                               : std::string("no criterion limits the change"));
+      d.reason = std::string(skipped_on_request) + "; " +
+                 (d.predicted_change_percent ? fmt::format("predicted change {:.3g} %", *d.predicted_change_percent)
+                                             : std::string("no criterion limits the change"));
       out.requested_change_percent += d.predicted_change_percent.value_or(0);
       if (!d.predicted_change_percent)
         out.warnings.push_back("effect " + std::string(to_string(d.effect)) +

@@ -46,7 +46,7 @@ SensorPlan full_plan(const SensorSpec& spec, const std::vector<Effect>& skip, co
     }
     if (contains(skip, effect)) {
       decision.decision = Decision::skip;
-      decision.reason = "skipped on request";
+      decision.reason = skipped_on_request;
     }
     if (contains(force, effect)) {
       decision.decision = Decision::simulate;

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "acquisition/base/result.h"
@@ -14,6 +15,9 @@ namespace todbench {
 
 enum class Decision { simulate, skip };
 
+/// Beginning of the reason of an effect that a list `skip` leaves out.
+inline constexpr std::string_view skipped_on_request = "skipped on request";
+
 struct EffectDecision {
   Effect effect = Effect::diffraction;
   Decision decision = Decision::simulate;
@@ -22,6 +26,8 @@ struct EffectDecision {
   std::optional<double> predicted_change_percent;
   /// Skipped, and the sensor is the same with and without it.
   [[nodiscard]] bool changes_nothing() const { return decision == Decision::skip && predicted_change_percent == 0.0; }
+  /// Skipped by a list `skip`, whatever it changes.
+  [[nodiscard]] bool on_request() const { return decision == Decision::skip && reason.starts_with(skipped_on_request); }
 };
 
 /// One decision per effect, in chain order. Part of the configuration, the session folder and the report.

@@ -6,6 +6,7 @@
 
 #include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
+#include "bench/forecast/bill_forecast.h"
 #include "bench/forecast/graded_precision.h"
 #include "bench/plan/plan_options.h"
 #include "bench/twin/direct_results.h"
@@ -103,6 +104,9 @@ Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<Expect
     out.problem = prediction.error().message;
   }
   out.effects = inputs.effects;
+  if (!plan.camera.id.empty() && plan.target.kind != TargetKind::scene) {
+    if (auto bill = bill_forecast(plan, inputs)) out.bill = *std::move(bill);
+  }
   if (out.problem.empty() && plan.simulation.phases == plan.target.phases) {
     out.camera = out.twin;
     out.by_frames = half_widths_by_frames(plan, inputs);

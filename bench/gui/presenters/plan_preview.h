@@ -11,6 +11,7 @@
 
 #include "bench/forecast/prediction.h"
 #include "bench/plan/loaded_plan.h"
+#include "bench/report/accuracy_bill.h"
 #include "bench/report/plot.h"
 #include "tod/psychometric/tod_curve.h"
 
@@ -40,8 +41,9 @@ struct PlanForecast {
   std::vector<ContrastPrediction> camera;  ///< the same with the phases of the target
   /// Largest half-width of the camera with 1, 2, 4 and 8 frames per presentation; empty for binary answers.
   std::vector<std::pair<int, double>> by_frames;
-  std::optional<double> twin_s;  ///< to simulate, on one core
-  std::string problem;           ///< why the tolerance cannot be met; empty: it can
+  std::optional<double> twin_s;        ///< to simulate, on one core
+  std::optional<AccuracyBill> bill{};  ///< bill_forecast(); empty: no camera, a simulated scene, or `problem`
+  std::string problem;                 ///< why the tolerance cannot be met; empty: it can
 };
 
 /// `known`: thresholds that replace the planner's own; may be empty. Errors: `interrupted`.

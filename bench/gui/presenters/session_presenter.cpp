@@ -121,9 +121,14 @@ Result<OpenedSession> read_opened_session(const std::filesystem::path& folder) {
   TODBENCH_TRY(auto human, read_human(folder));
   std::error_code none;
   const bool recorded = std::filesystem::exists(recorded_frames(folder), none);
-  return OpenedSession{
-      folder,  QString::fromStdString(session_name(folder)), std::move(session), std::move(data), std::move(human),
-      recorded};
+  auto bill = bill_of(data);
+  return OpenedSession{folder,
+                       QString::fromStdString(session_name(folder)),
+                       std::move(session),
+                       std::move(data),
+                       std::move(human),
+                       recorded,
+                       std::move(bill)};
 }
 
 std::vector<SessionEntry> sessions_below(const std::filesystem::path& folder) {

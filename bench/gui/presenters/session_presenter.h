@@ -34,7 +34,8 @@ struct OpenedSession {
   Session session;
   ReportData report;
   std::optional<HumanRecord> human;
-  bool recorded = false;  ///< contains its frames and can be replayed
+  bool recorded = false;               ///< contains its frames and can be replayed
+  std::optional<AccuracyBill> bill{};  ///< as in the report
 };
 
 /// Two compared sessions.

@@ -7,11 +7,13 @@
 #include <QLabel>
 #include <QSignalBlocker>
 #include <QSlider>
+#include <QTabWidget>
 #include <QTableWidget>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
 
+#include "bench/gui/presenters/bill_rows.h"
 #include "bench/gui/presenters/plan_presenter.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/plot_view.h"
@@ -90,13 +92,25 @@ PlanPreviewView::PlanPreviewView(PlanPresenter& presenter, QWidget* parent) : QW
   contrasts_->setMaximumHeight(200);
   seen->addWidget(contrasts_);
   layout->addLayout(seen);
-  layout->addWidget(title_label("Effects of the simulated sensor"));
-  layout->addWidget(effects_table(), 1);
+  auto* effects = new QWidget;
+  auto* effects_layout = new QVBoxLayout(effects);
+  effects_layout->setContentsMargins(0, 0, 0, 0);
+  effects_layout->addWidget(effects_table(), 1);
   neutral_ = new QCheckBox;
   neutral_->setObjectName("neutralEffects");
   neutral_->setToolTip("A neutral effect does not change the picture with the parameters of this sensor.");
   connect(neutral_, &QCheckBox::toggled, this, &PlanPreviewView::fold_effects);
-  layout->addWidget(neutral_);
+  effects_layout->addWidget(neutral_);
+  bill_ = plain_table({"Part of the run", "Time (s)", "Result"}, "planBill");
+  bill_->setToolTip("Predicted time of the run on the bench and the accuracy that it buys");
+  column_widths(*bill_, {"Location of the plate, contrasts", "00000.0"});
+  wrap_words(*bill_);
+  auto* tabs = new QTabWidget;
+  tabs->setObjectName("planPreviewTabs");
+  tabs->setDocumentMode(true);
+  tabs->addTab(effects, "Effects of the simulated sensor");
+  tabs->addTab(bill_, "Bill of the run");
+  layout->addWidget(tabs, 1);
   connect(tolerance_, &QSlider::valueChanged, this,
           [this](int position) { emit problem(presenter_.set_tolerance_percent(tolerance_of(position))); });
   connect(&presenter_, &PlanPresenter::updated, this, &PlanPreviewView::show_outlook);
@@ -170,6 +184,11 @@ void PlanPreviewView::show_outlook() {
   if (Plot plot = accuracy_plot(presenter_.prices(), seen); !plot.series.empty() || seen.contrasts.empty())
     prices_->show_plot(plot);
   show_effects();
+  show_bill();
+}
+
+void PlanPreviewView::show_bill() {
+  fill_table(*bill_, presenter_.forecast() ? bill_rows(*presenter_.forecast()) : QList<QStringList>());
 }
 
 void PlanPreviewView::show_effects() {

@@ -30,12 +30,13 @@ class PlanPreviewView final : public QWidget {
   [[nodiscard]] QWidget* effects_table();
   void show_outlook();
   void show_effects();
+  void show_bill();
   void fold_effects();
 
   PlanPresenter& presenter_;
   QLabel *tolerance_text_, *cost_, *misfit_;
   QSlider* tolerance_;
-  QTableWidget *contrasts_, *effects_;
+  QTableWidget *contrasts_, *effects_, *bill_;
   QCheckBox* neutral_;  ///< shows the rows of neutral effects
   PlotView* prices_;
   std::vector<QComboBox*> choices_;  ///< in the order of the effects

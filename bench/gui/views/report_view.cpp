@@ -13,6 +13,7 @@
 #include <QUrl>
 #include <algorithm>
 
+#include "bench/gui/presenters/bill_rows.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/plot_view.h"
 #include "bench/judgement/demand_kinds.h"
@@ -149,7 +150,7 @@ QWidget* ReportView::results() {
   auto* layout = new QVBoxLayout(content);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(plot_, 1);
-  for (QWidget* part : std::initializer_list<QWidget*>{log_log_, ratios_, limits_}) layout->addWidget(part);
+  for (QWidget* part : std::initializer_list<QWidget*>{log_log_, ratios_, limits_, bill_}) layout->addWidget(part);
   auto* scroll = new QScrollArea;
   scroll->setObjectName("sessionResults");
   scroll->setFrameShape(QFrame::NoFrame);
@@ -181,9 +182,15 @@ QWidget* ReportView::session_panel() {
   limits_ = plain_table({"Limit", "Result [95 %]", "Verdict", "Reason"}, "limitTable");
   column_widths(*ratios_, {"", "0.9770 [0.8890, 1.0740]", "0.9770 [0.8890, 1.0740]", "", "", ""});
   column_widths(*limits_, {"Acuity at 16.9 K at least", "0.510 [0.468, 0.556] 1/mrad", "? inconclusive"});
-  wrap_words(*limits_);
+  bill_ = plain_table({"Part of the run", "Time (s)", "Forecast (s)", "Result"}, "billTable");
+  bill_->setToolTip("Time of the run and the accuracy that it bought");
+  column_widths(*bill_, {"Location of the plate, contrasts", "not separate", "Forecast (s)"});
+  bill_->hide();
   fit_height(*ratios_, most_ratios);
-  fit_rows(*limits_, 100, QWIDGETSIZE_MAX);
+  for (QTableWidget* table : {limits_, bill_}) {
+    wrap_words(*table);
+    fit_rows(*table, 100, QWIDGETSIZE_MAX);
+  }
   layout->addWidget(results(), 1);
   auto* buttons = new QHBoxLayout;
   export_ = primary_button(write_reports, "exportReports");
@@ -334,6 +341,8 @@ void ReportView::show_session() {
                         QString::fromStdString(demand.reason)};
   }
   fill_table(*limits_, rows);
+  if (opened.bill) fill_table(*bill_, bill_rows(*opened.bill));
+  bill_->setVisible(opened.bill.has_value());
   files_->clear();
   show_writing(false);
   for (QPushButton* button : {again_, compare_}) button->setEnabled(true);
@@ -358,6 +367,7 @@ void ReportView::show_comparison() {
                     (reasons.empty() ? QString() : ": " + QString::fromStdString(reasons)));
   show_ratios(compared.comparison);
   fill_table(*limits_, {});
+  bill_->hide();
   show_plot();
 }
 

@@ -58,7 +58,7 @@ class ReportView final : public QWidget {
   SessionPresenter& presenter_;
   std::vector<SessionEntry> listed_;  ///< one per row
   QLineEdit* filter_;
-  QTableWidget *sessions_, *ratios_, *limits_;
+  QTableWidget *sessions_, *ratios_, *limits_, *bill_;
   QLabel *title_, *verdict_, *frames_, *files_;
   QWidget* letterhead_;
   QLabel *logo_, *laboratory_;

@@ -176,6 +176,8 @@ TEST(BenchTimeOfMeasures, AddsTheirStepsAndFrames) {
   EXPECT_NEAR(both.measures[0].changes_s, both.changes_s - noise.changes_s, 1e-9);
   EXPECT_EQ(both.measures[1].measure, "noise");
   EXPECT_EQ(both.measures[1].frames, 64 + 1u);
+  EXPECT_EQ(both.all_measures.frames, both.frames - trials.frames);
+  EXPECT_NEAR(both.all_measures.changes_s, both.changes_s - trials.changes_s, 1e-9);
   plan.measures.triangles = true;
   const BenchTime triangles = bench_time(plan, plates, 50, std::nullopt);
   EXPECT_EQ(triangles.frames - both.frames, plan.target.delta_t_k.size() * (2 + 1u));

@@ -14,6 +14,7 @@
 #include <QTextBrowser>
 #include <QToolButton>
 
+#include "bench/gui/presenters/bill_rows.h"
 #include "bench/gui/views/help_window.h"
 #include "bench/gui/views/picture_view.h"
 #include "bench/gui/views/plot_view.h"
@@ -133,6 +134,11 @@ TEST(ForgivingWindow, OffersTheReportAfterARun) {
   EXPECT_EQ(window->view(), View::report);
   ASSERT_TRUE(wait_until([&] { return window->sessions().current().has_value(); }));
   EXPECT_EQ(faults_at_three_sizes(*window), "");
+  ASSERT_TRUE(window->sessions().current()->bill);
+  const auto& bill = window.part<QTableWidget>("billTable");
+  EXPECT_TRUE(bill.isVisibleTo(&*window));
+  EXPECT_EQ(bill.rowCount(), bill_rows(*window->sessions().current()->bill).size());
+  EXPECT_FALSE(bill.findItems("Computing", Qt::MatchExactly).isEmpty()) << "the scene is simulated";
 }
 
 TEST(ForgivingWindow, OffersToTryAgainOnlyWhatMaySucceed) {

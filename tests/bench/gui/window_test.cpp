@@ -19,6 +19,7 @@
 #include <QScrollBar>
 #include <QSettings>
 #include <QSpinBox>
+#include <QTabWidget>
 #include <QTableWidget>
 #include <QThread>
 #include <QTimer>
@@ -178,6 +179,21 @@ TEST(Window, FoldsNeutralEffectsUnlessTheyAreChosen) {
   ASSERT_EQ(window->plan().choose(chosen, EffectChoice::skip).toStdString(), "");
   ASSERT_TRUE(wait_until([&] { return window->plan().forecast_current(); }));
   EXPECT_FALSE(table.isRowHidden(static_cast<int>(chosen))) << "a choice by hand stays in sight";
+}
+
+TEST(Window, ShowsTheForecastOfTheBillBehindTheEffects) {
+  ShownWindow window("sim:sc2000");
+  window->show_view(View::plan);
+  ASSERT_TRUE(wait_until([&] { return window->plan().forecast_current(); }));
+
+  window.part<QTabWidget>("planPreviewTabs").setCurrentIndex(1);
+  QApplication::processEvents();
+
+  const auto& table = window.part<QTableWidget>("planBill");
+  EXPECT_TRUE(table.isVisible());
+  ASSERT_EQ(table.rowCount(), 1);
+  EXPECT_THAT(table.item(0, 2)->text().toStdString(), HasSubstr("a simulated scene takes computing time alone"));
+  EXPECT_EQ(faults_at_three_sizes(*window), "");
 }
 
 TEST(PageCheck, NamesWhatIsCutOffEmptyOrAnError) {

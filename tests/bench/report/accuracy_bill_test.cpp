@@ -98,23 +98,70 @@ TEST(AccuracyBill, DividesTheTimeOfARunWithoutARest) {
   EXPECT_THAT(bill.rows[1].bought, HasSubstr("0.20 %"));
 }
 
+TEST(AccuracyBill, SeparatesThePhysicalMeasuresFromTheRest) {
+  auto presentations = run_of_twelve();
+  const TodCurve curve = curve_of_two();
+  const SensorPlan effects;
+  const auto bill_of_run = [&] {
+    return accuracy_bill({.presentations = presentations,
+                          .curve = curve,
+                          .effects = effects,
+                          .wall_s = 60,
+                          .measures_s = 5,
+                          .quantities = 7});
+  };
+
+  const AccuracyBill bill = bill_of_run();
+  for (Presentation& shown : presentations) shown.host_time_ns.reset();
+  const AccuracyBill simulated = bill_of_run();
+
+  EXPECT_EQ(seconds_of(bill, measures_part), 5);
+  EXPECT_THAT(bill.rows[bill.rows.size() - 2].bought, HasSubstr("7 quantities"));
+  EXPECT_NEAR(seconds_of(bill, "Rest"), 3, 1e-6);
+  EXPECT_EQ(seconds_of(simulated, measures_part), 5);
+  EXPECT_EQ(seconds_of(simulated, "Computing"), 55);
+}
+
 TEST(AccuracyBill, PutsTheForecastBesideTheOutcome) {
   const auto presentations = run_of_twelve();
   const TodCurve curve = curve_of_two();
   const SensorPlan effects;
-  AccuracyBill bill = accuracy_bill({.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60});
-  EXPECT_EQ(forecast_and_outcome(bill), "");
-  EXPECT_FALSE(bill_json(bill).contains("forecast_s"));
   AccuracyBill forecast;
+  EXPECT_FALSE(time_forecast(forecast));
   forecast.total_s = 50;
   forecast.rows = {{std::string(changes_part), 25, ""}, {presentations_part(16.9), 5, ""}, {"Another part", 3, ""}};
+  const auto times = time_forecast(forecast);
+  ASSERT_TRUE(times);
+  BillInput input{.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60};
 
-  add_forecast(bill, forecast);
+  const AccuracyBill alone = accuracy_bill(input);
+  input.forecast = &*times;
+  const AccuracyBill bill = accuracy_bill(input);
 
+  EXPECT_EQ(forecast_and_outcome(alone), "");
+  EXPECT_FALSE(bill_json(alone).contains("forecast_s"));
   EXPECT_EQ(bill_json(bill)["forecast_s"], 50);
   EXPECT_EQ(forecast_and_outcome(bill),
             "forecast of the plan and outcome of the run: 50.0 s without computing, and 60.0 s (1.2 times); Changes of "
             "the target: 25.0 s, and 24.0 s; Presentations at 16.9 K: 5.00 s, and 6.00 s");
+}
+
+TEST(AccuracyBill, HasAColumnOfTheForecastInTheReport) {
+  const auto presentations = run_of_twelve();
+  const TodCurve curve = curve_of_two();
+  const SensorPlan effects;
+  const TimeForecast forecast{.total_s = 50, .parts_s = {{std::string(changes_part), 25}}};
+  BillInput input{.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60};
+  const auto table_of = [&] { return std::get<Table>(bill_section(accuracy_bill(input)).blocks.front()); };
+
+  const Table alone = table_of();
+  input.forecast = &forecast;
+  const Table beside = table_of();
+
+  EXPECT_EQ(alone.header.size(), 3u);
+  EXPECT_EQ(alone.rows.front().size(), 3u);
+  EXPECT_THAT(beside.header, ElementsAre("Part", "Time (s)", "Forecast (s)", "Result"));
+  for (const auto& row : beside.rows) EXPECT_EQ(row.size(), 4u);
 }
 
 TEST(AccuracyBill, OfASimulatedSceneIsComputing) {
@@ -164,22 +211,43 @@ TEST(AccuracyBill, SaysWhatNoPresentationReducesAndWhatTheDecisionNeeds) {
   EXPECT_THAT(text, HasSubstr("the acuity at 16.9 K needs about 2 of the 6 presentations"));
   // ln(0.3333 / 0.3175) = 4.87 %, less the budget 4.46 %: (4 / 4.46)^2 = 0.80 of 6.
   EXPECT_THAT(text, HasSubstr("the acuity at 0.5 K needs about 5 of the 6 presentations"));
-  EXPECT_THAT(text, HasSubstr("left out no effect"));
+  EXPECT_THAT(text, HasSubstr("leaves out no effect"));
 }
 
-TEST(AccuracyBill, NamesTheEffectsThatWereLeftOut) {
+TEST(AccuracyBill, SaysSoWithoutABudgetAndWithoutALimit) {
   const auto presentations = run_of_twelve();
   const TodCurve curve = curve_of_two();
-  SensorPlan effects;
-  effects.decisions = {{Effect::quantisation, Decision::skip, "below the tolerance", 0.3},
-                       {Effect::distortion, Decision::skip, "neutral", {}},
-                       {Effect::detector, Decision::simulate, "always", {}}};
+  const SensorPlan effects;
+  const Verdict verdict;
 
-  const AccuracyBill bill =
-      accuracy_bill({.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60});
+  const AccuracyBill bill = accuracy_bill(
+      {.presentations = presentations, .curve = curve, .verdict = &verdict, .effects = effects, .wall_s = 60});
 
-  ASSERT_EQ(bill.sentences.size(), 1u);
-  EXPECT_EQ(bill.sentences[0], "The simulation left out: quantisation. Each changes the acuity by at most 0.30 %.");
+  EXPECT_THAT(bill.sentences, ElementsAre(std::string(no_budget_sentence), std::string(no_limit_sentence),
+                                          "The simulation leaves out no effect that changes the acuity."));
+}
+
+TEST(AccuracyBill, NamesTheEffectsThatWereLeftOutWithTheReasonOfEach) {
+  const SensorPlan effects{.decisions = {{Effect::quantisation, Decision::skip, "below the tolerance", 0.3},
+                                         {Effect::temporal_noise, Decision::skip, "below the tolerance", 0.064},
+                                         {Effect::distortion, Decision::skip, "neutral", 0.0},
+                                         {Effect::display, Decision::skip, "skipped on request; predicted", 4.21},
+                                         {Effect::diffraction, Decision::simulate, "always", {}}}};
+
+  EXPECT_THAT(left_out_sentences(effects),
+              ElementsAre("The simulation leaves out, because the change of the acuity is below the tolerance: "
+                          "quantisation (at most 0.30 %), temporal noise (at most 0.064 %).",
+                          "The simulation leaves out on request: display (predicted change 4.2 %).",
+                          "Not in this sensor or scene, and therefore without a change: distortion."));
+}
+
+TEST(AccuracyBill, NamesAnEffectSkippedOnRequestWithoutABound) {
+  const SensorPlan effects = full_plan(SensorSpec{}, {Effect::detector}, {});
+
+  const auto sentences = left_out_sentences(effects);
+
+  ASSERT_FALSE(sentences.empty());
+  EXPECT_EQ(sentences[0], "The simulation leaves out on request: detector (the change is not bounded).");
 }
 
 }  // namespace

@@ -234,6 +234,17 @@ TEST(Report, HasEveryFigureOfItsDocumentInOrder) {
   }
 }
 
+TEST(Report, NamesTheTimeOfTheCostOfAccuracyAsComputingTime) {
+  ReportData data = sample_report();
+  data.cost.emplace();
+
+  const std::string page = render_report(data);
+
+  EXPECT_TRUE(contains(page, "Computing time (s)"));
+  EXPECT_TRUE(contains(page, "the smaller of wall time and processor time"));
+  EXPECT_FALSE(contains(page, "Wall time"));
+}
+
 TEST(Report, HasNoIdTwice) {
   const std::string page = render_report(sample_report());
 

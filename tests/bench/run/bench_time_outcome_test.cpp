@@ -3,11 +3,13 @@
 // black body of first order, a camera of its frame rate.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "acquisition/core/forwarding_source.h"
@@ -152,6 +154,44 @@ double outcome_over_forecast(const std::string& name, Plan plan, int seeds) {
     sum += taken_s / forecast_s / seeds;
   }
   return sum;
+}
+
+double forecast_of(const AccuracyBill& bill, std::string_view part) {
+  for (const BillRow& row : bill.rows) {
+    if (row.part == part) return row.seconds.value_or(NAN);
+  }
+  return 0;
+}
+
+TEST(BillForecast, SeparatesPhysicalMeasuresAndLeavesOutTheWarmUp) {
+  Plan plan = bench_plan();
+  const AccuracyBill trials = bill_forecast(plan, inputs_for(plan)).value();
+  plan.measures.noise = true;
+  plan.camera.warm_up.time_s = 1800;
+
+  const AccuracyBill bill = bill_forecast(plan, inputs_for(plan)).value();
+
+  EXPECT_EQ(forecast_of(bill, changes_part), forecast_of(trials, changes_part));
+  EXPECT_GT(forecast_of(bill, measures_part), 2 * plan.target.contrast_change_s);
+  EXPECT_NEAR(forecast_of(bill, measures_part), bill.total_s - trials.total_s, 1e-9);
+}
+
+TEST(BillForecast, StatesTheLeastTimeAndTheEffectsLeftOutOrWhyItCannot) {
+  Plan plan = bench_plan();
+  const AccuracyBill without = bill_forecast(plan, inputs_for(plan)).value();
+  plan.simulation.skip = {Effect::detector};
+  plan.limits.acuity = {{plan.target.delta_t_k.front(), 0.1}};
+
+  const AccuracyBill with = bill_forecast(plan, inputs_for(plan)).value();
+
+  const auto has = [](const AccuracyBill& bill, std::string_view text) {
+    return std::ranges::any_of(bill.sentences, [&](const std::string& sentence) { return sentence.find(text) == 0; });
+  };
+  EXPECT_TRUE(has(without, no_budget_sentence) && has(without, no_limit_sentence));
+  EXPECT_FALSE(has(with, no_limit_sentence));
+  EXPECT_TRUE(has(with, "The decision on the predicted acuity at"));
+  EXPECT_TRUE(has(with, "The decisions on acuity alone need about"));
+  EXPECT_TRUE(has(with, "The simulation leaves out on request: detector"));
 }
 
 TEST(BenchTimeOutcome, OfConstantStimuliIsTheForecast) {

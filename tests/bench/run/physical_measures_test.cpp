@@ -158,6 +158,21 @@ TEST(PhysicalMeasures, StandBesideTheTwinInTheReportAndAreNotRepeatedByAReplay) 
   EXPECT_FALSE(replayed->run.measures);
 }
 
+TEST(PhysicalMeasures, LeaveAMeasuredSimulatedSceneWithoutTimesOfPresentations) {
+  const TemporaryFolder folder;
+  Plan plan = plan_of_one(&MeasuresPlan::noise);
+
+  const auto run = measure_plan(plan, {.folder = folder.path() / "m", .existing = ExistingFolder::refuse}, {}, {});
+
+  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_FALSE(run->presentations.empty());
+  for (const Presentation& shown : run->presentations) EXPECT_FALSE(shown.host_time_ns);
+  const auto session = read_session(folder.path() / "m");
+  ASSERT_TRUE(session) << session.error().message;
+  ASSERT_EQ(session->presentations.size(), run->presentations.size());
+  for (const Presentation& shown : session->presentations) EXPECT_FALSE(shown.host_time_ns);
+}
+
 TEST(PhysicalMeasures, AreNotThereWhereNoneIsAskedForAndHaveAReasonWhereTheyCannotBe) {
   const TemporaryFolder folder;
   Plan none = measures_plan();

@@ -59,6 +59,9 @@ TEST_F(MeasuredSession, KeepsWhatTheInstrumentsSaidOfEveryPresentation) {
   const std::string report = content_of(at("m") / "report.html");
   for (const char* column : {"Read back (K)", "Observed (K)", "Observed − read back (K)", "Longest settling (s)"})
     EXPECT_THAT(report, HasSubstr(column));
+  ASSERT_TRUE(run->forecast);
+  EXPECT_EQ(session->provenance.forecast, run->forecast);
+  EXPECT_THAT(report, HasSubstr("Forecast (s)"));
 }
 
 TEST_F(MeasuredSession, WithinTheToleranceOfThePlanHasNoNoteOfItsReadBackAndStatesTheAir) {
@@ -88,6 +91,7 @@ TEST_F(MeasuredSession, ReplaysWithTheSameTrialsAndTheSameReadings) {
   EXPECT_EQ(replay->same_fits, true);
   for (const char* file : {"targets.csv", "targets_simulated.csv", "trials.csv", "trials_simulated.csv"})
     EXPECT_EQ(content_of(at("r") / file), content_of(at("m") / file)) << file;
+  EXPECT_FALSE(read_session(at("r")).value().provenance.forecast) << "the presentations were before this run";
 }
 
 TEST_F(MeasuredSession, WithLimitsOnPhysicalMeasuresReplaysWithoutThem) {

@@ -42,6 +42,7 @@ RunRecord full_run() {
   set_up.registration.contrast_sign = -1;
   run.set_ups = {set_up};
   run.notes = {"a note"};
+  run.measures_s = 2.5;
   return run;
 }
 
@@ -65,6 +66,7 @@ Provenance full_provenance(const Plan& plan) {
   provenance.effects.decisions = {{Effect::quantisation, Decision::skip, "tiny", 0.01}};
   provenance.run = full_run();
   provenance.twin_run = full_run();
+  provenance.forecast = TimeForecast{.total_s = 60, .parts_s = {{"Changes of the target", 24.5}}};
   provenance.camera_optics = CameraOpticsRecord{.aberration_sigma_pitch = 0.5,
                                                 .aberration_se_pitch = 0.001,
                                                 .f_number_ratio = 1.01,
@@ -248,6 +250,7 @@ TEST(SessionFolder, ProvenanceComesBackWithEveryField) {
   EXPECT_EQ(to_line(provenance_json(*back).value()), to_line(provenance_json(provenance).value()));
   EXPECT_EQ(back->camera, provenance.camera);
   EXPECT_EQ(back->camera_optics, provenance.camera_optics);
+  EXPECT_EQ(back->forecast, provenance.forecast);
   EXPECT_EQ(back->seeds.at("plan"), 42u);
   EXPECT_EQ(back->instruments, plan.instruments);
   EXPECT_EQ(back->run->set_ups.at(0).registration.plate_to_pixel, full_run().set_ups[0].registration.plate_to_pixel);
