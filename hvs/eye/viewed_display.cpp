@@ -7,14 +7,12 @@
 #include <numbers>
 #include <utility>
 
+#include "hvs/eye/sinc.h"
+
 namespace todbench {
 namespace {
 
 constexpr double inch_mm = 25.4;
-
-double sinc(double x) {
-  return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
-}
 
 double black(const ViewedDisplay& display) {
   return luminance_cd_m2(display, 0);
