@@ -219,14 +219,6 @@ bool is_flir_file(std::string_view start) {
   return is_flir_record(start) || is_jpeg(start);
 }
 
-Result<std::vector<FlirSeqFrame>> read_flir_seq(const std::filesystem::path& path) {
-  const auto bytes = records_of(path);
-  if (!bytes) return fail(path.string(), bytes.error());
-  auto frames = frames_in(*bytes);
-  if (!frames) return fail(path.string(), frames.error());
-  return frames;
-}
-
 Result<Recording> open_flir_seq(const std::filesystem::path& path) {
   const auto bytes = records_of(path);
   if (!bytes) return fail(path.string(), bytes.error());

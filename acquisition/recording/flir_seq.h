@@ -5,9 +5,7 @@
 
 #include <filesystem>
 #include <string_view>
-#include <vector>
 
-#include "acquisition/recording/flir_record.h"
 #include "acquisition/recording/recorded_source.h"
 
 namespace todbench {
@@ -15,13 +13,10 @@ namespace todbench {
 /// Whether the first bytes of a file are those of a FLIR record or of a JPEG picture.
 [[nodiscard]] bool is_flir_file(std::string_view start);
 
-/// Finds every record. A record without camera constants has those of the previous record. Errors: `io`,
-/// `invalid_input` (not a FLIR file, a record that points outside the file, no frame, bytes that are no record).
-[[nodiscard]] Result<std::vector<FlirSeqFrame>> read_flir_seq(const std::filesystem::path& path);
-
 /// Opens the file as a recording; the scale is that of the first frame, in radiance temperature. Constants, object
-/// parameters, lens, date and storage of the pixels are the settings. Error: `invalid_input` if frames differ in
-/// geometry or constants, or the first one cannot be decoded.
+/// parameters, lens, date and storage of the pixels are the settings. A record without constants of the camera has
+/// those of the one before. Errors: `io`; `invalid_input` (not a FLIR file, a record that points outside the file, no
+/// frame, bytes that are no record, frames that differ in geometry or constants, a first frame that cannot be decoded).
 [[nodiscard]] Result<Recording> open_flir_seq(const std::filesystem::path& path);
 
 }  // namespace todbench

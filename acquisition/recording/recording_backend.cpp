@@ -114,7 +114,7 @@ std::string no_format(const std::filesystem::path& path, const FileContent& cont
          (empty ? "the file is empty"
                 : "its content is none of the formats that this program reads (it begins with the bytes " +
                       content.start +
-                      ", whatever its name says). If it is a raw recording, state its width and height "
+                      "; the name of the file is not decisive). If it is a raw recording, state its width and height "
                       "in pixels: ?width=640&height=480");
 }
 

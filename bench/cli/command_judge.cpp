@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/cli/command_judge.h"
+// todbench judge
+#include "bench/cli/commands.h"
 
 #include <memory>
 #include <string>

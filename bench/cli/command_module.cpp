@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/cli/command_module.h"
+// todbench module
+#include "bench/cli/commands.h"
 
 #include <fmt/format.h>
 

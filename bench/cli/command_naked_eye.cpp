@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // todbench observer naked-eye
-#include "bench/cli/command_naked_eye.h"
+#include "bench/cli/commands.h"
 
 #include <memory>
 #include <numbers>

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "acquisition/base/try.h"
-#include "bench/cli/command_naked_eye.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/session_argument.h"
 #include "bench/judgement/verdict.h"

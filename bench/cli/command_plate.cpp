@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/cli/command_plate.h"
+// todbench plate
+#include "bench/cli/commands.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/cli/command_scene_dependence.h"
+// todbench scene-dependence
+#include "bench/cli/commands.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/cli/command_watch.h"
+// todbench watch
+#include "bench/cli/commands.h"
 
 #include <chrono>
 #include <memory>

@@ -69,5 +69,20 @@ void add_selftest_command(CLI::App& app, Program& program);
 void add_serve_command(CLI::App& app, Program& program);
 void add_sweep_command(CLI::App& app, Program& program);
 void add_instrument_command(CLI::App& app, Program& program);
+void add_blind_command(CLI::App& app, Program& program);
+void add_certificate_command(CLI::App& app, Program& program);
+void add_compare_models_command(CLI::App& app, Program& program);
+void add_dynamic_command(CLI::App& app, Program& program);
+void add_enhance_command(CLI::App& app, Program& program);
+void add_identify_command(CLI::App& app, Program& program);
+void add_judge_command(CLI::App& app, Program& program);
+void add_module_command(CLI::App& app, Program& program);
+void add_mrtd_command(CLI::App& app, Program& program);
+void add_picture_command(CLI::App& app, Program& program);
+void add_plate_command(CLI::App& app, Program& program);
+void add_scene_dependence_command(CLI::App& app, Program& program);
+void add_watch_command(CLI::App& app, Program& program);
+/// Adds "naked-eye" to the command `observer`.
+void add_naked_eye_command(CLI::App& observer, Program& program);
 
 }  // namespace todbench

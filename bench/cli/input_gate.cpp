@@ -85,7 +85,7 @@ Result<void> InputGate::verdict() const {
   return fail(ErrorCode::integrity,
               of_all(moved_frames_, frames_) +
                   " are oriented or shifted differently from the frames before them; the first of them: " + how_moved_ +
-                  ". Record a scene that stands still");
+                  ". Record a scene without motion");
 }
 
 std::string InputGate::note() const {

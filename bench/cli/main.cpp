@@ -4,20 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/cli/command_blind.h"
-#include "bench/cli/command_certificate.h"
-#include "bench/cli/command_compare_models.h"
-#include "bench/cli/command_dynamic.h"
-#include "bench/cli/command_enhance.h"
-#include "bench/cli/command_identify.h"
-#include "bench/cli/command_judge.h"
 #include "bench/cli/command_line.h"
-#include "bench/cli/command_module.h"
-#include "bench/cli/command_mrtd.h"
-#include "bench/cli/command_picture.h"
-#include "bench/cli/command_plate.h"
-#include "bench/cli/command_scene_dependence.h"
-#include "bench/cli/command_watch.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/large_stack.h"
 #include "bench/cli/program.h"

@@ -16,6 +16,7 @@
 #include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
 #include "bench/plan/descriptions.h"
+#include "bench/plan/loaded_plan.h"
 #include "bench/text/text.h"
 #include "sim_devices/module/npy_message.h"
 #ifdef TODBENCH_WITH_ARAVIS
@@ -117,15 +118,11 @@ EmulationArguments emulation_for(const Plan& plan) {
   EmulationArguments arguments;
   arguments.sensor = plan.simulation.sensor;
   arguments.plates = plan.target.plates;
-  const auto add = [&](const std::string& plate) {
-    if (std::find(arguments.plates.begin(), arguments.plates.end(), plate) == arguments.plates.end())
+  for (const MeasurePlate& measure : measure_plates) {
+    const std::string& plate = plan.measures.*measure.reference;
+    if (plan.measures.*measure.requested && std::ranges::find(arguments.plates, plate) == arguments.plates.end())
       arguments.plates.push_back(plate);
-  };
-  if (plan.measures.mtf) add(plan.measures.mtf_plate);
-  if (plan.measures.ctf) add(plan.measures.ctf_plate);
-  if (plan.measures.source_size) add(plan.measures.source_size_plate);
-  if (plan.measures.absolute) add(plan.measures.absolute_plate);
-  if (plan.measures.mrtd) add(plan.measures.mrtd_plate);
+  }
   arguments.distance_m = plan.target.distance_m;
   if (const CollimatorPlan& collimator = plan.target.collimator; collimator.stated()) {
     arguments.collimator_transmission = collimator.transmission;

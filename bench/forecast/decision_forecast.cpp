@@ -273,10 +273,10 @@ std::string in_words(const DecisionForecast& forecast) {
       "half-width of the trials that matters is {:.2g} %: below it the deciding interval shrinks by less than 5 %",
       forecast.floor_percent, forecast.rows.front().name, forecast.rows.front().half_width_percent,
       forecast.smallest_half_width_percent);
-  text +=
-      forecast.enough_bench_s
-          ? fmt::format(". {:.0f} s of bench time are enough for it; more frames buy nothing", *forecast.enough_bench_s)
-          : std::string(". None of these designs is that precise: more frames still narrow the interval");
+  text += forecast.enough_bench_s
+              ? fmt::format(". {:.0f} s of bench time are enough for it; more frames hardly shorten the interval",
+                            *forecast.enough_bench_s)
+              : std::string(". None of these designs is that precise: more frames still narrow the interval");
   return text;
 }
 

@@ -14,6 +14,7 @@
 #include "acquisition/base/safe_text.h"
 #include "bench/gui/pattern_screen.h"
 #include "bench/gui/presenters/session_presenter.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/gui/screenshots.h"
 #include "bench/gui/views/main_window.h"
 #include "bench/gui/views/plain_numbers.h"
@@ -160,8 +161,7 @@ int main(int argc, char** argv) {
   const QApplication application(argc, argv);
   todbench::use_plain_numbers();
   QApplication::setApplicationName("todbench-gui");
-  const auto version = todbench::build_info().version;
-  QApplication::setApplicationVersion(QString::fromUtf8(version.data(), static_cast<qsizetype>(version.size())));
+  QApplication::setApplicationVersion(todbench::text_of(todbench::build_info().version));
   QCommandLineParser options;
   options.setApplicationDescription("The todbench lab bench with a graphical interface.");
   const QCommandLineOption help = options.addHelpOption(), of_version = options.addVersionOption();

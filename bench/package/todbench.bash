@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Bash completion of todbench: the program itself lists the candidates.
 _todbench() {
   local cur words cword

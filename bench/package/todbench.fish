@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Fish completion of todbench: the program itself lists the candidates.
 function __todbench_complete
     set -l words (commandline -opc)

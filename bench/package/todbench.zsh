@@ -1,4 +1,5 @@
 #compdef todbench
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Zsh completion of todbench: the program itself lists the candidates.
 local -a offered
 local files=

@@ -19,10 +19,6 @@ struct Overloaded : Handlers... {
 template <typename... Handlers>
 Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
-std::string one_of(const std::vector<std::string>& words) {
-  return (words.size() == 1 ? "" : "one of ") + quoted_list(words);
-}
-
 std::string found(const std::string& expected, const std::string& what) {
   return "expected " + expected + ", found " + what;
 }

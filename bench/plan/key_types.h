@@ -60,7 +60,7 @@ struct ChoicesKey {
   std::string_view noun;
   MayBeEmpty may_be_empty = MayBeEmpty::no;
 };
-/// Use of a plate that a single key names.
+/// Use of a plate that a single key names; indexes measure_plates (loaded_plan.h).
 enum class PlateUse { mtf, ctf, source_size, absolute, mrtd };
 /// Name or file of a description.
 struct ResourceKey {

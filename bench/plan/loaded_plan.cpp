@@ -60,27 +60,8 @@ std::vector<ValueMistake> read_plates(const std::vector<std::string>& references
   return mistakes;
 }
 
-/// A plate of a physical measure in plan and parts.
-struct MeasurePlate {
-  bool MeasuresPlan::*requested;
-  std::string MeasuresPlan::*reference;
-  std::optional<TargetPlate> PlanParts::*part;
-};
-
-MeasurePlate plate_of(PlateUse use) {
-  switch (use) {
-    case PlateUse::mtf:
-      return {&MeasuresPlan::mtf, &MeasuresPlan::mtf_plate, &PlanParts::mtf_plate};
-    case PlateUse::ctf:
-      return {&MeasuresPlan::ctf, &MeasuresPlan::ctf_plate, &PlanParts::ctf_plate};
-    case PlateUse::absolute:
-      return {&MeasuresPlan::absolute, &MeasuresPlan::absolute_plate, &PlanParts::open_plate};
-    case PlateUse::mrtd:
-      return {&MeasuresPlan::mrtd, &MeasuresPlan::mrtd_plate, &PlanParts::mrtd_plate};
-    case PlateUse::source_size:
-      break;
-  }
-  return {&MeasuresPlan::source_size, &MeasuresPlan::source_size_plate, &PlanParts::source_plate};
+const MeasurePlate& plate_of(PlateUse use) {
+  return measure_plates[static_cast<std::size_t>(use)];
 }
 
 /// Returns whether the plan needs the part, for keys that name a single one.
@@ -127,7 +108,7 @@ std::string unfit_for(PlateUse use, const TargetPlate& plate, const Plan& plan) 
 
 std::vector<ValueMistake> read_measure_plate(PlateUse use, const Plan& plan, const ResourceFinder& find,
                                              PlanParts& parts) {
-  const MeasurePlate own = plate_of(use);
+  const MeasurePlate& own = plate_of(use);
   std::optional<TargetPlate>& part = parts.*own.part;
   const std::string& reference = plan.measures.*own.reference;
   part.reset();
@@ -142,7 +123,7 @@ std::vector<ValueMistake> read_measure_plate(PlateUse use, const Plan& plan, con
   }
   for (const auto& [other_use, measure] : {std::pair(PlateUse::mtf, "MTF"), std::pair(PlateUse::ctf, "CTF"),
                                            std::pair(PlateUse::source_size, "size-of-source effect")}) {
-    const MeasurePlate other = plate_of(other_use);
+    const MeasurePlate& other = plate_of(other_use);
     const std::optional<TargetPlate>& shown = parts.*other.part;
     if (other_use < use && shown && shown->name == plate->name && plan.measures.*other.reference != reference)
       return {{std::nullopt,
@@ -258,10 +239,10 @@ std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, cons
 
 std::vector<TargetPlate> LoadedPlan::shown_plates() const {
   std::vector<TargetPlate> plates = parts_.plates;
-  for (const auto* added :
-       {&parts_.mtf_plate, &parts_.ctf_plate, &parts_.source_plate, &parts_.open_plate, &parts_.mrtd_plate}) {
-    const auto there = [&](const TargetPlate& plate) { return plate.name == (*added)->name; };
-    if (*added && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(**added);
+  for (const MeasurePlate& measure : measure_plates) {
+    const std::optional<TargetPlate>& added = parts_.*measure.part;
+    const auto there = [&](const TargetPlate& plate) { return plate.name == added->name; };
+    if (added && std::none_of(plates.begin(), plates.end(), there)) plates.push_back(*added);
   }
   return plates;
 }

@@ -2,6 +2,7 @@
 // Plan with the descriptions that it names, read once.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -37,6 +38,21 @@ struct PlanParts {
   /// Source texts by kind and reference.
   std::map<std::pair<ResourceKind, std::string>, Resource> sources{};
 };
+
+/// Plate of a physical measure: whether the plan requests the measure, name or file of its plate, and the plate itself.
+struct MeasurePlate {
+  bool MeasuresPlan::*requested;
+  std::string MeasuresPlan::*reference;
+  std::optional<TargetPlate> PlanParts::*part;
+};
+/// In the order of PlateUse.
+inline constexpr std::array<MeasurePlate, 5> measure_plates{{
+    {&MeasuresPlan::mtf, &MeasuresPlan::mtf_plate, &PlanParts::mtf_plate},
+    {&MeasuresPlan::ctf, &MeasuresPlan::ctf_plate, &PlanParts::ctf_plate},
+    {&MeasuresPlan::source_size, &MeasuresPlan::source_size_plate, &PlanParts::source_plate},
+    {&MeasuresPlan::absolute, &MeasuresPlan::absolute_plate, &PlanParts::open_plate},
+    {&MeasuresPlan::mrtd, &MeasuresPlan::mrtd_plate, &PlanParts::mrtd_plate},
+}};
 
 /// Valid plan with the parts that it names: the start of every run, forecast and report. Nothing is read again later.
 /// Immutable; threads may share it.

@@ -118,10 +118,6 @@ std::string hint_for(std::string_view key, const toml::node& node, const NumberR
   return value ? unit_hint(key, *value, range) : std::string();
 }
 
-std::string one_of(std::span<const std::string> words) {
-  return (words.size() == 1 ? "" : "one of ") + quoted_list(words);
-}
-
 /// Returns a scalar of a free table as TOML text (strings without quotes); empty for lists, tables and dates.
 std::optional<std::string> scalar_text(const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();

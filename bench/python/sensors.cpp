@@ -92,7 +92,7 @@ void add_effects(py::module_& module) {
       TODBENCH_READ(ContrastOutlook, blur_exponent)
       TODBENCH_READ(ContrastOutlook, observer_variance)
       TODBENCH_READ(ContrastOutlook, weibull_slope);
-  py::class_<EffectPlan>(module, "EffectPlan", "Effects that a scene needs, with what was predicted.")
+  py::class_<EffectPlan>(module, "EffectPlan", "Effects that a scene needs, with their predicted changes.")
       TODBENCH_READ(EffectPlan, plan)
       TODBENCH_READ(EffectPlan, skipped_change_percent)
       TODBENCH_READ(EffectPlan, requested_change_percent)

@@ -332,15 +332,6 @@ Result<void> answer(Prepared& model, const RangeSources& sources, const RangeQue
   return {};
 }
 
-/// 1, 2 or 5 times a power of ten, at most `value`.
-double round_step(double value) {
-  const double power = std::pow(10, std::floor(std::log10(value)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * power <= value * (1 + 1e-12)) return factor * power;
-  }
-  return power;
-}
-
 void add_curves(std::vector<Prepared>& models, const RangeQuestion& question) {
   double farthest = 0;
   for (const auto& model : models) {

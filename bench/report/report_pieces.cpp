@@ -40,18 +40,6 @@ std::string_view in_words(FitVerdict verdict) {
   return "unknown";
 }
 
-std::string_view in_words(ComparisonVerdict verdict) {
-  switch (verdict) {
-    case ComparisonVerdict::equivalent:
-      return "equivalent";
-    case ComparisonVerdict::different:
-      return "different";
-    case ComparisonVerdict::inconclusive:
-      return "inconclusive";
-  }
-  return "unknown";
-}
-
 std::string_view in_words(Mounting mounting) {
   switch (mounting) {
     case Mounting::identity:

@@ -24,7 +24,6 @@ inline constexpr std::string_view one_sided_note =
 
 /// Returns the meaning of a verdict for readers who do not know the program.
 [[nodiscard]] std::string_view in_words(FitVerdict verdict);
-[[nodiscard]] std::string_view in_words(ComparisonVerdict verdict);
 [[nodiscard]] std::string_view in_words(Mounting mounting);
 [[nodiscard]] std::string_view in_words(Effect effect);
 [[nodiscard]] Mood mood_of(VerdictKind verdict);

@@ -354,7 +354,7 @@ std::optional<Table> paired_table(const Comparison& comparison) {
                          interval_or_missing(paired.ratio, paired.ci90, ""), plain(probability(paired.p_difference)),
                          plain(probability(paired.p_equivalence)), plain(significant(100 * paired.se_ln_ratio, 2)),
                          plain(significant(100 * paired.twin_share, 2)),
-                         badge(in_words(paired.verdict), mood_of(paired.verdict))});
+                         badge(to_string(paired.verdict), mood_of(paired.verdict))});
   }
   if (rows.rows.empty()) return std::nullopt;
   return rows;
@@ -383,10 +383,10 @@ Section comparison_section(const ReportData& data) {
                          interval_or_missing(point.ratio, point.ratio_ci90, "a threshold is not identified"),
                          point.p_difference ? plain(probability(*point.p_difference)) : missing("no test possible"),
                          point.p_equivalence ? plain(probability(*point.p_equivalence)) : missing("no test possible"),
-                         plain(stated(point.margin_percent)), badge(in_words(point.verdict), mood_of(point.verdict))});
+                         plain(stated(point.margin_percent)), badge(to_string(point.verdict), mood_of(point.verdict))});
   }
   const RichText overall =
-      plain("Over all contrasts: ") + badge(in_words(data.comparison->verdict), mood_of(data.comparison->verdict));
+      plain("Over all contrasts: ") + badge(to_string(data.comparison->verdict), mood_of(data.comparison->verdict));
   List findings;
   if (data.comparison->adequacy)
     for (const AdequacyFinding& finding : data.comparison->adequacy->findings)

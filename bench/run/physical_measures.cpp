@@ -78,10 +78,6 @@ void add_closed_form(SourceSizeMeasure& source, const SensorModel& model, const 
   source.model_loss = 1 - in_the_middle(source.stated_px) / in_the_middle(source.effect.reference_px);
 }
 
-}  // namespace
-
-namespace {
-
 std::optional<PixelOptions> pixel_options(const Plan& plan) {
   const MeasuresPlan& measures = plan.measures;
   if (!measures.pixels) return std::nullopt;
@@ -185,10 +181,6 @@ std::optional<double> closed_form_netd_k(const SensorSpec& spec, const SensorPla
   const double lines_k2 = std::pow(spec.row_noise_k, 2) + std::pow(spec.column_noise_k, 2);
   return std::sqrt(white_variance_k2(spec, plan, 1) + lines_k2 / spec.exposures_per_sample());
 }
-
-}  // namespace
-
-namespace {
 
 using MaybeMeasures = Result<std::optional<CameraMeasures>>;
 

@@ -279,17 +279,4 @@ Result<void> require_no_foreign_file(const std::filesystem::path& folder) {
                                             (foreign.size() == 1 ? "it" : "them") + " away first");
 }
 
-Result<std::vector<std::string>> verify_manifest(const std::filesystem::path& folder) {
-  if (const Result<Manifest> manifest = read_manifest(folder); !manifest) return tl::unexpected(manifest.error());
-  TODBENCH_TRY(const ManifestCheck check, check_manifest(folder));
-  std::vector<std::string> deviations;
-  for (const std::string& path : check.changed) deviations.push_back(path + ": changed since the session was written");
-  for (const std::string& path : check.missing) deviations.push_back(path + ": missing");
-  std::sort(deviations.begin(), deviations.end());
-  for (const std::string& path : check.foreign) {
-    if (is_session_file(path)) deviations.push_back(path + ": not in the manifest");
-  }
-  return deviations;
-}
-
 }  // namespace todbench

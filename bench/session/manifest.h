@@ -67,8 +67,5 @@ using ManifestEntries = std::map<std::string, ManifestEntry>;
 /// Updates the entries of `files` in manifest.json and keeps the others, for example after a report is rebuilt. Errors:
 /// `io`; `invalid_input` (no manifest, or not the one that was written).
 [[nodiscard]] Result<void> refresh_manifest(const std::filesystem::path& folder, const std::vector<std::string>& files);
-/// Returns one sentence for each file that is missing, changed or not listed; empty if the session is intact. Errors:
-/// `invalid_input` (no readable manifest; a run that was cut off has none).
-[[nodiscard]] Result<std::vector<std::string>> verify_manifest(const std::filesystem::path& folder);
 
 }  // namespace todbench

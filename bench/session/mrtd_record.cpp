@@ -77,10 +77,6 @@ void add_mrtd_lines(MeasureLines& out, const MrtdMeasure& mrtd) {
   out.mrtd = mrtd;
 }
 
-Json interval_json(const Interval& interval) {
-  return Json::array({json_number(interval.low), json_number(interval.high)});
-}
-
 Json point_json(const MrtdMeasure& mrtd, const MrtdPoint& point) {
   Json shares = Json::array();
   for (std::size_t i = 0; i < std::min(point.positive_share.size(), point.negative_share.size()); ++i) {
@@ -96,9 +92,9 @@ Json point_json(const MrtdMeasure& mrtd, const MrtdPoint& point) {
             {"positive_k", json_number(point.positive_k)},
             {"negative_k", json_number(point.negative_k)},
             {"threshold_k", json_number(point.threshold_k)},
-            {"ci95_k", interval_json(point.ci95)},
+            {"ci95_k", json_interval(point.ci95)},
             {"best_phase_k", json_number(point.best_phase_k)},
-            {"best_phase_ci95_k", interval_json(point.best_phase_ci95)},
+            {"best_phase_ci95_k", json_interval(point.best_phase_ci95)},
             {"best_phase_px", json_number(point.best_phase)},
             {"reason", point.reason.empty() ? Json() : Json(point.reason)},
             {"proportion_correct", shares}};
@@ -122,14 +118,10 @@ Json mrtd_json(const MrtdMeasure& mrtd) {
           {"spots", spots}};
 }
 
-std::optional<double> maybe_number(const JsonReader& from) {
-  return from.is_null() ? std::nullopt : std::optional(from.number());
-}
-
 Interval interval_from(const JsonReader& from) {
   const auto ends = from.elements();
   if (ends.size() != 2) return {};
-  return {maybe_number(ends[0]), maybe_number(ends[1])};
+  return {ends[0].optional_number(), ends[1].optional_number()};
 }
 
 MrtdPoint point_from(const JsonReader& from) {
@@ -138,11 +130,11 @@ MrtdPoint point_from(const JsonReader& from) {
   point.axis = from.at("axis").named(std::array{EdgeAxis::x, EdgeAxis::y});
   point.frequency_per_pitch = from.at("frequency_per_pitch").number();
   point.size_px = from.at("size_px").number();
-  point.positive_k = maybe_number(from.at("positive_k"));
-  point.negative_k = maybe_number(from.at("negative_k"));
-  point.threshold_k = maybe_number(from.at("threshold_k"));
+  point.positive_k = from.at("positive_k").optional_number();
+  point.negative_k = from.at("negative_k").optional_number();
+  point.threshold_k = from.at("threshold_k").optional_number();
   point.ci95 = interval_from(from.at("ci95_k"));
-  point.best_phase_k = maybe_number(from.at("best_phase_k"));
+  point.best_phase_k = from.at("best_phase_k").optional_number();
   point.best_phase_ci95 = interval_from(from.at("best_phase_ci95_k"));
   point.best_phase = from.at("best_phase_px").number();
   if (const JsonReader ends = from.at_if_there("threshold_spread_k"); !ends.is_null()) {

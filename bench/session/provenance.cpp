@@ -19,11 +19,6 @@ namespace {
 constexpr std::array states{SessionState::running, SessionState::complete, SessionState::interrupted};
 constexpr std::array sides{Side::measured, Side::simulated};
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : "unknown";
-}
-
 void camera_fields(JsonFields& json, CameraRecord& camera) {
   json.value("id", camera.id);
   json.value("vendor", camera.vendor);
@@ -200,6 +195,11 @@ RunRecord run_record(const MeasurementResult& result, double wall_s) {
 
 RunFigures figures_of(const RunRecord& run) {
   return {run.wall_s, run.frames_used, run.frames_rejected, run.measures_s};
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : "unknown";
 }
 
 std::string utc_now() {

@@ -127,6 +127,8 @@ struct Provenance {
 
 /// Returns the provenance with program, host, start time, seed and instruments of the plan; state running.
 [[nodiscard]] Provenance begin_provenance(const Plan& plan, Side side);
+/// Returns the name of this computer; "unknown" without one.
+[[nodiscard]] std::string host_name();
 /// Returns the current time as "2026-01-31T12:34:56Z".
 [[nodiscard]] std::string utc_now();
 

@@ -247,11 +247,10 @@ Result<void> SessionFolder::write_plan(const LoadedPlan& loaded) {
   InputCopies copies(folder_);
   std::vector<std::pair<ResourceKind, std::string*>> references{{ResourceKind::observer, &stored.observer},
                                                                 {ResourceKind::sensor, &stored.simulation.sensor}};
-  if (stored.measures.mtf) references.emplace_back(ResourceKind::plate, &stored.measures.mtf_plate);
-  if (stored.measures.ctf) references.emplace_back(ResourceKind::plate, &stored.measures.ctf_plate);
-  if (stored.measures.source_size) references.emplace_back(ResourceKind::plate, &stored.measures.source_size_plate);
-  if (stored.measures.absolute) references.emplace_back(ResourceKind::plate, &stored.measures.absolute_plate);
-  if (stored.measures.mrtd) references.emplace_back(ResourceKind::plate, &stored.measures.mrtd_plate);
+  for (const MeasurePlate& plate : measure_plates) {
+    if (stored.measures.*plate.requested)
+      references.emplace_back(ResourceKind::plate, &(stored.measures.*plate.reference));
+  }
   for (std::string& plate : stored.target.plates) references.emplace_back(ResourceKind::plate, &plate);
   if (stored.target.kind == TargetKind::scpi) {
     references.emplace_back(ResourceKind::black_body, &stored.target.black_body_table);

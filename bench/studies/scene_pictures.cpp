@@ -152,7 +152,7 @@ std::vector<AirDecision> air_decisions(const ScenePicturesTask& task, const Scen
       {"path_radiance", level_shift_k != 0 || clipped ? Decision::simulate : Decision::skip,
        level_shift_k != 0
            ? fmt::format("shifts scene and background by the same {:.3g} K, which sets their level in counts{}",
-                         level_shift_k, clipped ? "; the contrast reaches an end of the counts" : "")
+                         level_shift_k, clipped ? "; the contrast reaches the lowest or highest count" : "")
            : "the path adds as much radiance as it takes from the background: the contrast does not change"});
   for (const auto& d : out.effects.plan.decisions) {
     if (is_of_air(d.effect)) decisions.push_back({std::string(to_string(d.effect)), d.decision, d.reason});

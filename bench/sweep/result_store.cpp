@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "bench/session/build_info.h"
+#include "bench/session/provenance.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/text.h"
@@ -28,11 +29,6 @@ constexpr auto patience_with_hosts = std::chrono::hours(24);
 
 std::filesystem::path folder_of(const Sweep& sweep, std::size_t index) {
   return sweep.file().results / fmt::format("{:03d}", index / tasks_a_folder);
-}
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : "unknown";
 }
 
 /// This process as an element of a Slurm job, which Slurm restarts after node failure or preemption.

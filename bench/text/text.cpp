@@ -89,6 +89,10 @@ std::string quoted_list(std::span<const std::string> words) {
   return list;
 }
 
+std::string one_of(std::span<const std::string> words) {
+  return (words.size() == 1 ? "" : "one of ") + quoted_list(words);
+}
+
 Result<std::string> read_text_file(const std::filesystem::path& file) {
   std::error_code problem;
   const auto status = std::filesystem::status(file, problem);

@@ -29,6 +29,8 @@ namespace todbench {
 [[nodiscard]] std::string nearest_name_hint(std::string_view name, std::span<const std::string> known);
 /// Returns the words, each in single quotes, separated by commas.
 [[nodiscard]] std::string quoted_list(std::span<const std::string> words);
+/// Returns the permitted words for a message: "one of 'a', 'b'"; "'a'" for a single one.
+[[nodiscard]] std::string one_of(std::span<const std::string> words);
 
 /// Reads a whole configuration or input file. Errors: `invalid_input`, one sentence (unreadable, or larger than 512
 /// MiB).

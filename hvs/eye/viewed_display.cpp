@@ -7,14 +7,12 @@
 #include <numbers>
 #include <utility>
 
+#include "hvs/eye/sinc.h"
+
 namespace todbench {
 namespace {
 
 constexpr double inch_mm = 25.4;
-
-double sinc(double x) {
-  return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
-}
 
 double black(const ViewedDisplay& display) {
   return luminance_cd_m2(display, 0);
@@ -112,7 +110,7 @@ Result<void> check_luminance(const ViewedDisplay& display) {
   }
   const std::string_view key = display.luminance_table.empty() ? "luminance_white_cd_m2" : "luminance_table";
   if (!(white(display) >= 0.01 && white(display) <= 1e5)) {
-    return refuse(key, fmt::format("a white of {:g} cd/m2 shows nothing that the model of the eye covers: expected "
+    return refuse(key, fmt::format("a white of {:g} cd/m2 is outside the range of the model of the eye: expected "
                                    "0.01 to 100000 cd/m2",
                                    white(display)));
   }

@@ -8,6 +8,7 @@
 
 #include "hvs/eye/contrast_sensitivity.h"
 #include "hvs/eye/eye_optics.h"
+#include "hvs/eye/sinc.h"
 #include "hvs/observer/identification_bank.h"
 
 namespace todbench {
@@ -16,10 +17,6 @@ namespace {
 /// Copies of the spectrum of the samples on each side that are summed. The display and the mean over a sample each
 /// divide a copy by the square of its number, so that those beyond the sixth leave less than 1e-3.
 constexpr int most_copies = 6;
-
-double sinc(double x) {
-  return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
-}
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 
 #include "hvs/eye/contrast_sensitivity.h"
 #include "hvs/eye/eye_optics.h"
+#include "hvs/eye/sinc.h"
 
 namespace todbench {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 /// rho^2), with w in rho divided by the height of a sample.
 TransferFunction blurring_filter(double sigma_samples, double aspect) {
   return [sigma_samples, aspect](double u, double w) -> std::complex<double> {
-    const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); };
     const double pi_sigma = std::numbers::pi * sigma_samples;
     const double v = w / aspect;
     return sinc(u) * sinc(w) * std::exp(-2 * pi_sigma * pi_sigma * (u * u + v * v));

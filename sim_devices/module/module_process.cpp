@@ -71,10 +71,6 @@ Result<pid_t> spawned_group(std::vector<std::string> words, Sandbox sandbox, con
   return process;
 }
 
-}  // namespace
-
-namespace {
-
 /// Starts a process and reads the first line from either of its outputs, for at most `limit`, then ends it. The exit
 /// code is set if the process ended before.
 struct Said {

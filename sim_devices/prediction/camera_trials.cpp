@@ -159,8 +159,9 @@ Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vec
   if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
   if (sensor.microscan != 1) return fail(ErrorCode::invalid_input, "super-resolution needs a camera without microscan");
   if (reaches_an_end(sensor, options.delta_t_k, PlateScene{}.background_k))
-    return fail(ErrorCode::invalid_input, "a contrast of " + std::to_string(options.delta_t_k) +
-                                              " K reaches an end of the camera's counts, so its frames are clipped");
+    return fail(ErrorCode::invalid_input,
+                "a contrast of " + std::to_string(options.delta_t_k) +
+                    " K reaches the lowest or highest count of the camera, so its frames are clipped");
   const TargetPlate plate = trial_plate(options.sizes_pitch, sensor.ifov_mrad());
   const SensorSpec camera = cropped_to(sensor, plate, 0);
   const SensorModel model(camera, full_plan(camera, {}, {}), options.accuracy, options.seed);

@@ -168,7 +168,7 @@ Result<void> check_dynamic(const SensorSpec& sensor, const DynamicTrialOptions& 
   }
   if (reaches_an_end(sensor, options.delta_t_k, PlateScene{}.background_k))
     return refuse("a contrast of " + std::to_string(options.delta_t_k) +
-                  " K reaches an end of the camera's counts, so its frames are clipped");
+                  " K reaches the lowest or highest count of the camera, so its frames are clipped");
   return {};
 }
 

@@ -200,7 +200,7 @@ std::string why_none_holds(const SensorSpec& sensor, const EffectScene& scene) {
   }
   for (const double delta_t_k : scene.delta_t_k) {
     if (reaches_an_end(sensor, delta_t_k, sensor.scene_temperature_k)) {
-      return fmt::format("simulated: a contrast of {:g} K reaches an end of the counts, so no criterion applies",
+      return fmt::format("simulated: a contrast of {:g} K reaches the lowest or highest count, so no criterion applies",
                          delta_t_k);
     }
   }

@@ -211,9 +211,10 @@ Result<IdentificationPasses::ViewGain> IdentificationPasses::gain_of(std::size_t
   double low = 0, high = 0;
   cv::minMaxLoc(shown, &low, &high);
   if (reaches_an_end(spec_, high, spec_.scene_temperature_k) || reaches_an_end(spec_, low, spec_.scene_temperature_k))
-    return fail(ErrorCode::invalid_input,
-                "target " + task_.targets[target].name +
-                    " reaches an end of the camera's counts, so its pictures are clipped in front of the stages");
+    return fail(
+        ErrorCode::invalid_input,
+        "target " + task_.targets[target].name +
+            " reaches the lowest or highest count of the camera, so its pictures are clipped in front of the stages");
   TODBENCH_TRY(const auto judged,
                shown_frames(copies_of(noise), {{shown}, {window.tl() - cv::Point(surround_, surround_)}, {}}));
   const cv::Mat1d in_front = without_mean(shown(cv::Rect(surround_, surround_, side_, side_)));

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The layering check must find what it is there to find.
+# The checks of this folder must find what they are there to find.
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -24,3 +24,6 @@ printf 'namespace a {\nclass Outer {\n struct Once {};\n};\nenum class Once { on
 unique || { echo "types with names of their own were refused"; exit 1; }
 printf 'namespace a {\n// struct Once {\nenum class Twice : int { one };\n}\n' >"$work/tod/plate/three.h"
 ! unique >/dev/null || { echo "two types of one name were not found"; exit 1; }
+sh "$here/check_licences.sh" "$work" >/dev/null && { echo "files without a licence were not found"; exit 1; }
+find "$work" -type f -exec sed -i '1i // SPDX-License-Identifier: GPL-3.0-or-later' {} +
+sh "$here/check_licences.sh" "$work" || { echo "files with a licence were refused"; exit 1; }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "bench/session/manifest.h"
+#include "tests/support/verify_manifest.h"
 
 namespace todbench::testing {
 namespace {

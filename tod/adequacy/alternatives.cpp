@@ -76,9 +76,9 @@ std::optional<Candidate> refitted(std::span<const Level> levels, const Psychomet
   const auto other = fit_psychometric(levels, options);
   if (!other || !other->threshold || !other->log_likelihood) return std::nullopt;
   const bool free = !options.fixed_lapse;
-  return Candidate{{free ? fmt::format("{} of {:.3g}", name, other->lapse) : name,
-                    std::log(*other->threshold / *fit.threshold), *other->log_likelihood - *fit.log_likelihood},
-                   *other->log_likelihood - parameters};
+  return Candidate{
+      {free ? fmt::format("{} of {:.3g}", name, other->lapse) : name, std::log(*other->threshold / *fit.threshold)},
+      *other->log_likelihood - parameters};
 }
 
 std::optional<Candidate> bent(const PooledCounts& counts, const PsychometricFit& fit, PsychometricForm form,
@@ -94,7 +94,7 @@ std::optional<Candidate> bent(const PooledCounts& counts, const PsychometricFit&
   const double blank =
       log_likelihood(counts, form, {model.t, std::log(model.slope), lapse}) - model.expand({0, 1, 0, 0}).value;
   const double gain = best.expansion.value + blank - straight;
-  return Candidate{{"a curve of free shape", *t - model.t, gain}, *fit.log_likelihood + gain - parameters};
+  return Candidate{{"a curve of free shape", *t - model.t}, *fit.log_likelihood + gain - parameters};
 }
 
 }  // namespace

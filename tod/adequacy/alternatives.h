@@ -12,9 +12,8 @@ namespace todbench {
 
 /// The alternative function that describes the answers best, by likelihood and number of parameters (Akaike 1974).
 struct Alternative {
-  std::string name;               ///< for a sentence: "the acuity form", "a free lapse rate of 0.031"
-  double ln_shift = 0;            ///< ln(its threshold / threshold of the fit)
-  double ln_likelihood_gain = 0;  ///< relative to the fit
+  std::string name;     ///< for a sentence: "the acuity form", "a free lapse rate of 0.031"
+  double ln_shift = 0;  ///< ln(its threshold / threshold of the fit)
 };
 
 /// Tries the other form, a free lapse, both, and a curve that adds a bend and a twist to the model (a cubic in ln size

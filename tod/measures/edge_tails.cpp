@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/base/normal.h"
+
 namespace todbench {
 namespace {
 
@@ -20,13 +22,9 @@ constexpr double bound_sd = 1e-4;  // tolerance of a bound on a sum of unknowns
 // that of one degree. With 3.84 the coverage at up to 0.25 cycles is 0.91 to 0.93, with this value 0.95 to 0.98.
 constexpr double chi_square_95 = 5.991;
 
-double below(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
-
 /// Share of a normal blur of unit sigma about x that lies in (-half, half).
 double within(double x, double half) {
-  return below(x + half) - below(x - half);
+  return normal_probability(x + half) - normal_probability(x - half);
 }
 
 /// Corner value of the integral of c / (2 pi (x^2 + y^2 + c^2)^1.5).
@@ -70,8 +68,8 @@ double edge_tails::halo_sigma_pitch(std::size_t i) {
 }
 
 void set_tail_columns(double t, std::vector<double>& columns) {
-  for (std::size_t i = 0; i < halos; ++i) columns[first_halo + i] = below(t / halo_sigma_pitch(i));
-  combine(below(t / narrow_sigma_pitch), 0.5 + std::atan(t / cauchy_pitch) / pi, columns);
+  for (std::size_t i = 0; i < halos; ++i) columns[first_halo + i] = normal_probability(t / halo_sigma_pitch(i));
+  combine(normal_probability(t / narrow_sigma_pitch), 0.5 + std::atan(t / cauchy_pitch) / pi, columns);
 }
 
 void set_tail_columns(const std::vector<TailRectangle>& cut_outs, cv::Point2d at, std::vector<double>& columns) {

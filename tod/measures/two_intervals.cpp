@@ -8,15 +8,13 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 
+#include "acquisition/base/normal.h"
+
 namespace todbench {
 namespace {
 
 double probit(double p) {
   return std::numbers::sqrt2 * boost::math::erf_inv(2 * std::clamp(p, 1e-6, 1 - 1e-6) - 1);
-}
-
-double normal_below(double z) {
-  return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
 constexpr std::size_t most_parameters = 4;
@@ -39,7 +37,7 @@ FittedShare fitted_share(const ContrastFunction& of, const ContrastShare& at) {
   const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
   const double by_u = density * z * of.exponent, angle = 2 * std::numbers::pi * at.phase;
   const double by_energy = 0.5 * by_u / energy_at(of, at.phase);
-  return {normal_below(z), {-by_u, density * z * u, by_energy * std::cos(angle), by_energy * std::sin(angle)}};
+  return {normal_probability(z), {-by_u, density * z * u, by_energy * std::cos(angle), by_energy * std::sin(angle)}};
 }
 
 /// Reduces the swing until the energy is positive at every phase.

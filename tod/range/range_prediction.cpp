@@ -186,15 +186,6 @@ Result<void> check(std::span<const TodThreshold> thresholds, const RangeTask& ta
   return {};
 }
 
-/// 1, 2 or 5 times a power of ten, at most `value`.
-double round_step(double value) {
-  const double power = std::pow(10, std::floor(std::log10(value)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * power <= value * (1 + 1e-12)) return factor * power;
-  }
-  return power;
-}
-
 std::optional<double> probability(std::optional<double> ln_m) {
   if (!ln_m || !std::isfinite(*ln_m)) return std::nullopt;
   return identification_probability(std::exp(*ln_m));
@@ -287,6 +278,14 @@ void add_spread(std::span<const TodThreshold> sorted, const RangeTask& task, Ran
 }
 
 }  // namespace
+
+double round_step(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= value * (1 + 1e-12)) return factor * power;
+  }
+  return power;
+}
 
 double m75_from_v50(double v50) {
   return 0.6 * v50;

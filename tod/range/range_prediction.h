@@ -45,6 +45,9 @@ struct RangeTask {
 /// P = x^E / (1 + x^E), E = 1.51 + 0.24 x, x = V / V50, scaled so that P(1) = 0.75. It has no guessing term.
 [[nodiscard]] double identification_probability(double m_over_m75);
 
+/// Returns 1, 2 or 5 times a power of ten, at most `value`.
+[[nodiscard]] double round_step(double value);
+
 /// Probability at one range; empty if the TOD curve does not cover the apparent contrast.
 struct RangePoint {
   double range_m = 0;

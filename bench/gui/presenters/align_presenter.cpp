@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "bench/gui/presenters/text_of.h"
+
 namespace todbench {
 
 AlignPresenter::AlignPresenter(Workbench& bench, QObject* parent) : QObject(parent), bench_(bench) {}
@@ -41,7 +43,7 @@ std::vector<std::pair<QString, QString>> AlignPresenter::figures() const {
           {"Scale", number(r.scale_px_per_mm, 4, "px/mm")},
           {"Scale deviation", number(100 * r.scale_deviation, 2, "%")},
           {"Rotation", number(r.rotation_deg, 2, "°")},
-          {"Mapping", QString::fromUtf8(to_string(r.mapping).data(), static_cast<int>(to_string(r.mapping).size()))},
+          {"Mapping", text_of(to_string(r.mapping))},
           {"Edge blur", number(r.blur_px, 2, "px")},
           {"Expected edge blur", number(alignment_->expected_blur_px, 2, "px")},
           {"Drift since start", number(alignment_->drift_px, 3, "px")},

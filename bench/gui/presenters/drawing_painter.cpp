@@ -8,12 +8,13 @@
 #include <QPolygonF>
 #include <algorithm>
 
+#include "bench/gui/presenters/text_of.h"
+
 namespace todbench {
 namespace {
 
 QColor colour(Ink ink, PlotTone tone) {
-  const auto name = light_palette().of(ink, tone);
-  return QColor(QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size())));
+  return QColor(text_of(light_palette().of(ink, tone)));
 }
 
 QPen pen_of(const PenStyle& style, PlotTone tone) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bench/gui/presenters/colour_map.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/session/open_session.h"
 #include "bench/session/provenance.h"
 #include "hvs/eye/display_levels.h"
@@ -184,9 +185,7 @@ void HumanPresenter::answer(Apex apex) {
   if (!response_s) return;
   if (training_left() > 0) {
     const Apex truth = training_[trained_++].trial.truth;
-    const auto word = to_string(truth);
-    feedback_ = (apex == truth ? "✓ correct: " : "✗ it pointed ") +
-                QString::fromUtf8(word.data(), static_cast<qsizetype>(word.size()));
+    feedback_ = (apex == truth ? "✓ correct: " : "✗ it pointed ") + text_of(to_string(truth));
     if (training_left() == 0) feedback_ += ". From now on the answers count, without feedback.";
     show_next();
     return;

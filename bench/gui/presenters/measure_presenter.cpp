@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bench/gui/presenters/text_of.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 #include "bench/report/tod_figures.h"
@@ -75,7 +76,7 @@ MeasurePresenter::MeasurePresenter(Workbench& bench, QObject* parent) : QObject(
 ExperimentListener MeasurePresenter::listener() {
   ExperimentListener out;
   out.on_phase = [this](std::string_view text) {
-    bench_.post([this, phase = QString::fromStdString(std::string(text))] {
+    bench_.post([this, phase = text_of(text)] {
       phase_ = phase;
       done_ = planned_ = 0;
       in_phase_.invalidate();
@@ -83,7 +84,7 @@ ExperimentListener MeasurePresenter::listener() {
     });
   };
   out.on_note = [this](std::string_view text) {
-    bench_.post([this, sentence = QString::fromStdString(std::string(text))] {
+    bench_.post([this, sentence = text_of(text)] {
       notes_ << sentence;
       if (notes_.size() > most_notes) notes_.removeFirst();
       emit updated();
@@ -365,7 +366,7 @@ void MeasurePresenter::conclude(const Result<ExperimentOutcome>& outcome) {
     twin_ = outcome->twin;
     if (!outcome->ended_by) done_ = planned_ = presented_;
     phase_ = outcome->ended_by ? "ended early: " + QString::fromStdString(outcome->ended_by->message)
-                               : "verdict: " + QString::fromUtf8(decision_word(outcome->verdict).data());
+                               : "verdict: " + text_of(decision_word(outcome->verdict));
     if (same_)
       phase_ = (*same_ ? "✓ replayed: trials and fits are the same, byte for byte; "
                        : "✗ replayed: the answers DIFFER from those of the session; ") +

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/base/try.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/loaded_plan.h"
 #include "bench/session/display_record.h"
@@ -28,7 +29,7 @@ QString cells(const QStringList& texts, const char* element) {
 }
 
 QString heading_of(LimitingFactor factor) {
-  return QString::fromStdString(std::string(to_string(factor))).replace('_', ' ');
+  return text_of(to_string(factor)).replace('_', ' ');
 }
 
 /// Factors with an estimate at one contrast or more: an observer does not have all of them.

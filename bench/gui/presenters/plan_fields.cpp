@@ -11,15 +11,12 @@
 #include <string_view>
 #include <utility>
 
+#include "bench/gui/presenters/text_of.h"
 #include "bench/plan/plan_keys.h"
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
 namespace {
-
-QString text_of(std::string_view text) {
-  return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
-}
 
 QString with_unit(const QString& words, std::string_view unit) {
   return words + (unit.empty() ? QString() : " (" + text_of(unit) + ")");

@@ -8,6 +8,7 @@
 
 #include "acquisition/base/try.h"
 #include "bench/gui/presenters/pdf_report.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/judgement/verdict_record.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/report/tod_figures.h"
@@ -51,8 +52,7 @@ QString verdict_of(const std::filesystem::path& folder) {
   if (json.is_discarded()) return {};
   const auto verdict = verdict_from(json);
   if (!verdict) return {};
-  const auto word = decision_word(*verdict);
-  return QString::fromUtf8(word.data(), static_cast<qsizetype>(word.size()));
+  return text_of(decision_word(*verdict));
 }
 
 Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
@@ -66,8 +66,7 @@ Result<SessionEntry> entry_of(const std::filesystem::path& folder) {
   entry.name = short_name(QString::fromStdString(session_name(folder)));
   entry.when = QString::fromStdString(provenance.started_utc).replace('T', ' ').remove('Z');
   const bool cut_off = provenance.state == SessionState::running;
-  entry.state =
-      cut_off || shown_files_listed(folder) ? QString::fromUtf8(to_string(provenance.state).data()) : "changed";
+  entry.state = cut_off || shown_files_listed(folder) ? text_of(to_string(provenance.state)) : "changed";
   entry.unit = unit_of(folder);
   if (provenance.camera) {
     if (entry.unit.isEmpty()) entry.unit = QString::fromStdString(provenance.camera->model);

@@ -13,6 +13,7 @@
 
 #include "bench/gui/presenters/chain_presenter.h"
 #include "bench/gui/presenters/colour_map.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
 #include "bench/gui/views/plain_numbers.h"
@@ -23,7 +24,7 @@ namespace todbench {
 namespace {
 
 QString words(std::string_view name) {
-  QString text = QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size())).replace('_', ' ');
+  QString text = text_of(name).replace('_', ' ');
   text[0] = text[0].toUpper();
   return text;
 }
@@ -106,7 +107,7 @@ QWidget* ChainView::options_panel() {
   int number = 0;
   for (const Effect effect : all_effects) {
     auto* box = new QCheckBox(words(to_string(effect)));
-    box->setObjectName(QString("effect_") + QString::fromUtf8(to_string(effect).data()));
+    box->setObjectName(QString("effect_") + text_of(to_string(effect)));
     box->setChecked(true);
     effects_.emplace_back(effect, box);
     boxes->addWidget(box, number % rows, number / rows);

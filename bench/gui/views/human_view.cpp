@@ -18,6 +18,7 @@
 #include "bench/gui/presenters/naked_eye_presenter.h"
 #include "bench/gui/presenters/person_presenter.h"
 #include "bench/gui/presenters/plan_advice.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/gui/views/alternatives_panel.h"
 #include "bench/gui/views/human_results.h"
 #include "bench/gui/views/layout_pieces.h"
@@ -45,10 +46,6 @@ std::optional<std::vector<double>> numbers_of(const QString& text) {
 }
 
 constexpr std::array criteria_of_bars{BarCriterion::four_or_five, BarCriterion::bars_resolved, BarCriterion::detection};
-
-QString criterion_words(std::string_view words) {
-  return QString::fromUtf8(words.data(), static_cast<qsizetype>(words.size()));
-}
 
 QString question_title(BarCriterion criterion) {
   switch (criterion) {
@@ -177,7 +174,7 @@ void HumanView::add_questions(QFormLayout& form) {
   }
   criterion_ = new QComboBox;
   criterion_->setObjectName("humanCriterion");
-  for (const BarCriterion criterion : criteria_of_bars) criterion_->addItem(criterion_words(to_string(criterion)));
+  for (const BarCriterion criterion : criteria_of_bars) criterion_->addItem(text_of(to_string(criterion)));
   frequencies_ = new QLineEdit("0.3, 0.6, 0.9");
   frequencies_->setObjectName("humanFrequencies");
   contrasts_ = new QLineEdit("0.4, 0.15, 0.06");

@@ -12,6 +12,7 @@
 #include <QTreeWidget>
 
 #include "bench/gui/presenters/look_presenter.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/gui/views/histogram_view.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
@@ -132,7 +133,7 @@ QWidget* LookView::controls_panel() {
   auto* form = new QFormLayout;
   form->setVerticalSpacing(3);
   for (const CameraControl control : all_camera_controls) {
-    const QString name = QString::fromUtf8(to_string(control).data(), static_cast<int>(to_string(control).size()));
+    const QString name = text_of(to_string(control));
     auto* line = new QLineEdit;
     line->setObjectName("camera" + QString(name).remove(' '));
     line->setAccessibleName(name);

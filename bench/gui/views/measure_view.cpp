@@ -17,16 +17,13 @@
 #include "bench/gui/presenters/human_presenter.h"
 #include "bench/gui/presenters/look_presenter.h"
 #include "bench/gui/presenters/measure_presenter.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/picture_view.h"
 #include "bench/gui/views/plot_view.h"
 
 namespace todbench {
 namespace {
-
-QString text_of(std::string_view text) {
-  return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
-}
 
 /// Changes with every curve: thresholds and numbers of trials.
 std::vector<double> key_of(const MeasurePresenter& presenter) {

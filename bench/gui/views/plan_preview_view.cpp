@@ -15,6 +15,7 @@
 
 #include "bench/gui/presenters/bill_rows.h"
 #include "bench/gui/presenters/plan_presenter.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/plot_view.h"
 
@@ -38,10 +39,6 @@ QString duration_text(double seconds) {
   if (whole < 120) return QString("%1 s").arg(whole);
   if (whole < 7200) return QString("%1 min").arg(whole / 60);
   return QString("%1 h %2 min").arg(whole / 3600).arg(whole % 3600 / 60);
-}
-
-QString text_of(std::string_view text) {
-  return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
 /// Two significant digits, never in exponential notation.

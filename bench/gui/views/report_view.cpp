@@ -14,6 +14,7 @@
 #include <algorithm>
 
 #include "bench/gui/presenters/bill_rows.h"
+#include "bench/gui/presenters/text_of.h"
 #include "bench/gui/views/layout_pieces.h"
 #include "bench/gui/views/plot_view.h"
 #include "bench/judgement/demand_kinds.h"
@@ -22,10 +23,6 @@
 
 namespace todbench {
 namespace {
-
-QString text_of(std::string_view text) {
-  return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
-}
 
 constexpr int most_ratios = 5;  // visible at once
 constexpr int least_plot_px = 190;

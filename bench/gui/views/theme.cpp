@@ -3,6 +3,8 @@
 
 #include <QGuiApplication>
 
+#include "bench/gui/presenters/text_of.h"
+
 namespace todbench {
 
 QPalette palette_of(Theme theme) {
@@ -49,10 +51,7 @@ QColor PlotColours::of(PlotTone tone) const {
 PlotColours plot_colours_of(Theme theme) {
   const bool dark = theme == Theme::dark;
   const DrawingPalette palette = dark ? dark_palette() : light_palette();
-  const auto tone = [&](PlotTone which) {
-    const auto name = palette.of(Ink::tone, which);
-    return QColor(QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size())));
-  };
+  const auto tone = [&](PlotTone which) { return QColor(text_of(palette.of(Ink::tone, which))); };
   return {.ground = dark ? QColor(30, 31, 34) : QColor(255, 255, 255),
           .ink = dark ? QColor(226, 226, 226) : QColor(32, 32, 32),
           .grid = dark ? QColor(66, 68, 74) : QColor(222, 222, 222),

@@ -1,3 +1,4 @@
+% SPDX-License-Identifier: GPL-3.0-or-later
 % A module: sharpens with the mean of the four neighbours (GNU Octave). todbench module check "octave-cli sharpen.m"
 1;
 function [header, numbers] = read_message()

@@ -5,13 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "sim_devices/lab/instruments/elapsed_time.h"
+
 namespace todbench {
 namespace {
-
-double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
-  // Another thread may have read the clock later and stored its time first.
-  return std::max(0.0, std::chrono::duration<double>(to - from).count());
-}
 
 double real_difference_k(const BlackBodyOptions& options, double indicated_k) {
   return options.real_delta_t_k ? options.real_delta_t_k(indicated_k) : indicated_k;

@@ -9,17 +9,14 @@
 #include <utility>
 
 #include "acquisition/base/rng.h"
+#include "sim_devices/lab/instruments/elapsed_time.h"
+#include "tod/instruments/scpi_client.h"
 
 namespace todbench {
 namespace {
 
 using TimePoint = std::chrono::steady_clock::time_point;
 using Parameters = std::span<const std::string>;
-
-double seconds_between(TimePoint from, TimePoint to) {
-  // Another thread may have read the clock later and stored its time first.
-  return std::max(0.0, std::chrono::duration<double>(to - from).count());
-}
 
 struct MountingKeyword {
   Mounting mounting;
@@ -176,12 +173,12 @@ std::vector<ScpiCommand> PlateStage::plate_commands() {
   };
   const auto catalogue = [this] {
     std::string names;
-    for (const auto& plate : options_.plates) names.append(names.empty() ? "" : ",").append(scpi_string(plate));
+    for (const auto& plate : options_.plates) names.append(names.empty() ? "" : ",").append(scpi_quoted(plate));
     return names;
   };
   return {{"ROUTe:PLATe", select},
-          query("ROUTe:PLATe?", [this] { return scpi_string(motion().plate.to); }),
-          query("ROUTe:PLATe:ACTual?", [this] { return scpi_string(state().plate); }),
+          query("ROUTe:PLATe?", [this] { return scpi_quoted(motion().plate.to); }),
+          query("ROUTe:PLATe:ACTual?", [this] { return scpi_quoted(state().plate); }),
           query("ROUTe:PLATe:CATalog?", catalogue)};
 }
 

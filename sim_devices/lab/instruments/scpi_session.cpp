@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "tod/instruments/scpi_client.h"
+
 namespace todbench {
 namespace {
 
@@ -146,12 +148,6 @@ std::string scpi_decimal(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "9.91E37";
 }
 
-std::string scpi_string(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
-  return quoted + "\"";
-}
-
 ScpiLanguage::ScpiLanguage(std::string identity, std::vector<ScpiCommand> commands)
     : identity_(std::move(identity)), commands_(std::move(commands)) {}
 
@@ -172,7 +168,7 @@ std::string ScpiSession::next_error() {
   if (errors_.empty()) return "0,\"No error\"";
   const ScpiError error = errors_.front();
   errors_.pop_front();
-  return std::to_string(error.code) + "," + scpi_string(error.message);
+  return std::to_string(error.code) + "," + scpi_quoted(error.message);
 }
 
 ScpiAnswer ScpiSession::run(const std::string& header, std::span<const std::string> parameters) {

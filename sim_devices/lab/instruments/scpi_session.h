@@ -40,8 +40,6 @@ struct ScpiCommand {
 /// Error -109 or -108 unless there are exactly `count` parameters.
 [[nodiscard]] tl::expected<void, ScpiError> scpi_count(std::span<const std::string> parameters, std::size_t count);
 [[nodiscard]] std::string scpi_decimal(double value, int decimals);
-/// Text as string response data: in double quotes, inner quotes doubled.
-[[nodiscard]] std::string scpi_string(std::string_view text);
 
 /// Commands of an instrument. Immutable, shared by its sessions.
 class ScpiLanguage {

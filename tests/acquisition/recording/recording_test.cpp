@@ -5,7 +5,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
+#include "acquisition/recording/flir_record.h"
 #include "acquisition/recording/flir_seq.h"
 #include "acquisition/recording/raw_recording.h"
 #include "acquisition/recording/recording_backend.h"
@@ -186,25 +188,25 @@ INSTANTIATE_TEST_SUITE_P(Both, LeptonRecording,
                          [](const auto& test_case) { return std::string(test_case.param.first).substr(0, 8); });
 
 TEST(FlirSeq, FindsBothFramesWithTheirGeometryAndConstants) {
-  const auto frames = read_flir_seq(golden / "flir_sc660.seq");
+  const auto recording = open_flir_seq(golden / "flir_sc660.seq");
 
-  ASSERT_TRUE(frames) << frames.error().message;
-  ASSERT_EQ(frames->size(), 2U);
-  for (const auto& frame : *frames) {
-    EXPECT_EQ(frame.width, 640);
-    EXPECT_EQ(frame.height, 480);
-    EXPECT_FALSE(frame.big_endian);
-    EXPECT_EQ(frame.camera->model, "FLIR SC660");
-    EXPECT_EQ(frame.camera->serial, "404003980");
-    EXPECT_NEAR(frame.camera->planck.r1, 21106.77, 0.01);
-    EXPECT_NEAR(frame.camera->planck.r2, 0.012545258, 1e-9);
-    EXPECT_EQ(frame.camera->planck.b, 1501);
-    EXPECT_EQ(frame.camera->planck.f, 1);
-    EXPECT_EQ(frame.camera->planck.o, -7340);
-    EXPECT_NEAR(frame.camera->object.emissivity, 0.95, 1e-6);
-    EXPECT_NEAR(frame.camera->object.reflected_temperature_k, 293.15, 1e-4);
-  }
-  EXPECT_GT((*frames)[1].device_time_ns, (*frames)[0].device_time_ns);
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->frame_count, 2U);
+  const SourceInfo& info = recording->info;
+  EXPECT_EQ(info.width, 640);
+  EXPECT_EQ(info.height, 480);
+  EXPECT_EQ(info.model, "FLIR SC660");
+  EXPECT_EQ(info.serial, "404003980");
+  const auto setting = [&](const char* name) { return std::stod(info.settings.at(name)); };
+  EXPECT_EQ(info.settings.at("RawThermalImageType"), "raw, little-endian");
+  EXPECT_NEAR(setting("PlanckR1"), 21106.77, 0.01);
+  EXPECT_NEAR(setting("PlanckR2"), 0.012545258, 1e-9);
+  EXPECT_EQ(setting("PlanckB"), 1501);
+  EXPECT_EQ(setting("PlanckF"), 1);
+  EXPECT_EQ(setting("PlanckO"), -7340);
+  EXPECT_NEAR(setting("ObjectEmissivity"), 0.95, 1e-6);
+  EXPECT_NEAR(setting("ReflectedTemperature"), 293.15, 1e-4);
+  EXPECT_GT(recording->read(1).value().device_time_ns, recording->read(0).value().device_time_ns);
 }
 
 TEST(FlirSeq, MapsThePublishedConstantsToThePlanckScaleWithTheSameTemperatures) {
@@ -258,10 +260,10 @@ TEST(FlirSeq, RefusesAFileCutOffAnywhereInsideARecord) {
                                  std::size_t{617'179}, std::size_t{617'200}, whole.size() - 1}) {
     const ScratchFile file(".seq", {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
 
-    const auto frames = read_flir_seq(file.path());
+    const auto recording = open_flir_seq(file.path());
 
-    ASSERT_FALSE(frames) << size;
-    EXPECT_EQ(frames.error().code, ErrorCode::invalid_input) << size;
+    ASSERT_FALSE(recording) << size;
+    EXPECT_EQ(recording.error().code, ErrorCode::invalid_input) << size;
   }
 }
 
@@ -276,7 +278,7 @@ TEST(FlirSeq, RefusesRandomlyDamagedHeadersWithoutReadingOutsideTheFile) {
       auto damaged = first;
       damaged[byte] = value;
       const ScratchFile file(".seq", damaged);
-      if (!read_flir_seq(file.path())) ++refused;
+      if (!open_flir_seq(file.path())) ++refused;
     }
   }
 

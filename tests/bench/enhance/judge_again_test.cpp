@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Recorded frames that are judged again: by the same observer, by another one, through a package.
 #include "bench/enhance/judge_again.h"
+#include "tests/support/verify_manifest.h"
 
 #include <gmock/gmock.h>
 

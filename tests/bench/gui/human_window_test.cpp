@@ -14,6 +14,7 @@
 #include "bench/text/files.h"
 #include "bench/text/text.h"
 #include "tests/bench/gui/gui_test_support.h"
+#include "tests/support/verify_manifest.h"
 
 namespace todbench::testing {
 namespace {

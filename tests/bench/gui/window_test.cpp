@@ -38,6 +38,7 @@
 #include "tests/bench/gui/gui_test_support.h"
 #include "tests/bench/gui/watched_application.h"
 #include "tests/support/patience.h"
+#include "tests/support/verify_manifest.h"
 
 namespace todbench::testing {
 namespace {

@@ -13,6 +13,7 @@
 #include "bench/run/replay.h"
 #include "tests/support/patience.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/verify_manifest.h"
 
 namespace todbench {
 namespace {

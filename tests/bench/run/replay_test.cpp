@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A session with instruments that say what they show: what is kept of it, and what a replay makes of it.
 #include "bench/run/replay.h"
+#include "tests/support/verify_manifest.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/session/session_folder.h"
+#include "tests/support/verify_manifest.h"
 
 #include <gmock/gmock.h>
 

@@ -7,7 +7,7 @@
 #include "hvs/eye/contrast_sensitivity.h"
 #include "tests/sim_devices/prediction/observer_ranking.h"
 #include "tests/sim_devices/prediction/transfer_fit.h"
-#include "tod/comparison/rank_correlation.h"
+#include "tests/support/rank_correlation.h"
 
 namespace todbench::testing {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Spearman's coefficient against known values, and the coverage of its interval.
-#include "tod/comparison/rank_correlation.h"
+#include "tests/support/rank_correlation.h"
 
 #include <gtest/gtest.h>
 

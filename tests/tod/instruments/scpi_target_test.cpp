@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The target of a real bench against the emulated instruments, over loopback, with a time base that tests move.
 #include "tod/instruments/scpi_target.h"
+#include "tod/instruments/scpi_client.h"
 
 #include <gmock/gmock.h>
 
@@ -360,9 +361,9 @@ class StageOnPaper {
                         {"maker,stage,7,1",
                          {order("ROUTe:PLATe", &StageOnPaper::plate), order("ROUTe:MOUNting", &StageOnPaper::mounting),
                           order("SOURce:POSition", &StageOnPaper::position),
-                          answer("ROUTe:PLATe?", [this] { return scpi_string(plate); }),
+                          answer("ROUTe:PLATe?", [this] { return scpi_quoted(plate); }),
                           answer("ROUTe:PLATe:ACTual?",
-                                 [this] { return scpi_string(plate_in_beam.empty() ? plate : plate_in_beam); }),
+                                 [this] { return scpi_quoted(plate_in_beam.empty() ? plate : plate_in_beam); }),
                           answer("ROUTe:PLATe:CATalog?", [] { return std::string(R"("coarse","fine")"); }),
                           answer("ROUTe:MOUNting?", [this] { return mounting; }),
                           answer("ROUTe:MOUNting:ACTual?", [this] { return mounting; }),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/lab/instruments/scpi_session.h"
+#include "tod/instruments/scpi_client.h"
 
 #include <gmock/gmock.h>
 
@@ -35,7 +36,7 @@ class SessionTest : public ::testing::Test {
           text_ = p[0];
           return "";
         }},
-       {"DISPlay:TEXT?", [this](std::span<const std::string>) -> ScpiAnswer { return scpi_string(text_); }}}};
+       {"DISPlay:TEXT?", [this](std::span<const std::string>) -> ScpiAnswer { return scpi_quoted(text_); }}}};
   ScpiSession session_{language_};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tod/comparison/rank_correlation.h"
+#include "tests/support/rank_correlation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Elapsed time of an emulated instrument.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+
+namespace todbench {
+
+/// Seconds, at least 0: another thread may have read the clock later and stored its time first.
+[[nodiscard]] inline double seconds_between(std::chrono::steady_clock::time_point from,
+                                            std::chrono::steady_clock::time_point to) {
+  return std::max(0.0, std::chrono::duration<double>(to - from).count());
+}
+
+}  // namespace todbench
