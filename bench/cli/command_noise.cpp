@@ -12,10 +12,11 @@
 
 #include "acquisition/base/try.h"
 #include "acquisition/core/correction_watch.h"
+#include "acquisition/core/input_gate.h"
 #include "acquisition/core/integrity_gate.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/input_gate.h"
 #include "bench/cli/noise_components.h"
+#include "bench/cli/started_recording.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/studies/real_noise_study.h"

@@ -12,11 +12,11 @@
 
 #include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
+#include "acquisition/core/input_gate.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/tiff_writer.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/input_gate.h"
 #include "bench/devices/camera_settings.h"
 #include "bench/devices/devices.h"
 #include "bench/judgement/verdict.h"

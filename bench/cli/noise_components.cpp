@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "acquisition/base/try.h"
+#include "acquisition/core/input_gate.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/input_gate.h"
+#include "bench/cli/started_recording.h"
 #include "bench/judgement/verdict.h"
 #include "tod/measures/three_d_noise.h"
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/cli/input_gate.h"
+#include "acquisition/core/input_gate.h"
 
 #include <array>
-#include "acquisition/core/camera_id.h"
-#include "acquisition/recording/recording_backend.h"
 
 namespace todbench {
 namespace {
@@ -49,16 +47,6 @@ Result<void> judge_damages(const std::map<Rejection, std::uint64_t>& rejected, s
       return fail(ErrorCode::integrity, sentence_of(reason, of_all(found->second, frames)));
   }
   return {};
-}
-
-Result<std::unique_ptr<FrameSource>> started_recording(Console& console, const std::string& id) {
-  auto source =
-      recording_backend()->open(has_scheme(id, camera_scheme::file) ? id : camera_id(camera_scheme::file, id));
-  // A recording is an input file here, not a device.
-  if (!source) return fail(ErrorCode::invalid_input, source.error().message);
-  if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());
-  for (const auto& warning : (*source)->info().warnings) console.note(warning);
-  return source;
 }
 
 bool InputGate::takes(const Frame& frame) {
