@@ -59,6 +59,7 @@ bool InputGate::takes(const Frame& frame) {
     ++damaged_[damage];
     return false;
   }
+  byte_order_.see(frame.counts, frame.significant_bits);
   if (frame.correction == CorrectionState::running) return true;
   const auto moved = moved_.see(frame.counts);
   if (!moved) return true;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "acquisition/core/byte_order.h"
 #include "acquisition/core/frame.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/core/moved_picture.h"
@@ -32,6 +33,8 @@ class InputGate {
   [[nodiscard]] std::string note() const;
   /// A sentence if the camera sends each exposure several times; otherwise empty.
   [[nodiscard]] std::string cadence() const { return cadence_.sentence(); }
+  /// Byte order of all frames that are not incomplete or damaged.
+  [[nodiscard]] const ByteOrderWatch& byte_order() const { return byte_order_; }
 
  private:
   IntegrityGate gate_{IntegrityOptions{}};
@@ -41,6 +44,7 @@ class InputGate {
   std::map<Rejection, std::uint64_t> damaged_;
   std::uint64_t moved_frames_ = 0;
   RepeatCadence cadence_;
+  ByteOrderWatch byte_order_;
 };
 
 }  // namespace todbench
