@@ -229,10 +229,6 @@ int run_verify(Console& console, const std::string& folder, const std::string& p
         std::string(to_string((*signature)->signature.with)) + ", SHA-256 of the public key " +
         (*signature)->signature.key_sha256() +
         ((*signature)->own_key ? "; checked with the public key in the folder, which does not prove who signed" : ""));
-    if (!(*signature)->signature.signs_time)
-      console.text(
-          "the signature was made by an earlier version: it covers the files of the manifest but not the time of "
-          "signing");
   }
   if (intact) {
     console.text("intact: every file is as the run wrote it");

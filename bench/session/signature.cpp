@@ -22,8 +22,7 @@ namespace todbench {
 namespace {
 
 constexpr std::string_view signature_record = "signature.json";
-/// The first schema does not sign signature.json, so its stated time is not signed.
-constexpr std::string_view signature_schema = "todbench-signature-2", signature_schema_1 = "todbench-signature-1";
+constexpr std::string_view signature_schema = "todbench-signature-2";
 constexpr std::string_view revisions_folder = "revisions/";
 constexpr std::string_view revisions_record = "revisions/revisions.json";
 constexpr std::string_view revisions_schema = "todbench-revisions-2";
@@ -164,12 +163,10 @@ Result<SessionSignature> read_signature(const std::filesystem::path& folder) {
   const auto file = folder / signature_record;
   TODBENCH_TRY(const auto json, read_json_file(file));
   const JsonReader reader(json);
+  // Every schema that is accepted signs this record; another would hold for a changed time of signing.
+  reader.at("schema").expect(signature_schema);
   SessionSignature signature;
-  signature.signs_time = reader.at("schema").text() != signature_schema_1;
-  if (signature.signs_time) {
-    reader.at("schema").expect(signature_schema);
-    signature.manifest_file_sha256 = reader.at("manifest_file_sha256").text();
-  }
+  signature.manifest_file_sha256 = reader.at("manifest_file_sha256").text();
   signature.with = reader.at("with").named(signing_programs);
   signature.signed_utc = reader.at("signed_utc").text();
   signature.manifest_sha256 = reader.at("manifest_sha256").text();
@@ -308,16 +305,14 @@ Result<std::optional<SignatureCheck>> check_signature(const std::filesystem::pat
     return check;
   }
   check.covers.emplace_back(manifest_name);
-  if (check.signature.signs_time) {
-    TODBENCH_TRY(const auto time_holds, is_signed_in(folder, signature_record, with, key));
-    TODBENCH_TRY(const auto digest, sha256_of_file(folder / manifest_name));
-    if (!time_holds || digest != check.signature.manifest_file_sha256) {
-      check.sentence = "the time of signing was changed: the signature does not belong to " +
-                       std::string(signature_record) + " and this key";
-      return check;
-    }
-    check.covers.emplace_back("signed_utc");
+  TODBENCH_TRY(const auto time_holds, is_signed_in(folder, signature_record, with, key));
+  TODBENCH_TRY(const auto digest, sha256_of_file(folder / manifest_name));
+  if (!time_holds || digest != check.signature.manifest_file_sha256) {
+    check.sentence = "the time of signing was changed: the signature does not belong to " +
+                     std::string(signature_record) + " and this key";
+    return check;
   }
+  check.covers.emplace_back("signed_utc");
   TODBENCH_TRY(const auto wrong, wrong_revision(folder, with, key));
   if (!wrong.empty()) {
     check.sentence = wrong;
@@ -380,8 +375,8 @@ std::vector<std::string> files_of_signature(const std::filesystem::path& folder)
   const auto signature = read_signature(folder);
   if (!signature) return {std::string(signature_record)};
   const SigningProgram with = signature->with;
-  std::vector<std::string> files{std::string(signature_record), signature_of(manifest_name, with)};
-  if (signature->signs_time) files.push_back(signature_of(signature_record, with));
+  std::vector<std::string> files{std::string(signature_record), signature_of(manifest_name, with),
+                                 signature_of(signature_record, with)};
   if (!has_signed_revisions(folder, with)) return files;
   files.emplace_back(revisions_record);
   files.push_back(signature_of(revisions_record, with));

@@ -18,14 +18,14 @@ enum class SigningProgram { minisign, openssl };
 inline constexpr std::array signing_programs{SigningProgram::minisign, SigningProgram::openssl};
 [[nodiscard]] std::string_view to_string(SigningProgram program);
 
-/// Content of signature.json. The signature itself is manifest.json.minisig or manifest.json.sig.
+/// Content of signature.json. The signatures of manifest.json and of signature.json stand beside them (.sig or
+/// .minisig).
 struct SessionSignature {
   SigningProgram with = SigningProgram::openssl;
   std::string signed_utc;
   std::string manifest_sha256{};       ///< digest of the signed manifest
-  std::string manifest_file_sha256{};  ///< SHA-256 of the file manifest.json; empty if the time is not signed
+  std::string manifest_file_sha256{};  ///< SHA-256 of the file manifest.json
   std::string public_key{};            ///< in the format of its program
-  bool signs_time = true;              ///< signature.json is signed too; false in sessions of earlier versions
   [[nodiscard]] std::string key_sha256() const;
 };
 

@@ -151,19 +151,20 @@ TEST_F(SignedSession, ItsTimeIsSigned) {
   EXPECT_THAT((*check)->sentence, HasSubstr("time of signing"));
 }
 
-TEST_F(SignedSession, ASignatureOfAnEarlierVersionHoldsForItsManifestOnly) {
+TEST_F(SignedSession, ARecordWithoutItsOwnSignatureIsRefused) {
   ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
   Json record = Json::parse(content_of(session_ / "signature.json"));
   record["schema"] = "todbench-signature-1";
   record.erase("manifest_file_sha256");
-  std::ofstream(session_ / "signature.json") << to_page(record);
+  record["signed_utc"] = "2020-01-01T00:00:00Z";
   std::filesystem::remove(session_ / "signature.json.sig");
 
-  const auto check = check_signature(session_, key("mine.pub"));
-  ASSERT_TRUE(check && *check);
-  EXPECT_TRUE((*check)->valid) << (*check)->sentence;
-  EXPECT_THAT((*check)->covers, ElementsAre("manifest.json"));
-  EXPECT_TRUE(check_session(session_)->files.intact());
+  EXPECT_FALSE((*check_signature(session_, key("mine.pub")))->valid) << "its signature is missing";
+  std::ofstream(session_ / "signature.json") << to_page(record);
+  const auto downgraded = check_signature(session_, key("mine.pub"));
+  ASSERT_FALSE(downgraded);
+  EXPECT_EQ(downgraded.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(downgraded.error().message, HasSubstr("todbench-signature-2"));
 }
 
 TEST_F(SignedSession, WhatNoSignatureListsIsForeign) {
