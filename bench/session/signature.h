@@ -50,10 +50,13 @@ struct ReportRevision {
 struct SignatureCheck {
   SessionSignature signature;
   bool valid = false;
-  bool own_key = true;   ///< verified with the key in the folder, which does not prove its owner
-  std::string sentence;  ///< reason if not valid
+  bool own_key = true;     ///< verified with the key in the folder, which does not prove its owner
+  std::string sentence{};  ///< reason if not valid
   /// Contents confirmed by valid signatures: "manifest.json", "signed_utc" and "revisions".
-  std::vector<std::string> covers;
+  std::vector<std::string> covers{};
+  /// SHA-256 of the signed record of each revision, from revision 2 on. A record contains the digest of the one before.
+  /// Nothing in the folder shows that the newest ones were removed; a digest that was kept elsewhere does.
+  std::vector<std::string> revision_sha256{};
 };
 /// Verifies the signatures of manifest.json, signature.json and the list of revisions, and the digests of the
 /// revisions; empty if the session is not signed. check_session() compares the files with the manifest. Errors:
