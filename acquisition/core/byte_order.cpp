@@ -24,6 +24,10 @@ struct Sums {
 
 constexpr int most_rows = 64;
 
+bool uses_both_bytes(std::uint16_t bits) {
+  return (bits & 0x00ff) != 0 && (bits & 0xff00) != 0;
+}
+
 Sums sums_of(const cv::Mat1w& counts) {
   Sums sums;
   const int step = std::max(1, counts.rows / most_rows);
@@ -61,12 +65,35 @@ std::string_view to_string(ByteOrderVerdict verdict) {
 ByteOrderEvidence byte_order_evidence(const cv::Mat1w& counts, const ByteOrderOptions& options) {
   const Sums sums = sums_of(counts);
   ByteOrderEvidence evidence;
+  evidence.bits = sums.bits;
   if (sums.as_stated == 0 || sums.swapped == 0) return evidence;
   evidence.log_ratio = std::log(static_cast<double>(sums.as_stated)) - std::log(static_cast<double>(sums.swapped));
-  const bool both_bytes = (sums.bits & 0x00ff) != 0 && (sums.bits & 0xff00) != 0;
-  if (!both_bytes || std::abs(evidence.log_ratio) < options.least_log_ratio) return evidence;
+  if (!uses_both_bytes(sums.bits) || std::abs(evidence.log_ratio) < options.least_log_ratio) return evidence;
   evidence.verdict = evidence.log_ratio < 0 ? ByteOrderVerdict::as_stated : ByteOrderVerdict::swapped;
   return evidence;
+}
+
+void ByteOrderWatch::see(const cv::Mat1w& counts, int significant_bits) {
+  if (significant_bits <= 8) return;
+  const ByteOrderEvidence evidence = byte_order_evidence(counts, ByteOrderOptions{});
+  two_bytes_ = true;
+  bits_ = static_cast<std::uint16_t>(bits_ | evidence.bits);
+  as_stated_ = as_stated_ || evidence.verdict == ByteOrderVerdict::as_stated;
+  swapped_ = swapped_ || evidence.verdict == ByteOrderVerdict::swapped;
+}
+
+ByteOrderVerdict ByteOrderWatch::verdict() const {
+  if (as_stated_ || !two_bytes_) return ByteOrderVerdict::as_stated;
+  return swapped_ ? ByteOrderVerdict::swapped : ByteOrderVerdict::undecided;
+}
+
+std::string ByteOrderWatch::note() const {
+  if (verdict() != ByteOrderVerdict::undecided || bits_ == 0 || uses_both_bytes(bits_)) return "";
+  const bool low = (bits_ & 0x00ff) != 0;
+  return std::string("the byte order is not decided: the ") + (low ? "high" : "low") +
+         " byte of every count is zero, so both orders look alike, and with the wrong one every number is " +
+         (low ? "256 times too small" : "256 times too large") +
+         ". Check it with a scene of known temperature, or state byte_order of a raw file";
 }
 
 }  // namespace todbench

@@ -2,7 +2,9 @@
 // Tests the byte order of 16-bit counts by the picture itself.
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core.hpp>
+#include <string>
 #include <string_view>
 
 namespace todbench {
@@ -24,6 +26,7 @@ struct ByteOrderEvidence {
   /// verdict is undecided because a picture is flat.
   double log_ratio = 0;
   ByteOrderVerdict verdict = ByteOrderVerdict::undecided;
+  std::uint16_t bits = 0;  ///< that are set in any examined pixel
 };
 
 /// Options of byte_order_evidence().
@@ -37,5 +40,20 @@ struct ByteOrderOptions {
 /// bits shifted up) or whose high byte is zero everywhere (8 bits) is undecided, because both orders are equally
 /// smooth.
 [[nodiscard]] ByteOrderEvidence byte_order_evidence(const cv::Mat1w& counts, const ByteOrderOptions& options);
+
+/// Byte order of the frames of a recording, taken together. One thread at a time.
+class ByteOrderWatch {
+ public:
+  /// `significant_bits` of a count; with 8 or fewer no byte order is stated that could be wrong.
+  void see(const cv::Mat1w& counts, int significant_bits);
+  /// The order that frames show; `as_stated` for counts of one byte, and before the first frame.
+  [[nodiscard]] ByteOrderVerdict verdict() const;
+  /// A sentence if one byte is zero in all examined pixels, so that no frame can show the order; otherwise empty.
+  [[nodiscard]] std::string note() const;
+
+ private:
+  std::uint16_t bits_ = 0;
+  bool two_bytes_ = false, as_stated_ = false, swapped_ = false;
+};
 
 }  // namespace todbench

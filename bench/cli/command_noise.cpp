@@ -12,10 +12,11 @@
 
 #include "acquisition/base/try.h"
 #include "acquisition/core/correction_watch.h"
+#include "acquisition/core/input_gate.h"
 #include "acquisition/core/integrity_gate.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/input_gate.h"
 #include "bench/cli/noise_components.h"
+#include "bench/cli/started_recording.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
 #include "bench/studies/real_noise_study.h"
@@ -44,7 +45,8 @@ struct Frames {
   std::vector<TimedPicture> pictures;
   bool kelvin = false;
   double unit_per_count = 1;  ///< 0: unknown
-  cv::Mat1d saturated;        ///< frames in which a pixel was at either end of the counts
+  ByteOrderVerdict byte_order = ByteOrderVerdict::as_stated;
+  cv::Mat1d saturated;  ///< frames in which a pixel was at either end of the counts
 };
 
 /// In kelvin if the recording has a scale, otherwise in counts.
@@ -127,9 +129,10 @@ Result<Frames> frames_of(const std::string& id, Console& console) {
     auto frame = source->next(std::chrono::seconds(1));
     if (!frame && frame.error().code == ErrorCode::disconnected) {
       if (auto sound = gate.verdict(); !sound) return fail(id, sound.error());
-      for (const auto& sentence : {gate.note(), gate.cadence()}) {
+      for (const auto& sentence : {gate.note(), gate.cadence(), gate.byte_order().note()}) {
         if (!sentence.empty()) console.note(sentence);
       }
+      frames.byte_order = gate.byte_order().verdict();
       split_at_jumps(frames.pictures, jumps);
       return frames;
     }
@@ -171,6 +174,7 @@ struct Found {
   TemporalNoise time;
   bool kelvin = false;
   double unit_per_count = 1, saturated_share = 0;
+  ByteOrderVerdict byte_order = ByteOrderVerdict::as_stated;
 };
 
 bool moved(const RecordedNoise& noise) {
@@ -260,6 +264,7 @@ Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, cons
           {"correlation_y", json_number(noise.correlation_y)},
           {"observer", arguments.observer},
           {"sensor", arguments.sensor},
+          {"byte_order", to_string(found.byte_order)},
           {"verdict", verdict_of(found)},
           {"points", list}};
 }
@@ -345,7 +350,8 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
     console.note(fmt::format("{} of {} pixels never change or see a moving scene: all results exclude them", left_out,
                              time->usable.total()));
   const double saturated_share = cv::mean(frames->saturated, time->usable)[0] / count;
-  const Found found{*std::move(blocks), *std::move(time), frames->kelvin, frames->unit_per_count, saturated_share};
+  const Found found{*std::move(blocks),     *std::move(time), frames->kelvin,
+                    frames->unit_per_count, saturated_share,  frames->byte_order};
   std::vector<NoiseAcuity> points;
   if (clipped(found)) {
     console.note(

@@ -12,11 +12,11 @@
 
 #include "acquisition/base/try.h"
 #include "acquisition/core/camera_id.h"
+#include "acquisition/core/input_gate.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/recording/frame_stream.h"
 #include "acquisition/recording/tiff_writer.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/input_gate.h"
 #include "bench/devices/camera_settings.h"
 #include "bench/devices/devices.h"
 #include "bench/judgement/verdict.h"
@@ -71,6 +71,7 @@ struct Recorded {
   NumberingFaults numbering;
   std::map<std::string, std::uint64_t> rejected;
   std::uint64_t lost = 0;
+  ByteOrderWatch byte_order;
   std::optional<Error> ended_by;
   std::optional<Error> damaged;  ///< too many frames that the file cannot mark as damaged
 };
@@ -120,7 +121,8 @@ Recorded take_frames(FrameSource& camera, Sink& sink, const RecordArguments& a, 
                               ? Result<Frame>(fail(ErrorCode::interrupted, "stopped on request"))
                               : camera.next(timeout);
     if (frame) {
-      (void)gate.judge(*frame);
+      if (const auto reason = gate.judge(*frame); reason != Rejection::incomplete)
+        recorded.byte_order.see(frame->counts, frame->significant_bits);
       if (recorded.arrived == 0) end_ns = monotonic_ns() + static_cast<std::int64_t>(a.seconds * 1e9);
       ++recorded.arrived;
       auto written = sink.append(*frame);
@@ -242,7 +244,9 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
   Recorded recorded = take_frames(**camera, *sink, a, console, stop);
   console.end_progress();
   finish(*sink, file, recorded);
-  if (const std::string faults = describe(recorded.numbering); !faults.empty()) console.note(faults);
+  for (const std::string& sentence : {describe(recorded.numbering), recorded.byte_order.note()}) {
+    if (!sentence.empty()) console.note(sentence);
+  }
   if (console.json()) {
     console.object({{"recording", file.string()},
                     {"camera", info.id},
@@ -251,6 +255,7 @@ int run_record(Console& console, const RecordArguments& a, StopSignals& stop) {
                     {"arrived", recorded.arrived},
                     {"lost", recorded.lost},
                     {"rejected", recorded.rejected},
+                    {"byte_order", to_string(recorded.byte_order.verdict())},
                     {"numbering",
                      {{"restarts", recorded.numbering.restarts},
                       {"silent_gaps", recorded.numbering.silent_gaps},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // todbench compare, todbench report, todbench verify
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -106,10 +107,15 @@ int run_revision(Console& console, const std::string& folder, const std::string&
   const auto data = revise_report(*session, path, reason, utc_now(), key, stop);
   if (!data) return report_error(console, data.error());
   const std::string file = (path / revision_page(*data->revision, "html")).string();
-  if (console.json())
-    console.object({{"report", file}, {"revision", data->revision->number}});
-  else
+  const auto check = check_signature(path, std::nullopt);
+  if (!check) return report_error(console, check.error());
+  const std::string digest = *check && (*check)->valid ? (*check)->revision_sha256.back() : "";
+  if (console.json()) {
+    console.object({{"report", file}, {"revision", data->revision->number}, {"revision_sha256", digest}});
+  } else {
     console.text(file);
+    console.text("SHA-256 of revision " + std::to_string(data->revision->number) + ": " + digest);
+  }
   return 0;
 }
 
@@ -188,16 +194,38 @@ Json signature_json(const SignatureCheck& check) {
           {"signed_utc", check.signature.signed_utc},
           {"valid", check.valid},
           {"covers", check.covers},
+          {"revisions", check.revision_sha256.size()},
+          {"newest_revision_sha256", check.revision_sha256.empty() ? Json() : Json(check.revision_sha256.back())},
           {"checked_with", check.own_key ? "the key in the folder" : "the key that was given"},
           {"key_sha256", check.signature.key_sha256()},
           {"reason", check.valid ? Json() : Json(check.sentence)}};
 }
 
-int run_verify(Console& console, const std::string& folder, const std::string& public_key) {
+/// The revisions of a valid signature, for people.
+std::string revisions_sentence(const std::vector<std::string>& digests) {
+  if (digests.empty()) return "revisions of the report: none";
+  return "revisions of the report: " + std::to_string(digests.size()) + "; the newest is revision " +
+         std::to_string(digests.size() + 1) + ", SHA-256 " + digests.back();
+}
+
+/// Fails if the session lacks the revision with this digest, which somebody kept outside of the folder.
+Result<void> require_revision(const std::string& folder, const std::optional<SignatureCheck>& check,
+                              const std::string& digest) {
+  if (digest.empty()) return {};
+  if (!check) return fail(ErrorCode::invalid_input, folder + ": not signed");
+  const auto& known = check->revision_sha256;
+  if (!check->valid || std::find(known.begin(), known.end(), digest) != known.end()) return {};
+  return fail(ErrorCode::invalid_input,
+              folder + ": the revision with the SHA-256 " + digest + " is missing; " + revisions_sentence(known));
+}
+
+int run_verify(Console& console, const std::string& folder, const std::string& public_key,
+               const std::string& revision) {
   const auto check = check_session(folder);
   if (!check) return report_error(console, check.error());
   const auto signature = signature_of(folder, public_key);
   if (!signature) return report_error(console, signature.error());
+  if (auto there = require_revision(folder, *signature, revision); !there) return report_error(console, there.error());
   const bool signature_holds = !*signature || (*signature)->valid;
   const ManifestCheck& files = check->files;
   const bool intact = check->condition == SessionCondition::intact;
@@ -229,10 +257,7 @@ int run_verify(Console& console, const std::string& folder, const std::string& p
         std::string(to_string((*signature)->signature.with)) + ", SHA-256 of the public key " +
         (*signature)->signature.key_sha256() +
         ((*signature)->own_key ? "; checked with the public key in the folder, which does not prove who signed" : ""));
-    if (!(*signature)->signature.signs_time)
-      console.text(
-          "the signature was made by an earlier version: it covers the files of the manifest but not the time of "
-          "signing");
+    console.text(revisions_sentence((*signature)->revision_sha256));
   }
   if (intact) {
     console.text("intact: every file is as the run wrote it");
@@ -297,8 +322,12 @@ void add_verify_command(CLI::App& app, Program& program) {
   auto public_key = std::make_shared<std::string>();
   command->add_option("--public-key", *public_key,
                       "file with the public key of the signer; default: the key in the session folder");
-  finish_command(*command, program,
-                 [folder, public_key](Console& console) { return run_verify(console, *folder, *public_key); });
+  auto revision = std::make_shared<std::string>();
+  command->add_option("--expect-revision", *revision,
+                      "SHA-256 of a revision that the session must have, as 'report --reason' printed it");
+  finish_command(*command, program, [folder, public_key, revision](Console& console) {
+    return run_verify(console, *folder, *public_key, *revision);
+  });
 }
 
 void add_sign_command(CLI::App& app, Program& program) {

@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "acquisition/base/try.h"
+#include "acquisition/core/input_gate.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/input_gate.h"
+#include "bench/cli/started_recording.h"
 #include "bench/judgement/verdict.h"
 #include "tod/measures/three_d_noise.h"
 
@@ -19,6 +20,7 @@ constexpr double components_white_enough = 0.1;
 struct WholeRecording {
   NoiseTable table;
   bool kelvin = false;
+  ByteOrderVerdict byte_order = ByteOrderVerdict::as_stated;
   int left_out = 0;   ///< incomplete or damaged frames
   int repeated = 0;   ///< frames identical to the one before, bit for bit
   double memory = 0;  ///< correlation of the pixels' noise in successive frames, if known
@@ -77,7 +79,10 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
       return fail(ErrorCode::invalid_input, added.error().message);
   }
   if (auto sound = gate.verdict(); !sound) return fail(id, sound.error());
-  if (const auto sentence = gate.cadence(); !sentence.empty()) console.note(sentence);
+  for (const auto& sentence : {gate.cadence(), gate.byte_order().note()}) {
+    if (!sentence.empty()) console.note(sentence);
+  }
+  whole.byte_order = gate.byte_order().verdict();
   TODBENCH_TRY(whole.table, cube.table());
   whole.memory = cube.pixel_memory();
   if (const auto change = cube.abrupt_change(); change && across == AcrossCorrections::refuse)
@@ -102,6 +107,7 @@ Json components_json(const WholeRecording& whole, const std::string& recording) 
           {"frames", whole.table.frames},
           {"height", whole.table.rows},
           {"width", whole.table.columns},
+          {"byte_order", to_string(whole.byte_order)},
           {"frames_left_out", whole.left_out},
           {"frames_repeated", whole.repeated},
           {"variances", variances},

@@ -11,6 +11,7 @@
 #include "acquisition/core/control_text.h"
 #include "bench/plan/collimator.h"
 #include "bench/text/text.h"
+#include "bench/text/unit_hint.h"
 #include "tod/instruments/instrument_line.h"
 #include "tod/psychometric/tod_curve.h"
 
@@ -157,6 +158,11 @@ ValueMistakes check_focal_length(const Plan& plan, std::size_t /*row*/) {
     if (collimator == CollimatorPlan{}) return {};
     return {{std::nullopt, "missing: the angle of a triangle is its size over the focal length of the collimator"}};
   }
+  // Shorter than any collimator; 2 is one of 2 m, stated in metres.
+  constexpr NumberRange possible = NumberRange::between(10, 1e5);
+  if (!possible.contains(collimator.focal_length_mm))
+    return {{std::nullopt, "expected " + possible.describe() + ", found " + number_text(collimator.focal_length_mm) +
+                               unit_hint("focal_length_mm", collimator.focal_length_mm, possible)}};
   if (plan.target.kind == TargetKind::display)
     return {{std::nullopt, "a monitor is not shown through a collimator: [target] kind must not be \"display\""}};
   return {};

@@ -228,7 +228,7 @@ PlanSection target_section() {
            .place = of(&TargetPlan::display_settle_s)},
           // A wrong default distance would silently scale every result, so a file must state it.
           {.name = "distance_m",
-           .type = NumberKey{NumberRange::between(0.001, 1e5)},
+           .type = NumberKey{NumberRange::between(0.01, 1e4)},
            .unit = "m",
            .sentence = "Distance from the entrance pupil to the plate. Required in a file with a [target], except with "
                        "[target.collimator], whose focal length replaces it",

@@ -70,7 +70,7 @@ PlanSection collimator_section() {
                        of(&CollimatorPlan::mirror_temperature_c)),
           optional_key("blur_mrad", NumberKey{NumberRange::between(0, 1000)}, "mrad",
                        "Aberration: standard deviation of a normal blur per axis", of(&CollimatorPlan::blur_mrad)),
-          optional_key("focal_length_mm", NumberKey{NumberRange::between(0, 1e6)}, "mm",
+          optional_key("focal_length_mm", NumberKey{NumberRange::between(0, 1e5)}, "mm",
                        "Focal length. The angle of a triangle is its size over the focal length",
                        of(&CollimatorPlan::focal_length_mm))}};
   // The last key: a value out of its range is reported before a missing focal length.

@@ -21,8 +21,8 @@ constexpr const char* needs_display_here =
     "a plan that has a section [display], or an observer without an eye (hvs-1)";
 
 /// Ranges of plate dimensions, in mm.
-const NumberRange length_range = NumberRange::between(0.001, 1e5);
-const NumberRange place_range = NumberRange::between(-1e5, 1e5);
+const NumberRange length_range = NumberRange::between(0.02, 1e4);
+const NumberRange place_range = NumberRange::between(-1e4, 1e4);
 
 /// Returns the description if its file had no mistakes and the component that uses it accepts the whole.
 template <typename T>

@@ -215,7 +215,7 @@ PlanSection measurement_section() {
            .sentence = "Largest rms distance of the triangles from their expected places",
            .place = of(&MeasurementPlan::max_residual_px)},
           {.name = "max_readback_deviation_k",
-           .type = NumberKey{NumberRange::between(1e-6, 1e4)},
+           .type = NumberKey{NumberRange::between(1e-6, 20)},
            .unit = "K",
            .sentence = "Largest difference between the contrast that the target reads back and the set contrast. A "
                        "larger one gives a note",

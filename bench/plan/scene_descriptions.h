@@ -16,7 +16,7 @@
 namespace todbench {
 
 /// Keys that scenes, targets and sets share.
-inline const NumberRange scene_kelvin_range = NumberRange::between(1, 99999);
+inline const NumberRange scene_kelvin_range = NumberRange::between(100, 5000);
 inline const NumberRange scene_share_range = NumberRange::between(0, 1);
 
 /// Picture as stored in its file: whole counts or numbers.

@@ -22,11 +22,10 @@ namespace todbench {
 namespace {
 
 constexpr std::string_view signature_record = "signature.json";
-/// The first schema does not sign signature.json, so its stated time is not signed.
-constexpr std::string_view signature_schema = "todbench-signature-2", signature_schema_1 = "todbench-signature-1";
+constexpr std::string_view signature_schema = "todbench-signature-2";
 constexpr std::string_view revisions_folder = "revisions/";
 constexpr std::string_view revisions_record = "revisions/revisions.json";
-constexpr std::string_view revisions_schema = "todbench-revisions-2";
+constexpr std::string_view revisions_schema = "todbench-revisions-3";
 
 /// Returns the name of the detached signature of a file.
 std::string signature_of(std::string_view file, SigningProgram program) {
@@ -164,12 +163,10 @@ Result<SessionSignature> read_signature(const std::filesystem::path& folder) {
   const auto file = folder / signature_record;
   TODBENCH_TRY(const auto json, read_json_file(file));
   const JsonReader reader(json);
+  // Every schema that is accepted signs this record; another would hold for a changed time of signing.
+  reader.at("schema").expect(signature_schema);
   SessionSignature signature;
-  signature.signs_time = reader.at("schema").text() != signature_schema_1;
-  if (signature.signs_time) {
-    reader.at("schema").expect(signature_schema);
-    signature.manifest_file_sha256 = reader.at("manifest_file_sha256").text();
-  }
+  signature.manifest_file_sha256 = reader.at("manifest_file_sha256").text();
   signature.with = reader.at("with").named(signing_programs);
   signature.signed_utc = reader.at("signed_utc").text();
   signature.manifest_sha256 = reader.at("manifest_sha256").text();
@@ -204,13 +201,29 @@ Result<std::vector<std::pair<std::string, std::string>>> pages_of(const Json& js
   return pages;
 }
 
+/// Returns the digests of the records of revisions, in order. Each record has its number and the digest of the record
+/// before; the first has that of signature.json. Empty if a record does not follow.
+Result<std::optional<std::vector<std::string>>> chain_of(const std::filesystem::path& folder, const Json& revisions) {
+  TODBENCH_TRY(std::string before, sha256_of_file(folder / signature_record));
+  std::vector<std::string> digests;
+  for (const Json& record : revisions) {
+    if (!record.is_object() || record.value("number", Json()) != Json(digests.size() + 2) ||
+        record.value("previous_sha256", Json()) != Json(before))
+      return std::nullopt;
+    before = sha256_of(record.dump());
+    digests.push_back(before);
+  }
+  return digests;
+}
+
 bool has_signed_revisions(const std::filesystem::path& folder, SigningProgram with) {
   return is_there(folder / revisions_record) && is_there(folder / signature_of(revisions_record, with));
 }
 
-/// Returns the reason why the list of revisions is invalid; empty if it is valid. An unsigned list confirms no files:
-/// they are foreign.
-Result<std::string> wrong_revision(const std::filesystem::path& folder, SigningProgram with, const std::string& key) {
+/// Returns the reason why the list of revisions is invalid; empty if it is valid, and `digests` are then those of the
+/// records. An unsigned list confirms no files: they are foreign.
+Result<std::string> wrong_revision(const std::filesystem::path& folder, SigningProgram with, const std::string& key,
+                                   std::vector<std::string>& digests) {
   if (!has_signed_revisions(folder, with)) return std::string();
   TODBENCH_TRY(const auto holds, is_signed_in(folder, revisions_record, with, key));
   if (!holds) return "the signature does not belong to " + std::string(revisions_record) + " and this key";
@@ -218,6 +231,8 @@ Result<std::string> wrong_revision(const std::filesystem::path& folder, SigningP
   TODBENCH_TRY(const auto manifest, sha256_of_file(folder / manifest_name));
   if (json.value("manifest_file_sha256", Json()) != Json(manifest))
     return std::string(revisions_record) + " belongs to another session";
+  TODBENCH_TRY(auto chain, chain_of(folder, json["revisions"]));
+  if (!chain) return std::string(revisions_record) + ": a revision does not follow the one before it";
   const auto pages = pages_of(json);
   if (!pages) return fail((folder / revisions_record).string(), pages.error());
   for (const auto& [path, expected] : *pages) {
@@ -225,6 +240,7 @@ Result<std::string> wrong_revision(const std::filesystem::path& folder, SigningP
     if (!is_revision_page(path) || !digest || *digest != expected)
       return path + " was changed after the revision was written";
   }
+  digests = *std::move(chain);
   return std::string();
 }
 
@@ -292,7 +308,7 @@ Result<std::optional<SignatureCheck>> check_signature(const std::filesystem::pat
                                                       const std::optional<std::filesystem::path>& public_key) {
   if (!is_signed(folder)) return std::nullopt;
   TODBENCH_TRY(auto signature, read_signature(folder));
-  SignatureCheck check{.signature = std::move(signature), .own_key = !public_key, .sentence = {}, .covers = {}};
+  SignatureCheck check{.signature = std::move(signature), .own_key = !public_key};
   const OwnFile own;
   std::string key = own.path().string();
   if (public_key) {
@@ -308,17 +324,15 @@ Result<std::optional<SignatureCheck>> check_signature(const std::filesystem::pat
     return check;
   }
   check.covers.emplace_back(manifest_name);
-  if (check.signature.signs_time) {
-    TODBENCH_TRY(const auto time_holds, is_signed_in(folder, signature_record, with, key));
-    TODBENCH_TRY(const auto digest, sha256_of_file(folder / manifest_name));
-    if (!time_holds || digest != check.signature.manifest_file_sha256) {
-      check.sentence = "the time of signing was changed: the signature does not belong to " +
-                       std::string(signature_record) + " and this key";
-      return check;
-    }
-    check.covers.emplace_back("signed_utc");
+  TODBENCH_TRY(const auto time_holds, is_signed_in(folder, signature_record, with, key));
+  TODBENCH_TRY(const auto digest, sha256_of_file(folder / manifest_name));
+  if (!time_holds || digest != check.signature.manifest_file_sha256) {
+    check.sentence = "the time of signing was changed: the signature does not belong to " +
+                     std::string(signature_record) + " and this key";
+    return check;
   }
-  TODBENCH_TRY(const auto wrong, wrong_revision(folder, with, key));
+  check.covers.emplace_back("signed_utc");
+  TODBENCH_TRY(const auto wrong, wrong_revision(folder, with, key, check.revision_sha256));
   if (!wrong.empty()) {
     check.sentence = wrong;
     return check;
@@ -369,8 +383,14 @@ Result<void> keep_revision(const std::filesystem::path& folder, const ReportRevi
     TODBENCH_TRY(const auto digest, sha256_of_file(folder / page));
     listed.push_back({{"path", page}, {"sha256", digest}});
   }
-  json["revisions"].push_back(
-      {{"number", revision.number}, {"utc", revision.utc}, {"reason", revision.reason}, {"pages", listed}});
+  TODBENCH_TRY(const auto chain, chain_of(folder, json["revisions"]));
+  if (!chain) return fail(ErrorCode::invalid_input, (folder / revisions_record).string() + ": revisions are missing");
+  TODBENCH_TRY(const auto first, sha256_of_file(folder / signature_record));
+  json["revisions"].push_back({{"number", revision.number},
+                               {"previous_sha256", chain->empty() ? first : chain->back()},
+                               {"utc", revision.utc},
+                               {"reason", revision.reason},
+                               {"pages", listed}});
   if (auto written = write_file_atomically(folder / revisions_record, to_page(json)); !written) return written;
   return sign_in(folder, revisions_record, signature.with, secret_key, stop);
 }
@@ -380,8 +400,8 @@ std::vector<std::string> files_of_signature(const std::filesystem::path& folder)
   const auto signature = read_signature(folder);
   if (!signature) return {std::string(signature_record)};
   const SigningProgram with = signature->with;
-  std::vector<std::string> files{std::string(signature_record), signature_of(manifest_name, with)};
-  if (signature->signs_time) files.push_back(signature_of(signature_record, with));
+  std::vector<std::string> files{std::string(signature_record), signature_of(manifest_name, with),
+                                 signature_of(signature_record, with)};
   if (!has_signed_revisions(folder, with)) return files;
   files.emplace_back(revisions_record);
   files.push_back(signature_of(revisions_record, with));

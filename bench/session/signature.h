@@ -18,14 +18,14 @@ enum class SigningProgram { minisign, openssl };
 inline constexpr std::array signing_programs{SigningProgram::minisign, SigningProgram::openssl};
 [[nodiscard]] std::string_view to_string(SigningProgram program);
 
-/// Content of signature.json. The signature itself is manifest.json.minisig or manifest.json.sig.
+/// Content of signature.json. The signatures of manifest.json and of signature.json stand beside them (.sig or
+/// .minisig).
 struct SessionSignature {
   SigningProgram with = SigningProgram::openssl;
   std::string signed_utc;
   std::string manifest_sha256{};       ///< digest of the signed manifest
-  std::string manifest_file_sha256{};  ///< SHA-256 of the file manifest.json; empty if the time is not signed
+  std::string manifest_file_sha256{};  ///< SHA-256 of the file manifest.json
   std::string public_key{};            ///< in the format of its program
-  bool signs_time = true;              ///< signature.json is signed too; false in sessions of earlier versions
   [[nodiscard]] std::string key_sha256() const;
 };
 
@@ -50,10 +50,13 @@ struct ReportRevision {
 struct SignatureCheck {
   SessionSignature signature;
   bool valid = false;
-  bool own_key = true;   ///< verified with the key in the folder, which does not prove its owner
-  std::string sentence;  ///< reason if not valid
+  bool own_key = true;     ///< verified with the key in the folder, which does not prove its owner
+  std::string sentence{};  ///< reason if not valid
   /// Contents confirmed by valid signatures: "manifest.json", "signed_utc" and "revisions".
-  std::vector<std::string> covers;
+  std::vector<std::string> covers{};
+  /// SHA-256 of the signed record of each revision, from revision 2 on. A record contains the digest of the one before.
+  /// Nothing in the folder shows that the newest ones were removed; a digest that was kept elsewhere does.
+  std::vector<std::string> revision_sha256{};
 };
 /// Verifies the signatures of manifest.json, signature.json and the list of revisions, and the digests of the
 /// revisions; empty if the session is not signed. check_session() compares the files with the manifest. Errors:

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "acquisition/base/try.h"
+#include "acquisition/core/input_gate.h"
 #include "acquisition/recording/picture_file.h"
 #include "acquisition/recording/recording_backend.h"
 
@@ -27,15 +28,18 @@ Result<cv::Mat1d> mean_kelvin(const std::string& file, int frames) {
                 "?kelvin_per_count=0.01&offset_k=0, or ?unit=kelvin");
   const auto source = recorded_source(std::move(recording));
   if (auto started = source->start(); !started) return tl::unexpected(started.error());
+  InputGate gate;
   cv::Mat1d sum;
+  int taken = 0;
   for (int k = 0; k < frames; ++k) {
     TODBENCH_TRY(const auto frame, source->next(std::chrono::seconds(1)));
-    if (frame.status != FrameStatus::complete)
-      return fail(ErrorCode::invalid_input, "picture " + std::to_string(k + 1) + " is incomplete");
+    if (!gate.takes(frame)) continue;
     TODBENCH_TRY(const auto kelvin, to_kelvin(frame));
     sum = sum.empty() ? kelvin : cv::Mat1d(sum + kelvin);
+    ++taken;
   }
-  return cv::Mat1d(sum / frames);
+  if (auto sound = gate.verdict(); !sound) return tl::unexpected(sound.error());
+  return cv::Mat1d(sum / taken);
 }
 
 }  // namespace

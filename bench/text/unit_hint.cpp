@@ -7,11 +7,13 @@
 namespace todbench {
 namespace {
 
-/// Alternative unit: a number in `other` times `factor` is one in `unit`.
+/// Alternative unit: a number in `other` times `factor`, plus `offset`, is one in `unit`.
 struct OtherUnit {
   std::string_view unit, other;
   double factor;
+  double offset = 0;
 };
+constexpr double celsius_zero_k = 273.15;
 constexpr std::array other_units{
     OtherUnit{"um", "mm", 1e3},
     OtherUnit{"um", "nm", 1e-3},
@@ -29,6 +31,8 @@ constexpr std::array other_units{
     OtherUnit{"mrad", "rad", 1e3},
     OtherUnit{"mrad", "urad", 1e-3},
     OtherUnit{"k", "mK", 1e-3},
+    OtherUnit{"k", "degrees Celsius", 1, celsius_zero_k},
+    OtherUnit{"c", "kelvin", 1, -celsius_zero_k},
     OtherUnit{"hz", "kHz", 1e3},
     OtherUnit{"hz", "mHz", 1e-3},
     OtherUnit{"deg", "mrad", 0.0572957795},
@@ -48,7 +52,7 @@ std::string unit_hint(std::string_view key, double value, const NumberRange& ran
   if (value != 0 && std::abs(value) < 1e-100) return range.contains(0) ? "; is 0 meant?" : "";
   if (value == 0) return {};
   for (const OtherUnit& row : other_units) {
-    if (ends_in(key, row.unit) && range.contains(value * row.factor))
+    if (ends_in(key, row.unit) && range.contains(value * row.factor + row.offset))
       return "; is the value in " + std::string(row.other) + "?";
   }
   return {};

@@ -60,9 +60,15 @@ const std::array program{
     sock_filter{BPF_JMP | BPF_JEQ | BPF_K, 1, 0, __NR_socket},
     end(SECCOMP_RET_ALLOW),
     load(offsetof(seccomp_data, args)),
-    if_equal(AF_UNIX),
-    end(refused(EAFNOSUPPORT)),
+    // Families that belong to the module's own network. The others reach the host: UNIX sockets by their paths, VSOCK
+    // the hypervisor.
+    if_equal(AF_INET),
     end(SECCOMP_RET_ALLOW),
+    if_equal(AF_INET6),
+    end(SECCOMP_RET_ALLOW),
+    if_equal(AF_NETLINK),
+    end(SECCOMP_RET_ALLOW),
+    end(refused(EAFNOSUPPORT)),
 };
 
 }  // namespace

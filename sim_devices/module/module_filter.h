@@ -4,8 +4,9 @@
 
 namespace todbench {
 
-/// File with a seccomp filter for `bwrap --seccomp`. It forbids UNIX sockets, because their paths lead out of the
-/// module's own network; pairs of sockets are allowed. The caller closes it. -1 if system or processor has no filter.
+/// File with a seccomp filter for `bwrap --seccomp`. It forbids sockets of every family but IPv4, IPv6 and netlink,
+/// because the others (UNIX, VSOCK) lead out of the module's own network; pairs of sockets are allowed. The caller
+/// closes it. -1 if system or processor has no filter.
 [[nodiscard]] int module_filter();
 
 }  // namespace todbench

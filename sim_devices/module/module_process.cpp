@@ -34,10 +34,11 @@ void never_wait(int descriptor) {
 /// File descriptor at which bwrap finds the filter.
 constexpr int filter_end = 3;
 
-/// Own network without UNIX sockets. The file system is that of the host; all processes end with the first.
+/// Own network without sockets that lead out of it, own System V objects and POSIX message queues. The file system is
+/// that of the host; all processes end with the first.
 std::vector<std::string> sandbox_words() {
   // Not --die-with-parent: the module would die with its starting thread. A bench that ends closes the input.
-  return {"bwrap",         "--dev-bind", "/",     "/",         "--unshare-net",
+  return {"bwrap",         "--dev-bind", "/",     "/",         "--unshare-net",           "--unshare-ipc",
           "--unshare-pid", "--proc",     "/proc", "--seccomp", std::to_string(filter_end)};
 }
 

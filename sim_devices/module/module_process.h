@@ -20,7 +20,7 @@ namespace todbench {
 
 /// Access of a module to other computers, and to this one over its network.
 enum class ModuleNetwork {
-  cut,  ///< own network without UNIX sockets, by bubblewrap; as `ours` if that cannot run
+  cut,  ///< own network and queues, no other sockets, by bubblewrap; as `ours` if that cannot run
   ours,
 };
 /// True if a network can be cut here: bubblewrap is installed and works. Tested once.

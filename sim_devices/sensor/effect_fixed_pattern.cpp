@@ -20,7 +20,7 @@ void add_fixed_pattern(cv::Mat1f& picture, const SensorSpec& spec, const NoiseSt
 EffectRow effect_rows::fixed_pattern() {
   EffectRow row;
   row.title = "Fixed-pattern noise";
-  row.keys = {{"fixed_pattern_k", &SensorSpec::fixed_pattern_k, NumberRange::between(0, 1000), KeyPresence::optional,
+  row.keys = {{"fixed_pattern_k", &SensorSpec::fixed_pattern_k, NumberRange::between(0, 10), KeyPresence::optional,
                "standard deviation of the fixed offset of a detector"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.fixed_pattern_k == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.fixed_pattern_k = 0; };

@@ -39,6 +39,11 @@ EffectRow effect_rows::motion() {
   row.title = "Motion and time constant";
   row.keys = {{"time_constant_ms", &SensorSpec::time_constant_ms, NumberRange::between(0, 1000), KeyPresence::optional,
                "time constant of the bolometer; 0: a detector without memory"}};
+  row.impossible = [](const SensorSpec& spec) -> std::string {
+    // Bolometers have 1 ms and more; 0.01 is one of 10 ms, stated in seconds.
+    const bool memory = spec.time_constant_ms > 0 && spec.time_constant_ms < 0.05;
+    return memory ? "time_constant_ms must be 0, or 0.05 to 1000; is the value in s?" : "";
+  };
   row.is_neutral = [](const SensorSpec& spec, SceneMotion motion) {
     return spec.time_constant_ms == 0 || (!motion.moving() && !lets_dance(spec));
   };

@@ -48,9 +48,9 @@ double as_white(const NoiseScope& scope, double sd_k, SharedBy line) {
 EffectRow effect_rows::row_column_noise() {
   EffectRow row;
   row.title = "Row and column noise";
-  row.keys = {{"row_noise_k", &SensorSpec::row_noise_k, NumberRange::between(0, 1000), KeyPresence::optional,
+  row.keys = {{"row_noise_k", &SensorSpec::row_noise_k, NumberRange::between(0, 10), KeyPresence::optional,
                "standard deviation of the offset of a row of detectors, new in every exposure"},
-              {"column_noise_k", &SensorSpec::column_noise_k, NumberRange::between(0, 1000), KeyPresence::optional,
+              {"column_noise_k", &SensorSpec::column_noise_k, NumberRange::between(0, 10), KeyPresence::optional,
                "the same for a column"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) {
     return spec.row_noise_k == 0 && spec.column_noise_k == 0;

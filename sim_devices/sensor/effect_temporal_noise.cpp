@@ -27,7 +27,7 @@ void add_temporal_noise(cv::Mat1f& picture, const SensorSpec& spec, const NoiseS
 EffectRow effect_rows::temporal_noise() {
   EffectRow row;
   row.title = "Temporal noise";
-  row.keys = {{"netd_k", &SensorSpec::netd_k, NumberRange::between(0, 100), KeyPresence::required,
+  row.keys = {{"netd_k", &SensorSpec::netd_k, NumberRange::between(0, 5), KeyPresence::required,
                "temporal noise per sample, referred to the scene"}};
   row.is_neutral = [](const SensorSpec& spec, SceneMotion) { return spec.netd_k == 0; };
   row.neutralise = [](SensorSpec& spec) { spec.netd_k = 0; };

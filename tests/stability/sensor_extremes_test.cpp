@@ -87,16 +87,16 @@ TEST(SensorExtremes, APictureOfOneMillikelvinIsTheUnitPictureScaled) {
 
 TEST(SensorExtremes, NoiseAThousandTimesTheSignalStaysFiniteAndHasItsSpread) {
   SensorSpec spec;
-  spec.netd_k = 10;
+  spec.netd_k = 5;
   const SensorModel sensor = model(spec, {Effect::quantisation});
 
-  const cv::Mat1f picture = sensor.picture(scene_of_one(0.01), 0);
+  const cv::Mat1f picture = sensor.picture(scene_of_one(0.005), 0);
 
   cv::Scalar mean, sd;
   cv::meanStdDev(picture, mean, sd);
   const double n = static_cast<double>(picture.total());
-  EXPECT_NEAR(sd[0], 10, 4 * 10 / std::sqrt(2 * n));
-  EXPECT_NEAR(mean[0], 0, 4 * 10 / std::sqrt(n) + 0.01);
+  EXPECT_NEAR(sd[0], 5, 4 * 5 / std::sqrt(2 * n));
+  EXPECT_NEAR(mean[0], 0, 4 * 5 / std::sqrt(n) + 0.005);
 }
 
 // Hard: the integrand falls over decades and the region is what is left of a shape. A square of half side L round the

@@ -4,6 +4,7 @@
 #include <memory>
 #include <random>
 
+#include "acquisition/base/process.h"
 #include "bench/session/manifest.h"
 #include "tests/system/system_test_support.h"
 
@@ -213,6 +214,26 @@ TEST_F(ChangedSessions, WhereTheCurveDoesNotAnswerARangeIsOneSentence) {
   EXPECT_EQ(json.code, 3);
   EXPECT_TRUE(one_object(json)["r75_m"].is_null());
   EXPECT_THAT(one_object(json)["curve"], IsEmpty());
+}
+
+TEST_F(ChangedSessions, ARevisionWhoseDigestWasKeptIsMissed) {
+  ASSERT_TRUE(run_program({"openssl", "genpkey", "-algorithm", "ED25519", "-out", at("key.pem").string()},
+                          ProgramOutput::kept));
+  ASSERT_EQ(run({"sign", "m", "--with", "openssl", "--key", "key.pem"}).code, 0);
+  EXPECT_THAT(run({"verify", "m"}).out, HasSubstr("revisions of the report: none"));
+  const Json revised = one_object(run({"report", "m", "--reason", "a wrong name", "--key", "key.pem", "--json"}));
+  const std::string digest = revised["revision_sha256"];
+  EXPECT_THAT(run({"verify", "m"}).out,
+              HasSubstr("revisions of the report: 1; the newest is revision 2, SHA-256 " + digest));
+  EXPECT_EQ(one_object(run({"verify", "m", "--json"}))["signature"]["newest_revision_sha256"], digest);
+  EXPECT_EQ(run({"verify", "m", "--expect-revision", digest}).code, 0);
+
+  std::filesystem::remove_all(at("m") / "revisions");
+
+  EXPECT_EQ(run({"verify", "m"}).code, 0) << "nothing in the folder shows it";
+  const Ended missed = run({"verify", "m", "--expect-revision", digest});
+  EXPECT_EQ(missed.code, 2);
+  EXPECT_THAT(missed.err, HasSubstr("the revision with the SHA-256 " + digest + " is missing"));
 }
 
 }  // namespace

@@ -30,8 +30,10 @@ TEST(ExtremeValues, OfAPlanAreRefusedWithAKeyOrInItsRange) {
 
 TEST(ExtremeValues, InAnotherUnitAreRefusedWithItsName) {
   const Plan plan = plan_of_every_section();
-  const std::pair<const char*, const char*> mistakes[] = {
-      {"target.distance_m", "2e6"}, {"target.delta_t_k", "[2000.0]"}, {"target.settle_timeout_s", "6e10"}};
+  const std::pair<const char*, const char*> mistakes[] = {{"target.distance_m", "2e6"},
+                                                          {"target.delta_t_k", "[2000.0]"},
+                                                          {"target.settle_timeout_s", "6e10"},
+                                                          {"measurement.max_readback_deviation_k", "50.0"}};
   for (const auto& [path, value] : mistakes) {
     const auto read = parse_plan({"plan.toml", with_key(plan, plan_key(path), value)}, ".");
 

@@ -32,7 +32,7 @@ TEST(NoiseCommand, TellsTheAcuityUnderARealCamerasNoiseFromThatUnderWhiteNoise) 
               UnorderedElementsAre("recording", "unit", "width", "height", "blocks", "block_frames", "usable_share",
                                    "pixels_left_out", "temporal_noise", "lag1_correlation", "structure_function",
                                    "whole_to_successive", "block_noise", "components", "correlation_x", "correlation_y",
-                                   "observer", "sensor", "verdict", "points"));
+                                   "observer", "sensor", "byte_order", "verdict", "points"));
   EXPECT_EQ(json["unit"], "counts");
   EXPECT_EQ(json["width"], 160);
   EXPECT_EQ(json["blocks"], 10);  // 100 frames
@@ -165,6 +165,27 @@ TEST(NoiseCommand, RefusesFramesThatAreByteSwappedRotatedOrRepeated) {
     expect_refused(todbench({"noise", file}), 5, sentence);
     expect_refused(todbench({"noise", file, "--components-only"}), 5, sentence);
   }
+}
+
+TEST(NoiseCommand, SaysThatCountsOfOneByteDoNotShowTheirByteOrder) {
+  const TemporaryFolder folder;
+  const std::string low = white_frames(100, 3);
+  std::string swapped = low;
+  for (std::size_t i = 0; i < swapped.size(); i += 2) std::swap(swapped[i], swapped[i + 1]);
+  for (const auto& [frames, byte] : {std::pair{low, "high"}, {swapped, "low"}}) {
+    const std::string file = folder.write("low.raw", frames).string() + "?width=80&height=60";
+    const std::string copy = (folder.path() / "copy.todrec").string();
+    for (const Ended& ended : {todbench({"noise", file, "--contrast-over-noise", "8", "--json"}),
+                               todbench({"noise", file, "--components-only", "--json"}),
+                               todbench({"record", "file:" + file, "--out", copy, "--force", "--json"})}) {
+      EXPECT_EQ(one_object(ended)["byte_order"], "undecided");
+      EXPECT_THAT(ended.err, HasSubstr("the " + std::string(byte) + " byte of every count is zero"));
+    }
+  }
+  const std::string usual = folder.write("usual.raw", white_frames(8000, 5)).string() + "?width=80&height=60";
+  const Ended ended = todbench({"noise", usual, "--components-only", "--json"});
+  EXPECT_EQ(one_object(ended)["byte_order"], "as_stated");
+  EXPECT_THAT(ended.err, ::testing::Not(HasSubstr("byte order")));
 }
 
 TEST(RecordCommand, EndsWithFiveForFramesThatAreByteSwappedOrRepeatedAndKeepsThem) {

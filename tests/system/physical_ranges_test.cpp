@@ -69,6 +69,32 @@ TEST(PhysicalRanges, AWavelengthInMillimetresIsRefusedWithItsUnit) {
   EXPECT_THAT(ended.err, HasSubstr("expected a number from 0.1 to 100, found 0.0075; is the value in mm?"));
 }
 
+TEST(PhysicalRanges, ASensorKeyInAnotherUnitIsRefusedWithItsUnit) {
+  struct Mistake {
+    const char *key, *value, *hint;
+  };
+  const Mistake mistakes[] = {{"netd_k", "70", "mK"},
+                              {"row_noise_k", "30", "mK"},
+                              {"column_noise_k", "30", "mK"},
+                              {"fixed_pattern_k", "50", "mK"},
+                              {"focal_length_mm", "0.0363", "m"},
+                              {"scene_temperature_k", "27", "degrees Celsius"},
+                              {"time_constant_ms", "0.010", "s"},
+                              {"pitch_um", "0.0475", "mm"}};
+  const TemporaryFolder folder;
+  const std::string sensor = content_of(source_file("sim_devices/sensors/sc2000.toml"));
+  for (const auto& [key, value, hint] : mistakes) {
+    std::ofstream(folder.path() / "s.toml") << with_value(sensor, key, value);
+
+    const Ended ended =
+        todbench({"mtf", "--sensor", "s.toml", "--frequency-per-pitch", "0.1", "--json"}, {.folder = folder.path()});
+
+    EXPECT_EQ(ended.code, 2) << key;
+    EXPECT_THAT(ended.err, HasSubstr(key));
+    EXPECT_THAT(ended.err, HasSubstr("; is the value in " + std::string(hint) + "?")) << key;
+  }
+}
+
 TEST(PhysicalRanges, ACurveBeyondAnyCameraIsRefused) {
   const TemporaryFolder folder;
   for (const std::string value : {"1e308", "1e-320", "nan", "inf", "-1"}) {

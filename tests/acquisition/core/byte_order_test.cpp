@@ -136,5 +136,19 @@ TEST(ByteOrder, OfAPictureThatTellsNothingIsUndecided) {
   EXPECT_EQ(byte_order_evidence(cv::Mat1w(), {}).verdict, ByteOrderVerdict::undecided);
 }
 
+TEST(ByteOrderWatch, IsDecidedByOneFrameAndAsksOnlyOfCountsOfTwoBytes) {
+  const cv::Mat1w low = (cv::Mat1w(2, 3) << 90, 95, 100, 92, 97, 93);
+  ByteOrderWatch watch;
+  EXPECT_EQ(watch.verdict(), ByteOrderVerdict::as_stated);
+  watch.see(low, 8);
+  EXPECT_EQ(watch.note(), "");
+  watch.see(low, 14);
+  EXPECT_EQ(watch.verdict(), ByteOrderVerdict::undecided);
+  EXPECT_THAT(watch.note(), ::testing::HasSubstr("the high byte of every count is zero"));
+  watch.see(thermal_picture(14, 4, 1), 14);
+  EXPECT_EQ(watch.verdict(), ByteOrderVerdict::as_stated);
+  EXPECT_EQ(watch.note(), "");
+}
+
 }  // namespace
 }  // namespace todbench

@@ -35,6 +35,13 @@ TEST(Collimator, ReplacesTheDistanceByItsFocalLength) {
   EXPECT_DOUBLE_EQ(loaded->plan().target.distance_m, 1.5);
 }
 
+TEST(Collimator, InMetresIsRefusedWithItsUnit) {
+  const auto in_metres = plan_with("collimator = { focal_length_mm = 1.5 }");
+
+  ASSERT_FALSE(in_metres);
+  EXPECT_THAT(in_metres.error().message, HasSubstr("a number from 10 to 100000, found 1.5; is the value in m?"));
+}
+
 TEST(Collimator, AndADistanceTogetherAreRejected) {
   const auto both = plan_with("distance_m = 1.5\ncollimator = { focal_length_mm = 1500 }");
   const auto neither = plan_with("");

@@ -214,7 +214,7 @@ TEST(PlateFile, MistakesAreNamedWithTheirLine) {
   EXPECT_EQ(with("[\"up\", \"left\"]", "[\"up\"]"),
             "p.toml:8: key 'apex' in [row]: expected 2 values as in x_mm, found 1");
   EXPECT_EQ(with("size_mm = 5", "size_mm = 0"),
-            "p.toml:10: key 'size_mm' in [row]: expected a number from 0.001 to 100000, found 0");
+            "p.toml:10: key 'size_mm' in [row]: expected a number from 0.02 to 10000, found 0");
   EXPECT_THAT(with("x_mm = [-25, 25]", "x_mm = [-25, 47]"),
               HasSubstr("p.toml: "));  // base 4.4 mm right of the centroid: leaves the plate
 }

@@ -228,6 +228,9 @@ TEST(UnitHint, NamesTheUnitThatWouldBeInRange) {
   EXPECT_EQ(unit_hint("--distance-m", 2e6, NumberRange::between(0.1, 1e4)), "; is the value in mm?");
   EXPECT_EQ(unit_hint("mean", 1e20, NumberRange::between(0, 1e12)), "");
   EXPECT_EQ(unit_hint("netd_k", 1e-320, NumberRange::between(0, 100)), "; is 0 meant?");
+  EXPECT_EQ(unit_hint("netd_k", 70, NumberRange::between(0, 5)), "; is the value in mK?");
+  EXPECT_EQ(unit_hint("background_k", 15, NumberRange::between(100, 5000)), "; is the value in degrees Celsius?");
+  EXPECT_EQ(unit_hint("room_temperature_c", 295, NumberRange::between(-100, 200)), "; is the value in kelvin?");
   EXPECT_EQ(unit_hint("pitch_um", 12, NumberRange::between(0.1, 100)), "");
 }
 

@@ -327,7 +327,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "plan.toml:3: unknown key 'phasse' in [target], did you mean 'phases'?"},
         Mistake{"no_distance", "\n[target]\nphases = 3\n", "plan.toml:2: missing key 'distance_m' in [target]"},
         Mistake{"negative_distance", "[target]\ndistance_m = -1\n",
-                "plan.toml:2: key 'distance_m' in [target]: expected a number from 0.001 to 100000"},
+                "plan.toml:2: key 'distance_m' in [target]: expected a number from 0.01 to 10000"},
         Mistake{"zero_contrast", "[target]\ndistance_m = 2\ndelta_t_k = [1,\n0]\n",
                 "plan.toml:4: key 'delta_t_k' in [target]: a contrast of 0 K"},
         Mistake{"contrast_twice", "[target]\ndistance_m = 2\ndelta_t_k = [16.9, 16.95]\n",

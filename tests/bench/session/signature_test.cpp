@@ -139,6 +139,46 @@ TEST_F(SignedSession, AForgedRevisionIsSeenThoughItsDigestIsListed) {
   EXPECT_FALSE(next_revision(session_, "another reason", utc)) << "it would sign the forged one";
 }
 
+TEST_F(SignedSession, ChainsItsRevisionsSoThatAKeptDigestShowsARemovedOne) {
+  ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
+  std::filesystem::create_directories(session_ / "revisions");
+  std::vector<std::string> lists, signatures;
+  for (int k = 0; k < 2; ++k) {
+    const auto revision = next_revision(session_, "a reason", utc).value();
+    const std::string page = revision_page(revision, "html");
+    std::ofstream(session_ / page) << k;
+    ASSERT_TRUE(keep_revision(session_, revision, {page}, key("mine.pem")));
+    lists.push_back(content_of(session_ / "revisions/revisions.json"));
+    signatures.push_back(content_of(session_ / "revisions/revisions.json.sig"));
+  }
+  const std::vector<std::string> digests = (*check_signature(session_, std::nullopt))->revision_sha256;
+  ASSERT_EQ(digests.size(), 2u);
+  const Json records = Json::parse(lists[1])["revisions"];
+  EXPECT_EQ(records[0]["previous_sha256"], sha256_of(content_of(session_ / "signature.json")));
+  EXPECT_EQ(records[1]["previous_sha256"], digests[0]);
+
+  std::ofstream(session_ / "revisions/revisions.json") << lists[0];
+  std::ofstream(session_ / "revisions/revisions.json.sig") << signatures[0];
+  std::filesystem::remove(session_ / "revisions/report-3.html");
+  const auto rolled_back = check_signature(session_, std::nullopt);
+  EXPECT_TRUE((*rolled_back)->valid);
+  EXPECT_THAT((*rolled_back)->revision_sha256, ElementsAre(digests[0]));
+}
+
+TEST_F(SignedSession, AListFromWhichARevisionWasTakenIsNotContinued) {
+  ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
+  std::filesystem::create_directories(session_ / "revisions");
+  for (int k = 0; k < 2; ++k) {
+    const auto revision = next_revision(session_, "a reason", utc).value();
+    ASSERT_TRUE(keep_revision(session_, revision, {}, key("mine.pem")));
+  }
+  Json list = Json::parse(content_of(session_ / "revisions/revisions.json"));
+  list["revisions"].erase(0);
+  std::ofstream(session_ / "revisions/revisions.json") << to_page(list);
+
+  EXPECT_FALSE(keep_revision(session_, {.number = 3, .utc = utc, .reason = "a reason"}, {}, key("mine.pem")));
+}
+
 TEST_F(SignedSession, ItsTimeIsSigned) {
   ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
   std::string record = content_of(session_ / "signature.json");
@@ -151,19 +191,20 @@ TEST_F(SignedSession, ItsTimeIsSigned) {
   EXPECT_THAT((*check)->sentence, HasSubstr("time of signing"));
 }
 
-TEST_F(SignedSession, ASignatureOfAnEarlierVersionHoldsForItsManifestOnly) {
+TEST_F(SignedSession, ARecordWithoutItsOwnSignatureIsRefused) {
   ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
   Json record = Json::parse(content_of(session_ / "signature.json"));
   record["schema"] = "todbench-signature-1";
   record.erase("manifest_file_sha256");
-  std::ofstream(session_ / "signature.json") << to_page(record);
+  record["signed_utc"] = "2020-01-01T00:00:00Z";
   std::filesystem::remove(session_ / "signature.json.sig");
 
-  const auto check = check_signature(session_, key("mine.pub"));
-  ASSERT_TRUE(check && *check);
-  EXPECT_TRUE((*check)->valid) << (*check)->sentence;
-  EXPECT_THAT((*check)->covers, ElementsAre("manifest.json"));
-  EXPECT_TRUE(check_session(session_)->files.intact());
+  EXPECT_FALSE((*check_signature(session_, key("mine.pub")))->valid) << "its signature is missing";
+  std::ofstream(session_ / "signature.json") << to_page(record);
+  const auto downgraded = check_signature(session_, key("mine.pub"));
+  ASSERT_FALSE(downgraded);
+  EXPECT_EQ(downgraded.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(downgraded.error().message, HasSubstr("todbench-signature-2"));
 }
 
 TEST_F(SignedSession, WhatNoSignatureListsIsForeign) {

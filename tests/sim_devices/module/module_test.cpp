@@ -8,6 +8,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <filesystem>
+
 #include "sim_devices/module/module_check.h"
 #include "sim_devices/module/module_observer_check.h"
 #include "sim_devices/module/npy_message.h"
@@ -205,6 +207,21 @@ TEST(ModuleProcess, AndItsVersionCommandReachNoSocketOfAPath) {
   EXPECT_TRUE(ours) << ours.error().message;
   EXPECT_EQ(version_cut, "not reached");
   EXPECT_EQ(version_ours, "reached");
+}
+
+TEST(ModuleProcess, HasNoSocketsThatLeadOutOfItsNetworkAndQueuesOfItsOwn) {
+  if (!can_cut_network()) GTEST_SKIP() << "bubblewrap is not installed or cannot work here";
+  ModuleOptions families = example("says-families"), queues = families;
+  queues.command = "readlink /proc/self/ns/ipc";
+  const std::string of_host = std::filesystem::read_symlink("/proc/self/ns/ipc").string();
+
+  const std::string cut = first_line_of_module(families), queues_cut = first_line_of_module(queues);
+  families.network = queues.network = ModuleNetwork::ours;
+
+  EXPECT_EQ(cut, "0 of them, IPv4");
+  EXPECT_NE(first_line_of_module(families), cut);
+  EXPECT_NE(queues_cut, of_host);
+  EXPECT_EQ(first_line_of_module(queues), of_host);
 }
 
 }  // namespace

@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Integrity check before a command computes from the frames of a file.
+// Integrity check before a number is computed from the frames of a file.
 #pragma once
 
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 
-#include "acquisition/core/frame_source.h"
+#include "acquisition/core/byte_order.h"
+#include "acquisition/core/frame.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/core/moved_picture.h"
 #include "acquisition/core/repeat_cadence.h"
-#include "bench/cli/console.h"
 
 namespace todbench {
-
-/// Opens and starts a recording, by file or by id, as the input of a command, and prints its warnings.
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> started_recording(Console& console, const std::string& id);
 
 /// Judges the damages that a gate counted in so many frames, each alone. Error: `integrity` if more than 1 % of the
 /// frames have one of `damages`.
@@ -25,7 +21,7 @@ namespace todbench {
                                          std::span<const Rejection> damages);
 
 /// Judges every frame of a recording of a static scene in order. Repeated frames, gaps and pixels at an end of the
-/// counts are left to the command, which knows their effect on its number.
+/// counts are left to the caller, who knows their effect on the number.
 class InputGate {
  public:
   /// Whether the frame is a valid exposure, new or a repetition of the one before.
@@ -37,6 +33,8 @@ class InputGate {
   [[nodiscard]] std::string note() const;
   /// A sentence if the camera sends each exposure several times; otherwise empty.
   [[nodiscard]] std::string cadence() const { return cadence_.sentence(); }
+  /// Byte order of all frames that are not incomplete or damaged.
+  [[nodiscard]] const ByteOrderWatch& byte_order() const { return byte_order_; }
 
  private:
   IntegrityGate gate_{IntegrityOptions{}};
@@ -46,6 +44,7 @@ class InputGate {
   std::map<Rejection, std::uint64_t> damaged_;
   std::uint64_t moved_frames_ = 0;
   RepeatCadence cadence_;
+  ByteOrderWatch byte_order_;
 };
 
 }  // namespace todbench

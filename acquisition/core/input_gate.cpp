@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/cli/input_gate.h"
+#include "acquisition/core/input_gate.h"
 
 #include <array>
-#include "acquisition/core/camera_id.h"
-#include "acquisition/recording/recording_backend.h"
 
 namespace todbench {
 namespace {
@@ -51,16 +49,6 @@ Result<void> judge_damages(const std::map<Rejection, std::uint64_t>& rejected, s
   return {};
 }
 
-Result<std::unique_ptr<FrameSource>> started_recording(Console& console, const std::string& id) {
-  auto source =
-      recording_backend()->open(has_scheme(id, camera_scheme::file) ? id : camera_id(camera_scheme::file, id));
-  // A recording is an input file here, not a device.
-  if (!source) return fail(ErrorCode::invalid_input, source.error().message);
-  if (auto started = (*source)->start(); !started) return tl::unexpected(started.error());
-  for (const auto& warning : (*source)->info().warnings) console.note(warning);
-  return source;
-}
-
 bool InputGate::takes(const Frame& frame) {
   ++frames_;
   const auto reason = gate_.judge(frame);
@@ -71,6 +59,7 @@ bool InputGate::takes(const Frame& frame) {
     ++damaged_[damage];
     return false;
   }
+  byte_order_.see(frame.counts, frame.significant_bits);
   if (frame.correction == CorrectionState::running) return true;
   const auto moved = moved_.see(frame.counts);
   if (!moved) return true;
