@@ -55,7 +55,8 @@ PlotSeries tod_series(const NamedCurve& curve, PlotTone tone, double sign) {
 
 /// Adds the curve of a ramp with its 95 % band. The points then have no line of their own.
 void add_continuous_curve(Plot& plot, const TodCurve& curve, PlotTone tone) {
-  PlotSeries middle{.tone = tone, .marker = PlotMarker::none, .line = PlotLine::solid};
+  PlotSeries middle;
+  middle.tone = tone, middle.marker = PlotMarker::none, middle.line = PlotLine::solid;
   PlotSeries low = middle, high = middle;
   low.line = high.line = PlotLine::dotted;
   for (const ContinuousPoint& point : curve.continuous) {

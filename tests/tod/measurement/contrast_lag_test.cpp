@@ -8,10 +8,6 @@
 #include <vector>
 
 #include "acquisition/base/rng.h"
-#include "sim_devices/sensor/sensor_model.h"
-#include "tests/sim_devices/reference.h"
-#include "tests/sim_devices/test_plates.h"
-#include "tod/registration/registration.h"
 #include "tod/schedule/ramp_schedule.h"
 
 namespace todbench {
@@ -124,27 +120,6 @@ TEST(ContrastLag, IsUnknownWithoutContrasts) {
   for (Presentation& shown : presentations) shown.small_delta_t_k.reset();
 
   EXPECT_FALSE(contrast_lag(presentations, ramp_step_s));
-}
-
-TEST(ContrastOfSmallTriangles, FollowsTheContrastAtEverySamplingPhase) {
-  const auto plate = test::two_plates().front();
-  const SensorSpec spec = test::sc2000();
-  const SensorModel model(spec, full_plan(spec, {}, {}), Accuracy::normal(), 1);
-  std::vector<double> seen;
-  for (const double phase : {0.0, 0.2, 0.45, 0.7}) {
-    PlateScene scene{.plate = plate, .delta_t_k = 1, .distance_m = 2, .centre_px = {phase, -phase}};
-    const cv::Mat1d picture = *model.unit_signal(scene);
-    const auto found = register_plate(picture, plate, {.expected_scale_px_per_mm = 1 / (2 * spec.ifov_mrad())});
-    ASSERT_TRUE(found) << found.error().message;
-    const auto contrast = contrast_of_small_triangles(picture, plate, *found, 4);
-    ASSERT_TRUE(contrast);
-    seen.push_back(*contrast);
-    EXPECT_NEAR(*contrast_of_small_triangles(0.1 * picture, plate, *found, 4), 0.1 * *contrast, 1e-12);
-  }
-  for (const double contrast : seen) {
-    EXPECT_NEAR(contrast, 1, 0.1);
-    EXPECT_NEAR(contrast, seen.front(), 0.01);
-  }
 }
 
 }  // namespace

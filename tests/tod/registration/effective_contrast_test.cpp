@@ -39,6 +39,24 @@ TargetPlate plate_of_size(double size_px) {
   return plate;
 }
 
+// Its sums hold the light that blur takes out of a triangle: they lose what lies beyond 2 px.
+TEST(ContrastOfSmallTriangles, DoesNotDependOnSizeAndSamplingPhase) {
+  for (const double size_px : {2.1, 3.0, 3.9}) {
+    const TargetPlate plate = plate_of_size(size_px);
+    for (int phase = 0; phase < 25; ++phase) {
+      PictureSpec spec;
+      spec.centre_px += {0.2 * (phase % 5), 0.2 * (phase / 5)};
+      const cv::Mat1d picture = plate_picture(plate, spec);
+
+      const auto contrast = contrast_of_small_triangles(picture, plate, perfect(spec), 4);
+
+      ASSERT_TRUE(contrast) << size_px;
+      EXPECT_NEAR(*contrast / 16.9, 1, 0.01) << size_px << " " << phase;
+      EXPECT_FALSE(contrast_of_small_triangles(picture, plate, perfect(spec), 2));
+    }
+  }
+}
+
 TEST(EffectiveContrast, LosesToBlurWhatItsHeaderSays) {
   // Mean over 5 x 5 sampling phases and four orientations, total blur sqrt(0.3^2 + 0.9^2 / 12) = 0.40 px. The bounds
   // are the documented figures; the measured value can only be too small, except for 1e-3 from the grid of the test
