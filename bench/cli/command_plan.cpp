@@ -31,7 +31,8 @@ void print_plan(const Console& console, const Plan& plan, const ExperimentInputs
   console.table({"dT [K]", "expected S75 [mrad]", "95 % half-width of 19 in 20 runs, at most [%]"}, contrasts);
   console.text("");
   const auto& measured_s = prediction.figures.predicted_measurement_s;
-  console.text((measured_s ? "trials of the simulation: " : "trials: ") + std::to_string(prediction.figures.trials) +
+  console.text((measured_s && plan.schedule.kind != ScheduleKind::ramp ? "trials of the simulation: " : "trials: ") +
+               std::to_string(prediction.figures.trials) +
                "; uncertainty of S75 (95 %): " + fixed(prediction.figures.predicted_uncertainty_percent, 1) +
                " %; time to simulate on one core of this machine: " + fixed(prediction.figures.predicted_s, 1) + " s" +
                (measured_s ? "; time to measure with the camera: " + fixed(measured_s, 0) + " s" : "") +
