@@ -13,6 +13,7 @@
 #include "bench/forecast/comparison_forecast.h"
 #include "bench/forecast/limit_forecast.h"
 #include "bench/forecast/prediction.h"
+#include "bench/forecast/ramp_advice.h"
 #include "bench/judgement/verdict.h"
 #include "bench/text/files.h"
 #include "bench/twin/acuity_limits.h"
@@ -144,6 +145,8 @@ Result<RunForecast> run_forecast(const PlanArguments& asked, const Plan& plan, c
     if (timed.error().code == ErrorCode::interrupted) return tl::unexpected(timed.error());
     out.prediction.warnings.push_back("the time cannot be predicted: " + timed.error().message);
   }
+  if (std::string advice = ramp_advice(plan, inputs); !advice.empty())
+    out.prediction.warnings.push_back(std::move(advice));
   auto frontier = precision_frontier(plan, inputs, stop);
   if (!frontier && frontier.error().code == ErrorCode::interrupted) return tl::unexpected(frontier.error());
   if (frontier) out.frontier = *std::move(frontier);

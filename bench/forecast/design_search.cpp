@@ -14,6 +14,7 @@
 #include "bench/forecast/decision_forecast.h"
 #include "bench/forecast/limit_forecast.h"
 #include "bench/forecast/precision_frontier.h"
+#include "bench/forecast/ramp_advice.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/run_checks.h"
 #include "bench/text/text.h"
@@ -250,9 +251,8 @@ class Search {
 
 /// The plan with a settling band, if it settles its contrasts and can do without.
 std::optional<Plan> with_settling_band(Plan plan) {
-  constexpr double studied_percent = 10;
   if (plan.target.contrast_settling_band_percent > 0 || plan.target.contrast_change_s == 0) return std::nullopt;
-  plan.target.contrast_settling_band_percent = studied_percent;
+  plan.target.contrast_settling_band_percent = studied_band_percent;
   if (!check_settling_band(plan, 0).empty()) return std::nullopt;
   return plan;
 }

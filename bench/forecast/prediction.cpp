@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/forecast/prediction.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -301,30 +299,6 @@ std::vector<ContrastDesign> contrast_designs(const Plan& plan, const ExperimentI
   return out;
 }
 
-/// Says if the stated lag makes a ramp no faster than settled contrasts, or the rate too high for the lag. A lag of
-/// small behind large triangles of 0.6 % of the contrast moves S75 by 0.3 % (a ramp at 0.23 K).
-std::string ramp_advice(const Plan& plan, const ExperimentInputs& inputs) {
-  constexpr double allowed = 0.006;
-  const double lag_s = plan.target.max_contrast_lag_s.value_or(0);
-  if (plan.schedule.kind != ScheduleKind::ramp || !(lag_s > 0)) return "";
-  Plan slow = plan;
-  const double from = std::abs(*plan.schedule.from_delta_t_k), rate = *plan.schedule.ramp_k_per_s;
-  slow.schedule.ramp_k_per_s = std::min(rate, allowed / lag_s * from);
-  const double hz = inputs.sensor.frame_rate_hz;
-  const double ramp_s = bench_time(slow, inputs.plates, hz, std::nullopt).total_s();
-  const double settled_s = bench_time(with_settled_contrasts(plan), inputs.plates, hz, std::nullopt).total_s();
-  if (settled_s > 0 && ramp_s >= settled_s)
-    return fmt::format(
-        "a contrast lag of {:g} s allows a ramp of {:.3g} K/s at most, which takes {:.0f} s on the bench; settled "
-        "contrasts (schedule kind \"constant\") take {:.0f} s: take these",
-        lag_s, allowed / lag_s * from, ramp_s, settled_s);
-  if (rate * lag_s <= allowed * from) return "";
-  return fmt::format(
-      "a contrast lag of {:g} s at {:g} K/s changes the contrast between large and small triangles by {:.2g} %; up to "
-      "{:.3g} K/s it stays below {:.1f} %",
-      lag_s, rate, 100 * rate / from * lag_s, allowed / lag_s * from, 100 * allowed);
-}
-
 }  // namespace
 
 Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
@@ -395,7 +369,6 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
     }
     out.contrasts.push_back(point);
   }
-  if (auto advice = ramp_advice(plan, inputs); !advice.empty()) out.warnings.push_back(std::move(advice));
   if (!all_identified) out.figures.predicted_uncertainty_percent.reset();
   out.figures.trials = static_cast<std::uint64_t>(std::llround(trials));
   return out;

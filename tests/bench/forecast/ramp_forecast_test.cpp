@@ -13,6 +13,7 @@
 #include "bench/forecast/comparison_forecast.h"
 #include "bench/forecast/decision_forecast.h"
 #include "bench/forecast/precision_frontier.h"
+#include "bench/forecast/ramp_advice.h"
 #include "bench/plan/descriptions.h"
 #include "bench/plan/plan_options.h"
 
@@ -20,6 +21,9 @@ namespace todbench {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 /// A bench of defaults with the simulated SC2000 and six phases.
 Plan ramp_plan(double k_per_s, double lag_s = 0) {
@@ -157,7 +161,65 @@ TEST(RampForecast, OfTheComparisonCountsTheTrialsOfTheRamp) {
   plan.simulation.phases = 60;
   const PlanPrediction prediction = predicted(plan);
   EXPECT_THAT(comparison_forecast(plan, prediction).sentence,
-              ::testing::HasSubstr("(" + std::to_string(std::lround(prediction.contrasts[1].trials)) + " planned)"));
+              HasSubstr("(" + std::to_string(std::lround(prediction.contrasts[1].trials)) + " planned)"));
+}
+
+std::string advice_of(const Plan& plan) {
+  return ramp_advice(plan, inputs_of(plan));
+}
+
+std::string seconds_of(Plan plan) {
+  const ExperimentInputs inputs = inputs_of(plan);
+  plan = with_frames(plan, inputs);
+  return std::to_string(std::lround(bench_time(plan, inputs.plates, 50, std::nullopt).total_s())) + " s (";
+}
+
+/// The plan with settled contrasts, its own phases, and frames that the program chooses.
+Plan constant_of(Plan plan, double band_percent) {
+  plan.schedule = {};
+  plan.target.contrast_settling_band_percent = band_percent;
+  return plan;
+}
+
+TEST(RampAdvice, StatesTheTimesOfEveryWayAtItsOwnRate) {
+  const Plan slow = ramp_plan(0.8, 0.03);
+
+  const std::string advice = advice_of(slow);
+
+  EXPECT_THAT(advice, StartsWith("the ramp at 0.8 K/s takes " + seconds_of(slow)));
+  EXPECT_THAT(advice, HasSubstr("a contrast lag of 0.03 s allows up to 3.38 K/s, which takes " +
+                                seconds_of(ramp_plan(3.38, 0.03))));
+  EXPECT_THAT(advice, HasSubstr("(schedule kind \"constant\") take " + seconds_of(constant_of(slow, 0))));
+  EXPECT_THAT(advice, HasSubstr("(contrast_settling_band_percent = 10) " + seconds_of(constant_of(slow, 10))));
+  EXPECT_THAT(advice, HasSubstr("take one of these"));
+}
+
+TEST(RampAdvice, ProposesSettledContrastsThatAreAboutAsFast) {
+  const std::string advice = advice_of(ramp_plan(3.38, 0.03));
+  EXPECT_THAT(advice, HasSubstr("take one of these"));
+  EXPECT_THAT(advice, Not(HasSubstr("allows up to"))) << "the rate of the plan is the largest one";
+}
+
+TEST(RampAdvice, NeedsNoLag) {
+  EXPECT_THAT(advice_of(ramp_plan(0.2, 0)), HasSubstr("take one of these"));
+  EXPECT_THAT(advice_of(ramp_plan(7.3, 0)), HasSubstr("take the band"));
+}
+
+TEST(RampAdvice, NamesTheRateThatTheLagAllows) {
+  EXPECT_THAT(
+      advice_of(ramp_plan(7.3, 0.03)),
+      StartsWith("a contrast lag of 0.03 s at 7.3 K/s changes the contrast between large and small triangles by "
+                 "1.3 %; up to 3.38 K/s it stays below 0.6 %, and the ramp takes " +
+                 seconds_of(ramp_plan(3.38, 0.03))));
+  EXPECT_THAT(advice_of(ramp_plan(3.38, 0.005)), HasSubstr("the largest rate is the fastest way"));
+}
+
+TEST(RampAdvice, IsNoneWhereTheRampIsFastest) {
+  Plan plan = ramp_plan(7.3, 0.01);
+  plan.target.contrast_change_s = 60;
+  plan.target.delta_t_k = {16.9, 5, 1.93, 0.5, 0.23};
+  EXPECT_EQ(advice_of(plan), "");
+  EXPECT_EQ(advice_of(constant_of(plan, 0)), "");
 }
 
 }  // namespace
