@@ -183,13 +183,21 @@ void print_design(const Console& console, const BestDesign& found) {
 }
 
 Json best_design_json(const BestDesign& found) {
-  return {{"bench_s", json_number(found.best.bench_s)},
-          {"least_bench_s", json_number(found.least_s)},
-          {"set_ups", found.set_ups},
-          {"unpaired_share", json_number(found.unpaired_share)},
-          {"dropped_contrasts_k", found.dropped_contrasts_k},
-          {"optimised", priced_json(found.best)},
-          {"as_planned", priced_json(found.as_planned)}};
+  Json json{{"bench_s", json_number(found.best.bench_s)},
+            {"least_bench_s", json_number(found.least_s)},
+            {"set_ups", found.set_ups},
+            {"unpaired_share", json_number(found.unpaired_share)},
+            {"dropped_contrasts_k", found.dropped_contrasts_k},
+            {"optimised", priced_json(found.best)},
+            {"as_planned", priced_json(found.as_planned)}};
+  if (found.ramp) {
+    Json& ramp = json["ramp"] = priced_json(found.ramp->design);
+    ramp["ramp_k_per_s"] = json_number(found.ramp->design.plan.schedule.ramp_k_per_s);
+    ramp["max_contrast_lag_s"] = json_number(found.ramp->lag_s);
+    ramp["lag_is_stated"] = found.ramp->lag_is_stated;
+    ramp["meets_request"] = found.ramp->meets;
+  }
+  return json;
 }
 
 std::string design_toml(const BestDesign& found) {
