@@ -13,6 +13,7 @@
 #include "bench/forecast/comparison_forecast.h"
 #include "bench/forecast/limit_forecast.h"
 #include "bench/forecast/prediction.h"
+#include "bench/forecast/ramp_advice.h"
 #include "bench/judgement/verdict.h"
 #include "bench/text/files.h"
 #include "bench/twin/acuity_limits.h"
@@ -31,7 +32,8 @@ void print_plan(const Console& console, const Plan& plan, const ExperimentInputs
   console.table({"dT [K]", "expected S75 [mrad]", "95 % half-width of 19 in 20 runs, at most [%]"}, contrasts);
   console.text("");
   const auto& measured_s = prediction.figures.predicted_measurement_s;
-  console.text((measured_s ? "trials of the simulation: " : "trials: ") + std::to_string(prediction.figures.trials) +
+  console.text((measured_s && plan.schedule.kind != ScheduleKind::ramp ? "trials of the simulation: " : "trials: ") +
+               std::to_string(prediction.figures.trials) +
                "; uncertainty of S75 (95 %): " + fixed(prediction.figures.predicted_uncertainty_percent, 1) +
                " %; time to simulate on one core of this machine: " + fixed(prediction.figures.predicted_s, 1) + " s" +
                (measured_s ? "; time to measure with the camera: " + fixed(measured_s, 0) + " s" : "") +
@@ -143,6 +145,8 @@ Result<RunForecast> run_forecast(const PlanArguments& asked, const Plan& plan, c
     if (timed.error().code == ErrorCode::interrupted) return tl::unexpected(timed.error());
     out.prediction.warnings.push_back("the time cannot be predicted: " + timed.error().message);
   }
+  if (std::string advice = ramp_advice(plan, inputs); !advice.empty())
+    out.prediction.warnings.push_back(std::move(advice));
   auto frontier = precision_frontier(plan, inputs, stop);
   if (!frontier && frontier.error().code == ErrorCode::interrupted) return tl::unexpected(frontier.error());
   if (frontier) out.frontier = *std::move(frontier);

@@ -27,7 +27,8 @@ const DecisionChances* chances_at(const DecisionDesign& design, int over_percent
 }
 
 void print_designs(const Console& console, const DecisionForecast& forecast) {
-  TableRow header{"frames", "phases", "bench time [s]", "expected trials [%]", "with budget [%]"};
+  const bool ramp = std::ranges::any_of(forecast.designs, [](const auto& one) { return one.ramp_k_per_s.has_value(); });
+  TableRow header{"frames", ramp ? "ramp [K/s]" : "phases", "bench time [s]", "expected trials [%]", "with budget [%]"};
   for (const int over : shown_cameras) header.push_back(fmt::format("{:+d} %", over));
   const bool fleet =
       std::ranges::any_of(forecast.designs, [](const auto& design) { return design.consumer_risk.has_value(); });
@@ -35,7 +36,8 @@ void print_designs(const Console& console, const DecisionForecast& forecast) {
   header.emplace_back("");
   std::vector<TableRow> rows;
   for (const DecisionDesign& design : forecast.designs) {
-    TableRow row{fmt::format("{}", fmt::join(design.frames, ", ")), std::to_string(design.phases),
+    TableRow row{fmt::format("{}", fmt::join(design.frames, ", ")),
+                 design.ramp_k_per_s ? fmt::format("{:.3g}", *design.ramp_k_per_s) : std::to_string(design.phases),
                  fixed(design.bench_s, 0), fixed(design.half_width_percent, 2), fixed(design.deciding_percent, 2)};
     for (const int over : shown_cameras) {
       const DecisionChances* chances = chances_at(design, over);
@@ -85,6 +87,7 @@ Json design_json(const DecisionDesign& design) {
             {"deciding_half_width_percent", json_number(design.deciding_percent)},
             {"planned", design.planned},
             {"cameras", cameras_json(design.cameras)}};
+  if (design.ramp_k_per_s) json["ramp_k_per_s"] = json_number(*design.ramp_k_per_s);
   if (design.consumer_risk) json["consumer_risk"] = json_number(design.consumer_risk);
   if (design.producer_risk) json["producer_risk"] = json_number(design.producer_risk);
   return json;
@@ -180,13 +183,21 @@ void print_design(const Console& console, const BestDesign& found) {
 }
 
 Json best_design_json(const BestDesign& found) {
-  return {{"bench_s", json_number(found.best.bench_s)},
-          {"least_bench_s", json_number(found.least_s)},
-          {"set_ups", found.set_ups},
-          {"unpaired_share", json_number(found.unpaired_share)},
-          {"dropped_contrasts_k", found.dropped_contrasts_k},
-          {"optimised", priced_json(found.best)},
-          {"as_planned", priced_json(found.as_planned)}};
+  Json json{{"bench_s", json_number(found.best.bench_s)},
+            {"least_bench_s", json_number(found.least_s)},
+            {"set_ups", found.set_ups},
+            {"unpaired_share", json_number(found.unpaired_share)},
+            {"dropped_contrasts_k", found.dropped_contrasts_k},
+            {"optimised", priced_json(found.best)},
+            {"as_planned", priced_json(found.as_planned)}};
+  if (found.ramp) {
+    Json& ramp = json["ramp"] = priced_json(found.ramp->design);
+    ramp["ramp_k_per_s"] = json_number(found.ramp->design.plan.schedule.ramp_k_per_s);
+    ramp["max_contrast_lag_s"] = json_number(found.ramp->lag_s);
+    ramp["lag_is_stated"] = found.ramp->lag_is_stated;
+    ramp["meets_request"] = found.ramp->meets;
+  }
+  return json;
 }
 
 std::string design_toml(const BestDesign& found) {

@@ -37,17 +37,7 @@ double contrast_wait_s(const Plan& plan, const TargetState* before, const Target
 
 /// Adds the presentations that a slow black body needs at the end of each ramp down.
 std::vector<TargetState> with_ramp_ends(const Plan& plan, const RampOptions& ramp, std::vector<TargetState> states) {
-  const double tau_s = time_constant_s(plan);
-  const std::size_t steps = ramp_steps(ramp);
-  if (!(tau_s > 0) || plan.target.kind == TargetKind::scene) return states;
-  double contrast = ramp.from_k;
-  for (std::size_t k = 1; k < steps; ++k)
-    contrast =
-        states[ramp_hold + k].delta_t_k + (contrast - states[ramp_hold + k].delta_t_k) * std::exp(-ramp_step_s / tau_s);
-  std::size_t more = 0;
-  constexpr double arrived = 1.1;
-  for (; more < 3 * steps && contrast / ramp.to_k > arrived; ++more)
-    contrast = ramp.to_k + (contrast - ramp.to_k) * std::exp(-ramp_step_s / tau_s);
+  const std::size_t steps = ramp_steps(ramp), more = ramp_contrasts_k(plan).size() - 2 * steps;
   std::vector<TargetState> out;
   for (std::size_t k = 0; k < states.size(); ++k) {
     out.push_back(states[k]);
@@ -218,6 +208,26 @@ class Walk {
 };
 
 }  // namespace
+
+std::vector<double> ramp_contrasts_k(const Plan& plan) {
+  const RampOptions ramp = ramp_options(plan, {}, 1);
+  const std::size_t steps = ramp_steps(ramp);
+  const double tau_s = plan.target.kind == TargetKind::scene ? 0 : time_constant_s(plan);
+  const double kept = tau_s > 0 ? std::exp(-ramp_step_s / tau_s) : 0;
+  std::vector<double> out;
+  double contrast = ramp.from_k;
+  const auto show = [&](std::size_t below) {
+    const double share = static_cast<double>(below) / static_cast<double>(steps - 1);
+    const double set = ramp.from_k * std::pow(ramp.to_k / ramp.from_k, share);
+    contrast = set + (contrast - set) * kept;
+    out.push_back(contrast);
+  };
+  constexpr double arrived = 1.1;
+  for (std::size_t k = 0; k < steps; ++k) show(k);
+  for (std::size_t more = 0; more < 3 * steps && contrast / ramp.to_k > arrived; ++more) show(steps - 1);
+  for (std::size_t k = steps; k-- > 0;) show(k);
+  return out;
+}
 
 std::vector<TargetState> listed_presentations(const Plan& plan, const std::vector<TargetPlate>& plates) {
   ConstantStimuliOptions stimuli = stimuli_options(plan, plates, plan.camera.ifov_mrad, Side::measured);

@@ -56,6 +56,10 @@ struct BenchTime {
 /// after an interruption; empty for runs of less than ten minutes and of a simulated scene.
 [[nodiscard]] std::string resume_remark(const Plan& plan, double bench_s);
 
+/// Returns the contrasts that the presentations of a set-up have in the ramp of a plan, in K: those of a black body of
+/// first order behind its set-points, with the presentations that it adds at the end of the ramp down.
+[[nodiscard]] std::vector<double> ramp_contrasts_k(const Plan& plan);
+
 /// Returns the presentations of a constant schedule for bench_time(); of an adaptive schedule those of its visits,
 /// because it stays in a set-up for a whole visit. They do not depend on the frames per presentation. Choosing their
 /// phases takes 20 ms for the demonstration.

@@ -30,10 +30,10 @@ std::string probability_text(double probability) {
 ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction) {
   const double margin = comparison_options(plan).margin_percent;
   const std::string margin_text = number_text(margin) + " %";
-  // Ratio of the camera's trials to the twin's; an adaptive schedule is the same for both.
-  const double share = plan.schedule.kind == ScheduleKind::adaptive
-                           ? 1.0
-                           : static_cast<double>(plan.target.phases) / plan.simulation.phases;
+  // Ratio of the camera's trials to the twin's; an adaptive schedule is the same for both, and a ramp has no phases.
+  const double share = plan.schedule.kind == ScheduleKind::constant
+                           ? static_cast<double>(plan.target.phases) / plan.simulation.phases
+                           : 1.0;
   double planned = 0;
   std::vector<PlannedComparison> contrasts;
   for (const ContrastPrediction& contrast : prediction.contrasts) {

@@ -124,6 +124,11 @@ std::vector<Plan> varied_plans(const Plan& plan, const ExperimentInputs& inputs)
       other.schedule.half_width_percent = std::min(100.0, factor * plan.schedule.half_width_percent);
       plans.push_back(other);
     }
+  } else if (plan.schedule.kind == ScheduleKind::ramp) {
+    for (const double factor : {4.0, 2.0, 0.5, 0.25}) {
+      other.schedule.ramp_k_per_s = factor * plan.schedule.ramp_k_per_s.value_or(0);
+      plans.push_back(other);
+    }
   } else if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded) {
     for (int frames = 1; frames <= 64; frames *= 2) {
       other.schedule.frames_per_presentation = {frames};
@@ -169,9 +174,11 @@ std::optional<DecisionDesign> design_of(const Plan& plan, const ContrastPredicti
   trials.stated = {};
   DecisionDesign design{.frames = plan.schedule.frames_per_presentation,
                         .phases = plan.target.phases,
+                        .ramp_k_per_s = std::nullopt,
                         .bench_s = bench_s,
                         .half_width_percent = percent_of_ln(ChancesOf(trials, two_sided).mean_half_ln()),
                         .deciding_percent = percent_of_ln(ChancesOf(*expected, two_sided).mean_half_ln())};
+  if (plan.schedule.kind == ScheduleKind::ramp) design.ramp_k_per_s = plan.schedule.ramp_k_per_s;
   for (int over = -largest_camera_percent; over <= largest_camera_percent; over += camera_step_percent)
     design.cameras.push_back({static_cast<double>(over), chances.at(std::log1p(over / 100.0))});
   const double ln_limit = std::log(forecast.least_acuity_per_mrad);

@@ -55,15 +55,16 @@ struct CameraChance {
   DecisionChances chances;
 };
 
-/// One number of frames or phases of the plan.
+/// One number of frames or phases of the plan, or one rate of its ramp.
 struct DecisionDesign {
-  std::vector<int> frames{};            ///< per presentation, of every contrast or for each
-  int phases = 0;                       ///< per set-up and contrast
-  double bench_s = 0;                   ///< of the whole plan (laboratory_time())
-  double half_width_percent = 0;        ///< of the trials at the contrast of the limit, expected
-  double deciding_percent = 0;          ///< the same with the stated rows
-  bool planned = false;                 ///< the choice of the plan
-  std::vector<CameraChance> cameras{};  ///< -10 to +10 % in steps of 1 %
+  std::vector<int> frames{};             ///< per presentation, of every contrast or for each
+  int phases = 0;                        ///< per set-up and contrast
+  std::optional<double> ramp_k_per_s{};  ///< of a ramp, which has no phases
+  double bench_s = 0;                    ///< of the whole plan (laboratory_time())
+  double half_width_percent = 0;         ///< of the trials at the contrast of the limit, expected
+  double deciding_percent = 0;           ///< the same with the stated rows
+  bool planned = false;                  ///< the choice of the plan
+  std::vector<CameraChance> cameras{};   ///< -10 to +10 % in steps of 1 %
   /// Of a unit of the fleet, if the plan states it: accepted and below the limit, not accepted and above it.
   std::optional<double> consumer_risk{}, producer_risk{};
 };
@@ -90,8 +91,8 @@ struct DecisionForecast {
 [[nodiscard]] double laboratory_time(Plan plan, const ExperimentInputs& inputs, std::optional<double> presentations);
 
 /// Forecasts every limit on acuity with a threshold: the plan itself; with graded answers 1 to 64 frames, otherwise a
-/// quarter to four times the phases, or of an adaptive schedule a quarter to four times the half-width. Errors: those
-/// of predict_plan() and curve_uncertainty().
+/// quarter to four times the phases, or of an adaptive schedule a quarter to four times the half-width, or of a ramp a
+/// quarter to four times the rate. Errors: those of predict_plan() and curve_uncertainty().
 [[nodiscard]] Result<std::vector<DecisionForecast>> decision_forecasts(const Plan& plan,
                                                                        const ExperimentInputs& inputs);
 

@@ -14,6 +14,7 @@
 #include "bench/forecast/decision_forecast.h"
 #include "bench/forecast/limit_forecast.h"
 #include "bench/forecast/precision_frontier.h"
+#include "bench/forecast/ramp_advice.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/run_checks.h"
 #include "bench/text/text.h"
@@ -250,9 +251,8 @@ class Search {
 
 /// The plan with a settling band, if it settles its contrasts and can do without.
 std::optional<Plan> with_settling_band(Plan plan) {
-  constexpr double studied_percent = 10;
   if (plan.target.contrast_settling_band_percent > 0 || plan.target.contrast_change_s == 0) return std::nullopt;
-  plan.target.contrast_settling_band_percent = studied_percent;
+  plan.target.contrast_settling_band_percent = studied_band_percent;
   if (!check_settling_band(plan, 0).empty()) return std::nullopt;
   return plan;
 }
@@ -265,6 +265,74 @@ Result<void> examine_all(Search& search, const std::vector<std::vector<int>>& ch
     }
   }
   return {};
+}
+
+/// The plan as a ramp between its contrasts, at the largest rate, with the lag that limits it; empty if bench or plan
+/// admit none.
+std::optional<Plan> as_ramp(Plan plan) {
+  constexpr double assumed_lag_s = 0.1, shortest_s = 10;  // no shorter ramp is studied
+  constexpr int least_phases = 3;                         // of no use in a ramp; fewer would make its answers binary
+  if (plan.target.contrast_change_s == 0 || plan.target.delta_t_k.empty()) return std::nullopt;
+  const auto [to, from] =
+      std::ranges::minmax_element(plan.target.delta_t_k, {}, [](double delta_t_k) { return std::abs(delta_t_k); });
+  plan.schedule.kind = ScheduleKind::ramp;
+  plan.schedule.from_delta_t_k = *from;
+  plan.schedule.to_delta_t_k = *to;
+  plan.target.contrast_settling_band_percent = 0;
+  plan.target.phases = plan.simulation.phases = std::max(least_phases, plan.target.phases);
+  if (!plan.target.max_contrast_lag_s) plan.target.max_contrast_lag_s = assumed_lag_s;
+  if (!check_schedule_kind(plan, 0).empty() || !check_ramp_to(plan, 0).empty()) return std::nullopt;
+  const double shortest_rate = std::abs(*from) * std::log(*from / *to) / shortest_s;
+  plan.schedule.ramp_k_per_s = std::min(largest_ramp_rate(*from, *plan.target.max_contrast_lag_s), shortest_rate);
+  return plan;
+}
+
+/// The fastest ramp that meets the criterion, in these mountings at the largest rate or a slower one.
+Result<std::optional<RampDesign>> examine_ramps(const Plan& asked, const ExperimentInputs& inputs,
+                                                const Criterion& criterion,
+                                                const std::vector<std::vector<int>>& choices,
+                                                const std::stop_token& stop) {
+  const auto largest = as_ramp(asked);
+  if (!largest) return std::nullopt;
+  std::optional<RampDesign> best;
+  for (const std::vector<int>& mountings : choices) {
+    Plan ramp = candidate(*largest, mountings, largest->target.phases);
+    for (const double slower : {1.0, 1.4, 2.0, 2.8, 4.0, 8.0, 16.0}) {
+      if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+      ramp.schedule.ramp_k_per_s = *largest->schedule.ramp_k_per_s / slower;
+      ramp.schedule.frames_per_presentation = {0};
+      ramp = with_frames(ramp, inputs);
+      TODBENCH_TRY(auto design, priced(ramp, inputs));
+      const bool meets = std::ranges::all_of(design.contrasts, [&](const auto& one) { return criterion.met(one); });
+      const bool faster = !best || !best->meets || design.bench_s < best->design.bench_s;
+      // Without any that meets it, the last choice at the largest rate: it has most set-ups.
+      if (meets ? faster : (slower == 1 && (!best || !best->meets)))
+        best = RampDesign{.design = std::move(design),
+                          .lag_s = *largest->target.max_contrast_lag_s,
+                          .lag_is_stated = asked.target.max_contrast_lag_s.has_value(),
+                          .meets = meets};
+      if (meets || (best && best->meets && !faster)) break;
+    }
+  }
+  return best;
+}
+
+std::string in_words(const RampDesign& ramp, const PricedDesign& best) {
+  const SchedulePlan& schedule = ramp.design.plan.schedule;
+  std::vector<std::string> half_widths;
+  for (const ContrastPrediction& contrast : ramp.design.contrasts)
+    half_widths.push_back(contrast.uncertainty_percent ? fmt::format("{:.2g}", *contrast.uncertainty_percent) : "no");
+  std::string text = fmt::format(
+      "a ramp from {:g} to {:g} K at {:.3g} K/s ({} contrast lag of {:g} s allows up to {:.3g} K/s) takes {:.0f} s "
+      "with "
+      "half-widths of {} %",
+      *schedule.from_delta_t_k, *schedule.to_delta_t_k, *schedule.ramp_k_per_s,
+      ramp.lag_is_stated ? "the stated" : "an assumed", ramp.lag_s,
+      largest_ramp_rate(*schedule.from_delta_t_k, ramp.lag_s), ramp.design.bench_s, fmt::join(half_widths, ", "));
+  if (best.plan.schedule.kind == ScheduleKind::ramp) return text + ": it is the fastest design";
+  if (!ramp.meets) return text + ", which are not enough";
+  if (ramp.design.bench_s >= least_gain * best.bench_s) return text + ": it is no faster";
+  return text + ": it is faster. Measure the lag of the plate and state max_contrast_lag_s to use it";
 }
 
 Error not_found(const DesignRequest& request, double half_width_percent, const Search& search,
@@ -323,6 +391,12 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
       search.best = std::move(within_band.best);
     }
   }
+  TODBENCH_TRY(found.ramp, examine_ramps(plan, inputs, criterion, choices, stop));
+  if (found.ramp && found.ramp->meets && found.ramp->lag_is_stated &&
+      (!search.best || found.ramp->design.bench_s < least_gain * search.best->bench_s)) {
+    search.best = found.ramp->design;
+    search.least_s = std::min(search.least_s, search.best->bench_s);
+  }
   if (!search.best) return tl::unexpected(not_found(request, half_width_percent, search, rows));
   found.best = *std::move(search.best);
   found.least_s = search.least_s;
@@ -349,15 +423,18 @@ std::vector<std::string> in_words(const BestDesign& found) {
                                   "its sign with this rotation cancels",
                                   found.set_ups));
   const int phases = best.plan.target.phases;
-  out.push_back(
-      fmt::format("{} phases in each set-up cancel every harmonic of the pixel grid below {:.1f} per pixel; "
-                  "what is left has a new start in each set-up, and its scatter is in the interval",
-                  phases, least_harmonic(phases)));
-  if (found.settled_s)
+  const bool ramp = best.plan.schedule.kind == ScheduleKind::ramp;
+  if (!ramp)
+    out.push_back(
+        fmt::format("{} phases in each set-up cancel every harmonic of the pixel grid below {:.1f} per pixel; "
+                    "what is left has a new start in each set-up, and its scatter is in the interval",
+                    phases, least_harmonic(phases)));
+  if (found.settled_s && !ramp)
     out.push_back(
         fmt::format("presentations begin within {:g} % of the set contrast, and their own frames give their "
                     "contrasts; if every contrast settles, the best design takes {:.0f} s",
                     best.plan.target.contrast_settling_band_percent, *found.settled_s));
+  if (found.ramp) out.push_back(in_words(*found.ramp, best));
   const bool by_presentations = std::ranges::any_of(best.contrasts, [&](const ContrastPrediction& contrast) {
     return contrast.degrees_of_freedom && *contrast.degrees_of_freedom != found.set_ups - 1;
   });

@@ -33,6 +33,14 @@ struct PricedDesign {
   std::vector<ContrastPrediction> contrasts{};
 };
 
+/// Ramp over the contrasts of a plan.
+struct RampDesign {
+  PricedDesign design;
+  double lag_s = 0;  ///< of the plan, or assumed
+  bool lag_is_stated = false;
+  bool meets = false;  ///< the request; if not, the design is that of all set-ups at the largest rate
+};
+
 struct BestDesign {
   PricedDesign as_planned, best;
   double least_s = 0;  ///< bench time of the fastest design examined, whatever its half-width
@@ -43,6 +51,8 @@ struct BestDesign {
   std::vector<double> dropped_contrasts_k{};
   /// Bench time of the best design whose contrasts settle, if the best one has a settling band.
   std::optional<double> settled_s{};
+  /// The fastest ramp that meets the request; empty if the bench or the plan admits none.
+  std::optional<RampDesign> ramp{};
 };
 
 /// Searches mountings of each plate, phases, frames of each contrast, and whether the contrasts settle. The
@@ -51,8 +61,11 @@ struct BestDesign {
 /// the plan, if it has fewer), three phases and eight presentations of a contrast. Mountings are taken in pairs of
 /// counterparts. The plate is located in fewer frames than planned if their noise is at most 0.15 % of the highest
 /// contrast. With `decide` and without an equivalence margin, contrasts without a limit are left out, except the
-/// highest one, which locates the plate. Errors: `invalid_input` (no design examined meets the request; the message
-/// states the least half-width, or the rows of the budget that prevent the decision), predict_plan(), `interrupted`.
+/// highest one, which locates the plate. A ramp between the strongest and the weakest contrast is compared, at the
+/// largest rate that the lag of the plate allows (0.1 s if the plan states none) and at slower ones, in at least 10 s.
+/// It is the best design if it is faster and the plan states the lag. Errors: `invalid_input` (no design examined meets
+/// the request; the message states the least half-width, or the rows of the budget that prevent the decision),
+/// predict_plan(), `interrupted`.
 [[nodiscard]] Result<BestDesign> best_design(const Plan& plan, const ExperimentInputs& inputs,
                                              const DesignRequest& request, std::stop_token stop);
 

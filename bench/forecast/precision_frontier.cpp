@@ -79,10 +79,14 @@ Plan as_measured(Plan plan) {
 
 Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                         std::stop_token stop) {
-  std::vector<std::vector<int>> frames;
-  for (const int count : frame_choices) frames.push_back({count});
+  // Other frames would change the rate of a ramp, which has no binary answers.
+  const bool ramp = plan.schedule.kind == ScheduleKind::ramp;
   const AnswersTaken planned = chosen_answers(plan, inputs.sensor);
   const std::vector<int> own = with_frames(plan, inputs).schedule.frames_per_presentation;
+  std::vector<std::vector<int>> frames;
+  if (ramp) frames = {own};
+  for (const int count : frame_choices)
+    if (!ramp) frames.push_back({count});
   if (planned.kind == AnswerKind::graded && std::ranges::find(frames, own) == frames.end()) {
     frames.push_back(own);
     std::ranges::sort(frames);
@@ -101,11 +105,13 @@ Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const 
     choice.seconds = computing + choice.bench_s;
     choice.half_width_percent = prediction.figures.predicted_uncertainty_percent;
     choice.contrasts = std::move(prediction.contrasts);
-    choice.planned = planned.kind == answers && (answers == AnswerKind::binary || own == count);
+    choice.planned = ramp || (planned.kind == answers && (answers == AnswerKind::binary || own == count));
     choices.push_back(std::move(choice));
     return {};
   };
-  if (auto added = add(AnswerKind::binary, {1}, binary_s); !added) return tl::unexpected(added.error());
+  if (!ramp) {
+    if (auto added = add(AnswerKind::binary, {1}, binary_s); !added) return tl::unexpected(added.error());
+  }
   for (const std::vector<int>& count : frames) {
     const double mean = std::accumulate(count.begin(), count.end(), 0.0) / static_cast<double>(count.size());
     if (auto added = add(AnswerKind::graded, count, one_s + (mean - 1) * frame_s); !added)

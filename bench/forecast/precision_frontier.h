@@ -31,7 +31,8 @@ struct PrecisionChoice {
 
 /// Returns the choices for the camera's curve, if there is one: binary answers, and graded ones with 1, 2, 4 and 8
 /// frames, and the plan's own numbers (with_frames()) if they differ. Half-widths come from predict_plan(), times from
-/// predict_times() (1 and 2 frames are timed, the others follow). Errors: as there.
+/// predict_times() (1 and 2 frames are timed, the others follow). Of a ramp only the plan's own choice, because other
+/// frames would change its rate. Errors: as there.
 [[nodiscard]] Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                                       std::stop_token stop);
 

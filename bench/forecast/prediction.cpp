@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/forecast/prediction.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,6 +10,7 @@
 #include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/graded_precision.h"
+#include "bench/forecast/ramp_forecast.h"
 #include "bench/forecast/time_prediction.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
@@ -249,36 +248,55 @@ Result<void> reachable(const Plan& plan, const ExperimentInputs& inputs) {
                   " %, in about " + number_text(std::ceil(price_s * 10) / 10) + " s over all contrasts");
 }
 
-/// Presentations of a ramp by point, for the formulas of constant stimuli.
-Plan with_phases_of_ramp(Plan plan) {
-  if (plan.schedule.kind != ScheduleKind::ramp || plan.target.delta_t_k.empty()) return plan;
-  const double presentations = 2.0 * static_cast<double>(ramp_steps(ramp_options(plan, {}, 1)));
-  plan.target.phases = std::max(1, static_cast<int>(presentations / static_cast<double>(plan.target.delta_t_k.size())));
-  return plan;
+/// Design at one contrast.
+struct ContrastDesign {
+  Plan plan;         ///< constant stimuli that are as precise at this contrast as the plan
+  double shown = 0;  ///< presentations in each set-up that count for this contrast
+};
+
+/// What the presentations of constant stimuli tell at the contrasts that have a threshold.
+std::vector<ContrastInformation> informations_of(const Plan& plan, const ExperimentInputs& inputs) {
+  std::vector<ContrastInformation> out;
+  for (const ContrastOutlook& outlook : inputs.outlooks) {
+    if (std::ranges::find(plan.target.delta_t_k, outlook.delta_t_k) == plan.target.delta_t_k.end()) continue;
+    const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+    const double slope = std::clamp(outlook.weibull_slope, flattest, steepest);
+    double sum = 0;
+    for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
+      for (const auto& t : inputs.plates[i].triangles)
+        sum += static_cast<double>(mountings_of(plan.target, i)) *
+               information(t.size_mm / plan.target.distance_m, s75_mrad, slope, plan.fit.lapse.value_or(0.01),
+                           plan.fit.form);
+    }
+    const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
+    const double ratio = graded_variance_ratio(graded_design(plan, inputs, outlook, frames));
+    if (sum > 0 && ratio > 0) out.push_back({outlook.delta_t_k, sum, ratio});
+  }
+  return out;
 }
 
-/// Says if the stated lag makes a ramp no faster than settled contrasts, or the rate too high for the lag. A lag of
-/// small behind large triangles of 0.6 % of the contrast moves S75 by 0.3 % (a ramp at 0.23 K).
-std::string ramp_advice(const Plan& plan, const ExperimentInputs& inputs) {
-  constexpr double allowed = 0.006;
-  const double lag_s = plan.target.max_contrast_lag_s.value_or(0);
-  if (plan.schedule.kind != ScheduleKind::ramp || !(lag_s > 0)) return "";
-  Plan slow = plan;
-  const double from = std::abs(*plan.schedule.from_delta_t_k), rate = *plan.schedule.ramp_k_per_s;
-  slow.schedule.ramp_k_per_s = std::min(rate, allowed / lag_s * from);
-  const double hz = inputs.sensor.frame_rate_hz;
-  const double ramp_s = bench_time(slow, inputs.plates, hz, std::nullopt).total_s();
-  const double settled_s = bench_time(with_settled_contrasts(plan), inputs.plates, hz, std::nullopt).total_s();
-  if (settled_s > 0 && ramp_s >= settled_s)
-    return fmt::format(
-        "a contrast lag of {:g} s allows a ramp of {:.3g} K/s at most, which takes {:.0f} s on the bench; settled "
-        "contrasts (schedule kind \"constant\") take {:.0f} s: take these",
-        lag_s, allowed / lag_s * from, ramp_s, settled_s);
-  if (rate * lag_s <= allowed * from) return "";
-  return fmt::format(
-      "a contrast lag of {:g} s at {:g} K/s changes the contrast between large and small triangles by {:.2g} %; up to "
-      "{:.3g} K/s it stays below {:.1f} %",
-      lag_s, rate, 100 * rate / from * lag_s, allowed / lag_s * from, 100 * allowed);
+/// The design at each contrast of the plan. That of a ramp comes from its fit over all contrasts.
+std::vector<ContrastDesign> contrast_designs(const Plan& plan, const ExperimentInputs& inputs) {
+  const std::vector<double>& points_k = plan.target.delta_t_k;
+  std::vector<ContrastDesign> out(points_k.size(), {plan, static_cast<double>(plan.simulation.phases)});
+  if (plan.schedule.kind != ScheduleKind::ramp || points_k.empty()) return out;
+  const std::vector<double> shown_k = ramp_contrasts_k(plan);
+  const std::vector<int> nearest = nearest_presentations(points_k, shown_k);
+  const auto of_phases = [&](double phases) {
+    Plan constant = plan;
+    constant.schedule.answers = AnswersChoice::graded;  // a ramp has no others
+    constant.simulation.phases = constant.target.phases = std::max(1, static_cast<int>(std::lround(phases)));
+    return constant;
+  };
+  const auto points = informations_of(of_phases(static_cast<double>(shown_k.size() / points_k.size())), inputs);
+  const ContrastNoise noise{.noise_k = inputs.sensor.netd_k, .internal_noise = inputs.observer.internal_noise};
+  const auto equal = points.empty() ? std::vector<double>{} : equal_presentations(points, shown_k, noise);
+  for (std::size_t i = 0; i < points_k.size(); ++i) {
+    const auto point = std::ranges::find(points, points_k[i], &ContrastInformation::delta_t_k);
+    out[i] = {of_phases(point == points.end() ? 1 : equal[static_cast<std::size_t>(point - points.begin())]),
+              static_cast<double>(nearest[i])};
+  }
+  return out;
 }
 
 }  // namespace
@@ -322,24 +340,24 @@ std::optional<double> expected_presentations(const Plan& plan, const std::vector
 }
 
 Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& inputs) {
-  const Plan plan = with_phases_of_ramp(with_frames(asked, inputs));
+  const Plan plan = with_frames(asked, inputs);
   if (auto none = refuse_modules(plan, inputs.sensor); !none) return tl::unexpected(none.error());
   if (auto met = reachable(plan, inputs); !met) return tl::unexpected(met.error());
 
   PlanPrediction out{.figures = {}, .contrasts = {}, .warnings = inputs.warnings};
-  const auto levels = levels_of(plan, inputs.plates);
-  double constant_trials = 0, trials = 0;  // of all trials per contrast
-  for (const auto& level : levels) constant_trials += level.total;
+  const std::vector<ContrastDesign> designs = contrast_designs(plan, inputs);
+  double trials = 0;
   bool all_identified = true;
-  for (const double delta_t_k : plan.target.delta_t_k) {
-    ContrastPrediction point{.delta_t_k = delta_t_k,
-                             .s75_mrad = std::nullopt,
-                             .uncertainty_percent = std::nullopt,
-                             .trials = constant_trials};
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    const double delta_t_k = plan.target.delta_t_k[i];
+    const auto levels = levels_of(designs[i].plan, inputs.plates);
+    ContrastPrediction point{.delta_t_k = delta_t_k, .s75_mrad = std::nullopt, .uncertainty_percent = std::nullopt};
+    for (const auto& level : levels) point.trials += level.total;
+    point.trials *= designs[i].shown / designs[i].plan.simulation.phases;
     for (const auto& outlook : inputs.outlooks) {
       if (outlook.delta_t_k != delta_t_k) continue;
       point.s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
-      predict_interval(point, plan, inputs, levels, outlook);
+      predict_interval(point, designs[i].plan, inputs, levels, outlook);
     }
     trials += point.trials;
     if (point.uncertainty_percent) {
@@ -351,7 +369,6 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
     }
     out.contrasts.push_back(point);
   }
-  if (auto advice = ramp_advice(plan, inputs); !advice.empty()) out.warnings.push_back(std::move(advice));
   if (!all_identified) out.figures.predicted_uncertainty_percent.reset();
   out.figures.trials = static_cast<std::uint64_t>(std::llround(trials));
   return out;

@@ -13,6 +13,7 @@
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/bill_forecast.h"
 #include "bench/forecast/comparison_forecast.h"
+#include "bench/forecast/ramp_advice.h"
 #include "bench/run/fitted_curve.h"
 #include "bench/run/grey_results.h"
 #include "bench/run/measured_run.h"
@@ -96,7 +97,7 @@ struct RunStart {
   std::vector<std::string> notes{};
 };
 
-/// Waits for the warm-up, begins the recording, and predicts the comparison.
+/// Waits for the warm-up, begins the recording, and predicts the comparison and the ways to measure a ramp's contrasts.
 Result<RunStart> start_run(const Plan& plan, const ExperimentInputs& inputs, OpenedBench& bench,
                            const AddedStages& added, const OpenSession& open, const std::stop_token& stop) {
   RunStart start;
@@ -112,10 +113,13 @@ Result<RunStart> start_run(const Plan& plan, const ExperimentInputs& inputs, Ope
   }
   // The prediction does not include a package.
   const auto prediction = predict_plan(plan, inputs);
-  std::string forecast = prediction && !added.make ? comparison_forecast(plan, *prediction).sentence : "";
-  if (forecast.empty()) return start;
-  note(open.folder, open.listener, forecast);
-  start.notes.insert(start.notes.begin(), std::move(forecast));
+  const std::string forecast = prediction && !added.make ? comparison_forecast(plan, *prediction).sentence : "";
+  const std::string advice = added.as_recorded ? "" : ramp_advice(plan, inputs);
+  for (const std::string& sentence : {advice, forecast}) {
+    if (sentence.empty()) continue;
+    note(open.folder, open.listener, sentence);
+    start.notes.insert(start.notes.begin(), sentence);
+  }
   return start;
 }
 

@@ -190,6 +190,7 @@ TEST_F(Laboratories, ARampStatesTheCurveAndTheLagOfThePlate) {
   const Json run = one_object(ended);
   expect_ln_s75(run["points"][0], s75_at_10_k);
   EXPECT_THAT(run["notes"].dump(), HasSubstr("change later than the large ones by"));
+  EXPECT_THAT(run["notes"].dump(), HasSubstr("up to 2.03 K/s it stays below 0.6 %")) << "0.006 / 0.05 s of 16.9 K";
   EXPECT_THAT(run["points"][0]["adequacy"]["findings"].dump(), ::testing::Not(HasSubstr("contrast_lag")));
   EXPECT_GE(run["curve"].size(), 40u);
 }

@@ -8,6 +8,7 @@
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/bill_forecast.h"
 #include "bench/forecast/graded_precision.h"
+#include "bench/forecast/ramp_advice.h"
 #include "bench/plan/plan_options.h"
 #include "bench/twin/direct_results.h"
 
@@ -94,6 +95,7 @@ Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<Expect
   auto prediction = predict_plan(plan, inputs);
   // Effects are planned even if the simulation cannot meet the tolerance.
   out.warnings = prediction ? prediction->warnings : inputs.warnings;
+  if (std::string advice = ramp_advice(plan, inputs); !advice.empty()) out.warnings.push_back(std::move(advice));
   if (prediction) {
     if (auto timed = predict_times(plan, inputs, *prediction, stop);
         !timed && timed.error().code == ErrorCode::interrupted)

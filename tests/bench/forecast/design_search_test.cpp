@@ -7,11 +7,13 @@
 #include <cmath>
 
 #include "bench/forecast/decision_forecast.h"
+#include "bench/forecast/ramp_advice.h"
 #include "tod/schedule/schedule.h"
 
 namespace todbench {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -68,11 +70,47 @@ TEST(DesignSearch, WaitsForContrastsThatAPersonSets) {
 
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->best.plan.target.contrast_settling_band_percent, 0);
+  EXPECT_FALSE(found->ramp) << "a person sets no ramp";
   EXPECT_FALSE(found->settled_s);
   // 2 plates, further mountings, 2 contrast changes in each set-up; the first contrast settles during the others.
   const int n = found->set_ups;
   EXPECT_NEAR(found->best.changes_s - 0.1 * 3 * n * (found->best.plan.target.phases - 1), 120 + 30 * (n - 2) + 40 * n,
               1e-6);
+}
+
+TEST(DesignSearch, ComparesARampAtTheLagThatIsAssumedAndDoesNotProposeIt) {
+  Plan plan = plan_of_defaults();
+  plan.target.contrast_change_s = 120;
+  const SearchedBench bench = bench_of(plan);
+
+  const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = 2.5}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found->ramp);
+  EXPECT_FALSE(found->ramp->lag_is_stated);
+  EXPECT_LE(*found->ramp->design.plan.schedule.ramp_k_per_s, largest_ramp_rate(16.9, 0.1));
+  EXPECT_EQ(found->best.plan.schedule.kind, ScheduleKind::constant);
+  EXPECT_THAT(in_words(*found), Contains(HasSubstr("a ramp from 16.9 to 0.23 K at ")));
+  EXPECT_THAT(in_words(*found), Contains(HasSubstr("an assumed contrast lag of 0.1 s allows up to 1.01 K/s")));
+}
+
+TEST(DesignSearch, ProposesARampIfTheLagIsStatedAndItIsFaster) {
+  Plan plan = plan_of_defaults();
+  plan.target.delta_t_k = {16.9, 5, 1.93, 0.5, 0.23};
+  plan.target.contrast_change_s = 60;
+  plan.target.max_contrast_lag_s = 0.005;
+  const SearchedBench bench = bench_of(plan);
+
+  const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = 2.5}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->best.plan.schedule.kind, ScheduleKind::ramp);
+  EXPECT_LE(*found->best.half_width_percent, 2.5);
+  EXPECT_GE(found->set_ups, 5);
+  EXPECT_THAT(in_words(*found), Contains(HasSubstr("it is the fastest design")));
+  const auto read = parse_plan({.origin = "design.toml", .text = to_toml(found->best.plan)}, ".");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, found->best.plan);
 }
 
 TEST(DesignSearch, WritesAPlanThatReadsBackAndShowsTheSetUps) {
