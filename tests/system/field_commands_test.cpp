@@ -2,6 +2,7 @@
 // Ranges, pictures, identification, MRTD and test pictures as a user runs them.
 #include <cmath>
 #include <sstream>
+#include <tuple>
 
 #include "acquisition/recording/picture_file.h"
 #include "acquisition/recording/tiff_writer.h"
@@ -130,8 +131,13 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   expect_refused(range({"--atmosphere", "./unsorted.csv"}), 2, "must increase");
   expect_refused(range({"--atmosphere", "./empty.csv"}), 2, "empty");
   expect_refused(range({"--atmosphere", "us-standrd"}), 2, "us-standard");
-  expect_refused(range({"--background-k", "-3"}), 2, "above 0 K");
-  expect_refused(range({"--air-k", "0"}), 2, "above 0 K");
+  for (const auto& [option, value, sentence] :
+       {std::tuple{"--background-k", "15", "from 150 to 2000, found '15'; is the value in degrees Celsius?"},
+        {"--surround-k", "-60", "from 50 to 2000, found '-60'; is the value in degrees Celsius?"},
+        {"--air-k", "20", "from 150 to 400, found '20'; is the value in degrees Celsius?"},
+        {"--air-k", "0", "from 150 to 400"},
+        {"--grid-sizes-m", "2300", "is the value in mm?"}})
+    expect_refused(range({option, value}), 2, sentence);
   const Json weak = one_object(range({"--cn2", "1e-16"}));
   const Json strong = one_object(range({"--cn2", "1e-11", "--models", "all", "--page", "turbulent.html"}));
   EXPECT_THAT(content_of(folder.path() / "p.html"), Not(HasSubstr("1e-11")));
