@@ -168,8 +168,9 @@ void RangeOptions::add_to(CLI::App& command) {
   command
       .add_option(
           "--target-contrast", target_contrast,
-          "luminance contrast of the target for TTP; default: |dT| / (2 scene contrast)")
-      ->check(number_in(1e-9, 1));
+          "luminance contrast of the target for TTP before the air; default: |dT| / (2 scene contrast). Behind the "
+          "air the display shows at most 1")
+      ->check(number_in(1e-9, 1000));
   command
       .add_option("--scene-contrast-k", formula.scene_contrast_k,
                   "scene contrast in K that corresponds to the mean luminance of the display")

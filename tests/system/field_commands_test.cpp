@@ -38,6 +38,17 @@ TEST(RangeCommand, FindsTheClosedFormsOfAcquireAndTtpOnGivenCurves) {
   EXPECT_NEAR(one_object(acquire)["models"]["acquire"]["r50_m"].get<double>(), 1886.397824, 1e-5);
   ASSERT_EQ(ttp.code, 0) << ttp.err;
   EXPECT_NEAR(one_object(ttp)["models"]["ttp"]["r75_m"].get<double>(), 405.68794744, 1e-5);
+
+  // Behind the air the display shows at most 1, also of a stated contrast: 5 is that of 100 K on a display of 10 K.
+  const auto strong = [&](const std::vector<std::string>& contrast) {
+    std::vector<std::string> words{"range", "--size-m", "3.11",  "--extinction-per-km",
+                                   "0.2",   "--ctf",    "c.csv", "--v50",
+                                   "14.8",  "--models", "ttp",   "--json"};
+    words.insert(words.end(), contrast.begin(), contrast.end());
+    return one_object(todbench(words, {.folder = folder.path()}))["models"]["ttp"]["r75_m"];
+  };
+  EXPECT_EQ(strong({"--delta-t-k", "2", "--target-contrast", "5"}), strong({"--delta-t-k", "100"}));
+  EXPECT_TRUE(strong({"--delta-t-k", "2", "--target-contrast", "5"}).is_number());
 }
 
 /// Commands whose mathematics needs square pixels say so, and the others take the shape from the file.
