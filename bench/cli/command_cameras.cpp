@@ -94,7 +94,7 @@ void add_emulate_command(CLI::App& app, Program& program) {
       ->allow_extra_args(false)
       ->capture_default_str();
   command->add_option("--distance-m", a->distance_m, "distance from the camera to the plate in m")
-      ->check(number_in(0.1, 1000))
+      ->check(number_in(0.1, 1000, "m"))
       ->capture_default_str();
   command
       ->add_option("--collimator-transmission", a->collimator_transmission,
@@ -102,15 +102,15 @@ void add_emulate_command(CLI::App& app, Program& program) {
       ->check(number_in(0.01, 1))
       ->capture_default_str();
   command->add_option("--collimator-mirror-c", a->collimator_mirror_c, "temperature of its mirrors in degrees Celsius")
-      ->check(number_in(-100, 200))
+      ->check(number_in(-100, 200, "c"))
       ->capture_default_str();
   command
       ->add_option("--collimator-blur-mrad", a->collimator_blur_mrad,
                    "aberration of the collimator: standard deviation of its blur in mrad")
-      ->check(number_in(0, 100))
+      ->check(number_in(0, 100, "mrad"))
       ->capture_default_str();
   command->add_option("--latency-ms", a->latency_ms, "delay in ms from the exposure of a frame to its time stamp")
-      ->check(number_in(0, 10000))
+      ->check(number_in(0, 10000, "ms"))
       ->capture_default_str();
   command->add_flag("--black-body-celsius", a->celsius,
                     "the black body answers absolute temperatures in degrees Celsius, against its command table");
@@ -123,12 +123,12 @@ void add_emulate_command(CLI::App& app, Program& program) {
   command
       ->add_option("--stage-jitter-mm", a->stage_jitter_mm,
                    "random displacement of the plate during a run of the stage: standard deviation in mm")
-      ->check(number_in(0, 10))
+      ->check(number_in(0, 10, "mm"))
       ->capture_default_str();
   command
       ->add_option("--black-body-time-constant-s", a->black_body_time_constant_s,
                    "time constant in s with which the black body approaches a new contrast")
-      ->check(number_in(1e-4, 1000))
+      ->check(number_in(1e-4, 1000, "s"))
       ->capture_default_str();
   command
       ->add_option("--drift-k-per-min", a->drift_k_per_min,
@@ -144,7 +144,7 @@ void add_emulate_command(CLI::App& app, Program& program) {
   command
       ->add_option("--drift-time-constant-s", a->drift_time_constant_s,
                    "time constant of both drifts in s; 0: the drifts are linear")
-      ->check(number_in(0, 1e6))
+      ->check(number_in(0, 1e6, "s"))
       ->capture_default_str();
   command->add_flag("!--no-trigger", a->trigger,
                     "the stage does not report when a run began in the clock of the camera");
@@ -152,12 +152,12 @@ void add_emulate_command(CLI::App& app, Program& program) {
                       "shows the levels of this .npy file on a monitor in front of the camera, instead of the plates; "
                       "'todbench-gui --pictures --copy' writes such a file");
   command->add_option("--monitor-pixel-mm", a->monitor_pixel_mm, "pixel pitch of the monitor in mm")
-      ->check(number_in(0.001, 100))
+      ->check(number_in(0.001, 100, "mm"))
       ->capture_default_str();
   command
       ->add_option("--monitor-span-k", a->monitor_span_k,
                    "observed contrast between white and black of the monitor, in K")
-      ->check(number_in(0.001, 10000))
+      ->check(number_in(0.001, 10000, "k"))
       ->capture_default_str();
   command->add_option("--monitor-gamma", a->monitor_gamma, "gamma of the monitor: its light is the level to this power")
       ->check(number_in(0.2, 5))

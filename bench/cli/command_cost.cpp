@@ -148,7 +148,7 @@ void add_cost_command(CLI::App& app, Program& program) {
   command
       ->add_option("--budget-s", a->budget_s,
                    "wall time of the whole study in s; settings that do not fit are not measured")
-      ->check(number_in(0.1, 86400))
+      ->check(number_in(0.1, 86400, "s"))
       ->capture_default_str();
   add_accept_changed(*command, a->opening.accept_changed);
   finish_command(*command, program, [a, &program](Console& console) { return run_cost(console, *a, program); });

@@ -132,7 +132,7 @@ void add_doctor_command(CLI::App& app, Program& program) {
       ->check(whole_number(1, 1'000'000'000))
       ->capture_default_str();
   command->add_option("--frame-rate-hz", a->demand.frame_rate_hz, "frame rate of the camera in Hz")
-      ->check(number_in(0.1, 10000))
+      ->check(number_in(0.1, 10000, "hz"))
       ->capture_default_str();
   command
       ->add_option("--packet-bytes", a->demand.packet_bytes,

@@ -244,7 +244,7 @@ void add_dynamic_command(CLI::App& app, Program& program) {
   add_display_option(*command, a->display);
   command->add_option("--delta-t-k", a->delta_t_k, "set contrast in K")
       ->capture_default_str()
-      ->check(number_in(-1000, 1000));
+      ->check(number_in(-1000, 1000, "k"));
   command->add_option("--speeds-mrad-s", a->speeds_mrad_s, "speeds along x in mrad/s; 0 is added")
       ->expected(1, 32)
       ->check(number_in(0, 1e6));
@@ -260,15 +260,15 @@ void add_dynamic_command(CLI::App& app, Program& program) {
   command
       ->add_option("--time-constant-ms", a->time_constant_ms,
                    "time constant of the detector in ms; default: the value of the sensor")
-      ->check(number_in(0, 1000));
+      ->check(number_in(0, 1000, "ms"));
   command->add_option("--exposure-ms", a->exposure_ms, "exposure time in ms; default: the value of the sensor")
-      ->check(number_in(0, 1000));
+      ->check(number_in(0, 1000, "ms"));
   command->add_option("--row-time-us", a->row_time_us, "readout time per row in us; default: the value of the sensor")
-      ->check(number_in(0, 1e4));
+      ->check(number_in(0, 1e4, "us"));
   command
       ->add_option("--field-delay-ms", a->field_delay_ms,
                    "time from the even to the odd rows of an interlaced frame in ms; default: the value of the sensor")
-      ->check(number_in(0, 1000));
+      ->check(number_in(0, 1000, "ms"));
   command->add_option("--package", a->package,
                       "package of stages behind the camera, a file; the lag of the stages is not removed");
   command

@@ -361,7 +361,7 @@ void add_sfr_command(CLI::App& app, Program& program) {
   command
       ->add_option("--pitch-mrad", a->pitch_mrad,
                    "angle of a pixel (IFOV) in mrad; adds frequencies in cycles per mrad")
-      ->check(number_in(1e-6, 1e6));
+      ->check(number_in(1e-6, 1e6, "mrad"));
   command
       ->add_option(
           "--f-number", a->f_number,
@@ -370,8 +370,8 @@ void add_sfr_command(CLI::App& app, Program& program) {
   command->add_option("--wavelength-um", a->wavelength_um, "spectral band LOW,HIGH in um, or its central wavelength")
       ->delimiter(',')
       ->expected(1, 2)
-      ->check(number_in(0.1, 100));
-  command->add_option("--pitch-um", a->pitch_um, "detector pitch in um")->check(number_in(0.1, 1000));
+      ->check(number_in(0.1, 100, "um"));
+  command->add_option("--pitch-um", a->pitch_um, "detector pitch in um")->check(number_in(0.1, 1000, "um"));
   command
       ->add_option("--halo-at-most", a->halo_at_most,
                    "largest share of the step that halos can have, if known; it bounds the lower end of the intervals")

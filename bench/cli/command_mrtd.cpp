@@ -185,7 +185,7 @@ void add_mrtd_command(CLI::App& app, Program& program) {
   command
       ->add_option("--range-m", a->range_m,
                    "distance from the camera to the bars in m; default: no atmosphere between them")
-      ->check(number_in(1e-3, 1e6));
+      ->check(number_in(1e-3, 1e6, "m"));
   command
       ->add_option("--criterion", a->criterion,
                    "task of the observer: four-or-five (two-interval forced choice, free of bias), bars-resolved (yes "
@@ -219,7 +219,7 @@ void add_mrtd_command(CLI::App& app, Program& program) {
   command
       ->add_option("--eye-integration-s", a->formula.eye_integration_s,
                    "integration time of the eye in the MRTD formula, in s")
-      ->check(number_in(1e-4, 10))
+      ->check(number_in(1e-4, 10, "s"))
       ->capture_default_str();
   a->decisions.add_to(*command);
   command->add_option("--svg", a->svg, "writes the figure to this SVG file");

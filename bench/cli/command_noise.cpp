@@ -44,6 +44,7 @@ constexpr double white_enough = 0.1;
 struct Frames {
   std::vector<TimedPicture> pictures;
   bool kelvin = false;
+  int repeated = 0;           ///< frames that equal the one before them bit for bit
   double unit_per_count = 1;  ///< 0: unknown
   ByteOrderVerdict byte_order = ByteOrderVerdict::as_stated;
   cv::Mat1d saturated;  ///< frames in which a pixel was at either end of the counts
@@ -72,18 +73,21 @@ class Segments {
         !last_.empty() && last_.size() == frame.counts.size() && cv::norm(last_, frame.counts, cv::NORM_INF) == 0;
     const auto seen = repeated ? watch_.see_frozen() : watch_.see(frame);
     last_ = frame.counts;
+    repeated_ += repeated ? 1 : 0;
     jumped_ = jumped_ || seen == CorrectionSign::level_jump;
     if ((seen && seen != CorrectionSign::level_jump) || frame.correction == CorrectionState::running) ++segment_;
     const bool usable = !repeated && frame.correction != CorrectionState::running && seen != CorrectionSign::shutter;
     return usable ? std::optional(segment_) : std::nullopt;
   }
+  /// Frames so far that equal the one before them bit for bit.
+  [[nodiscard]] int repeated() const { return repeated_; }
   /// Whether the level jumped since the last call.
   [[nodiscard]] bool jumped() { return std::exchange(jumped_, false); }
 
  private:
   CorrectionWatch watch_{CorrectionWatchOptions{}};
   cv::Mat1w last_;
-  int segment_ = 0;
+  int segment_ = 0, repeated_ = 0;
   bool jumped_ = false;
 };
 
@@ -133,6 +137,7 @@ Result<Frames> frames_of(const std::string& id, Console& console) {
         if (!sentence.empty()) console.note(sentence);
       }
       frames.byte_order = gate.byte_order().verdict();
+      frames.repeated = segments.repeated();
       split_at_jumps(frames.pictures, jumps);
       return frames;
     }
@@ -174,6 +179,7 @@ struct Found {
   TemporalNoise time;
   bool kelvin = false;
   double unit_per_count = 1, saturated_share = 0;
+  int repeated = 0;
   ByteOrderVerdict byte_order = ByteOrderVerdict::as_stated;
 };
 
@@ -252,6 +258,7 @@ Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, cons
           {"height", noise.usable.rows},
           {"blocks", noise.blocks},
           {"block_frames", arguments.block_frames},
+          {"frames_repeated", found.repeated},
           {"usable_share", noise.usable_share},
           {"pixels_left_out", pixels_left_out(found.time)},
           {"temporal_noise", no_number(found) ? Json() : json_number(found.time.successive)},
@@ -320,6 +327,14 @@ void print_acuities(Console& console, const std::vector<NoiseAcuity>& points) {
   console.table({"dT / noise", "r", "pixels", "rows", "columns", "correlated"}, why);
 }
 
+/// States how many frames are no exposures of their own; empty if all are.
+std::string frozen_sentence(int repeated) {
+  return repeated == 0
+             ? ""
+             : std::to_string(repeated) + (repeated == 1 ? " frame repeats" : " frames repeat") +
+                   " the frame before bit for bit (frozen) and " + (repeated == 1 ? "is" : "are") + " left out";
+}
+
 int run_noise(Console& console, NoiseArguments arguments, const Program& program) {
   auto sensor = load_sensor(arguments.sensor);
   if (!sensor) return report_error(console, sensor.error());
@@ -334,11 +349,13 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
                                                        ": the noise cannot be computed: it needs at least two "
                                                        "different frames without a correction (NUC) between them, "
                                                        "found " +
-                                                       std::to_string(count)});
+                                                       std::to_string(count) + (frames->repeated > 0 ? "; " : "") +
+                                                       frozen_sentence(frames->repeated)});
   }
+  if (frames->repeated > 0) console.note(frozen_sentence(frames->repeated));
   if (count < arguments.block_frames) {
     console.note("the recording has " + std::to_string(count) +
-                 " frames, fewer than --block-frames: all of them form one block");
+                 " usable frames, fewer than --block-frames: all of them form one block");
     arguments.block_frames = count;
   }
   auto time = temporal_noise(frames->pictures);
@@ -350,8 +367,8 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
     console.note(fmt::format("{} of {} pixels never change or see a moving scene: all results exclude them", left_out,
                              time->usable.total()));
   const double saturated_share = cv::mean(frames->saturated, time->usable)[0] / count;
-  const Found found{*std::move(blocks),     *std::move(time), frames->kelvin,
-                    frames->unit_per_count, saturated_share,  frames->byte_order};
+  const Found found{*std::move(blocks), *std::move(time), frames->kelvin,    frames->unit_per_count,
+                    saturated_share,    frames->repeated, frames->byte_order};
   std::vector<NoiseAcuity> points;
   if (clipped(found)) {
     console.note(

@@ -196,7 +196,7 @@ void add_render_command(CLI::App& app, Program& program) {
   command->add_option("--y-pitch", a->y_pitch, "position of the centroid below the middle sample, in detector pitches")
       ->check(number_in(-1000, 1000));
   command->add_option("--delta-t-k", a->delta_t_k, "contrast of the triangle in K")
-      ->check(number_in(-1e6, 1e6))
+      ->check(number_in(-5000, 5000, "k"))
       ->capture_default_str();
   command->add_option("--microscan", a->microscan, "samples per detector pitch and axis; default: those of the sensor")
       ->check(whole_number(1, 4));

@@ -250,7 +250,7 @@ void add_picture_command(CLI::App& app, Program& program) {
   a->chain.add_sensor_to(*command);
   command->add_option("--range-m", a->range_m, "distance from the camera to the scene in m")
       ->required()
-      ->check(number_in(1e-3, 1e6));
+      ->check(number_in(1e-3, 1e6, "m"));
   command->add_option("--out", a->out, "folder for the pictures and the page")->required();
   a->chain.add_to(*command, "observer of the last stage: name or file");
   command->add_option("--rotation-deg", a->rotation_deg, "rotation of the scene in degrees, clockwise")

@@ -122,16 +122,16 @@ void add_plate_command(CLI::App& app, Program& program) {
       ->check(number_in(0.01, 20))
       ->capture_default_str();
   command->add_option("--edge-mm", a->errors.edge_mm, "displacement of all edges, for the table of errors")
-      ->check(number_in(-1, 1))
+      ->check(number_in(-1, 1, "mm"))
       ->capture_default_str();
   command->add_option("--corner-radius-mm", a->errors.corner_radius_mm, "radius of the corners, for the same table")
-      ->check(number_in(0, 10))
+      ->check(number_in(0, 10, "mm"))
       ->capture_default_str();
   command->add_option("--thickness-mm", a->errors.thickness_mm, "thickness of the sheet, for the same table")
-      ->check(number_in(0, 50))
+      ->check(number_in(0, 50, "mm"))
       ->capture_default_str();
   command->add_option("--distance-m", a->errors.distance_m, "distance of the plate, for the same table")
-      ->check(number_in(0.05, 1000))
+      ->check(number_in(0.05, 1000, "m"))
       ->capture_default_str();
   finish_command(*command, program, [a](Console& console) { return run_plate(console, *a); });
 }

@@ -395,10 +395,10 @@ void add_range_command(CLI::App& app, Program& program) {
   command->add_option("--tod", a->tod, "session folder with the TOD curve; required if --models includes tod");
   command->add_option("--size-m", a->task.size_m, "square root of the projected area of the target, in m")
       ->required()
-      ->check(number_in(1e-6, 1e6));
+      ->check(number_in(1e-3, 1000, "m"));
   command->add_option("--delta-t-k", a->task.delta_t_k, "contrast of the target in K")
       ->required()
-      ->check(number_in(-5000, 5000));
+      ->check(number_in(-5000, 5000, "k"));
   auto* m75 =
       command
           ->add_option("--m75", a->m75, "criterion M75 of the TOD model; 5.1 is that of small craft seen from the side")

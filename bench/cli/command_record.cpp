@@ -298,7 +298,7 @@ void add_record_command(CLI::App& app, Program& program) {
   command->add_option("--seconds", a->seconds, "stops this time after the first frame, in s")
       ->check(number_in(0.001, 1e7));
   command->add_option("--timeout-s", a->timeout_s, "time without a frame, in s, after which the camera counts as lost")
-      ->check(number_in(0.001, 600))
+      ->check(number_in(0.001, 600, "s"))
       ->capture_default_str();
   command->add_option("--set", a->settings,
                       "camera setting FEATURE=VALUE, written before the first frame; may be repeated");

@@ -83,7 +83,7 @@ void add_scene_dependence_command(CLI::App& app, Program& program) {
   command->add_flag("--force", a->overwrite, "overwrites the session in an existing folder");
   command->add_option("--bar-k", a->bar_k, "temperature of the simulated bar above the surround in K")
       ->capture_default_str()
-      ->check(number_in(0.1, 1000));
+      ->check(number_in(0.1, 1000, "k"));
   command->add_option("--cycles", a->options.cycles, "number of cycles; in each the bar is out, in, in, out")
       ->capture_default_str()
       ->check(whole_number(3, 1000));

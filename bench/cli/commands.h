@@ -29,8 +29,9 @@ struct Program {
 /// Adds --json, --quiet and --seed, and sets `action` to run when the subcommand is chosen.
 void finish_command(CLI::App& command, Program& program, std::function<int(Console&)> action);
 
-/// Validators of option values. Unlike those of the parser they reject NaN and quote the value.
-[[nodiscard]] CLI::Validator number_in(double low, double high);
+/// Validators of option values. Unlike those of the parser they reject NaN and quote the value. The message names
+/// another unit if that explains the value; `unit`: as at the end of the option's name.
+[[nodiscard]] CLI::Validator number_in(double low, double high, std::string_view unit = {});
 [[nodiscard]] CLI::Validator whole_number(std::int64_t low, std::int64_t high);
 
 /// Prints the error and returns its exit code.

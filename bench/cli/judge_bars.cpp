@@ -116,7 +116,7 @@ void add_bars_options(CLI::App& command, BarsArguments& a) {
   command.add_option("--person", a.person.code, "code of the person who answered")->needs(answers);
   command.add_option("--screen", a.person.screen, "screen, in free text")->needs(answers);
   command.add_option("--viewing-distance-m", a.person.distance_m, "from the eye to the screen")
-      ->check(number_in(0.01, 100))
+      ->check(number_in(0.01, 100, "m"))
       ->needs(answers);
 }
 

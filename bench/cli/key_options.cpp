@@ -5,23 +5,28 @@
 
 #include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
+#include "bench/text/text.h"
+#include "bench/text/unit_hint.h"
 
 namespace todbench {
 namespace {
 
 /// Validates a text by its type alone, because the parser has no plan yet.
-CLI::Validator check_of(const KeyType& type) {
-  return {[type](const std::string& text) {
+CLI::Validator check_of(const KeyType& type, const std::string& option) {
+  return {[type, option](const std::string& text) {
             const auto value = value_from_text(type, text);
-            return value ? std::string() : value.error().message;
+            if (value) return std::string();
+            const auto number = parse_number(text);
+            const auto* key = std::get_if<NumberKey>(&type);
+            return value.error().message + (number && key ? unit_hint(option, *number, key->range) : "");
           },
           ""};
 }
 
 /// Returns the validator of one word; for a list, of one element.
-std::optional<CLI::Validator> word_check(const KeyType& type) {
-  if (const auto* numbers = std::get_if<NumbersKey>(&type)) return check_of(NumberKey{numbers->range});
-  if (std::holds_alternative<NumberKey>(type) || std::holds_alternative<WholeKey>(type)) return check_of(type);
+std::optional<CLI::Validator> word_check(const KeyType& type, const std::string& option) {
+  if (const auto* numbers = std::get_if<NumbersKey>(&type)) return check_of(NumberKey{numbers->range}, option);
+  if (std::holds_alternative<NumberKey>(type) || std::holds_alternative<WholeKey>(type)) return check_of(type, option);
   return std::nullopt;
 }
 
@@ -61,7 +66,7 @@ void add_key_option(CLI::App& command, const KeyAt& at, KeyOverrides& overrides)
     option->expected(1, CLI::detail::expected_max_vector_size)->delimiter(',')->allow_extra_args(false);
     option->take_all();
   }
-  if (const auto check = word_check(at.key->type)) option->check(*check);
+  if (const auto check = word_check(at.key->type, name)) option->check(*check);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "bench/judgement/verdict.h"
 #include "bench/session/build_info.h"
 #include "bench/text/text.h"
+#include "bench/text/unit_hint.h"
 
 namespace todbench {
 
@@ -45,24 +46,17 @@ int report_error(Console& console, const Error& error) {
   return exit_code(error.code);
 }
 
-namespace {
-
-CLI::Validator number_that(std::function<bool(double)> fits, std::string expected) {
+CLI::Validator number_in(double low, double high, std::string_view unit) {
+  const NumberRange range = NumberRange::between(low, high);
+  const std::string key = "in-" + std::string(unit);
   return CLI::Validator(
-      [fits = std::move(fits), expected = std::move(expected)](const std::string& text) {
+      [range, key](const std::string& text) {
         const auto value = parse_number(text);
-        return value && fits(*value) ? std::string()
-                                     : "expected a number " + expected + ", found '" + one_line(text) + "'";
+        if (value && range.contains(*value)) return std::string();
+        return "expected a number from " + number_text(range.low) + " to " + number_text(range.high) + ", found '" +
+               one_line(text) + "'" + (value ? unit_hint(key, *value, range) : "");
       },
       "");
-}
-
-}  // namespace
-
-CLI::Validator number_in(double low, double high) {
-  const NumberRange range = NumberRange::between(low, high);
-  return number_that([range](double value) { return range.contains(value); },
-                     "from " + number_text(low) + " to " + number_text(high));
 }
 
 CLI::Validator whole_number(std::int64_t low, std::int64_t high) {

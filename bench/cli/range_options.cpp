@@ -133,20 +133,22 @@ void RangeOptions::add_to(CLI::App& command) {
       ->default_str("tod");
   command.add_option("--sensor", sensor,
                      "sensor of the formula models: name or file; default: the sensor of the session");
-  const auto kelvin = number_in(-1e6, 1e6);
+  // From polar air (184 K) to furnaces; the sky that a surface reflects may be colder.
+  const auto background = number_in(150, 2000, "k"), surroundings = number_in(50, 2000, "k"),
+             air_temperature = number_in(150, 400, "k");
   command
       .add_option("--background-k", background_k,
                   "temperature of the background in K; the contrast is then computed as radiance")
-      ->check(kelvin);
+      ->check(background);
   command.add_option("--emissivity", emissivity, "emissivity of target and background")
       ->check(number_in(1e-6, 1))
       ->capture_default_str();
   command
       .add_option("--surround-k", surround_k,
                   "radiation temperature of the reflected surroundings in K; default: that of the background")
-      ->check(kelvin);
+      ->check(surroundings);
   command.add_option("--air-k", air_k, "temperature of the air in K; default: that of the model atmosphere")
-      ->check(kelvin);
+      ->check(air_temperature);
   const auto positive = number_in(1e-6, 1e6);
   command
       .add_option("--n50", n50,
@@ -164,13 +166,15 @@ void RangeOptions::add_to(CLI::App& command) {
   command.add_option("--ctf", ctf_file,
                      "CSV file with frequency_per_mrad and ctf that replaces the CTF of eye and sensor");
   command
-      .add_option("--target-contrast", target_contrast,
-                  "luminance contrast of the target for TTP; default: |dT| / (2 scene contrast)")
-      ->check(number_in(1e-9, 1));
+      .add_option(
+          "--target-contrast", target_contrast,
+          "luminance contrast of the target for TTP before the air; default: |dT| / (2 scene contrast). Behind the "
+          "air the display shows at most 1")
+      ->check(number_in(1e-9, 1000));
   command
       .add_option("--scene-contrast-k", formula.scene_contrast_k,
                   "scene contrast in K that corresponds to the mean luminance of the display")
-      ->check(positive)
+      ->check(number_in(1e-3, 1000, "k"))
       ->capture_default_str();
   command
       .add_option("--snr-threshold", formula.snr_threshold, "signal-to-noise ratio at threshold in the MRTD formula")
@@ -179,7 +183,7 @@ void RangeOptions::add_to(CLI::App& command) {
   command
       .add_option("--eye-integration-s", formula.eye_integration_s,
                   "integration time of the eye in the MRTD formula, in s")
-      ->check(number_in(1e-4, 10))
+      ->check(number_in(1e-4, 10, "s"))
       ->capture_default_str();
   command
       .add_option("--extinction-u-percent", extinction_u_percent,
@@ -213,12 +217,12 @@ void RangeOptions::add_to(CLI::App& command) {
       ->excludes(turbulence);
   auto* sizes = command.add_option("--grid-sizes-m", grid.sizes_m, "target sizes of a grid in m, separated by commas")
                     ->delimiter(',')
-                    ->check(number_in(1e-6, 1e6));
+                    ->check(number_in(1e-3, 1000, "m"));
   auto* contrasts =
       command
           .add_option("--grid-contrasts-k", grid.contrasts_k, "target contrasts of the grid in K, separated by commas")
           ->delimiter(',')
-          ->check(number_in(-5000, 5000))
+          ->check(number_in(-5000, 5000, "k"))
           ->needs(sizes);
   sizes->needs(contrasts);
   sizes->excludes(turbulence);
@@ -230,7 +234,7 @@ void RangeOptions::add_to(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--grid-ranges-m", grid.ranges_m, "ranges in m for which the grid gives P, separated by commas")
       ->delimiter(',')
-      ->check(number_in(1e-3, 1e8))
+      ->check(number_in(1e-3, 1e6, "m"))
       ->needs(sizes);
   command.add_option("--svg", svg, "writes the figure of P over range to this SVG file");
   command.add_option("--page", page, "writes figure, tables and assumptions to this HTML file");

@@ -92,6 +92,15 @@ std::vector<AdequacyFinding> changes(const RunFacts& run) {
 
 }  // namespace
 
+std::string unchecked_changes(std::span<const ContrastMeasurement> contrasts, const RunConstancy& constancy) {
+  if (contrasts.empty() || transfer_change(contrasts)) return "";
+  std::string others;
+  if (!noise_change(constancy.noise)) others += ", of the noise";
+  if (!correlation_change(constancy.noise)) others += ", of its correlation";
+  return "not checked: fewer than two comparable set-ups. A change of the signal transfer" + others +
+         " during the run would not be noticed; measure in two mountings or with several shifts";
+}
+
 double allowed_contrast_deviation(const Plan& plan, const TodPoint& point, std::size_t contrasts) {
   if (plan.target.max_contrast_deviation_percent) return *plan.target.max_contrast_deviation_percent / 100;
   const double contrast_k = std::abs(point.set_delta_t_k);

@@ -54,6 +54,12 @@ struct RunFacts {
   std::span<const AdequacyFinding> others{};  ///< about the whole run
 };
 
+/// Returns a sentence that names the changes during the run which its averages cannot show, because it has one set-up
+/// or no comparable ones; empty if the response of the camera was compared between set-ups, and for contrasts in grey
+/// levels.
+[[nodiscard]] std::string unchecked_changes(std::span<const ContrastMeasurement> contrasts,
+                                            const RunConstancy& constancy);
+
 /// Adds the findings to the adequacy of the points. Each makes its point unfit for a decision, except a deviation of
 /// the contrast that is allowed and still large enough to be named. Changes of the camera apply to all points. Returns
 /// the sentences without duplicates.

@@ -14,6 +14,7 @@
 #include "bench/forecast/bill_forecast.h"
 #include "bench/forecast/comparison_forecast.h"
 #include "bench/forecast/ramp_advice.h"
+#include "bench/judgement/run_findings.h"
 #include "bench/run/fitted_curve.h"
 #include "bench/run/grey_results.h"
 #include "bench/run/measured_run.h"
@@ -226,6 +227,18 @@ Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const Experimen
   return measure_on_bench(loaded, inputs, std::move(bench), options, listener, std::move(stop));
 }
 
+namespace {
+
+/// Notes the changes of the camera that the run could not show.
+void note_unchecked_changes(MeasurementResult& result, const OpenSession& open) {
+  const std::string sentence = result.ended_by ? "" : unchecked_changes(result.contrasts, result.constancy);
+  if (sentence.empty()) return;
+  note(open.folder, open.listener, sentence);
+  result.notes.push_back(sentence);
+}
+
+}  // namespace
+
 Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const ExperimentInputs& inputs, OpenedBench bench,
                                            const ExperimentOptions& options, const ExperimentListener& listener,
                                            std::stop_token stop) {
@@ -291,6 +304,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   report_fit(result, plan, inputs, open);
   const FittedCurve& fitted = fit->get(stop);
   keep_shape(result, fitted.said, open);
+  note_unchecked_changes(result, open);
   const double wall_s = seconds_since(begin);
   if (forecast && has_times_of_plan(result, wall_s, begin_ns)) provenance.forecast = time_forecast(*forecast);
   if (provenance.forecast) {

@@ -2,6 +2,7 @@
 // Ranges, pictures, identification, MRTD and test pictures as a user runs them.
 #include <cmath>
 #include <sstream>
+#include <tuple>
 
 #include "acquisition/recording/picture_file.h"
 #include "acquisition/recording/tiff_writer.h"
@@ -37,6 +38,17 @@ TEST(RangeCommand, FindsTheClosedFormsOfAcquireAndTtpOnGivenCurves) {
   EXPECT_NEAR(one_object(acquire)["models"]["acquire"]["r50_m"].get<double>(), 1886.397824, 1e-5);
   ASSERT_EQ(ttp.code, 0) << ttp.err;
   EXPECT_NEAR(one_object(ttp)["models"]["ttp"]["r75_m"].get<double>(), 405.68794744, 1e-5);
+
+  // Behind the air the display shows at most 1, also of a stated contrast: 5 is that of 100 K on a display of 10 K.
+  const auto strong = [&](const std::vector<std::string>& contrast) {
+    std::vector<std::string> words{"range", "--size-m", "3.11",  "--extinction-per-km",
+                                   "0.2",   "--ctf",    "c.csv", "--v50",
+                                   "14.8",  "--models", "ttp",   "--json"};
+    words.insert(words.end(), contrast.begin(), contrast.end());
+    return one_object(todbench(words, {.folder = folder.path()}))["models"]["ttp"]["r75_m"];
+  };
+  EXPECT_EQ(strong({"--delta-t-k", "2", "--target-contrast", "5"}), strong({"--delta-t-k", "100"}));
+  EXPECT_TRUE(strong({"--delta-t-k", "2", "--target-contrast", "5"}).is_number());
 }
 
 /// Commands whose mathematics needs square pixels say so, and the others take the shape from the file.
@@ -130,8 +142,13 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   expect_refused(range({"--atmosphere", "./unsorted.csv"}), 2, "must increase");
   expect_refused(range({"--atmosphere", "./empty.csv"}), 2, "empty");
   expect_refused(range({"--atmosphere", "us-standrd"}), 2, "us-standard");
-  expect_refused(range({"--background-k", "-3"}), 2, "above 0 K");
-  expect_refused(range({"--air-k", "0"}), 2, "above 0 K");
+  for (const auto& [option, value, sentence] :
+       {std::tuple{"--background-k", "15", "from 150 to 2000, found '15'; is the value in degrees Celsius?"},
+        {"--surround-k", "-60", "from 50 to 2000, found '-60'; is the value in degrees Celsius?"},
+        {"--air-k", "20", "from 150 to 400, found '20'; is the value in degrees Celsius?"},
+        {"--air-k", "0", "from 150 to 400"},
+        {"--grid-sizes-m", "2300", "is the value in mm?"}})
+    expect_refused(range({option, value}), 2, sentence);
   const Json weak = one_object(range({"--cn2", "1e-16"}));
   const Json strong = one_object(range({"--cn2", "1e-11", "--models", "all", "--page", "turbulent.html"}));
   EXPECT_THAT(content_of(folder.path() / "p.html"), Not(HasSubstr("1e-11")));

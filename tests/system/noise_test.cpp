@@ -28,11 +28,12 @@ TEST(NoiseCommand, TellsTheAcuityUnderARealCamerasNoiseFromThatUnderWhiteNoise) 
 
   ASSERT_EQ(ended.code, 0) << ended.err;
   const Json json = one_object(ended);
-  EXPECT_THAT(keys_of(json),
-              UnorderedElementsAre("recording", "unit", "width", "height", "blocks", "block_frames", "usable_share",
-                                   "pixels_left_out", "temporal_noise", "lag1_correlation", "structure_function",
-                                   "whole_to_successive", "block_noise", "components", "correlation_x", "correlation_y",
-                                   "observer", "sensor", "byte_order", "verdict", "points"));
+  EXPECT_THAT(
+      keys_of(json),
+      UnorderedElementsAre("recording", "unit", "width", "height", "blocks", "block_frames", "frames_repeated",
+                           "usable_share", "pixels_left_out", "temporal_noise", "lag1_correlation",
+                           "structure_function", "whole_to_successive", "block_noise", "components", "correlation_x",
+                           "correlation_y", "observer", "sensor", "byte_order", "verdict", "points"));
   EXPECT_EQ(json["unit"], "counts");
   EXPECT_EQ(json["width"], 160);
   EXPECT_EQ(json["blocks"], 10);  // 100 frames
@@ -165,6 +166,19 @@ TEST(NoiseCommand, RefusesFramesThatAreByteSwappedRotatedOrRepeated) {
     expect_refused(todbench({"noise", file}), 5, sentence);
     expect_refused(todbench({"noise", file, "--components-only"}), 5, sentence);
   }
+}
+
+TEST(NoiseCommand, NamesTheFramesThatAreFrozen) {
+  const TemporaryFolder folder;
+  std::string last;
+  const auto frozen = [&](std::size_t k, const std::string& frame) { return last = k < 5 ? frame : last; };
+  const std::string file = folder.write("frozen.raw", changed_frames(frozen)).string() + "?width=80&height=60";
+
+  const Ended ended = todbench({"noise", file, "--contrast-over-noise", "8", "--json"});
+
+  EXPECT_EQ(one_object(ended)["frames_repeated"], 35);
+  EXPECT_THAT(ended.err, HasSubstr("35 frames repeat the frame before bit for bit (frozen) and are left out"));
+  EXPECT_THAT(ended.err, HasSubstr("the recording has 5 usable frames"));
 }
 
 TEST(NoiseCommand, SaysThatCountsOfOneByteDoNotShowTheirByteOrder) {

@@ -11,8 +11,10 @@
 namespace todbench {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::Field;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 TodCurve curve_at(double set_k, double seen_k) {
@@ -151,6 +153,21 @@ TEST(RunFindings, OfTheCameraConcernEveryPoint) {
     EXPECT_THAT(point.adequacy->findings, of_kind(FindingKind::picture_residue));
     EXPECT_FALSE(point.adequacy->adequate());
   }
+}
+
+TEST(RunFindings, NameTheChangesThatOneSetUpCannotShow) {
+  const auto seen = [](double y_px) {
+    ContrastMeasurement one{.set_delta_t_k = 16.9, .delta_t_k = 16.9, .references = {}};
+    for (const double x_px : {100.0, 120.0, 140.0})
+      one.references.push_back({.value = 16.9, .place_px = {x_px, y_px}, .size_px = 5});
+    return one;
+  };
+  const std::vector<ContrastMeasurement> one{seen(120)}, two{seen(120), seen(205)};
+
+  EXPECT_THAT(unchecked_changes(one, {.noise = {{16.9, 0.07, 0.0}}}),
+              AllOf(HasSubstr("not checked"), HasSubstr("signal transfer, of the noise, of its correlation")));
+  EXPECT_EQ(unchecked_changes(two, {.noise = {{16.9, 0.07, 0.0}, {16.9, 0.07, 0.0}}}), "");
+  EXPECT_EQ(unchecked_changes({}, {}), "") << "grey levels";
 }
 
 }  // namespace
