@@ -260,7 +260,7 @@ Result<GObjectPtr<ArvDevice>> AravisBackend::open_device(const Found& found) {
   if (ARV_IS_GV_DEVICE(device.get()) && arv_gv_device_is_controller(ARV_GV_DEVICE(device.get())) == 0) {
     return fail(ErrorCode::not_found, "busy: another program controls it");
   }
-  if (const auto safe = guard_device(device.get(), description); !safe) return tl::unexpected(safe.error());
+  TODBENCH_TRY_VOID(guard_device(device.get(), description));
   return device;
 }
 

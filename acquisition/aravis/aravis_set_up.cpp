@@ -67,8 +67,8 @@ Result<std::unique_ptr<FrameSource>> AravisSource::create(GObjectPtr<ArvCamera> 
   source->configure_transport();
   if (const auto read = source->refresh(); !read) return tl::unexpected(read.error());
   // A stream is opened here once so that info() contains the socket buffer before the first run.
-  if (const auto stream = source->create_stream(); !stream) return tl::unexpected(stream.error());
-  if (const auto checked = source->check_byte_order(); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(source->create_stream());
+  TODBENCH_TRY_VOID(source->check_byte_order());
   return std::unique_ptr<FrameSource>(std::move(source));
 }
 
@@ -84,14 +84,14 @@ Result<void> AravisSource::check_byte_order() {
     return {};
   }
   RampVerdict verdict = RampVerdict::no_ramp;
-  if (auto started = start(); !started) return started;
+  TODBENCH_TRY_VOID(start());
   for (int i = 0; i < ramp_frames && verdict == RampVerdict::no_ramp; ++i) {
     const auto frame = next(ramp_patience);
     if (!frame) break;
     if (frame->status == FrameStatus::complete) verdict = judge_test_ramp(frame->counts);
   }
   stop();
-  if (auto off = set_feature(device, family_.test_pattern, "Off"); !off) return off;
+  TODBENCH_TRY_VOID(set_feature(device, family_.test_pattern, "Off"));
   if (verdict == RampVerdict::swapped) {
     bytes_swapped_ = !bytes_swapped_;
     setup_warnings_.push_back("The bytes of the test ramp arrive swapped. The program swaps the bytes of every frame.");
@@ -289,7 +289,7 @@ Result<void> AravisSource::correct_nonuniformity() {
     }
     corrections_taken_over_ = true;
     if (*warning) setup_warnings_.push_back(**warning);
-    if (auto read = refresh(); !read) return read;
+    TODBENCH_TRY_VOID(refresh());
   }
   may_pause_until_ns_ = monotonic_ns() + std::chrono::nanoseconds(longest_correction).count();
   auto done = set_feature(device, commands.front(), "1");

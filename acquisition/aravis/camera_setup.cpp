@@ -177,7 +177,7 @@ Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraF
       warnings.push_back("The camera still appends chunk data to its frames: " + off.error().message + ".");
     }
   }
-  if (const auto chosen = choose_pixel_format(device, wanted); !chosen) return tl::unexpected(chosen.error());
+  TODBENCH_TRY_VOID(choose_pixel_format(device, wanted));
   return warnings;
 }
 

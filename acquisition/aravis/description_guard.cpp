@@ -170,7 +170,7 @@ Result<std::optional<std::string>> read_safe_description(const std::string& ipv4
     TODBENCH_TRY(const auto url, parse_description_url(*text));
     TODBENCH_TRY(auto xml, url.place == DescriptionUrl::Place::file ? read_description_file(url.path)
                                                                     : read_from_camera(ipv4, url, reading));
-    if (const auto safe = Guard(xml).check(); !safe) return tl::unexpected(safe.error());
+    TODBENCH_TRY_VOID(Guard(xml).check());
     return std::optional(std::move(xml));
   }
   return std::optional<std::string>();
@@ -186,7 +186,7 @@ Result<std::optional<std::string>> read_safe_description(const UsbNames& names, 
   if (!read) return unreadable(read.error());
   if (!*read) return std::optional<std::string>();
   TODBENCH_TRY(auto xml, (*read)->zipped ? unzipped((*read)->content) : Result<std::string>((*read)->content));
-  if (const auto safe = Guard(xml).check(); !safe) return tl::unexpected(safe.error());
+  TODBENCH_TRY_VOID(Guard(xml).check());
   return std::optional(std::move(xml));
 }
 
@@ -199,7 +199,7 @@ Result<void> guard_device(ArvDevice* device, const std::optional<std::string>& e
     return fail(ErrorCode::not_found, "the camera sends a different description at each request");
   }
   auto guard = std::make_unique<Guard>(text);
-  if (auto safe = guard->check(); !safe) return safe;
+  TODBENCH_TRY_VOID(guard->check());
   for (const char* feature : features_of_opening) {
     if (const auto fault = guard->fault_of(device, feature)) {
       return fail(ErrorCode::not_found,

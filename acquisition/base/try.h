@@ -19,3 +19,14 @@
 ///   TODBENCH_TRY(session.plan, load_plan(file));
 /// Three statements: not for the body of an `if` without braces, and one on a line.
 #define TODBENCH_TRY(target, ...) TODBENCH_TRY_(TODBENCH_TRY_NAME_(__LINE__), target, __VA_ARGS__)
+
+#define TODBENCH_TRY_VOID_(result, ...)                                                 \
+  do {                                                                                  \
+    auto result = (__VA_ARGS__);                                                        \
+    if (!(result)) return tl::unexpected<::todbench::Error>(std::move(result).error()); \
+  } while (false)
+
+/// Evaluates an expression of type Result<void>, or one whose value is not needed. On an error the function returns it.
+/// One statement:
+///   TODBENCH_TRY_VOID(validate(plan));
+#define TODBENCH_TRY_VOID(...) TODBENCH_TRY_VOID_(TODBENCH_TRY_NAME_(__LINE__), __VA_ARGS__)

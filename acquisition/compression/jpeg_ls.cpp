@@ -61,7 +61,7 @@ Result<cv::Mat1w> decode_jpeg_ls(std::string_view bytes, cv::Size expected) {
   // CharLS 2.4.1 reads 2^31 bits behind a stream that is cut off, which takes 6 s; a marker ends it at once.
   const std::string ended = std::string(bytes) + "\xff\xd9";
   TODBENCH_TRY(const Decoder decoder, opened(ended));
-  if (auto checked = check(decoder.get(), expected); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(decoder.get(), expected));
   cv::Mat1w counts(expected);
   if (const auto code =
           charls_jpegls_decoder_decode_to_buffer(decoder.get(), counts.data, counts.total() * counts.elemSize(), 0);

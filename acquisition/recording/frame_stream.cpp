@@ -151,7 +151,7 @@ class StreamIndex {
       RecordHead head;
       if (!file_.read(at_, &head, sizeof head)) break;
       if (head.head_crc != crc_of(head) || head.payload_bytes > size_ - at_ - sizeof head) break;
-      if (auto taken = take(head, at_ + sizeof head); !taken) return taken;
+      TODBENCH_TRY_VOID(take(head, at_ + sizeof head));
       at_ += sizeof head + head.payload_bytes;
     }
     return {};
@@ -212,10 +212,9 @@ class StreamIndex {
 Result<FrameStreamWriter> FrameStreamWriter::create(const std::filesystem::path& path, const StreamHeader& header) {
   TODBENCH_TRY(auto file, WrittenFile::create(path));
   FrameStreamWriter writer(std::move(file));
-  if (auto written = writer.file_.append(magic, magic_bytes); !written) return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(writer.file_.append(magic, magic_bytes));
   const std::string text = stream_header_text(header);
-  if (auto written = writer.write_record("HEAD", text.data(), text.size(), nullptr, 0); !written)
-    return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(writer.write_record("HEAD", text.data(), text.size(), nullptr, 0));
   return writer;
 }
 
@@ -286,7 +285,7 @@ Result<void> FrameStreamWriter::sync() {
 }
 
 Result<std::uint64_t> FrameStreamWriter::verified_frames() {
-  if (auto synced = sync(); !synced) return tl::unexpected(synced.error());
+  TODBENCH_TRY_VOID(sync());
   const auto again = open_frame_stream(path());
   if (!again) return fail("reading the file back", with_code(ErrorCode::io, again.error()));
   if (again->recording.frame_count != frames_ || again->torn_bytes > 0) {

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "acquisition/base/safe_file.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -124,7 +125,7 @@ Result<const std::vector<char>*> TiffRows::next() {
   if (tile_height_ > 0) {
     const std::size_t row = next_ % tile_height_;
     if (row == 0) {
-      if (auto read = read_tiles(); !read) return tl::unexpected(read.error());
+      TODBENCH_TRY_VOID(read_tiles());
     }
     std::memcpy(row_.data(), band_.data() + row * row_.size(), row_.size());
     ++next_;

@@ -64,7 +64,7 @@ Result<PictureFile> read_tiff_picture(const std::filesystem::path& path) {
                                               " bits per pixel, expected one integer sample of 8, 16 or 32 bits or one "
                                               "floating-point sample of 32 or 64 bits");
   }
-  if (auto checked = check_layout(page); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_layout(page));
   if (page.white_is_zero() && !stored->counts)
     return fail(ErrorCode::invalid_input,
                 "the tag PhotometricInterpretation states that 0 is white, which is accepted for integer values only");

@@ -51,7 +51,7 @@ Result<PageShape> page_shape(const TiffFile& file) {
                                               " bits per pixel, expected one sample of 16 bits, or of 32 or 64 bits "
                                               "floating point");
   }
-  if (auto checked = check_layout(page); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_layout(page));
   if (page.white_is_zero() && CV_ELEM_SIZE(*depth) != 2)
     return fail(ErrorCode::invalid_input,
                 "the tag PhotometricInterpretation states that 0 is white, which is accepted for 16 bits only");
@@ -72,7 +72,7 @@ Result<cv::Mat> read_page(const TiffFile& file) {
   TODBENCH_TRY(const auto shape, page_shape(file));
   const TiffPage page = page_of(file);
   TiffRows rows(file, page, static_cast<std::size_t>(CV_ELEM_SIZE(shape.depth)) * page.width);
-  if (auto holds = rows.may_hold(); !holds) return tl::unexpected(holds.error());
+  TODBENCH_TRY_VOID(rows.may_hold());
   cv::Mat values(static_cast<int>(page.height), static_cast<int>(page.width), shape.depth);
   for (int y = 0; y < values.rows; ++y) {
     TODBENCH_TRY(const auto row, rows.next());

@@ -65,26 +65,25 @@ std::vector<std::uint8_t> directory_of(const cv::Mat1w& counts, std::uint64_t of
 Result<TiffWriter> TiffWriter::create(const std::filesystem::path& path) {
   TODBENCH_TRY(auto file, WrittenFile::create(path));
   TiffWriter writer(std::move(file));
-  if (auto written = writer.file_.append(file_head.data(), file_head.size()); !written)
-    return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(writer.file_.append(file_head.data(), file_head.size()));
   writer.link_offset_ = first_link;
   return writer;
 }
 
 Result<void> TiffWriter::append_page(const cv::Mat1w& counts) {
   const std::uint64_t pixels_offset = file_.bytes();
-  if (auto present = file_.check_present(); !present) return present;
+  TODBENCH_TRY_VOID(file_.check_present());
   const cv::Mat1w pixels = counts.isContinuous() ? counts : cv::Mat1w(counts.clone());
   if (auto written = file_.append(pixels.data, 2 * pixels.total()); !written) return written;
   // Directories begin at whole words; the padding also aligns 64-bit numbers.
   constexpr std::uint64_t alignment = 8;
   const std::array<std::uint8_t, alignment> filler{};
   const std::uint64_t missing = (alignment - file_.bytes() % alignment) % alignment;
-  if (auto written = file_.append(filler.data(), missing); !written) return written;
+  TODBENCH_TRY_VOID(file_.append(filler.data(), missing));
   const std::uint64_t directory_offset = file_.bytes();
   const auto directory = directory_of(counts, pixels_offset);
-  if (auto written = file_.append(directory.data(), directory.size()); !written) return written;
-  if (auto linked = file_.overwrite(link_offset_, &directory_offset, sizeof directory_offset); !linked) return linked;
+  TODBENCH_TRY_VOID(file_.append(directory.data(), directory.size()));
+  TODBENCH_TRY_VOID(file_.overwrite(link_offset_, &directory_offset, sizeof directory_offset));
   link_offset_ = file_.bytes() - sizeof directory_offset;
   return {};
 }
@@ -108,7 +107,7 @@ Result<void> TiffWriter::append(const cv::Mat1w& counts) {
 }
 
 Result<std::uint64_t> TiffWriter::verified_pages() {
-  if (auto synced = file_.sync(); !synced) return tl::unexpected(synced.error());
+  TODBENCH_TRY_VOID(file_.sync());
   if (pages_ == 0) return 0;
   const auto again = open_tiff_stack(file_.path(), {});
   if (!again) return fail("reading the file back", with_code(ErrorCode::io, again.error()));

@@ -71,7 +71,7 @@ Result<void> WrittenFile::sync() const {
     static_cast<void>(::fsync(folder));
     ::close(folder);
   }
-  if (auto present = check_present(); !present) return present;
+  TODBENCH_TRY_VOID(check_present());
   struct stat mine {
   }, there{};
   if (::fstat(descriptor_.get(), &mine) != 0) return failed(system_reason());

@@ -86,8 +86,7 @@ Result<void> SeekSource::initialise() {
 
 Result<SeekFrame> SeekSource::read_frame(std::chrono::steady_clock::time_point latest) {
   const auto deadline = std::min(latest, std::chrono::steady_clock::now() + calibration_frame_patience);
-  if (const auto requested = connection_.control(seek_frame_request(model_)); !requested)
-    return tl::unexpected(requested.error());
+  TODBENCH_TRY_VOID(connection_.control(seek_frame_request(model_)));
   std::vector<std::uint8_t> bytes;
   const std::size_t wanted = geometry(model_).frame_bytes();
   while (bytes.size() < wanted) {
@@ -111,7 +110,7 @@ Result<void> SeekSource::read_calibration_frames(std::chrono::steady_clock::time
   }
   dead_ = SeekDeadPixels(first->picture);
   info_.settings["DeadPixels"] = std::to_string(dead_.count());
-  if (auto sound = dead_.check(); !sound) return sound;
+  TODBENCH_TRY_VOID(dead_.check());
   for (int k = 0; k < most_calibration_frames && running_; ++k) {
     TODBENCH_TRY(const auto frame, read_frame(deadline));
     if (!frame.is(SeekFrameKind::shutter)) continue;

@@ -163,7 +163,7 @@ Result<std::uint32_t> BosonPort::mode(BosonFunction function) {
 }
 
 Result<void> BosonPort::set_mode(BosonFunction function, std::uint32_t number) {
-  if (auto done = call(function, big_endian(number)); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(call(function, big_endian(number)));
   return {};
 }
 

@@ -73,7 +73,7 @@ Result<std::unique_ptr<FrameSource>> V4l2Source::create(const VideoNode& node, c
   source->controls_ = list_controls(source->device_);
   source->open_serial_port();
   source->refresh();
-  if (const auto learnt = source->learn_scale(); !learnt) return tl::unexpected(learnt.error());
+  TODBENCH_TRY_VOID(source->learn_scale());
   return source;
 }
 
@@ -152,11 +152,11 @@ Result<void> V4l2Source::set_boson_mode(const std::string& feature, const std::s
 Result<void> V4l2Source::correct_boson() {
   // From the first command on, only commands start a correction.
   if (info_.settings["FFCMode"] != "Manual") {
-    if (auto manual = set_boson_mode("FFCMode", "Manual"); !manual) return manual;
+    TODBENCH_TRY_VOID(set_boson_mode("FFCMode", "Manual"));
     info_.settings["FFCMode"] = "Manual";
   }
   may_pause_until_ns_ = monotonic_ns() + longest_correction_ns;
-  if (auto done = serial_port_->call(BosonFunction::run_correction); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(serial_port_->call(BosonFunction::run_correction));
   return {};
 }
 
@@ -357,7 +357,7 @@ RadiometricScale V4l2Source::scale_of(const LeptonTelemetry& telemetry) const {
 
 Result<void> V4l2Source::learn_scale() {
   if (layout_.telemetry_rows == 0) return {};
-  if (auto started = start(); !started) return started;
+  TODBENCH_TRY_VOID(start());
   const auto deadline = Clock::now() + patience_with_first_frame;
   Result<Frame> frame;
   do {

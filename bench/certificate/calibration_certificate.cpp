@@ -305,8 +305,8 @@ Markup conformity(const Verdict& verdict) {
 }  // namespace
 
 Result<std::string> calibration_certificate(const Session& session, const OrderPlan& order) {
-  if (auto ready = check_session_state(session); !ready) return tl::unexpected(ready.error());
-  if (auto stated = check_order(order, session.provenance); !stated) return tl::unexpected(stated.error());
+  TODBENCH_TRY_VOID(check_session_state(session));
+  TODBENCH_TRY_VOID(check_order(order, session.provenance));
   TODBENCH_TRY(const Markup administration, administrative_data(session, order));
   TODBENCH_TRY(const Markup influences, conditions(session, order));
   TODBENCH_TRY(const Markup found, results(session));

@@ -63,7 +63,7 @@ Result<CostPlan> plan_of(Console& console, const CostArguments& arguments) {
   }
   if (auto open = require_unsigned(arguments.session); !open) return tl::unexpected(open.error());
   // Check now, before the costs are measured, that they can be written.
-  if (auto none = require_no_links(arguments.session); !none) return tl::unexpected(none.error());
+  TODBENCH_TRY_VOID(require_no_links(arguments.session));
   TODBENCH_TRY(auto session, opened(console, arguments.session, arguments.opening));
   TODBENCH_TRY(auto plan, LoadedPlan::of(std::move(session.plan), std::move(session.parts)));
   return CostPlan{std::move(plan), std::move(session.accepted_changes)};
@@ -72,24 +72,23 @@ Result<CostPlan> plan_of(Console& console, const CostArguments& arguments) {
 /// Writes cost.json, then the report from the present folder, then the manifest. The files may have changed while the
 /// costs were measured.
 Result<void> into_session(const CostFrontier& frontier, const std::filesystem::path& folder, const Opening& opening) {
-  if (auto open = require_unsigned(folder); !open) return open;
-  if (auto own = opening.accept_changed ? require_no_links(folder) : require_no_foreign_file(folder); !own) return own;
+  TODBENCH_TRY_VOID(require_unsigned(folder));
+  TODBENCH_TRY_VOID(opening.accept_changed ? require_no_links(folder) : require_no_foreign_file(folder));
   TODBENCH_TRY(auto session, open_session(folder, opening));
-  if (auto written = write_json_file(folder / "cost.json", cost_json(frontier)); !written) return written;
+  TODBENCH_TRY_VOID(write_json_file(folder / "cost.json", cost_json(frontier)));
   if (session.accepted_changes.empty()) {
     if (auto listed = refresh_manifest(folder, {"cost.json"}); !listed) return listed;
     TODBENCH_TRY(session.manifest_sha256, manifest_digest(folder));
   }
   session.cost = frontier;
-  if (auto rebuilt = rebuild_report(session, folder, html_page(folder)); !rebuilt)
-    return tl::unexpected(rebuilt.error());
+  TODBENCH_TRY_VOID(rebuild_report(session, folder, html_page(folder)));
   return {};
 }
 
 Result<void> write_results(const CostFrontier& frontier, const CostArguments& arguments) {
   if (!arguments.svg.empty()) {
     TODBENCH_TRY(const auto document, cost_document(frontier));
-    if (auto written = write_file_atomically(arguments.svg, document); !written) return written;
+    TODBENCH_TRY_VOID(write_file_atomically(arguments.svg, document));
   }
   if (arguments.session.empty()) return {};
   return into_session(frontier, arguments.session, arguments.opening);

@@ -89,14 +89,14 @@ Json enhancement_json(const Enhancement& enhancement, const std::string& folder)
 Result<void> write_folder(const std::filesystem::path& folder, const LoadedPlan& loaded,
                           const std::vector<EnhancementPackage>& packages, const Enhancement& enhancement) {
   const auto page = render_html(enhancement_page(loaded, packages, enhancement));
-  if (auto written = write_file_atomically(folder / "enhancement.html", page); !written) return written;
+  TODBENCH_TRY_VOID(write_file_atomically(folder / "enhancement.html", page));
   const auto json = to_page(enhancement_json(enhancement, folder.string()));
-  if (auto written = write_file_atomically(folder / "enhancement.json", json); !written) return written;
+  TODBENCH_TRY_VOID(write_file_atomically(folder / "enhancement.json", json));
   for (std::size_t i = 0; i < enhancement.results.size(); ++i) {
     const auto& result = enhancement.results[i];
     TODBENCH_TRY(auto trials, TrialsWriter::create(folder / fmt::format("trials-{}.csv", i)));
     for (const auto& trial : result.trials) {
-      if (auto written = trials.append(trial); !written) return written;
+      TODBENCH_TRY_VOID(trials.append(trial));
     }
     std::string log;
     for (const auto& line : result.error_lines) log += one_line(line) + '\n';
@@ -145,7 +145,7 @@ Result<LoadedPlan> live_plan(const EnhanceArguments& a, const std::vector<Enhanc
                              const Program& program) {
   auto loaded = read_camera_plan(a.plan);
   if (!loaded) return loaded;
-  if (auto paired = check_paired_plan(loaded->plan()); !paired) return tl::unexpected(paired.error());
+  TODBENCH_TRY_VOID(check_paired_plan(loaded->plan()));
   Plan plan = loaded->plan();
   if (program.common.seed_given) plan.seed = program.common.seed;
   plan.measurement.record_frames = true;

@@ -25,7 +25,7 @@ struct NakedEyeArguments {
 
 Result<TemplateObserverSpec> observer_at(const std::string& name, const ViewedDisplay& display) {
   TODBENCH_TRY(auto spec, load_observer_at(name, display));
-  if (auto eye = require_eye(spec, name); !eye) return tl::unexpected(eye.error());
+  TODBENCH_TRY_VOID(require_eye(spec, name));
   return spec;
 }
 

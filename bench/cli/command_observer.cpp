@@ -193,11 +193,11 @@ struct SensitivityArguments {
 Result<std::vector<double>> sensitivities(const SensitivityArguments& arguments) {
   TODBENCH_TRY(const auto resource, find_resource(ResourceKind::observer, arguments.observer));
   TODBENCH_TRY(const auto spec, parse_observer(resource));
-  if (auto eye = require_eye(spec, arguments.observer); !eye) return tl::unexpected(eye.error());
+  TODBENCH_TRY_VOID(require_eye(spec, arguments.observer));
   EyeParameters eye = *spec.eye;
   if (arguments.age_years) eye.age_years = *arguments.age_years;
   if (arguments.field_deg) eye.field_deg2 = *arguments.field_deg * *arguments.field_deg;
-  if (auto possible = validate(eye); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(validate(eye));
   if (!NumberRange::between(1e-3, 1e5).contains(arguments.luminance_cd_m2))
     return fail_at(ErrorCode::invalid_input, "--luminance", "expected 0.001 to 100000 cd/m2");
   const EyeFilter filter(eye, arguments.luminance_cd_m2);

@@ -178,8 +178,8 @@ Result<std::string> write_one(const std::filesystem::path& folder, const std::st
   if (!png) return png;
   const auto tiff = tiff_of(kelvin);
   if (!tiff) return tiff;
-  if (auto done = write_file_atomically(folder / (name + ".png"), *png); !done) return tl::unexpected(done.error());
-  if (auto done = write_file_atomically(folder / (name + ".tiff"), *tiff); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(write_file_atomically(folder / (name + ".png"), *png));
+  TODBENCH_TRY_VOID(write_file_atomically(folder / (name + ".tiff"), *tiff));
   return png;
 }
 

@@ -292,8 +292,7 @@ Result<RangeInputs> inputs_of(Console& console, const RangeArguments& arguments)
   for (const auto& sentence : in.air.notes) console.note(sentence);
   if (arguments.m75_of.empty()) return in;
   if (in.curve() == nullptr) return fail(ErrorCode::invalid_input, "--m75-of needs the TOD curve of a session (--tod)");
-  if (auto taken = take_m75(arguments.m75_of, in.curve()->observer, in.task, in.options); !taken)
-    return tl::unexpected(taken.error());
+  TODBENCH_TRY_VOID(take_m75(arguments.m75_of, in.curve()->observer, in.task, in.options));
   return in;
 }
 

@@ -74,8 +74,7 @@ Result<std::vector<PagePicture>> write_craft(const std::filesystem::path& folder
   std::vector<PagePicture> entries;
   for (const auto& picture : craft) {
     TODBENCH_TRY(const auto png, png_of(grey_picture(picture.kelvin, picture.grey_low_k, picture.grey_high_k, 480)));
-    if (auto done = write_file_atomically(folder / (picture.name + ".png"), png); !done)
-      return tl::unexpected(done.error());
+    TODBENCH_TRY_VOID(write_file_atomically(folder / (picture.name + ".png"), png));
     entries.push_back({picture.title, picture.caption, png});
   }
   return entries;
@@ -99,7 +98,7 @@ Result<std::filesystem::path> folder_for(const ReproduceArguments& arguments) {
   std::error_code error;
   if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
     return fail(ErrorCode::invalid_input, folder.string() + ": is not a folder");
-  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  TODBENCH_TRY_VOID(make_folder(folder));
   if (!arguments.overwrite && !std::filesystem::is_empty(folder, error))
     return fail(ErrorCode::invalid_input,
                 folder.string() + ": is not empty (--force overwrites the reproduction in it)");

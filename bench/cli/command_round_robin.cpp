@@ -64,13 +64,13 @@ Result<Evaluation> evaluation_of(const EvaluateArguments& a, std::uint64_t seed)
 }
 
 Result<void> write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation) {
-  if (auto made = make_folder(folder); !made) return made;
+  TODBENCH_TRY_VOID(make_folder(folder));
   const std::pair<const char*, std::string> files[]{
       {"round-robin.html", render_html(round_robin_page(evaluation.found, evaluation.truths))},
       {"round-robin.json", to_page(round_robin_json(evaluation.found, evaluation.truths))},
       {"degrees.csv", round_robin_csv(evaluation.found)}};
   for (const auto& [name, content] : files) {
-    if (auto written = write_file_atomically(folder / name, content); !written) return written;
+    TODBENCH_TRY_VOID(write_file_atomically(folder / name, content));
   }
   return {};
 }

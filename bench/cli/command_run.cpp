@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/key_options.h"
 #include "bench/cli/run_display.h"
@@ -71,7 +72,7 @@ ExperimentOptions folder_of(const RunArguments& arguments, const std::string& na
 /// Returns the plan with the overrides of the command line.
 Result<Plan> with_options(Plan plan, const RunArguments& arguments, const Program& program) {
   if (program.common.seed_given) plan.seed = program.common.seed;
-  if (auto applied = apply(arguments.keys, plan); !applied) return tl::unexpected(applied.error());
+  TODBENCH_TRY_VOID(apply(arguments.keys, plan));
   return plan;
 }
 

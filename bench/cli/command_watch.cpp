@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // todbench watch
+#include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
 
 #include <chrono>
@@ -42,7 +43,7 @@ Result<WatchedWarmUp> watched(Console& console, const WatchArguments& arguments,
   if (!camera) return tl::unexpected(camera.error());
   FrameSource& source = **camera;
   const SourceInfo info = source.info();
-  if (auto started = source.start(); !started) return tl::unexpected(started.error());
+  TODBENCH_TRY_VOID(source.start());
   FrameTakerOptions options;
   options.integrity = {.width = info.width, .height = info.height};
   options.frames_after_change = 0;

@@ -295,7 +295,7 @@ RadiativeScene RangeOptions::scene(double delta_t_k, const Atmosphere& found) co
 Result<double> RangeOptions::equivalent_contrast_k(double delta_t_k, const std::optional<SensorSpec>& spec,
                                                    const Atmosphere& found) const {
   // All temperatures are checked, even unused ones, to detect typing errors.
-  if (auto valid = validate(scene(background_k ? delta_t_k : 0, found)); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(scene(background_k ? delta_t_k : 0, found)));
   if (!background_k) return delta_t_k;
   TODBENCH_TRY(const auto wavelengths, band_of(spec));
   return todbench::equivalent_contrast_k(wavelengths, radiance_contrast(wavelengths, scene(delta_t_k, found)),
@@ -323,9 +323,9 @@ RangeQuestion RangeOptions::question(const RangeTask& task, std::optional<double
 Result<RangeSources> RangeOptions::sources(std::vector<TodThreshold> thresholds,
                                            const std::optional<SensorSpec>& spec) const {
   RangeSources found{.thresholds = std::move(thresholds), .sensor = spec, .transfer = transfer};
-  if (auto read = read_curve(mrtd_file, "mrtd_k", found.mrtd); !read) return tl::unexpected(read.error());
-  if (auto read = read_curve(mtdp_file, "mtdp_k", found.mtdp); !read) return tl::unexpected(read.error());
-  if (auto read = read_curve(ctf_file, "ctf", found.ctf); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(read_curve(mrtd_file, "mrtd_k", found.mrtd));
+  TODBENCH_TRY_VOID(read_curve(mtdp_file, "mtdp_k", found.mtdp));
+  TODBENCH_TRY_VOID(read_curve(ctf_file, "ctf", found.ctf));
   return found;
 }
 
@@ -352,7 +352,7 @@ Result<void> RangeOptions::write(const std::vector<ModelRange>& answers, const R
                                  const std::vector<std::string>& said, const Json& grids) const {
   if (!svg.empty()) {
     TODBENCH_TRY(const auto figure, range_svg(answers));
-    if (auto written = write_file_atomically(svg, figure); !written) return written;
+    TODBENCH_TRY_VOID(write_file_atomically(svg, figure));
   }
   if (page.empty()) return {};
   RangePage words{.target = fmt::format("{:g} m, {:.4g} K", question.size_m, question.delta_t_k),

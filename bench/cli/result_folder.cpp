@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/result_folder.h"
 
+#include "acquisition/base/try.h"
 #include "bench/text/folders.h"
 
 namespace todbench {
@@ -16,7 +17,7 @@ Result<void> check_result_folder(const std::filesystem::path& folder, ExistingRe
 }
 
 Result<void> make_result_folder(const std::filesystem::path& folder, ExistingResults existing) {
-  if (auto can = check_result_folder(folder, existing); !can) return can;
+  TODBENCH_TRY_VOID(check_result_folder(folder, existing));
   return make_folder(folder);
 }
 

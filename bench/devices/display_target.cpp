@@ -68,7 +68,7 @@ class DisplayTarget final : public Target {
     const cv::Mat1f levels = drawn_levels(shares, ends, options_.tone);
     const auto shown = show_(levels);
     if (!shown) return fail("the display", shown.error());
-    if (auto same = is_shown(levels, *shown); !same) return tl::unexpected(same.error());
+    TODBENCH_TRY_VOID(is_shown(levels, *shown));
     wait(stop);
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped while the display changed");
     PresentedTarget presented;
@@ -164,7 +164,7 @@ Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options
     if (auto fits = plate_picture(plate, {0, 0}, options.display, 0, 1); !fits) return tl::unexpected(fits.error());
   }
   for (const double delta_t_k : options.delta_t_k) {
-    if (auto can = levels_of_contrast(delta_t_k, options); !can) return tl::unexpected(can.error());
+    TODBENCH_TRY_VOID(levels_of_contrast(delta_t_k, options));
   }
   TODBENCH_TRY(auto show, shown_by_program(command));
   const auto first = show(cv::Mat1f(options.display.size_px, static_cast<float>(options.tone.level_of(0.5))));

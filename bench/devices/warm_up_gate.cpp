@@ -104,7 +104,7 @@ std::optional<Estimate> DriftWindow::k_per_min() const {
 Result<std::string> wait_for_warm_up(FrameSource& source, const WarmUpPlan& plan, const FrameTakerOptions& taking,
                                      const std::stop_token& stop) {
   if (!plan.stated()) return std::string();
-  if (auto started = source.start(); !started) return tl::unexpected(started.error());
+  TODBENCH_TRY_VOID(source.start());
   auto done = Gate(source, plan, taking, stop)();
   source.stop();
   return done;

@@ -138,19 +138,16 @@ Result<std::size_t> write_bars_questions(const std::filesystem::path& folder, co
   if (is_there(folder)) return fail(ErrorCode::invalid_input, folder.string() + ": exists");
   TODBENCH_TRY(const auto questions, bars_questions(kept, request));
   TODBENCH_TRY(std::string sha256, sha256_of_file(kept_bars_file(session)));
-  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  TODBENCH_TRY_VOID(make_folder(folder));
   std::string answers = "number,answer\n";
   for (std::size_t i = 0; i < questions.size(); ++i) {
     TODBENCH_TRY(const std::string png, png_of(bars_picture(kept, questions[i], request.magnification)));
-    if (auto written = write_file_atomically(folder / picture_name(i + 1), png); !written)
-      return tl::unexpected(written.error());
+    TODBENCH_TRY_VOID(write_file_atomically(folder / picture_name(i + 1), png));
     answers += std::to_string(i + 1) + ",\n";
   }
-  if (auto written = write_file_atomically(folder / answers_name, answers); !written)
-    return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(write_file_atomically(folder / answers_name, answers));
   const BarsFolder content{request, std::move(sha256)};
-  if (auto written = write_json_file(folder / request_name, json_of(content, folder_fields)); !written)
-    return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(write_json_file(folder / request_name, json_of(content, folder_fields)));
   return questions.size();
 }
 

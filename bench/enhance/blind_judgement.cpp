@@ -130,7 +130,7 @@ Result<std::vector<BlindSource>> blind_sources(const std::filesystem::path& sess
                                                const std::filesystem::path& folder, const ExperimentListener& listener,
                                                std::stop_token stop) {
   const std::filesystem::path models = folder / "sources";
-  if (auto made = make_folder(models); !made) return tl::unexpected(made.error());
+  TODBENCH_TRY_VOID(make_folder(models));
   TODBENCH_TRY(const auto plain, judged_patches(session, {}, models / "camera", listener, stop));
   std::vector<BlindSource> sources{{.name = "camera", .trials = of_curve(plain, SessionCurve::main)}};
   if (with_twin) sources.push_back({.name = "simulated", .trials = of_curve(plain, SessionCurve::twin)});
@@ -217,9 +217,8 @@ Json blind_json(const BlindResult& result, const PersonFacts& person, std::uint6
 
 Result<void> write_blind(const std::filesystem::path& folder, const BlindResult& result,
                          const std::vector<BlindAnswer>& answers, const PersonFacts& person, std::uint64_t seed) {
-  if (auto made = make_folder(folder); !made) return made;
-  if (auto written = write_file_atomically(folder / "blind.csv", answers_csv(result, answers)); !written)
-    return written;
+  TODBENCH_TRY_VOID(make_folder(folder));
+  TODBENCH_TRY_VOID(write_file_atomically(folder / "blind.csv", answers_csv(result, answers)));
   return write_json_file(folder / "blind.json", blind_json(result, person, seed));
 }
 

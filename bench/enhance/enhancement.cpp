@@ -249,8 +249,7 @@ PairedRatio ratio_at(std::span<const Trial> with, std::span<const Trial> without
 Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded) {
   const Plan& plan = loaded.plan();
   TODBENCH_TRY(auto accuracy, accuracy_of(plan));
-  if (auto possible = check_sensor_module(loaded.sensor(), plan.simulation.motion); !possible)
-    return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check_sensor_module(loaded.sensor(), plan.simulation.motion));
   ExperimentInputs inputs;
   inputs.plates = loaded.plates();
   inputs.observer = loaded.observer();
@@ -355,15 +354,15 @@ Result<Enhancement> through_all(
 Result<Enhancement> compare_packages(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
                                      const EnhancementOptions& options, std::stop_token stop) {
   const Plan& plan = loaded.plan();
-  if (auto paired = check_paired_plan(plan); !paired) return tl::unexpected(paired.error());
-  if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
+  TODBENCH_TRY_VOID(check_paired_plan(plan));
+  TODBENCH_TRY_VOID(refuse_modules(plan, loaded.sensor()));
   if (auto same = check_scans(packages, options.dither); !same) return tl::unexpected(same.error());
   // The noise of a pixel comes from successive frames, whose edges are at other places with dither.
   if (options.dither > 1 && loaded.observer().sensor_noise_factor != 1)
     return fail(ErrorCode::invalid_input,
                 "an observer whose noise is proportional to the sensor noise cannot judge dithered frames");
   TODBENCH_TRY(const auto inputs, full_inputs(loaded));
-  if (auto fits = check_simulated_geometry(plan, inputs); !fits) return tl::unexpected(fits.error());
+  TODBENCH_TRY_VOID(check_simulated_geometry(plan, inputs));
   const int settle = longest_memory(packages);
   auto enhancement = through_all(loaded, inputs, packages, options, stop,
                                  [&](const Chains& chains, const auto* package, PackageResult& result) {
@@ -381,8 +380,8 @@ Result<Enhancement> compare_packages_recorded(const std::filesystem::path& sessi
                                               const std::vector<EnhancementPackage>& packages,
                                               const EnhancementOptions& options, std::stop_token stop) {
   const Plan& plan = loaded.plan();
-  if (auto paired = check_paired_plan(plan); !paired) return tl::unexpected(paired.error());
-  if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
+  TODBENCH_TRY_VOID(check_paired_plan(plan));
+  TODBENCH_TRY_VOID(refuse_modules(plan, loaded.sensor()));
   EffectPlanner planner;
   TODBENCH_TRY(const auto inputs, experiment_inputs(loaded, planner));
   TODBENCH_TRY(const auto recording, open_recorded_bench(session, nullptr));

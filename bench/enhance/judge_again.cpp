@@ -98,7 +98,7 @@ Result<ExperimentOutcome> judge_again(const std::filesystem::path& session, cons
   }
   options.origin = std::move(origin);
   auto outcome = measure_on_bench(now, inputs, std::move(run.recording.bench), options, listener, std::move(stop));
-  if (auto agreed = run.recording.answers->agreed(); !agreed) return tl::unexpected(agreed.error());
+  TODBENCH_TRY_VOID(run.recording.answers->agreed());
   return outcome;
 }
 

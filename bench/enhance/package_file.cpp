@@ -86,7 +86,7 @@ Result<EnhancementPackage> read_package(const std::filesystem::path& file) {
   std::vector<ModulePlan> modules;
   auto tables = reader.sections("stage");
   for (TomlReader& table : tables) package.stages.push_back(read_stage(table, modules));
-  if (auto fine = reader.finish(); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(reader.finish());
   if (package.stages.empty()) return fail(ErrorCode::invalid_input, file.string() + ": the package has no [[stage]]");
   // Programs start only after the whole file is checked.
   for (const auto& module : modules) package.provenance.push_back(text_of(module_record(module)));
@@ -170,7 +170,7 @@ std::vector<std::unique_ptr<ChainStage>> made_stages(const EnhancementPackage& p
 
 Result<PackageStages> read_package_stages(const std::filesystem::path& file, std::string_view what) {
   TODBENCH_TRY(auto package, read_package(file));
-  if (auto same = refuse_finer_pictures(package, what); !same) return tl::unexpected(same.error());
+  TODBENCH_TRY_VOID(refuse_finer_pictures(package, what));
   const auto reach = reach_px(package);
   return PackageStages{[package = std::move(package)] { return made_stages(package, {}); }, reach};
 }

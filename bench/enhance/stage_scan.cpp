@@ -71,8 +71,8 @@ class ScanningSource final : public ForwardingSource {
 
   [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
     if (const auto state = resting()) {
-      if (auto moved = move(*state); !moved) return tl::unexpected(moved.error());
-      if (auto dropped = drop_frames_in_flight(timeout); !dropped) return tl::unexpected(dropped.error());
+      TODBENCH_TRY_VOID(move(*state));
+      TODBENCH_TRY_VOID(drop_frames_in_flight(timeout));
     }
     auto frame = ForwardingSource::next(timeout);
     if (!frame) return frame;
@@ -169,8 +169,7 @@ Result<std::function<Result<std::string>(OpenedBench&)>> scan_on_opened(const Lo
   if (loaded.observer().sensor_noise_factor != 1)
     return fail(ErrorCode::invalid_input,
                 "an observer whose noise is proportional to the sensor noise cannot judge the frames of a scan");
-  if (auto square = require_square_pixels(loaded.sensor(), "a scan by the stage"); !square)
-    return tl::unexpected(square.error());
+  TODBENCH_TRY_VOID(require_square_pixels(loaded.sensor(), "a scan by the stage"));
   const StageScan scan{.steps = steps, .pixel_mm = loaded.plan().target.distance_m * loaded.plan().camera.ifov_mrad};
   return [scan](OpenedBench& bench) { return scan_with_stage(bench, scan); };
 }

@@ -261,7 +261,7 @@ Result<void> examine_all(Search& search, const std::vector<std::vector<int>>& ch
   for (const std::vector<int>& mountings : choices) {
     for (const int phases : phase_choices) {
       if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-      if (auto done = search.examine(mountings, phases); !done) return done;
+      TODBENCH_TRY_VOID(search.examine(mountings, phases));
     }
   }
   return {};
@@ -381,10 +381,10 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
     return std::pair(set_ups_of(candidate(plan, counts, 1).target),
                      std::ranges::max(counts) - std::ranges::min(counts));
   });
-  if (auto done = examine_all(search, choices, stop); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(examine_all(search, choices, stop));
   if (const auto moving = with_settling_band(plan)) {
     Search within_band(*moving, inputs, criterion);
-    if (auto done = examine_all(within_band, choices, stop); !done) return tl::unexpected(done.error());
+    TODBENCH_TRY_VOID(examine_all(within_band, choices, stop));
     search.least_s = std::min(search.least_s, within_band.least_s);
     if (within_band.best && (!search.best || within_band.best->bench_s < least_gain * search.best->bench_s)) {
       if (search.best) found.settled_s = search.best->bench_s;

@@ -114,8 +114,7 @@ Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const 
   }
   for (const std::vector<int>& count : frames) {
     const double mean = std::accumulate(count.begin(), count.end(), 0.0) / static_cast<double>(count.size());
-    if (auto added = add(AnswerKind::graded, count, one_s + (mean - 1) * frame_s); !added)
-      return tl::unexpected(added.error());
+    TODBENCH_TRY_VOID(add(AnswerKind::graded, count, one_s + (mean - 1) * frame_s));
   }
   const auto floors = floors_ln(plan, {.figures = {}, .contrasts = choices.front().contrasts, .warnings = {}});
   if (!floors) return tl::unexpected(floors.error());

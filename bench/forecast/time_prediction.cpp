@@ -99,7 +99,7 @@ Result<PlateSpeed> speed_on(const TargetPlate& plate, const std::shared_ptr<cons
   speed.draw = seconds_of([&] { unit = model->unit_signal(scene); });
   const auto holder = std::make_shared<SceneHolder>(scene);
   const auto source = simulated_source(model, holder, "time");
-  if (auto started = source->start(); !started) return tl::unexpected(started.error());
+  TODBENCH_TRY_VOID(source->start());
   FrameTakerOptions taker_options;
   taker_options.frames_after_change = 0;
   taker_options.integrity.reject_frozen = false;
@@ -116,8 +116,7 @@ Result<PlateSpeed> speed_on(const TargetPlate& plate, const std::shared_ptr<cons
   speed.registration = seconds_of([&] { found = register_plate(picture, plate, registration); });
   if (!found) return tl::unexpected(found.error());
   speed.contrast = seconds_of([&] { (void)effective_contrast(picture, plate, *found, options.min_reference_px); });
-  if (auto timed = time_answers(plate, *found, picture, observer, options, 1, speed); !timed)
-    return tl::unexpected(timed.error());
+  TODBENCH_TRY_VOID(time_answers(plate, *found, picture, observer, options, 1, speed));
   return speed;
 }
 

@@ -218,7 +218,7 @@ Result<HistoryIndex> HistoryIndex::open(const std::filesystem::path& file, std::
     return fail(ErrorCode::invalid_input, file.string() + ": is a folder, expected a history file");
   if (is_there(file) && ::access(file.c_str(), W_OK) != 0) return open_read_only(file);
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  TODBENCH_TRY_VOID(make_folder(folder));
   if (on_network_disk(folder)) {
     return fail(ErrorCode::invalid_input,
                 file.string() +
@@ -229,7 +229,7 @@ Result<HistoryIndex> HistoryIndex::open(const std::filesystem::path& file, std::
   const int code = sqlite3_open_v2(file.c_str(), &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   std::unique_ptr<sqlite3, Close> database(opened);
   if (code != SQLITE_OK) return refused(opened, file);
-  if (auto prepared = prepare(opened, file, wait); !prepared) return tl::unexpected(prepared.error());
+  TODBENCH_TRY_VOID(prepare(opened, file, wait));
   return HistoryIndex(file, std::move(database));
 }
 
@@ -337,7 +337,7 @@ Result<void> HistoryIndex::add_event(const HistoryEvent& event) {
   TODBENCH_TRY(auto csv, AppendFile::open(file, AppendFile::Start::at_end));
   const std::string row = csv_field(event.serial) + "," + csv_field(event.utc) + "," + csv_field(event.kind) + "," +
                           csv_field(one_line(event.text)) + "\n";
-  if (auto written = csv.append((begun ? "" : "serial,utc,kind,text\n") + row); !written) return written;
+  TODBENCH_TRY_VOID(csv.append((begun ? "" : "serial,utc,kind,text\n") + row));
   if (!insert_event(database_.get(), event) || !transaction.commit()) return refused(database_.get(), file_);
   return {};
 }

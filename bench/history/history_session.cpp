@@ -226,10 +226,9 @@ Result<HistorySession> read_history_session(const std::filesystem::path& folder)
   if (!days_of_utc(session.started_utc))
     return fail(ErrorCode::invalid_input,
                 (folder / "provenance.json").string() + ": started_utc is missing or is not a time in UTC");
-  if (auto set = set_unit(session, folder, provenance); !set) return tl::unexpected(set.error());
-  if (auto added = add_acuities(session, folder, text_at(provenance, "side")); !added)
-    return tl::unexpected(added.error());
-  if (auto added = add_measures(session, folder); !added) return tl::unexpected(added.error());
+  TODBENCH_TRY_VOID(set_unit(session, folder, provenance));
+  TODBENCH_TRY_VOID(add_acuities(session, folder, text_at(provenance, "side")));
+  TODBENCH_TRY_VOID(add_measures(session, folder));
   return session;
 }
 

@@ -38,7 +38,7 @@ Result<UncertaintyBudget> parse_budget(std::string_view text, const std::string&
   section.rows.resize(rows, tables.size());
   for (std::size_t row = 0; row < tables.size(); ++row) read_row(tables[row], section, row, rows);
   budget.rows = std::move(rows.uncertainty.rows);
-  if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
+  TODBENCH_TRY_VOID(reader.finish());
   return budget;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -111,7 +112,7 @@ std::string_view to_string(ConformityDecision decision) {
 
 Result<Conformity> conformity(const MeasuredValue& measured, const ToleranceLimits& tolerance, ConformityRule rule,
                               double guard_band) {
-  if (auto checked = check(tolerance); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(tolerance));
   if (!std::isfinite(measured.value)) return fail(ErrorCode::invalid_input, "the value is not a finite number");
   if (!positive(measured.u)) return fail(ErrorCode::invalid_input, "the standard uncertainty must be greater than 0");
   if (measured.degrees_of_freedom && !positive(*measured.degrees_of_freedom))
@@ -146,7 +147,7 @@ double usual_guard_band(const MeasuredValue& measured) {
 Result<GlobalRisks> global_risks(const Fleet& fleet, const MeasurementError& error, const ToleranceLimits& tolerance,
                                  const ToleranceLimits& acceptance) {
   const double u = error.u;
-  if (auto checked = check(tolerance); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(tolerance));
   if (!std::isfinite(fleet.mean) || !positive(fleet.sd) || !positive(u))
     return fail(ErrorCode::invalid_input,
                 "the standard deviation of the fleet and the uncertainty must be greater than 0");

@@ -9,6 +9,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -108,7 +109,7 @@ double monte_carlo_half_width(const UncertaintyBudget& budget, const std::vector
 }  // namespace
 
 Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint64_t seed, int draws) {
-  if (auto checked = check(budget); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(budget));
   CombinedUncertainty out;
   double largest = 0;
   for (const BudgetRow& row : budget.rows) {

@@ -181,7 +181,7 @@ class Chain {
       else
         counts->convertTo(picture, CV_32F);
       picture.colRange(size.width / 2, size.width) += step_k / kelvin_per_count();
-      if (auto done = through(picture); !done) return tl::unexpected(done.error());
+      TODBENCH_TRY_VOID(through(picture));
     }
     cv::Mat1d kelvin;
     picture.convertTo(kelvin, CV_64F, kelvin_per_count());
@@ -380,7 +380,7 @@ Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, 
                 fmt::format("{} is of the kind {}, {} of the kind {}: both models must be of the same kind",
                             one_line(a.reference), to_string(a.kind), one_line(b.reference), to_string(b.kind)));
   }
-  if (auto paired = check_paired_plan(plan.plan()); !paired) return tl::unexpected(paired.error());
+  TODBENCH_TRY_VOID(check_paired_plan(plan.plan()));
   if (auto none = refuse_modules(plan.plan(), a.kind == ModelKind::sensor ? SensorSpec{} : plan.sensor()); !none)
     return tl::unexpected(none.error());
   const auto plan_a = plan_with(plan, a), plan_b = plan_with(plan, b);
@@ -391,12 +391,10 @@ Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, 
   comparison.a = std::move(a);
   comparison.b = std::move(b);
   for (const ComparedModel* side : {&comparison.a, &comparison.b}) {
-    if (auto same = refuse_finer_pictures(side->package, "a comparison of transfer functions"); !same)
-      return tl::unexpected(same.error());
+    TODBENCH_TRY_VOID(refuse_finer_pictures(side->package, "a comparison of transfer functions"));
   }
   for (const LoadedPlan* side : {&*plan_a, &*plan_b}) {
-    if (auto possible = check_sensor_module(side->sensor(), side->plan().simulation.motion); !possible)
-      return tl::unexpected(possible.error());
+    TODBENCH_TRY_VOID(check_sensor_module(side->sensor(), side->plan().simulation.motion));
   }
   const int settle = std::max(memory_frames(plan_a->sensor(), comparison.a.package),
                               memory_frames(plan_b->sensor(), comparison.b.package));

@@ -38,8 +38,7 @@ Result<std::vector<double>> sizes_round_threshold(const SensorSpec& sensor, Temp
   const double contrast_k = std::abs(options.delta_t_k);
   DirectEstimateOptions estimate{
       .motion = {}, .accuracy = Accuracy::draft(), .seed = options.seed, .stop = options.stop};
-  if (auto square = require_square_pixels(sensor, "a trial with a moving target"); !square)
-    return tl::unexpected(square.error());
+  TODBENCH_TRY_VOID(require_square_pixels(sensor, "a trial with a moving target"));
   TODBENCH_TRY(const auto found, direct_estimate(sensor, full_plan(sensor, {}, {}), observer, {contrast_k}, estimate));
   std::vector<double> sizes;
   for (int i = 0; i < count; ++i)

@@ -171,16 +171,15 @@ Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const Dynam
   TemplateObserver observer(loaded.observer(), triangle_alternatives());
   DynamicMeasurement out;
   out.camera = bench.camera->info().id;
-  if (auto possible = check_moving(bench.camera->info(), *bench.target, observer, options); !possible)
-    return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check_moving(bench.camera->info(), *bench.target, observer, options));
   if (listener.on_open) {
-    if (auto begun = listener.on_open(bench); !begun) return tl::unexpected(begun.error());
+    TODBENCH_TRY_VOID(listener.on_open(bench));
   }
   auto measured =
       measure_moving(*bench.camera, *bench.target, observer, options, *bench.host, listener.moving, std::move(stop));
   if (!measured) return tl::unexpected(measured.error());
   if (listener.on_measured) {
-    if (auto kept = listener.on_measured(*measured); !kept) return tl::unexpected(kept.error());
+    TODBENCH_TRY_VOID(listener.on_measured(*measured));
   }
   if (measured->ended_by) return tl::unexpected(*measured->ended_by);
   out.measured = *std::move(measured);

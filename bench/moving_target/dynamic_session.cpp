@@ -58,12 +58,12 @@ class GrowingFiles {
     if (!trials) return tl::unexpected(trials.error());
     TODBENCH_TRY(auto targets, folder.open_targets(SessionCurve::main));
     TODBENCH_TRY(auto moving, AppendFile::open(folder.path() / "moving-trials.csv", AppendFile::Start::empty));
-    if (auto begun = moving.append(header_line(moving_columns)); !begun) return tl::unexpected(begun.error());
+    TODBENCH_TRY_VOID(moving.append(header_line(moving_columns)));
     return GrowingFiles{*std::move(trials), std::move(targets), std::move(moving), simulated};
   }
 
   [[nodiscard]] Result<void> append(const MovingAnswer& answer) {
-    if (auto written = moving_.append(moving_row(answer)); !written) return written;
+    TODBENCH_TRY_VOID(moving_.append(moving_row(answer)));
     return of_the_curve(answer) ? trials_.append(answer.trial) : Result<void>();
   }
   [[nodiscard]] Result<void> append(Presentation shown) {
@@ -256,8 +256,7 @@ Result<DynamicSession> measure_dynamic_session(const LoadedPlan& loaded, const E
                                                const ExperimentListener& listener,
                                                const std::function<void(const MovingPassRecord&)>& on_pass,
                                                std::stop_token stop) {
-  if (auto possible = check_dynamic_plan(loaded.plan(), loaded.sensor()); !possible)
-    return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check_dynamic_plan(loaded.plan(), loaded.sensor()));
   return DynamicRun(loaded, options, listener)(on_pass, std::move(stop));
 }
 

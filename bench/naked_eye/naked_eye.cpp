@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "bench/plan/descriptions.h"
 #include "hvs/eye/display_levels.h"
 #include "hvs/shape/polygon_coverage.h"
@@ -22,9 +23,9 @@ constexpr double largest_sample_arcmin = 3;
 
 Result<void> validate(const NakedEyeTask& task) {
   const auto refuse = [](std::string why) { return fail(ErrorCode::invalid_input, std::move(why)); };
-  if (auto eye = require_eye(task.model, task.model.name); !eye) return eye;
+  TODBENCH_TRY_VOID(require_eye(task.model, task.model.name));
   if (!task.model.display) return refuse("the plan has no section [display]");
-  if (auto possible = validate(*task.model.display); !possible) return possible;
+  TODBENCH_TRY_VOID(validate(*task.model.display));
   if (const double arcmin = arcmin_per_sample(*task.model.display); arcmin > largest_sample_arcmin) {
     return refuse(
         fmt::format("a displayed sample is {:.3g} arcmin, so that the display limits the acuity: choose a smaller "

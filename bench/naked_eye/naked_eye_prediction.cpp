@@ -190,7 +190,7 @@ void prediction_fields(JsonFields& json, NakedEyePrediction& prediction) {
 }
 
 Result<NakedEyePrediction> predict_naked_eye(const NakedEyeTask& task, int pictures, const std::stop_token& stop) {
-  if (auto possible = validate(task); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(validate(task));
   NakedEyePrediction out{.arcmin_per_sample = arcmin_per_sample(*task.model.display),
                          .adaptation_luminance_cd_m2 = adaptation_luminance_cd_m2(*task.model.display),
                          .contrasts = {}};

@@ -84,7 +84,7 @@ Result<NakedEyeSession> NakedEyeSession::begin(const NakedEyeTask& task, const s
   out.prediction_ = std::move(prediction);
   out.folder_ = folder;
   out.windows_ = std::make_shared<TemplateObserver>(model_at_linear_display(task), triangle_alternatives());
-  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  TODBENCH_TRY_VOID(make_folder(folder));
   const NakedEyeRecord record{.observer = task.model.name,
                               .display = recorded_display(*task.model.display),
                               .contrasts = task.contrasts,
@@ -92,9 +92,8 @@ Result<NakedEyeSession> NakedEyeSession::begin(const NakedEyeTask& task, const s
                               .per_size = task.per_size,
                               .seed = task.seed,
                               .prediction = out.prediction_};
-  if (auto written = write_json_file(folder / naked_eye_name, json_of(record, record_fields)); !written)
-    return tl::unexpected(written.error());
-  if (auto written = write_manifest(folder); !written) return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(write_json_file(folder / naked_eye_name, json_of(record, record_fields)));
+  TODBENCH_TRY_VOID(write_manifest(folder));
   out.trials_ = naked_eye_trials(task, out.prediction_.sizes_samples());
   out.draw_next();
   return out;
@@ -142,7 +141,7 @@ Result<void> NakedEyeSession::finish(const PersonFacts& person) {
   comparison_["complete"] = complete();
   TODBENCH_TRY(const auto sum, sha256_of_file(folder_ / naked_eye_name));
   comparison_["prediction_sha256"] = sum;
-  if (auto written = write_json_file(folder_ / naked_eye_comparison_name, comparison_); !written) return written;
+  TODBENCH_TRY_VOID(write_json_file(folder_ / naked_eye_comparison_name, comparison_));
   return refresh_manifest(folder_, {std::string(naked_eye_comparison_name)});
 }
 
@@ -199,7 +198,7 @@ bool is_naked_eye_session(const std::filesystem::path& folder) {
 }
 
 Result<AnsweredSession> answered_naked_eye(const std::filesystem::path& folder) {
-  if (auto intact = require_intact(folder); !intact) return tl::unexpected(intact.error());
+  TODBENCH_TRY_VOID(require_intact(folder));
   TODBENCH_TRY(const auto record, read_record(folder));
   TODBENCH_TRY(auto human, read_human(folder));
   if (!human || human->trials.empty() || human->shown.empty())

@@ -233,7 +233,7 @@ std::vector<std::string> haze_names() {
 }
 
 Result<Atmosphere> load_atmosphere(std::string_view reference, const AtmosphereRequest& request) {
-  if (auto valid = validate(request.band); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(request.band));
   if (request.extinction_per_km > 0 && reference != "beer-lambert") {
     return fail(ErrorCode::invalid_input,
                 one_line(reference) + ": this atmosphere has its own extinction; leave out --extinction-per-km");

@@ -89,8 +89,7 @@ Result<void> add_list(const std::string& name, const XmlElement& list, Instrumen
     return fail(ErrorCode::invalid_input, one_line(name) + ": its lists have different lengths");
   const auto at = [](const std::vector<std::string>& words, std::size_t i) { return words[words.size() == 1 ? 0 : i]; };
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (auto added = add_value(name, at(units, i), values[i], at(uncertainties, i), at(factors, i), out); !added)
-      return added;
+    TODBENCH_TRY_VOID(add_value(name, at(units, i), values[i], at(uncertainties, i), at(factors, i), out));
   }
   return {};
 }
@@ -101,20 +100,18 @@ Result<void> collect(const XmlElement& element, InstrumentCertificate& out) {
   for (const XmlElement& child : element.children) {
     if (child.name == "influenceConditions") continue;
     if (child.name != "quantity") {
-      if (auto found = collect(child, out); !found) return found;
+      TODBENCH_TRY_VOID(collect(child, out));
       continue;
     }
     const std::string name = name_of(child);
     if (const XmlElement* real = child.child("real")) {
       if (const auto stated = uncertainty_in(*real, scalar_places)) {
-        if (auto added = add_value(name, real->text_of("unit"), real->text_of("value"), stated->uncertainty,
-                                   stated->factor, out);
-            !added)
-          return added;
+        TODBENCH_TRY_VOID(
+            add_value(name, real->text_of("unit"), real->text_of("value"), stated->uncertainty, stated->factor, out));
       }
     }
     if (const XmlElement* list = child.child("realListXMLList")) {
-      if (auto added = add_list(name, *list, out); !added) return added;
+      TODBENCH_TRY_VOID(add_list(name, *list, out));
     }
   }
   return {};
@@ -168,7 +165,7 @@ Result<InstrumentCertificate> parse_certificate(std::string_view xml) {
     out.item = name_of(*item);
     out.serial = serial_of(*item);
   }
-  if (auto collected = collect(*results, out); !collected) return tl::unexpected(collected.error());
+  TODBENCH_TRY_VOID(collect(*results, out));
   return out;
 }
 
@@ -215,8 +212,8 @@ Result<void> apply_certificate(Plan& plan, std::size_t row, const std::filesyste
   TODBENCH_TRY(const std::string text, read_text_file(file));
   const auto read = parse_certificate(text);
   if (!read) return fail(file.string(), read.error());
-  if (auto joined = join(instrument.serial, read->serial, "serial number"); !joined) return joined;
-  if (auto joined = join(instrument.certificate, read->number, "number"); !joined) return joined;
+  TODBENCH_TRY_VOID(join(instrument.serial, read->serial, "serial number"));
+  TODBENCH_TRY_VOID(join(instrument.certificate, read->number, "number"));
   if (role_of(instrument) == InstrumentRole::black_body) {
     const auto& rows = plan.uncertainty.rows;
     const bool stated = std::any_of(rows.begin(), rows.end(), [](const BudgetRow& one) {

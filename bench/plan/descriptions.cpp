@@ -27,7 +27,7 @@ const NumberRange place_range = NumberRange::between(-1e4, 1e4);
 /// Returns the description if its file had no mistakes and the component that uses it accepts the whole.
 template <typename T>
 Result<T> checked(const TomlReader& reader, const Resource& resource, T value) {
-  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(reader.finish());
   if (const Result<void> possible = validate(value); !possible) return fail(resource.origin, possible.error());
   return value;
 }

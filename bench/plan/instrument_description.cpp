@@ -38,7 +38,7 @@ class InstrumentReader {
     if (table_.kind == InstrumentKind::black_body) read_black_body();
     if (table_.kind == InstrumentKind::stage) read_stage();
     read_settled();
-    if (const auto finished = file_.finish(); !finished) return tl::unexpected(finished.error());
+    TODBENCH_TRY_VOID(file_.finish());
     return std::move(table_);
   }
 

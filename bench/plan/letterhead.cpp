@@ -178,7 +178,7 @@ Result<Letterhead> parse_letterhead(const Resource& resource) {
   if (letterhead.closing_title.empty() && !letterhead.closing.empty()) reader.reject("closing", "needs closing_title");
   letterhead.foot = paragraph_in(reader, "foot");
   if (letterhead.foot.size() > 80) reader.reject("foot", "expected at most 80 bytes");
-  if (auto read = reader.finish(); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(reader.finish());
   if (logo.empty()) return letterhead;
   TODBENCH_TRY(letterhead.logo_png, logo_in(std::filesystem::path(resource.origin).parent_path() / logo));
   return letterhead;
@@ -191,11 +191,9 @@ Result<std::vector<std::string>> keep_letterhead(const std::filesystem::path& se
   if (problem) return fail(ErrorCode::io, (session / "inputs").string() + ": cannot be created: " + problem.message());
   if (!letterhead.logo_png.empty()) {
     files.emplace_back(letterhead_logo_file);
-    if (auto written = write_file_atomically(session / files.back(), letterhead.logo_png); !written)
-      return tl::unexpected(written.error());
+    TODBENCH_TRY_VOID(write_file_atomically(session / files.back(), letterhead.logo_png));
   }
-  if (auto written = write_file_atomically(session / files.front(), toml_of(letterhead)); !written)
-    return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(write_file_atomically(session / files.front(), toml_of(letterhead)));
   return files;
 }
 

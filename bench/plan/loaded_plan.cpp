@@ -168,7 +168,7 @@ Result<void> read_changed(const Plan& plan, const Plan* known, const ResourceFin
 Result<void> check_eye(const Plan& plan, const PlanParts& parts) {
   const auto judges = [](const ModulePlan& module) { return module.place == ModulePlace::observer; };
   if (std::ranges::any_of(plan.modules, judges)) {
-    if (auto blind = refuse_eye(parts.observer, "a module in place of the observer"); !blind) return blind;
+    TODBENCH_TRY_VOID(refuse_eye(parts.observer, "a module in place of the observer"));
   }
   if (!parts.observer.eye || has_display(plan)) return {};
   return fail_at(ErrorCode::invalid_input, "observer.name",
@@ -189,15 +189,15 @@ Result<void> check_pixel_shape(const Plan& plan, const PlanParts& parts) {
                                                         {measures.mrtd, "mrtd in [measures]"}};
   for (const auto& [used, name] : features) {
     if (!used) continue;
-    if (auto square = require_square_pixels(parts.sensor, name); !square) return square;
+    TODBENCH_TRY_VOID(require_square_pixels(parts.sensor, name));
   }
   return {};
 }
 
 /// Returns the contradictions between parts and plan.
 Result<void> fits_together(const Plan& plan, const PlanParts& parts) {
-  if (auto shown = check_eye(plan, parts); !shown) return shown;
-  if (auto shaped = check_pixel_shape(plan, parts); !shaped) return shaped;
+  TODBENCH_TRY_VOID(check_eye(plan, parts));
+  TODBENCH_TRY_VOID(check_pixel_shape(plan, parts));
   constexpr double steepest = 0.5;  // motion of the target between two rows, in pitches
   const cv::Point2d slope = readout_slope(parts.sensor, plan.simulation.motion);
   if (std::hypot(slope.x, slope.y) <= steepest) return {};
@@ -260,25 +260,25 @@ LoadedPlan::LoadedPlan(Plan plan, PlanParts parts)
 }
 
 Result<LoadedPlan> LoadedPlan::load(Plan plan, const ResourceFinder& find) {
-  if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(plan));
   PlanParts parts;
-  if (auto read = read_changed(plan, nullptr, find, parts); !read) return tl::unexpected(read.error());
-  if (auto fits = fits_together(plan, parts); !fits) return tl::unexpected(fits.error());
+  TODBENCH_TRY_VOID(read_changed(plan, nullptr, find, parts));
+  TODBENCH_TRY_VOID(fits_together(plan, parts));
   return LoadedPlan(std::move(plan), std::move(parts));
 }
 
 Result<LoadedPlan> LoadedPlan::of(Plan plan, PlanParts parts) {
-  if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
-  if (auto shown = check_eye(plan, parts); !shown) return tl::unexpected(shown.error());
-  if (auto shaped = check_pixel_shape(plan, parts); !shaped) return tl::unexpected(shaped.error());
+  TODBENCH_TRY_VOID(validate(plan));
+  TODBENCH_TRY_VOID(check_eye(plan, parts));
+  TODBENCH_TRY_VOID(check_pixel_shape(plan, parts));
   return LoadedPlan(std::move(plan), std::move(parts));
 }
 
 Result<LoadedPlan> LoadedPlan::with(Plan plan, const ResourceFinder& find) const {
-  if (auto valid = validate(plan); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(plan));
   PlanParts parts = parts_;
-  if (auto read = read_changed(plan, &plan_, find, parts); !read) return tl::unexpected(read.error());
-  if (auto fits = fits_together(plan, parts); !fits) return tl::unexpected(fits.error());
+  TODBENCH_TRY_VOID(read_changed(plan, &plan_, find, parts));
+  TODBENCH_TRY_VOID(fits_together(plan, parts));
   return LoadedPlan(std::move(plan), std::move(parts));
 }
 

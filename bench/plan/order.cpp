@@ -87,7 +87,7 @@ Result<OrderPlan> load_order(const std::filesystem::path& file) {
     if (const auto mistake = order_mistake(key.form, order.*key.member)) table.reject(key.name, *mistake);
   }
   for (const OrderNumber& key : order_numbers) order.*key.member = table.optional_number(key.name, key.range);
-  if (auto read = root.finish(); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(root.finish());
   return order;
 }
 

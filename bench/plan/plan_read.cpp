@@ -126,7 +126,7 @@ Result<LoadedPlan> read_plan(const Resource& resource, const std::filesystem::pa
   TODBENCH_TRY(TomlReader root, TomlReader::parse(resource.text, resource.origin));
   PlanReader reader(root, folder, find);
   reader.read();
-  if (const Result<void> read = root.finish(); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(root.finish());
   if (auto seen = check_eye(reader.plan(), reader.parts()); !seen) return fail(resource.origin, seen.error());
   return LoadedPlan(std::move(reader.plan()), std::move(reader.parts()));
 }

@@ -70,7 +70,7 @@ Result<TargetModel> parse_target(const Resource& resource) {
       model.parts.push_back(part);
     }
   }
-  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(reader.finish());
   if (const Result<void> possible = validate(model); !possible) return fail(resource.origin, possible.error());
   return model;
 }
@@ -136,7 +136,7 @@ Result<void> add_picture(TomlReader table, const std::filesystem::path& folder, 
 
 template <typename T>
 Result<T> checked_scene(const TomlReader& reader, const Resource& resource, T value) {
-  if (const Result<void> read = reader.finish(); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(reader.finish());
   if (const Result<void> possible = validate(value); !possible) return fail(resource.origin, possible.error());
   return value;
 }

@@ -168,7 +168,7 @@ Result<FieldScene> cut_view(DescribedView view, const std::filesystem::path& fol
         view.file, *found.background_sd_k, dt_k));
   }
   scene.picture = std::move(found.picture);
-  if (auto fine = validate(scene); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(validate(scene));
   return scene;
 }
 
@@ -272,7 +272,7 @@ Result<TargetSet> load_target_set(std::string_view reference, const SetReaders& 
   const std::size_t count = pictures.size() + models.size();
   if (count < 2 || count > most_targets)
     reader.reject(pictures.empty() ? "targets" : "target", fmt::format("expected 2 to {} targets", most_targets));
-  if (auto read = reader.finish(); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(reader.finish());
   auto read =
       pictures.empty() ? read_models(models, folder, background, set) : read_pictures(pictures, folder, readers, set);
   if (!read) return fail(resource.origin, read.error());

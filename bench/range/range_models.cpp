@@ -305,7 +305,7 @@ Result<void> answer(Prepared& model, const RangeSources& sources, const RangeQue
   model.head.sensitivity = found.sensitivity;
   model.head.r50_m = range_at(model, air, 0.5);
   if (model.head.name == "tod") {
-    if (auto done = predict_tod(model, sources, question); !done) return done;
+    TODBENCH_TRY_VOID(predict_tod(model, sources, question));
     if (model.head.r75_m)
       model.head.r75_ci95_m = joined_with_air(model, question, *model.head.r75_m, model.head.r75_ci95_m);
     return {};
@@ -366,11 +366,11 @@ Result<void> check(const RangeQuestion& question) {
 
 Result<std::vector<ModelRange>> range_models(std::span<const RangeModel> asked, const RangeSources& sources,
                                              const RangeQuestion& question) {
-  if (auto checked = check(question); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(question));
   std::vector<Prepared> models;
   for (const RangeModel which : asked) {
     models.push_back(prepared(which, sources, question));
-    if (auto answered = answer(models.back(), sources, question); !answered) return tl::unexpected(answered.error());
+    TODBENCH_TRY_VOID(answer(models.back(), sources, question));
   }
   add_curves(models, question);
   std::vector<ModelRange> answers;
@@ -399,7 +399,7 @@ Result<std::vector<RangeGrid>> range_grid(std::span<const RangeModel> asked, con
       for (const double contrast_k : axes.contrasts_k) {
         one.size_m = size_m;
         one.delta_t_k = contrast_k;
-        if (auto checked = check(one); !checked) return tl::unexpected(checked.error());
+        TODBENCH_TRY_VOID(check(one));
         if (!model.resolved) {
           grid.r75_m.emplace_back();
           grid.probability.resize(grid.probability.size() + axes.ranges_m.size());

@@ -38,8 +38,8 @@ class CaseWriter {
 
   Result<void> append(Frame frame, const PlateScene& scene, const SensorSpec& sensor) {
     frame.host_time_ns = frame.device_time_ns;
-    if (auto kept = stream_.append(frame); !kept) return kept;
-    if (auto kept = tiff_.append(frame.counts); !kept) return kept;
+    TODBENCH_TRY_VOID(stream_.append(frame));
+    TODBENCH_TRY_VOID(tiff_.append(frame.counts));
     const std::string number = std::to_string(frame.sequence);
     frames_ += number + "," + scene.plate.name + "," + std::string(to_string(scene.plate.mounting)) + "," +
                number_text(scene.shift_mm.x) + "," + number_text(scene.shift_mm.y) + "\n";
@@ -54,9 +54,9 @@ class CaseWriter {
   }
 
   Result<void> finish(const std::filesystem::path& folder, const std::string& name) {
-    if (auto frames = stream_.verified_frames(); !frames) return tl::unexpected(frames.error());
-    if (auto pages = tiff_.verified_pages(); !pages) return tl::unexpected(pages.error());
-    if (auto written = write_file_atomically(folder / (name + "-frames.csv"), frames_); !written) return written;
+    TODBENCH_TRY_VOID(stream_.verified_frames());
+    TODBENCH_TRY_VOID(tiff_.verified_pages());
+    TODBENCH_TRY_VOID(write_file_atomically(folder / (name + "-frames.csv"), frames_));
     return write_file_atomically(folder / (name + "-triangles.csv"), triangles_);
   }
 
@@ -96,14 +96,14 @@ Result<std::vector<TargetPlate>> both_plates() {
 
 Result<void> write_plates_and_observer(const std::filesystem::path& folder) {
   for (const char* name : {"plates", "observers"}) {
-    if (auto made = make_folder(folder / name); !made) return made;
+    TODBENCH_TRY_VOID(make_folder(folder / name));
   }
   std::vector<std::pair<ResourceKind, std::string_view>> copies{{ResourceKind::observer, reference_observer}};
   for (const auto name : plate_names) copies.emplace_back(ResourceKind::plate, name);
   for (const auto& [kind, name] : copies) {
     TODBENCH_TRY(const auto resource, find_resource(kind, name));
     const auto file = folder / (kind == ResourceKind::plate ? "plates" : "observers") / (std::string(name) + ".toml");
-    if (auto written = write_file_atomically(file, resource.text); !written) return written;
+    TODBENCH_TRY_VOID(write_file_atomically(file, resource.text));
   }
   return {};
 }
@@ -122,12 +122,12 @@ Result<void> write_reference_case(const std::filesystem::path& folder, const Ref
   const auto camera = simulated_source(model, scene, c.name);
   const auto target = scene_target(scene, plates);
   TODBENCH_TRY(auto writer, CaseWriter::create(folder, c, camera->info()));
-  if (auto started = camera->start(); !started) return started;
+  TODBENCH_TRY_VOID(camera->start());
   for (const TargetState& state : presentations(c, options.frames, stream.sub(1))) {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-    if (auto shown = target->present(state, stop); !shown) return tl::unexpected(shown.error());
+    TODBENCH_TRY_VOID(target->present(state, stop));
     TODBENCH_TRY(auto frame, camera->next(std::chrono::milliseconds(0)));
-    if (auto kept = writer.append(std::move(frame), *scene->scene(), c.sensor); !kept) return kept;
+    TODBENCH_TRY_VOID(writer.append(std::move(frame), *scene->scene(), c.sensor));
   }
   return writer.finish(folder, c.name);
 }
@@ -135,21 +135,20 @@ Result<void> write_reference_case(const std::filesystem::path& folder, const Ref
 Result<void> write_reference_set(const std::filesystem::path& folder, const ReferenceSetOptions& options,
                                  std::stop_token stop) {
   TODBENCH_TRY(const auto truths, reference_truths(options.cases, stop));
-  if (auto made = make_folder(folder); !made) return made;
-  if (auto written = write_plates_and_observer(folder); !written) return written;
-  if (auto made = make_folder(folder / "sensors"); !made) return made;
+  TODBENCH_TRY_VOID(make_folder(folder));
+  TODBENCH_TRY_VOID(write_plates_and_observer(folder));
+  TODBENCH_TRY_VOID(make_folder(folder / "sensors"));
   for (const ReferenceCase& c : options.cases) {
     const auto file = folder / "sensors" / (c.sensor.name + ".toml");
-    if (auto written = write_file_atomically(file, sensor_description(c.sensor)); !written) return written;
+    TODBENCH_TRY_VOID(write_file_atomically(file, sensor_description(c.sensor)));
   }
   for (std::size_t i = 0; i < options.cases.size(); ++i) {
     if (auto written = write_reference_case(folder, options.cases[i], i, options, stop); !written)
       return fail(options.cases[i].name, written.error());
     if (options.on_progress) options.on_progress(i + 1, options.cases.size());
   }
-  if (auto written = write_file_atomically(folder / "set.json", set_description(options, truths)); !written)
-    return written;
-  if (auto written = write_file_atomically(folder / "README.md", set_readme(options)); !written) return written;
+  TODBENCH_TRY_VOID(write_file_atomically(folder / "set.json", set_description(options, truths)));
+  TODBENCH_TRY_VOID(write_file_atomically(folder / "README.md", set_readme(options)));
   TODBENCH_TRY(const auto sums, set_sums(folder));
   return write_file_atomically(folder / "SHA256SUMS", sums);
 }

@@ -58,8 +58,8 @@ std::string sealed_text(const BlindOptions& options, const std::vector<Reference
 Result<void> write_laboratory(const std::filesystem::path& folder, int number, const BlindOptions& options,
                               const std::vector<ReferenceCase>& cases, const std::string& sealed_sha256,
                               const std::stop_token& stop) {
-  if (auto made = make_folder(folder); !made) return made;
-  if (auto written = write_plates_and_observer(folder); !written) return written;
+  TODBENCH_TRY_VOID(make_folder(folder));
+  TODBENCH_TRY_VOID(write_plates_and_observer(folder));
   ReferenceSetOptions frames{.seed = options.seed, .frames = options.frames, .cases = {}};
   const std::string name = "laboratory-" + std::to_string(number);
   std::string answers = "laboratory,item,quantity,value,u\n";
@@ -75,7 +75,7 @@ Result<void> write_laboratory(const std::filesystem::path& folder, int number, c
       {"results.csv", answers},
       {"protocol.html", render_html(blind_protocol({name, cases, options.frames, sealed_sha256}))}};
   for (const auto& [file, content] : files) {
-    if (auto written = write_file_atomically(folder / file, content); !written) return written;
+    TODBENCH_TRY_VOID(write_file_atomically(folder / file, content));
   }
   TODBENCH_TRY(const std::string sums, set_sums(folder));
   return write_file_atomically(folder / "SHA256SUMS", sums);
@@ -105,18 +105,16 @@ Result<BlindComparison> write_blind_comparison(const std::filesystem::path& fold
   const auto cases = blind_cases(options);
   BlindComparison out;
   TODBENCH_TRY(out.truths, reference_truths(cases, stop));
-  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  TODBENCH_TRY_VOID(make_folder(folder));
   const std::string sealed = sealed_text(options, cases, out.truths);
   out.sealed_sha256 = sha256_of(sealed);
   for (int number = 1; number <= options.laboratories; ++number) {
     const auto place = folder / ("laboratory-" + std::to_string(number));
-    if (auto written = write_laboratory(place, number, options, cases, out.sealed_sha256, stop); !written)
-      return tl::unexpected(written.error());
+    TODBENCH_TRY_VOID(write_laboratory(place, number, options, cases, out.sealed_sha256, stop));
     if (options.on_progress)
       options.on_progress(static_cast<std::size_t>(number), static_cast<std::size_t>(options.laboratories));
   }
-  if (auto written = write_file_atomically(folder / "sealed.json", sealed); !written)
-    return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(write_file_atomically(folder / "sealed.json", sealed));
   return out;
 }
 

@@ -193,7 +193,7 @@ Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std
   if (listener.on_phase) listener.on_phase("aligning " + state.plate + " at " + stated(state.delta_t_k) + " K");
 
   const std::stop_callback wake(stop, [&] { bench.camera->stop(); });
-  if (auto started = bench.camera->start(); !started) return started;
+  TODBENCH_TRY_VOID(bench.camera->start());
   auto presented = bench.target->present(state, stop);
   if (!presented) {
     if (presented.error().code == ErrorCode::interrupted) return {};

@@ -45,7 +45,7 @@ std::chrono::year_month_day today() {
 /// Rejects a tolerance beyond the hard caps before anything is simulated or moved.
 Result<void> check_tolerance(const Plan& plan, const ExperimentInputs& inputs) {
   if (has_modules(plan, inputs.sensor)) return {};
-  if (const auto prediction = predict_plan(plan, inputs); !prediction) return tl::unexpected(prediction.error());
+  TODBENCH_TRY_VOID(predict_plan(plan, inputs));
   return {};
 }
 
@@ -86,7 +86,7 @@ Result<SessionFolder> opened_session(const LoadedPlan& chosen, const ExperimentO
 
 /// Rejects a plan that the camera or its twin cannot carry out, before anything is moved.
 Result<void> check_bench(const Plan& plan, const ExperimentInputs& inputs, const SourceInfo& info) {
-  if (auto possible = check_contrast_of(plan, inputs, info); !possible) return possible;
+  TODBENCH_TRY_VOID(check_contrast_of(plan, inputs, info));
   if (auto fits = check_measured_geometry(plan, inputs, {info.width, info.height}); !fits) return fits;
   if (auto fits = check_simulated_geometry(plan, inputs); !fits) return fail("the simulated twin", fits.error());
   return {};
@@ -171,8 +171,8 @@ Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const Experime
   provenance.effects = inputs.effects;
   provenance.modules = module_records(plan, inputs.sensor, Side::simulated);
   provenance.target = "simulated scene";
-  if (auto fits = check_simulated_geometry(plan, inputs); !fits) return tl::unexpected(fits.error());
-  if (auto possible = check_tolerance(plan, inputs); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check_simulated_geometry(plan, inputs));
+  TODBENCH_TRY_VOID(check_tolerance(plan, inputs));
   TODBENCH_TRY(auto folder, opened_session(chosen, options, provenance, listener));
   const OpenSession open{folder, listener};
   for (const auto& warning : inputs.warnings) note(folder, listener, warning);
@@ -214,10 +214,10 @@ Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const Experimen
                                        const ExperimentListener& listener, std::stop_token stop) {
   const Plan& plan = loaded.plan();
   if (plan.camera.id.empty()) return fail(ErrorCode::invalid_input, "the plan names no camera: [camera] id is missing");
-  if (auto valid = check_calibration(plan, today()); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(check_calibration(plan, today()));
   EffectPlanner planner;
   TODBENCH_TRY(auto inputs, experiment_inputs(loaded, planner));
-  if (auto possible = check_tolerance(plan, inputs); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check_tolerance(plan, inputs));
   if (listener.on_phase) listener.on_phase("opening " + plan.camera.id);
   TODBENCH_TRY(auto bench, open_bench(loaded, stop, options.host, listener.on_phase, listener.on_wait));
   if (options.host.on_opened) {
@@ -247,7 +247,7 @@ Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const Exper
   if (listener.on_open) listener.on_open(bench.camera->info());
   if (listener.on_frame) bench.camera = observed_source(std::move(bench.camera), listener.on_frame);
   const SourceInfo info = bench.camera->info();
-  if (auto possible = check_bench(plan, inputs, info); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check_bench(plan, inputs, info));
   Provenance provenance = begin_provenance(plan, Side::measured);
   provenance.effects = inputs.effects;
   provenance.modules = module_records(plan, inputs.sensor, Side::simulated);

@@ -40,20 +40,19 @@ Result<ReportData> report_data_of(const Session& session, const std::filesystem:
 
 Result<ReportData> rebuild_report(const Session& session, const std::filesystem::path& folder,
                                   const PageWriter& write_pages) {
-  if (auto open = require_unsigned(folder); !open) return tl::unexpected(open.error());
+  TODBENCH_TRY_VOID(require_unsigned(folder));
   const bool vouched_for = session.accepted_changes.empty() && !session.cut_off;
   // Accepting changed files includes added ones; links are never accepted.
-  if (auto own = vouched_for ? require_no_foreign_file(folder) : require_no_links(folder); !own)
-    return tl::unexpected(own.error());
+  TODBENCH_TRY_VOID(vouched_for ? require_no_foreign_file(folder) : require_no_links(folder));
   auto data = report_data_of(session, folder);
   if (!data) return data;
   if (vouched_for && !session.verdict) {
-    if (auto kept = keep_verdict(folder, *data->verdict); !kept) return tl::unexpected(kept.error());
+    TODBENCH_TRY_VOID(keep_verdict(folder, *data->verdict));
     TODBENCH_TRY(data->manifest_sha256, manifest_digest(folder));
   }
   TODBENCH_TRY(const auto pages, write_pages(*data));
   if (!vouched_for) return data;
-  if (auto refreshed = refresh_manifest(folder, pages); !refreshed) return tl::unexpected(refreshed.error());
+  TODBENCH_TRY_VOID(refresh_manifest(folder, pages));
   return data;
 }
 
@@ -61,20 +60,19 @@ Result<ReportData> revise_report(const Session& session, const std::filesystem::
                                  const std::string& utc, const std::filesystem::path& secret_key,
                                  const std::stop_token& stop) {
   TODBENCH_TRY(auto revision, next_revision(folder, reason, utc));
-  if (auto own = require_no_foreign_file(folder); !own) return tl::unexpected(own.error());
-  if (auto key = require_key_of_session(folder, secret_key, stop); !key) return tl::unexpected(key.error());
+  TODBENCH_TRY_VOID(require_no_foreign_file(folder));
+  TODBENCH_TRY_VOID(require_key_of_session(folder, secret_key, stop));
   auto data = report_data_of(session, folder);
   if (!data) return data;
   data->revision = revision;
-  if (auto made = make_folder(folder / "revisions"); !made) return tl::unexpected(made.error());
+  TODBENCH_TRY_VOID(make_folder(folder / "revisions"));
   std::vector<std::string> pages;
   for (const auto& [extension, text] :
        {std::pair(std::string("html"), render_report(*data)), std::pair(std::string("csv"), report_csv(*data))}) {
     pages.push_back(revision_page(revision, extension));
-    if (auto written = write_file_atomically(folder / pages.back(), text); !written)
-      return tl::unexpected(written.error());
+    TODBENCH_TRY_VOID(write_file_atomically(folder / pages.back(), text));
   }
-  if (auto kept = keep_revision(folder, revision, pages, secret_key, stop); !kept) return tl::unexpected(kept.error());
+  TODBENCH_TRY_VOID(keep_revision(folder, revision, pages, secret_key, stop));
   return data;
 }
 
@@ -98,8 +96,8 @@ Result<PageWriter> with_order(std::filesystem::path folder, const std::filesyste
           write = std::move(write)](const ReportData& data) -> Result<std::vector<std::string>> {
     ReportData with = data;
     with.order = entries;
-    if (auto made = make_folder(folder / "inputs"); !made) return tl::unexpected(made.error());
-    if (auto kept = write_file_atomically(folder / order_file, text); !kept) return tl::unexpected(kept.error());
+    TODBENCH_TRY_VOID(make_folder(folder / "inputs"));
+    TODBENCH_TRY_VOID(write_file_atomically(folder / order_file, text));
     auto pages = write(with);
     if (pages) pages->emplace_back(order_file);
     return pages;
@@ -108,10 +106,8 @@ Result<PageWriter> with_order(std::filesystem::path folder, const std::filesyste
 
 PageWriter html_page(std::filesystem::path folder) {
   return [folder = std::move(folder)](const ReportData& data) -> Result<std::vector<std::string>> {
-    if (auto written = write_file_atomically(folder / "report.html", render_report(data)); !written)
-      return tl::unexpected(written.error());
-    if (auto written = write_file_atomically(folder / "report.csv", report_csv(data)); !written)
-      return tl::unexpected(written.error());
+    TODBENCH_TRY_VOID(write_file_atomically(folder / "report.html", render_report(data)));
+    TODBENCH_TRY_VOID(write_file_atomically(folder / "report.csv", report_csv(data)));
     return std::vector<std::string>{"report.html", "report.csv"};
   };
 }

@@ -178,7 +178,7 @@ Result<RecordedBench> open_recorded_bench(const std::filesystem::path& session, 
   }
   TODBENCH_TRY(auto stream, open_frame_stream(file));
   auto& annotations = stream.header.annotations;
-  if (auto known = check_format(file, annotations); !known) return tl::unexpected(known.error());
+  TODBENCH_TRY_VOID(check_format(file, annotations));
   const auto answers = std::make_shared<RecordedAnswers>(file.string(), std::move(stream.readings));
   const auto frames =
       annotations[frames_while_presenting_key] == "yes" ? FramesWhilePresenting::repeat : FramesWhilePresenting::leave;

@@ -118,7 +118,7 @@ Result<ReplayOutcome> replay_session(const std::filesystem::path& session, const
   inputs.warnings.insert(inputs.warnings.end(), recorded.warnings.begin(), recorded.warnings.end());
   auto run = measure_on_bench(loaded, inputs, std::move(recorded.recording.bench), options, listener, std::move(stop));
   // A measurement that asked other questions is not a replay.
-  if (auto agreed = recorded.recording.answers->agreed(); !agreed) return tl::unexpected(agreed.error());
+  TODBENCH_TRY_VOID(recorded.recording.answers->agreed());
   if (!run) return tl::unexpected(run.error());
 
   const bool cut_off = then.cut_off;

@@ -230,7 +230,7 @@ Result<ExperimentOutcome> resume_session(RecordedRun run, ExperimentOptions opti
   };
   const auto answers = run.recording.answers;
   auto outcome = measure_plan(loaded, options, listener, std::move(stop));
-  if (auto agreed = answers->agreed(); !agreed) return tl::unexpected(agreed.error());
+  TODBENCH_TRY_VOID(answers->agreed());
   return outcome;
 }
 

@@ -39,7 +39,7 @@ Result<RunRequest> parse_run_request(std::string_view body) {
                   "unknown key '" + one_line(key) + "': known are plan, plan_toml, mode and seed");
     }
   }
-  if (auto read = reader.finish(); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(reader.finish());
   if (request.plan.empty() == request.plan_toml.empty())
     return fail(ErrorCode::invalid_input, "expected either plan, a name or file, or plan_toml, the text of a plan");
   if (request.seed > largest_seed) return fail(ErrorCode::invalid_input, "'seed': expected a number below 2^63");

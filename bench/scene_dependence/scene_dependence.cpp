@@ -73,7 +73,7 @@ class BarTarget final : public Target {
   explicit BarTarget(const MoveBar& move) : move_(move) {}
   [[nodiscard]] const TargetCapabilities& capabilities() const override { return capabilities_; }
   [[nodiscard]] Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) override {
-    if (auto moved = move_(in, std::move(stop)); !moved) return tl::unexpected(moved.error());
+    TODBENCH_TRY_VOID(move_(in, std::move(stop)));
     PresentedTarget presented;
     presented.state = state;
     return presented;
@@ -106,17 +106,16 @@ class BarRun {
     for (const TargetPlate& plate : measuring_.plates) {
       if (plate.name == state_.plate) plate_ = mounted(plate, state_.mounting);
     }
-    if (auto shown = change(target_); !shown) return tl::unexpected(shown.error());
-    if (auto out = move(false); !out) return tl::unexpected(out.error());
+    TODBENCH_TRY_VOID(change(target_));
+    TODBENCH_TRY_VOID(move(false));
     TODBENCH_TRY(const auto picture, step_.look(stop_));
     TODBENCH_TRY(registration_, step_.find(picture, plate_, state_));
-    if (auto seen = step_.contrast(plate_, registration_, state_, presented_, stop_); !seen)
-      return tl::unexpected(seen.error());
+    TODBENCH_TRY_VOID(step_.contrast(plate_, registration_, state_, presented_, stop_));
     if (measuring_.contrast_unit == ContrastUnit::kelvin) noise_k_ = picture.temporal_noise_k;
     sizes_ = windows_of(picture.kelvin, plate_, registration_);
     std::map<double, std::vector<double>> ln_ratios;
     for (int cycle = 0; cycle < options_.cycles; ++cycle) {
-      if (auto done = one_cycle(ln_ratios); !done) return tl::unexpected(done.error());
+      TODBENCH_TRY_VOID(one_cycle(ln_ratios));
     }
     return concluded(ln_ratios);
   }
@@ -175,14 +174,14 @@ class BarRun {
   Result<void> one_cycle(std::map<double, std::vector<double>>& ln_ratios) {
     std::map<double, double> out, in;
     for (const bool with_bar : {false, true}) {
-      if (auto moved = move(with_bar); !moved) return moved;
+      TODBENCH_TRY_VOID(move(with_bar));
       for (int twice = 0; twice < (with_bar ? 2 : 1); ++twice) {
         TODBENCH_TRY(auto picture, average());
         for (const auto& [mm, size] : sizes_) (with_bar ? in : out)[mm] += response_of(size, picture);
         if (with_bar) in_ = std::move(picture);
       }
     }
-    if (auto moved = move(false); !moved) return moved;
+    TODBENCH_TRY_VOID(move(false));
     TODBENCH_TRY(auto picture, average());
     for (const auto& [mm, size] : sizes_) {
       out[mm] += response_of(size, picture);
@@ -322,7 +321,7 @@ Result<SimulatedBar> simulated_bar(const LoadedPlan& loaded, const EnhancementPa
   const Plan& plan = loaded.plan();
   const SensorSpec& sensor = loaded.sensor();
   TODBENCH_TRY(const auto accuracy, accuracy_of(plan));
-  if (auto possible = check_sensor_module(sensor); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check_sensor_module(sensor));
   const auto model = std::make_shared<const SensorModel>(
       sensor, full_plan(sensor, plan.simulation.skip, plan.simulation.force), accuracy, plan.seed);
   SimulatedBar out;
@@ -370,13 +369,12 @@ Result<SceneDependence> measure_scene_dependence(FrameSource& camera, Target& ta
                                                  std::stop_token stop) {
   if (options.cycles < 3 || options.frames < 1 || options.settle_frames < 0 || !(options.tolerance_percent > 0))
     return fail(ErrorCode::invalid_input, "at least three cycles, one frame and a tolerance above 0 are needed");
-  if (auto checked = check_before_measuring(measuring, observer, camera.info()); !checked)
-    return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_before_measuring(measuring, observer, camera.info()));
   if (options.on_begin) {
-    if (auto begun = options.on_begin(camera.info(), target); !begun) return tl::unexpected(begun.error());
+    TODBENCH_TRY_VOID(options.on_begin(camera.info(), target));
   }
   const std::stop_callback wake(stop, [&camera] { camera.stop(); });
-  if (auto started = camera.start(); !started) return tl::unexpected(started.error());
+  TODBENCH_TRY_VOID(camera.start());
   auto found = BarRun(camera, target, move_bar, state, measuring, options, host, stop)();
   camera.stop();
   if (!found && stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
@@ -401,8 +399,7 @@ Result<SceneDependence> plan_scene_dependence(const LoadedPlan& loaded, const En
                                               std::stop_token stop) {
   const Plan& plan = loaded.plan();
   if (package != nullptr) {
-    if (auto same = refuse_finer_pictures(*package, "the response to a bar"); !same)
-      return tl::unexpected(same.error());
+    TODBENCH_TRY_VOID(refuse_finer_pictures(*package, "the response to a bar"));
   }
   TemplateObserver observer(loaded.observer(), triangle_alternatives());
   const TargetState state = state_of(plan, loaded.plates());

@@ -119,13 +119,11 @@ class BarSession {
 
   Result<void> write(const SceneDependence& found) {
     if (task_.package) {
-      if (auto made = make_folder(folder_->path() / "inputs"); !made) return made;
-      if (auto kept = write_file_atomically(folder_->path() / package_copy, task_.package->text); !kept) return kept;
+      TODBENCH_TRY_VOID(make_folder(folder_->path() / "inputs"));
+      TODBENCH_TRY_VOID(write_file_atomically(folder_->path() / package_copy, task_.package->text));
     }
-    if (auto written = write_file_atomically(folder_->path() / "scene-dependence.json",
-                                             to_page(scene_dependence_json(found, task_)));
-        !written)
-      return written;
+    TODBENCH_TRY_VOID(
+        write_file_atomically(folder_->path() / "scene-dependence.json", to_page(scene_dependence_json(found, task_))));
     return folder_->write_measures(measures_json(lines_of(found, task_)));
   }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "acquisition/base/try.h"
 #include "bench/selftest/selftest_cases.h"
 
 namespace todbench {
@@ -27,7 +28,7 @@ Result<std::vector<SelftestCase>> selftest(std::stop_token stop) {
     if (stop.stop_requested()) return fail(ErrorCode::interrupted, "interrupted");
     add(cases);
   }
-  if (auto done = add_reference_case(cases, std::move(stop)); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(add_reference_case(cases, std::move(stop)));
   return cases;
 }
 

@@ -170,12 +170,12 @@ std::vector<BarsMean> bars_means(const std::vector<JudgedBars>& sittings) {
 }
 
 Result<void> add_bars_sitting(const std::filesystem::path& session, const BarsSitting& sitting) {
-  if (auto intact = require_intact(session); !intact) return intact;
+  TODBENCH_TRY_VOID(require_intact(session));
   BarsSittings all;
   TODBENCH_TRY(all.people, read_bars_sittings(session));
   all.people.push_back(sitting);
-  if (auto made = make_folder(session / "people"); !made) return made;
-  if (auto written = write_json_file(session / bars_name, json_of(all, sittings_fields)); !written) return written;
+  TODBENCH_TRY_VOID(make_folder(session / "people"));
+  TODBENCH_TRY_VOID(write_json_file(session / bars_name, json_of(all, sittings_fields)));
   return refresh_manifest(session, {bars_name});
 }
 

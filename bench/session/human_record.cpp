@@ -172,7 +172,7 @@ Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPa
 }
 
 Result<void> add_person(const std::filesystem::path& session, const PersonRecord& person) {
-  if (auto intact = require_intact(session); !intact) return intact;
+  TODBENCH_TRY_VOID(require_intact(session));
   TODBENCH_TRY(People people, read_facts(session));
   people.people.push_back(person.person);
   const PersonFiles files = files_of(people.people.size());
@@ -182,13 +182,13 @@ Result<void> add_person(const std::filesystem::path& session, const PersonRecord
   const HumanRecord& record = person.record;
   TODBENCH_TRY(auto writer, TrialsWriter::create(session / files.trials));
   for (const Trial& trial : record.trials) {
-    if (auto written = writer.append(trial); !written) return written;
+    TODBENCH_TRY_VOID(writer.append(trial));
   }
-  if (auto synced = writer.sync(); !synced) return synced;
-  if (auto written = write_json_file(session / files.fits, curve_record(record.curve)); !written) return written;
-  if (auto written = write_file_atomically(session / files.shown, shown_text(record)); !written) return written;
+  TODBENCH_TRY_VOID(writer.sync());
+  TODBENCH_TRY_VOID(write_json_file(session / files.fits, curve_record(record.curve)));
+  TODBENCH_TRY_VOID(write_file_atomically(session / files.shown, shown_text(record)));
   TODBENCH_TRY(const Json facts, json_of(people, people_fields));
-  if (auto written = write_json_file(session / facts_name, facts); !written) return written;
+  TODBENCH_TRY_VOID(write_json_file(session / facts_name, facts));
   return refresh_manifest(session, {files.trials, files.shown, files.fits, facts_name});
 }
 

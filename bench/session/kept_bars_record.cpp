@@ -69,10 +69,10 @@ std::filesystem::path kept_bars_file(const std::filesystem::path& session) {
 }
 
 Result<void> write_kept_bars(const std::filesystem::path& session, const KeptBars& kept) {
-  if (auto made = make_folder(session / pictures_folder); !made) return made;
+  TODBENCH_TRY_VOID(make_folder(session / pictures_folder));
   std::string samples;
   for (const KeptPicture& picture : kept.pictures) append(samples, picture.target), append(samples, picture.other);
-  if (auto written = write_file_atomically(kept_bars_file(session), samples); !written) return written;
+  TODBENCH_TRY_VOID(write_file_atomically(kept_bars_file(session), samples));
   KeptBars index = kept;
   return write_json_file(index_file(session), json_of(index, kept_fields));
 }

@@ -235,8 +235,8 @@ Result<std::string> manifest_digest(const std::filesystem::path& folder) {
 
 Result<void> refresh_manifest(const std::filesystem::path& folder, const std::vector<std::string>& files) {
   TODBENCH_TRY(Manifest manifest, read_written_manifest(folder));
-  if (auto open = require_unsigned(folder); !open) return open;
-  if (auto updated = update_entries(folder, files, manifest.entries); !updated) return updated;
+  TODBENCH_TRY_VOID(require_unsigned(folder));
+  TODBENCH_TRY_VOID(update_entries(folder, files, manifest.entries));
   return write_manifest(folder, manifest.entries);
 }
 
@@ -250,8 +250,7 @@ Result<ManifestCheck> check_manifest(const std::filesystem::path& folder) {
   if (!manifest || !manifest->as_written) check.changed.emplace_back(manifest_name);
   if (!manifest) return check;
   check.manifest_sha256 = digest_of(manifest->entries);
-  if (auto compared = check_entries(folder, manifest->entries, check); !compared)
-    return tl::unexpected(compared.error());
+  TODBENCH_TRY_VOID(check_entries(folder, manifest->entries, check));
   check.foreign = not_listed(folder, manifest->entries);
   std::sort(check.changed.begin(), check.changed.end());
   return check;
@@ -268,7 +267,7 @@ Result<void> require_no_links(const std::filesystem::path& folder) {
 }
 
 Result<void> require_no_foreign_file(const std::filesystem::path& folder) {
-  if (auto none = require_no_links(folder); !none) return none;
+  TODBENCH_TRY_VOID(require_no_links(folder));
   if (!has_a_name(folder / manifest_name)) return {};
   TODBENCH_TRY(const Manifest manifest, read_manifest(folder));
   const std::vector<std::string> foreign = not_listed(folder, manifest.entries);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "acquisition/base/normal.h"
+#include "acquisition/base/try.h"
 #include "bench/plan/quantity.h"
 #include "bench/session/measure_row.h"
 #include "bench/text/base64.h"
@@ -197,7 +198,7 @@ Json measures_json(const MeasureLines& main) {
 Result<SessionMeasures> measures_from(const Json& record) {
   const JsonReader reader(record);
   SessionMeasures measures{side_from(reader.at("main")), side_from(reader.at("twin"))};
-  if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
+  TODBENCH_TRY_VOID(reader.finish());
   if (!drawable(measures.main) || !drawable(measures.twin))
     return fail(ErrorCode::invalid_input, "'picture': expected three PNG files of the same size as base64");
   for (const MeasureRow& row : measure_table()) {

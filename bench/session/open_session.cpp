@@ -112,7 +112,7 @@ Result<Session> open_session(const std::filesystem::path& folder, const Opening&
 Result<void> require_intact(const std::filesystem::path& folder) {
   TODBENCH_TRY(const SessionCheck check, check_session(folder));
   if (check.not_vouched_for.empty()) {
-    if (auto own = require_no_foreign_file(folder); !own) return own;
+    TODBENCH_TRY_VOID(require_no_foreign_file(folder));
     return require_unsigned(folder);
   }
   return fail(ErrorCode::invalid_input, folder.string() + ": the session was changed: " + check.sentence);

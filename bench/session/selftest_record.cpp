@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 
+#include "acquisition/base/try.h"
 #include "bench/plan/plan.h"
 #include "bench/session/provenance.h"
 #include "bench/text/files.h"
@@ -41,7 +42,7 @@ Result<void> keep_selftest(const std::filesystem::path& file, SelftestRecord rec
   record.git_commit = now.git_commit;
   record.compiler = now.compiler;
   record.host = now.host;
-  if (auto made = make_folder(file.parent_path()); !made) return made;
+  TODBENCH_TRY_VOID(make_folder(file.parent_path()));
   return write_json_file(file, json_of(record, selftest_fields));
 }
 

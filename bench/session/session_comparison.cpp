@@ -131,7 +131,7 @@ void add_ratios_over_twin(Comparison& comparison, const Session& a, const Sessio
 }  // namespace
 
 Result<SessionComparison> compare_sessions(const Session& a, const Session& b, std::optional<double> margin_percent) {
-  if (auto comparable = check_comparable(a, b); !comparable) return tl::unexpected(comparable.error());
+  TODBENCH_TRY_VOID(check_comparable(a, b));
   ComparisonOptions options = comparison_options(a.plan);
   options.margin_percent = margin_percent.value_or(margin_of(a, b));
   SessionComparison result{examined(a), examined(b), {}};

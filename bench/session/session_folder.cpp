@@ -213,7 +213,7 @@ Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder,
   if (std::filesystem::exists(folder, problem) && !std::filesystem::is_directory(folder, problem)) {
     return fail(ErrorCode::invalid_input, folder.string() + ": expected a folder, found a file");
   }
-  if (auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  TODBENCH_TRY_VOID(make_folder(folder));
   TODBENCH_TRY(auto claim, claim_folder(folder));
   const bool empty = std::filesystem::is_empty(folder, problem);
   if (problem) return fail(code_of_path(problem), folder.string() + ": cannot be read: " + problem.message());
@@ -221,9 +221,9 @@ Result<SessionFolder> SessionFolder::create(const std::filesystem::path& folder,
     return fail(ErrorCode::invalid_input,
                 folder.string() + ": the folder is not empty. Choose another one or overwrite it with --force");
   }
-  if (auto open = require_unsigned(folder); !open) return tl::unexpected(open.error());
-  if (auto none = require_no_links(folder); !none) return tl::unexpected(none.error());
-  if (const Result<void> removed = remove_session_files(folder); !removed) return tl::unexpected(removed.error());
+  TODBENCH_TRY_VOID(require_unsigned(folder));
+  TODBENCH_TRY_VOID(require_no_links(folder));
+  TODBENCH_TRY_VOID(remove_session_files(folder));
   return SessionFolder(folder, clocks, std::move(claim));
 }
 
@@ -260,7 +260,7 @@ Result<void> SessionFolder::write_plan(const LoadedPlan& loaded) {
     TODBENCH_TRY(*reference, copies.copy(kind, *reference, loaded.parts().sources.at({kind, *reference}).text));
   }
   if (loaded.parts().letterhead) {
-    if (auto kept = keep_letterhead(folder_, *loaded.parts().letterhead); !kept) return tl::unexpected(kept.error());
+    TODBENCH_TRY_VOID(keep_letterhead(folder_, *loaded.parts().letterhead));
     stored.report.letterhead = letterhead_file;
   }
   return write_file_atomically(folder_ / "session.toml", to_toml(stored));
@@ -282,8 +282,7 @@ Result<void> SessionFolder::write_curves(const TodCurve& main, const std::option
                                          const std::optional<CurveUncertainty>& uncertainty) {
   if (auto written = write_json_file(folder_ / "fits.json", curves_record({main, twin})); !written) return written;
   if (uncertainty) {
-    if (auto written = write_json_file(folder_ / "uncertainty.json", uncertainty_record(*uncertainty)); !written)
-      return written;
+    TODBENCH_TRY_VOID(write_json_file(folder_ / "uncertainty.json", uncertainty_record(*uncertainty)));
   }
   return write_file_atomically(folder_ / "curve.csv", curve_csv(main, twin, side, uncertainty));
 }
@@ -299,7 +298,7 @@ Result<void> SessionFolder::write_grey_levels(const std::vector<GreyFrame>& fram
 Result<void> SessionFolder::write_measures(const std::optional<CameraMeasures>& main,
                                            const std::optional<CameraMeasures>& twin) {
   if (main && main->mrtd && !main->mrtd->kept.pictures.empty()) {
-    if (auto written = write_kept_bars(folder_, main->mrtd->kept); !written) return written;
+    TODBENCH_TRY_VOID(write_kept_bars(folder_, main->mrtd->kept));
   }
   return write_measures(measures_json(main, twin));
 }
@@ -313,7 +312,7 @@ Result<void> SessionFolder::write_measures(Json record) {
       return fail(ErrorCode::io, (folder_ / pictures_folder).string() + ": cannot be created: " + problem.message());
   }
   for (const MeasurePicture& picture : pictures) {
-    if (auto written = write_file_atomically(folder_ / picture.file, picture.png); !written) return written;
+    TODBENCH_TRY_VOID(write_file_atomically(folder_ / picture.file, picture.png));
   }
   return write_file_atomically(folder_ / "measures.json", to_page(record));
 }
@@ -334,7 +333,7 @@ Result<void> SessionFolder::log(std::string_view sentence) {
 Result<void> SessionFolder::finish(Provenance provenance, SessionState state) {
   provenance.state = state;
   if (provenance.ended_utc.empty()) provenance.ended_utc = clock_.now_utc();
-  if (const Result<void> written = write_provenance(provenance); !written) return written;
+  TODBENCH_TRY_VOID(write_provenance(provenance));
   return write_manifest(folder_);
 }
 
@@ -408,10 +407,9 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   if (!provenance) return fail(provenance_file.string(), provenance.error());
   session.provenance = *std::move(provenance);
 
-  if (const Result<void> read = read_all_trials(folder, session); !read) return tl::unexpected(read.error());
-  if (auto kept = keep_as_it_was(session.plan, session.trials, folder / "session.toml"); !kept)
-    return tl::unexpected(kept.error());
-  if (const Result<void> read = read_all_targets(folder, session); !read) return tl::unexpected(read.error());
+  TODBENCH_TRY_VOID(read_all_trials(folder, session));
+  TODBENCH_TRY_VOID(keep_as_it_was(session.plan, session.trials, folder / "session.toml"));
+  TODBENCH_TRY_VOID(read_all_targets(folder, session));
   restore_own_contrasts(session);
   TODBENCH_TRY(auto curves, read_record(folder / "fits.json", curves_from));
   if (curves) {
@@ -450,7 +448,7 @@ Verdict verdict_of(const Session& session) {
 
 Result<void> keep_verdict(const std::filesystem::path& folder, const Verdict& verdict) {
   if (!is_there(folder / manifest_name)) return {};
-  if (auto written = write_json_file(folder / "verdict.json", verdict_record(verdict)); !written) return written;
+  TODBENCH_TRY_VOID(write_json_file(folder / "verdict.json", verdict_record(verdict)));
   return refresh_manifest(folder, {"verdict.json"});
 }
 

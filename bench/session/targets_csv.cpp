@@ -116,8 +116,7 @@ Presentation read_target(FieldReader& fields, std::size_t columns) {
 
 Result<TargetsWriter> TargetsWriter::create(const std::filesystem::path& file) {
   TODBENCH_TRY(AppendFile opened, AppendFile::open(file, AppendFile::Start::empty));
-  if (const Result<void> written = opened.append(header_line(target_columns)); !written)
-    return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(opened.append(header_line(target_columns)));
   return TargetsWriter(std::move(opened));
 }
 
@@ -140,8 +139,7 @@ Result<std::vector<Presentation>> read_targets(const std::filesystem::path& file
   const std::span columns(target_columns.data(), had == without_air || had == without_error || had == without_place
                                                      ? had
                                                      : target_columns.size());
-  if (const Result<void> as_expected = check_columns(table, columns); !as_expected)
-    return tl::unexpected(as_expected.error());
+  TODBENCH_TRY_VOID(check_columns(table, columns));
   std::vector<Presentation> presentations;
   presentations.reserve(table.rows.size());
   for (const CsvRow& row : table.rows) {

@@ -174,8 +174,7 @@ Result<Level> read_level(const CsvTable& table, const CsvRow& row, const LevelCo
 
 Result<TrialsWriter> TrialsWriter::create(const std::filesystem::path& file) {
   TODBENCH_TRY(AppendFile opened, AppendFile::open(file, AppendFile::Start::empty));
-  if (const Result<void> written = opened.append(header_line(trial_columns)); !written)
-    return tl::unexpected(written.error());
+  TODBENCH_TRY_VOID(opened.append(header_line(trial_columns)));
   return TrialsWriter(std::move(opened));
 }
 
@@ -196,8 +195,7 @@ Result<std::vector<Trial>> read_trials(const std::filesystem::path& file) {
   TODBENCH_TRY(const CsvTable table, parse_csv(text, file.string()));
   std::span<const std::string_view> columns(trial_columns);
   if (std::ranges::count(earlier_columns, table.header.size()) > 0) columns = columns.first(table.header.size());
-  if (const Result<void> as_expected = check_columns(table, columns); !as_expected)
-    return tl::unexpected(as_expected.error());
+  TODBENCH_TRY_VOID(check_columns(table, columns));
   std::vector<Trial> trials;
   trials.reserve(table.rows.size());
   for (const CsvRow& row : table.rows) {

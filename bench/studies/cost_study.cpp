@@ -117,14 +117,14 @@ Result<CostFrontier> cost_of_plan(const LoadedPlan& loaded, double budget_s, con
   EffectPlanner planner;
   TODBENCH_TRY(const auto inputs, experiment_inputs(loaded, planner));
   // Reports in a sentence if the plan cannot be met, before anything is measured.
-  if (const auto prediction = predict_plan(plan, inputs); !prediction) return tl::unexpected(prediction.error());
+  TODBENCH_TRY_VOID(predict_plan(plan, inputs));
   if (inputs.outlooks.empty()) {
     CostFrontier nothing;
     nothing.budget_s = budget_s;
     nothing.notes = inputs.warnings;
     return nothing;
   }
-  if (auto fits = check_simulated_geometry(plan, inputs); !fits) return tl::unexpected(fits.error());
+  TODBENCH_TRY_VOID(check_simulated_geometry(plan, inputs));
   const SensorSpec& sensor = loaded.sensor();
   auto choices = choices_of(plan, sensor, inputs, planner);
   const CostTask task{.sensor = sensor,

@@ -146,8 +146,7 @@ Result<CameraPart> camera(const SensorSpec& sensor, const std::vector<TemplateOb
       SensorSpec like = sensor;
       like.microscan = resolved ? 2 : 1;
       TODBENCH_TRY(const auto function, function_of(like, *observers[o], contrast_k, options));
-      if (auto added = add_graded(part.thresholds.back(), answers, function, resolved ? microscan : normal); !added)
-        return tl::unexpected(added.error());
+      TODBENCH_TRY_VOID(add_graded(part.thresholds.back(), answers, function, resolved ? microscan : normal));
     }
   }
   part.record = std::move(record);
@@ -256,7 +255,7 @@ Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options) {
       return {};
     });
   }
-  if (auto done = run_all(tasks); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(run_all(tasks));
   Reproduction reproduction;
   reproduction.title = "Reproduction of the EO-VISTA experiment";
   reproduction.source =

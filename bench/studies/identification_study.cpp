@@ -201,7 +201,7 @@ Result<IdentificationStudy> study_at_end(const IdentificationStudyTask& task, do
   std::vector<double> proportions;
   for (const IdentificationPoint& point : study.points) proportions.push_back((*point.spread).*end);
   out.r75_m.value = crossing_of_75_percent(task.ranges_m, proportions).at;
-  if (auto rated = rate_by_curve(seen, least_tau, out); !rated) return tl::unexpected(rated.error());
+  TODBENCH_TRY_VOID(rate_by_curve(seen, least_tau, out));
   return out;
 }
 
@@ -263,7 +263,7 @@ Crossing75 crossing_of_75_percent(const std::vector<double>& at, const std::vect
 }
 
 Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task) {
-  if (auto fine = check_ranges(task); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(check_ranges(task));
   IdentificationTask experiment;
   experiment.sensor = task.sensor;
   experiment.plan = full_plan(turbulent_sensor(task, task.ranges_m.front()), {}, {}, task.motion);
@@ -334,8 +334,7 @@ Result<IdentificationStudy> rate_found_range(const IdentificationStudyTask& task
   TODBENCH_TRY(const auto experiment, experiment_of(task));
   IdentificationStudy study = described(task, experiment);
   study.r75_m = r75_m;
-  if (auto rated = rate_by_curve(task, experiment.ranges.back().transmittance, study); !rated)
-    return tl::unexpected(rated.error());
+  TODBENCH_TRY_VOID(rate_by_curve(task, experiment.ranges.back().transmittance, study));
   return study;
 }
 
@@ -345,10 +344,8 @@ Result<IdentificationStudy> study_identification(const IdentificationStudyTask& 
   TODBENCH_TRY(study.points, identify(experiment));
   add_notes_of_stages(study);
   study.r75_m = range_of_75_percent(task, study.points);
-  if (auto rated = rate_by_curve(task, experiment.ranges.back().transmittance, study); !rated)
-    return tl::unexpected(rated.error());
-  if (auto added = add_spreads(task, experiment.ranges.back().transmittance, study); !added)
-    return tl::unexpected(added.error());
+  TODBENCH_TRY_VOID(rate_by_curve(task, experiment.ranges.back().transmittance, study));
+  TODBENCH_TRY_VOID(add_spreads(task, experiment.ranges.back().transmittance, study));
   return study;
 }
 

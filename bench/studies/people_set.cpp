@@ -100,7 +100,7 @@ Result<void> write_people_set(const std::filesystem::path& folder, const PersonE
   if (is_there(folder)) return fail(ErrorCode::invalid_input, folder.string() + ": exists");
   TODBENCH_TRY(const auto number, people_set_number(experiment));
   for (const char* part : {"show/targets", "truth"}) {
-    if (auto made = make_folder(folder / part); !made) return made;
+    TODBENCH_TRY_VOID(make_folder(folder / part));
   }
   std::string sheet = "number,picture,experiment,answer\n";
   std::size_t index = 0;
@@ -108,26 +108,21 @@ Result<void> write_people_set(const std::filesystem::path& folder, const PersonE
     ++index;
     TODBENCH_TRY(const auto kelvin, experiment.picture_k(trial));
     const GreyScale grey = experiment.grey(trial);
-    if (auto written = write_png(folder / "show" / picture_name(index),
-                                 grey_picture(kelvin, grey.black_k, grey.white_k, least_side_px), png);
-        !written)
-      return written;
+    TODBENCH_TRY_VOID(write_png(folder / "show" / picture_name(index),
+                                grey_picture(kelvin, grey.black_k, grey.white_k, least_side_px), png));
     sheet += fmt::format("{},{},{},\n", index, picture_name(index), number);
   }
   for (std::size_t t = 0; t < experiment.alternatives().size(); ++t) {
     const auto file = folder / "show/targets" / (file_name_of(experiment.alternatives()[t]) + ".png");
-    if (auto written = write_png(file, grey_picture(cv::Mat1f(experiment.icons()[t]), 0, 1, least_side_px), png);
-        !written)
-      return written;
+    TODBENCH_TRY_VOID(write_png(file, grey_picture(cv::Mat1f(experiment.icons()[t]), 0, 1, least_side_px), png));
   }
   Json record{{"schema", "todbench-people-set-1"},
               {"experiment", number},
               {"alternatives", experiment.alternatives()},
               {"pictures", experiment.trials().size()}};
   record.update(experiment.description());
-  if (auto written = write_file_atomically(folder / "truth/truth.csv", truth_csv(experiment)); !written) return written;
-  if (auto written = write_file_atomically(folder / "truth/experiment.json", record.dump(2) + "\n"); !written)
-    return written;
+  TODBENCH_TRY_VOID(write_file_atomically(folder / "truth/truth.csv", truth_csv(experiment)));
+  TODBENCH_TRY_VOID(write_file_atomically(folder / "truth/experiment.json", record.dump(2) + "\n"));
   return write_file_atomically(folder / "show/answers.csv", sheet);
 }
 

@@ -458,9 +458,8 @@ Result<void> write_person(const std::filesystem::path& folder, const PersonExper
                           const std::vector<ExperimentAnswer>& answers, const PersonFacts& person, bool complete) {
   TODBENCH_TRY(const auto facts, json_of(person, person_fields));
   if (is_there(folder)) return fail(ErrorCode::invalid_input, folder.string() + ": exists");
-  if (auto made = make_folder(folder); !made) return made;
-  if (auto written = write_file_atomically(folder / "answers.csv", answers_csv(experiment, answers)); !written)
-    return written;
+  TODBENCH_TRY_VOID(make_folder(folder));
+  TODBENCH_TRY_VOID(write_file_atomically(folder / "answers.csv", answers_csv(experiment, answers)));
   return write_file_atomically(folder / "person.json",
                                person_json(experiment, answers, facts, complete).dump(2) + "\n");
 }

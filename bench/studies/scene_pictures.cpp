@@ -185,7 +185,7 @@ std::string optics_note(const SensorPlan& plan) {
 /// Air and signature of the scene, and the effects planned for the contrast behind the air. The scene itself is imaged
 /// with every planned effect.
 Result<ScenePictures> behind_air(const ScenePicturesTask& task, const RadianceScale& scale) {
-  if (auto fine = validate(task.scene); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(validate(task.scene));
   if (!(task.view.range_m > 0)) return fail(ErrorCode::invalid_input, "the range must be above 0 m");
   const auto tau = task.air.air.at(task.view.range_m);
   if (!tau) {

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "bench/report/number_format.h"
 #include "bench/text/text.h"
 
@@ -220,7 +221,7 @@ Result<Drawing> tornado(const ResponseEffects& effects, const std::string& id) {
   std::vector<double> ends;
   for (const auto& swing : swings) ends.insert(ends.end(), {swing.low, swing.high});
   const PlotAxis axis = axis_for(response_label(effects), ends, 0.18);
-  if (auto valid = validate(axis); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(axis));
   constexpr double width = 860, left = 190, right = 845, top = 14, row = 30;
   const double bottom = top + row * static_cast<double>(swings.size()) + 8;
   const auto x = [&](double value) { return left + (value - axis.low) / (axis.high - axis.low) * (right - left); };

@@ -159,7 +159,7 @@ Result<SweepTable> collected(const Sweep& sweep, MissingTasks missing) {
   for (std::size_t i = 0; i < status.states.size(); ++i) {
     if (status.states[i] != TaskState::done) continue;
     TODBENCH_TRY(auto result, read_result(result_file(sweep, sweep.task(i))));
-    if (auto checked = check_versions(sweep, result, table); !checked) return tl::unexpected(checked.error());
+    TODBENCH_TRY_VOID(check_versions(sweep, result, table));
     add_rows(table, sweep, result);
   }
   // Rows before the first occurrence of a column are shorter.

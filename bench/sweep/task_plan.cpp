@@ -129,7 +129,7 @@ Result<LoadedPlan> applied(const LoadedPlan& base, std::vector<SweepParameter> p
   for (const auto& parameter : parameters) {
     const auto path = plan_path(parameter.key);
     if (!path) continue;
-    if (auto set = set_plan(parameter, *path, file.folder, plan); !set) return tl::unexpected(set.error());
+    TODBENCH_TRY_VOID(set_plan(parameter, *path, file.folder, plan));
     new_sensor |= *path == "simulation.sensor";
     new_microscan |= *path == "simulation.microscan";
   }
@@ -144,9 +144,9 @@ Result<LoadedPlan> applied(const LoadedPlan& base, std::vector<SweepParameter> p
     if (!key)
       return fail(ErrorCode::invalid_input, "unknown parameter '" + one_line(parameter.key) + "'" +
                                                 nearest_name_hint(parameter.key, known_keys()));
-    if (auto set = set_sensor(parameter, *key, parts.sensor); !set) return tl::unexpected(set.error());
+    TODBENCH_TRY_VOID(set_sensor(parameter, *key, parts.sensor));
   }
-  if (auto valid = validate(parts.sensor); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(parts.sensor));
   return LoadedPlan::of(std::move(plan), std::move(parts));
 }
 
@@ -177,7 +177,7 @@ Result<void> check_values(const LoadedPlan& initial, const std::vector<SweepPara
   for (const auto& axis : axes_of(file)) {
     constexpr std::size_t enough = 200;
     for (std::size_t i = 0; i < std::min(axis.values.size(), enough); ++i) {
-      if (auto fine = check(axis.key, axis.values[i]); !fine) return fine;
+      TODBENCH_TRY_VOID(check(axis.key, axis.values[i]));
     }
   }
   return {};
@@ -206,7 +206,7 @@ bool states_tolerance(const RunnableSweep& runnable, const SweepTask& task) {
 /// Inputs of the direct estimate of a task. If the sweep states a tolerance, effects that the scene does not call for
 /// are skipped; otherwise every effect is simulated, so that tasks differ by their parameters alone.
 Result<ExperimentInputs> estimate_inputs(const RunnableSweep& runnable, const SweepTask& task, const LoadedPlan& plan) {
-  if (auto none = refuse_modules(plan.plan(), plan.sensor()); !none) return tl::unexpected(none.error());
+  TODBENCH_TRY_VOID(refuse_modules(plan.plan(), plan.sensor()));
   EffectPlanner planner;
   TODBENCH_TRY(auto inputs, experiment_inputs(plan, planner));
   if (states_tolerance(runnable, task)) return inputs;
@@ -246,7 +246,7 @@ Result<std::string> fingerprint_of_sets(const std::vector<SweepParameter>& base,
 /// The study of a task of kind `identify`.
 Result<IdentificationStudyTask> study_of(const RunnableSweep& runnable, const SweepTask& task, const LoadedPlan& plan,
                                          std::stop_token stop) {
-  if (auto none = refuse_modules(plan.plan(), plan.sensor()); !none) return tl::unexpected(none.error());
+  TODBENCH_TRY_VOID(refuse_modules(plan.plan(), plan.sensor()));
   std::vector<SweepParameter> parameters = runnable.base;
   parameters.insert(parameters.end(), task.parameters.begin(), task.parameters.end());
   return identification_task(parameters, runnable.sweep.file().folder, plan, std::move(stop));

@@ -66,10 +66,10 @@ class XmlParser {
 
   Result<XmlElement> document() {
     if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
-    if (auto skipped = skip_between(); !skipped) return tl::unexpected(skipped.error());
+    TODBENCH_TRY_VOID(skip_between());
     if (!next_is("<")) return wrong("expected an element");
     TODBENCH_TRY(XmlElement root, element(1));
-    if (auto skipped = skip_between(); !skipped) return tl::unexpected(skipped.error());
+    TODBENCH_TRY_VOID(skip_between());
     if (at_ != text_.size()) return wrong("something follows the root element");
     return root;
   }
@@ -94,7 +94,7 @@ class XmlParser {
     if (!next_is("<!--") && !next_is("<?")) return false;
     const bool comment = next_is("<!--");
     at_ += comment ? 4 : 2;
-    if (auto skipped = skip_past(comment ? "-->" : "?>"); !skipped) return tl::unexpected(skipped.error());
+    TODBENCH_TRY_VOID(skip_past(comment ? "-->" : "?>"));
     return true;
   }
 
@@ -162,13 +162,13 @@ class XmlParser {
     TODBENCH_TRY(const std::string tag, name());
     XmlElement out;
     out.name = tag.substr(tag.find(':') + 1);  // npos + 1 is 0
-    if (auto read = attributes(out); !read) return tl::unexpected(read.error());
+    TODBENCH_TRY_VOID(attributes(out));
     if (next_is("/>")) {
       at_ += 2;
       return out;
     }
     ++at_;  // >
-    if (auto read = content(out, tag, depth); !read) return tl::unexpected(read.error());
+    TODBENCH_TRY_VOID(content(out, tag, depth));
     out.text = trimmed(out.text);
     return out;
   }
@@ -183,7 +183,7 @@ class XmlParser {
       if (next_is("</")) return end_of(tag);
       if (next_is("<![CDATA[")) {
         const std::size_t first = at_ + 9;
-        if (auto skipped = skip_past("]]>"); !skipped) return skipped;
+        TODBENCH_TRY_VOID(skip_past("]]>"));
         out.text += text_.substr(first, at_ - 3 - first);
         continue;
       }

@@ -101,8 +101,7 @@ Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlann
           ErrorCode::invalid_input,
           "graded answers are fitted with the psychometric function of the sensor, which does not include a module: "
           "[schedule] answers must be 'binary' or 'automatic'");
-    if (auto possible = check_sensor_module(loaded.sensor(), inputs.motion); !possible)
-      return tl::unexpected(possible.error());
+    TODBENCH_TRY_VOID(check_sensor_module(loaded.sensor(), inputs.motion));
     if (const ModulePlan* module = sensor_module(loaded.sensor())) {
       if (plan.measures.any())
         return fail(ErrorCode::invalid_input,
@@ -168,7 +167,7 @@ MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& i
 }
 
 Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& inputs, cv::Size picture) {
-  if (const auto air = stated_air(plan, inputs.sensor); !air) return tl::unexpected(air.error());
+  TODBENCH_TRY_VOID(stated_air(plan, inputs.sensor));
   return check_geometry(measurement_options(plan, inputs.plates, plan.camera.ifov_mrad), inputs, picture);
 }
 

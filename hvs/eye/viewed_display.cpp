@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "hvs/eye/sinc.h"
 
 namespace todbench {
@@ -102,7 +103,7 @@ Result<void> check_table(const ViewedDisplay& display) {
 
 Result<void> check_luminance(const ViewedDisplay& display) {
   if (!display.luminance_table.empty()) {
-    if (auto table = check_table(display); !table) return table;
+    TODBENCH_TRY_VOID(check_table(display));
   } else {
     if (!(display.gamma >= 0.2 && display.gamma <= 5))
       return refuse("gamma", fmt::format("expected 0.2 to 5, found {:g}", display.gamma));
@@ -127,7 +128,7 @@ Result<void> check_luminance(const ViewedDisplay& display) {
 
 Result<void> validate(const ViewedDisplay& display) {
   for (const auto check : {check_pixels, check_distance, check_luminance}) {
-    if (auto possible = check(display); !possible) return possible;
+    TODBENCH_TRY_VOID(check(display));
   }
   if (!(display.span_k >= 0 && display.span_k <= 1e6))
     return refuse("span_k", fmt::format("expected 0 to 1000000 K, found {:g}", display.span_k));

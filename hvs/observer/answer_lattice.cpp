@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "acquisition/base/multiversion.h"
+#include "acquisition/base/try.h"
 #include "hvs/observer/eye_noise.h"
 #include "hvs/observer/steffen.h"
 #include "hvs/observer/template_bank.h"
@@ -424,7 +425,7 @@ Result<AnswerLattice> AnswerLattice::create(const TemplateObserverSpec& spec, co
                                             std::vector<AnsweredPatch> patches, const Options& options) {
   CV_Assert(options.draws >= 2 && options.draws % 2 == 0);
   CV_Assert(alternatives.size() >= 2 && alternatives.size() <= most_alternatives);
-  if (auto possible = validate(spec); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(validate(spec));
   auto content = std::make_unique<Content>();
   content->spec = spec;
   content->alternatives = alternatives;

@@ -217,7 +217,7 @@ Result<void> validate(const TemplateObserverSpec& spec) {
     if (spec.display) return refuse("only an observer with an eye has a display");
     return {};
   }
-  if (auto possible = validate(*spec.eye); !possible) return possible;
+  TODBENCH_TRY_VOID(validate(*spec.eye));
   if (spec.internal_noise != 0) return refuse("an observer with an eye has no internal_noise of its own");
   if (!(spec.window_margin_arcmin >= 0 && spec.window_margin_arcmin <= 120))
     return refuse("window_margin_arcmin must be from 0 to 120");

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 
 Result<void> validate(const RadiativeScene& scene) {
@@ -14,10 +16,10 @@ Result<void> validate(const RadiativeScene& scene) {
     return fail(ErrorCode::invalid_input,
                 fmt::format("the temperature of the {} must be above 0 K, found {:g} K", whose, kelvin));
   };
-  if (auto checked = temperature("target", scene.target_k); !checked) return checked;
-  if (auto checked = temperature("background", scene.background_k); !checked) return checked;
-  if (auto checked = temperature("surround", scene.surround_k); !checked) return checked;
-  if (auto checked = temperature("air", scene.air_k); !checked) return checked;
+  TODBENCH_TRY_VOID(temperature("target", scene.target_k));
+  TODBENCH_TRY_VOID(temperature("background", scene.background_k));
+  TODBENCH_TRY_VOID(temperature("surround", scene.surround_k));
+  TODBENCH_TRY_VOID(temperature("air", scene.air_k));
   if (scene.emissivity > 0 && scene.emissivity <= 1) return {};
   return fail(ErrorCode::invalid_input,
               fmt::format("the emissivity must be above 0 and at most 1, found {:g}", scene.emissivity));

@@ -167,7 +167,7 @@ Result<std::vector<Tape7Run>> parse_tape7(std::string_view text) {
     // Runs that contain only transmittance have a second line of names.
     if (line < lines.size() && trimmed(lines[line]).starts_with("CM")) ++line;
     Tape7Run run{.range_km = range_km, .wavenumber_per_cm = {}, .transmittance = {}};
-    if (auto read = read_rows(lines, line, run); !read) return tl::unexpected(read.error());
+    TODBENCH_TRY_VOID(read_rows(lines, line, run));
     if (run.wavenumber_per_cm.size() < 2) return wrong(begin, "the run has fewer than two wavenumbers");
     runs.push_back(std::move(run));
   }

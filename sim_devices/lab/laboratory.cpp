@@ -155,7 +155,7 @@ Result<std::unique_ptr<Laboratory>> Laboratory::start(LaboratoryOptions options)
 
   if (o.drift.pattern_k_per_min != 0) state->drifting = drift_pattern(state->model->size(), o.seed);
   if (!o.connect) o.connect = connect_gige(o.camera, [s = state.get()] { s->corrected_at = s->since_power_up.load(); });
-  if (auto connected = state->connect_camera(); !connected) return tl::unexpected(connected.error());
+  TODBENCH_TRY_VOID(state->connect_camera());
   state->camera_id = state->camera->id();
   state->camera_address = state->camera->address();
   state->camera_settings = state->camera->settings();

@@ -40,7 +40,7 @@ Result<double> latency_ms(const ModuleOptions& options) {
   std::vector<double> times;
   for (int i = 0; i < 21; ++i) {
     const auto begin = std::chrono::steady_clock::now();
-    if (auto answer = module.exchange(picture); !answer) return tl::unexpected(answer.error());
+    TODBENCH_TRY_VOID(module.exchange(picture));
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
   std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first includes the start

@@ -156,7 +156,7 @@ Result<void> check(const CameraTrialOptions& options) {
 
 Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor, const std::vector<TemplateObserver*>& observers,
                                         const CameraTrialOptions& options) {
-  if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(options));
   if (sensor.microscan != 1) return fail(ErrorCode::invalid_input, "super-resolution needs a camera without microscan");
   if (reaches_an_end(sensor, options.delta_t_k, PlateScene{}.background_k))
     return fail(ErrorCode::invalid_input,

@@ -359,9 +359,9 @@ void Frontier::measure_trials() {
 }
 
 Result<CostFrontier> Frontier::run() {
-  if (auto scouted = scout(); !scouted) return tl::unexpected(scouted.error());
+  TODBENCH_TRY_VOID(scout());
   if (delta_t_k_.empty()) return std::move(out_);
-  if (auto found = measure_references(); !found) return tl::unexpected(found.error());
+  TODBENCH_TRY_VOID(measure_references());
   planned_ = task_.choices.size() + knobs().size() + task_.trials.size();
   measure_all("measuring the planner's choices", choices());
   measure_trials();

@@ -58,8 +58,7 @@ CuedEstimate::CuedEstimate(const SensorSpec& sensor, const SensorPlan& plan, Tem
 Result<const SizeTrial*> CuedEstimate::trial_at(int index) {
   auto& slot = trials_[index];
   if (slot == nullptr) {
-    if (auto alike = check_sample_shape(conditions_.sensor, observer_.spec()); !alike)
-      return tl::unexpected(alike.error());
+    TODBENCH_TRY_VOID(check_sample_shape(conditions_.sensor, observer_.spec()));
     const double size = std::pow(size_step, index);
     TODBENCH_TRY(auto bank, observer_.bank(size * conditions_.samples_per_pitch, conditions_.samples_per_pitch));
     slot = std::make_unique<SizeTrial>(chain_, bank, size, conditions_, RandomStream(1, "unused"));

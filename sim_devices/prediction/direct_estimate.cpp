@@ -276,7 +276,7 @@ template <typename Found, typename Find>
 Result<std::vector<Found>> for_every_contrast(const SensorSpec& spec, const SensorPlan& plan,
                                               TemplateObserver& observer, const std::vector<double>& delta_t_k,
                                               const DirectEstimateOptions& options, Find find) {
-  if (auto alike = check_sample_shape(spec, observer.spec()); !alike) return tl::unexpected(alike.error());
+  TODBENCH_TRY_VOID(check_sample_shape(spec, observer.spec()));
   const ImageChain chain(spec, plan, options.accuracy, options.motion);
   TrialConditions conditions = trial_conditions(spec, plan, observer, options);
   const SensorSpec sensor = conditions.sensor;

@@ -151,7 +151,7 @@ void add_answers(const SequenceJudge& judge, const MovingPass& pass, const Senso
 
 Result<void> check_dynamic(const SensorSpec& sensor, const DynamicTrialOptions& options) {
   const auto refuse = [](const std::string& why) { return fail(ErrorCode::invalid_input, why); };
-  if (auto square = require_square_pixels(sensor, "a trial with a moving target"); !square) return square;
+  TODBENCH_TRY_VOID(require_square_pixels(sensor, "a trial with a moving target"));
   if (options.sizes_pitch.empty() || options.speeds_mrad_s.empty() || options.passes < 2 || options.frames < 1)
     return refuse("dynamic trials need at least one size, one speed, two passes and one frame");
   for (const double size : options.sizes_pitch) {
@@ -176,7 +176,7 @@ Result<void> check_dynamic(const SensorSpec& sensor, const DynamicTrialOptions& 
 
 Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, TemplateObserver& observer,
                                                   const DynamicTrialOptions& options) {
-  if (auto checked = check_dynamic(sensor, options); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_dynamic(sensor, options));
   const double fastest = *std::max_element(options.speeds_mrad_s.begin(), options.speeds_mrad_s.end());
   const double reach_px =
       fastest / sensor.ifov_mrad() / sensor.frame_rate_hz * (options.frames - 1 + lead_frames(options));

@@ -127,8 +127,7 @@ double axis_ctf(const SensorSpec& spec, const AxisMtf& mtf, const MrtdFormula& f
 }  // namespace
 
 Result<MrtdFormula> mrtd_formula_of(const SensorSpec& spec, const FormulaConditions& conditions) {
-  if (auto square = require_square_pixels(spec, "a formula for the MRTD or the range"); !square)
-    return tl::unexpected(square.error());
+  TODBENCH_TRY_VOID(require_square_pixels(spec, "a formula for the MRTD or the range"));
   if (!(spec.netd_k > 0))
     return fail(ErrorCode::invalid_input, "sensor " + spec.name + ": the MRTD formula needs temporal noise");
   MrtdFormula formula;

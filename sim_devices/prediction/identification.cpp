@@ -55,7 +55,7 @@ class RangeTrial {
 
   Result<IdentificationPoint> run(const SeenTargets& targets) {
     const std::size_t draws = draws_of(task_);
-    if (auto drawn = draw_noise(draws); !drawn) return tl::unexpected(drawn.error());
+    TODBENCH_TRY_VOID(draw_noise(draws));
     const IdentificationPoint nothing{.range_m = range_.range_m,
                                       .transmittance = range_.transmittance,
                                       .answers = std::vector(targets.size(), std::vector<int>(targets.size(), 0)),
@@ -64,11 +64,10 @@ class RangeTrial {
     std::vector<Seeing> all{{task_.observer, nothing}};
     for (TemplateObserverSpec& end : open_ends(task_.observer)) all.push_back({std::move(end), nothing});
     if (judges_passes()) {
-      if (auto answered = answer_passes(targets, all); !answered) return tl::unexpected(answered.error());
+      TODBENCH_TRY_VOID(answer_passes(targets, all));
     } else {
       for (Seeing& one : all) {
-        if (auto answered = answer(targets, one.observer, one.point); !answered)
-          return tl::unexpected(answered.error());
+        TODBENCH_TRY_VOID(answer(targets, one.observer, one.point));
       }
     }
     if (all.size() > 1) all[0].point.spread = spread_of({all[1].point.proportion(), all[2].point.proportion()});
@@ -281,7 +280,7 @@ SensorSpec sensor_at(const IdentificationTask& task, double range_m) {
 }
 
 Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
-  if (auto fine = check_passes(task); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(check_passes(task));
   TODBENCH_TRY(const auto targets, seen_targets(task));
   const SensorSpec spec = as_planned(task.sensor, task.plan);
   const int n = spec.samples_per_pitch();
@@ -340,9 +339,8 @@ double IdentificationPoint::standard_error() const {
 }
 
 Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task) {
-  if (auto square = require_square_pixels(task.sensor, "identification"); !square)
-    return tl::unexpected(square.error());
-  if (auto fine = check_passes(task); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(require_square_pixels(task.sensor, "identification"));
+  TODBENCH_TRY_VOID(check_passes(task));
   const auto targets = seen_targets(task);
   if (!targets) return tl::unexpected(targets.error());
   if (task.plan.simulates(Effect::quantisation) && rounds_coarsely(as_planned(task.sensor, task.plan)))

@@ -31,7 +31,7 @@ struct IdentificationFrames::Range {
 };
 
 Result<IdentificationFrames> IdentificationFrames::of(const IdentificationTask& task) {
-  if (auto fine = check_passes(task); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(check_passes(task));
   if (task.sequence == SequenceObserver::tracking_sum)
     return fail(ErrorCode::invalid_input,
                 "one picture cannot show the sum over a target that is tracked: use single-frame or static-sum");

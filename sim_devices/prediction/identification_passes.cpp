@@ -110,12 +110,12 @@ Result<std::unique_ptr<const IdentificationPasses>> IdentificationPasses::of(
       static_cast<int>(std::ceil((out->frames_ - 1) * std::max(std::abs(out->step_.x), std::abs(out->step_.y))));
   out->picture_ = cv::Size(side, side) + cv::Size(2 * travel, 2 * travel);
   if (task.stages) {
-    if (auto ready = out->prepare_stages(); !ready) return tl::unexpected(ready.error());
+    TODBENCH_TRY_VOID(out->prepare_stages());
   }
   out->noise_.emplace(spec, task.stages ? without_quantisation(task.plan) : task.plan, task.accuracy, out->picture_,
                       task.seed);
   if (task.stages) {
-    if (auto measured = out->measure_scales(); !measured) return tl::unexpected(measured.error());
+    TODBENCH_TRY_VOID(out->measure_scales());
   }
   return std::unique_ptr<const IdentificationPasses>(std::move(out));
 }
@@ -196,7 +196,7 @@ Result<std::vector<cv::Mat1f>> IdentificationPasses::shown_frames(std::vector<cv
     shown += signal(inside - at.tl());
   }
   if (!task_.stages) return noise;
-  if (auto passed = through_stages(noise); !passed) return tl::unexpected(passed.error());
+  TODBENCH_TRY_VOID(through_stages(noise));
   noise.erase(noise.begin(), noise.begin() + lead_);
   return noise;
 }

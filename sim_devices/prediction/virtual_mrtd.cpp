@@ -91,7 +91,7 @@ class BarTrial {
       if (task.criterion == BarCriterion::four_or_five)
         trial.other_.push_back(trial.seen(imager, BarPattern::five_bars, phase));
     }
-    if (auto drawn = trial.draw_noise(); !drawn) return tl::unexpected(drawn.error());
+    TODBENCH_TRY_VOID(trial.draw_noise());
     return trial;
   }
 
@@ -287,7 +287,7 @@ class BarTrial {
 };
 
 Result<void> check_bars(const VirtualMrtdTask& task, const SensorSpec& spec) {
-  if (auto square = require_square_pixels(spec, "the virtual MRTD"); !square) return square;
+  TODBENCH_TRY_VOID(require_square_pixels(spec, "the virtual MRTD"));
   if (task.frequencies_per_mrad.empty()) return fail(ErrorCode::invalid_input, "at least one frequency is needed");
   if (task.draws < 64) return fail(ErrorCode::invalid_input, "at least 64 draws are needed");
   for (const double f : task.frequencies_per_mrad) {
@@ -344,13 +344,13 @@ std::string_view to_string(BarCriterion criterion) {
 
 Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task) {
   const SensorSpec spec = as_planned(task.sensor, task.plan);
-  if (auto fine = check_bars(task, spec); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(check_bars(task, spec));
   const SceneImager imager(spec, task.plan, task.accuracy);
   std::vector<VirtualMrtdPoint> points;
   for (const double frequency : task.frequencies_per_mrad) {
     points.push_back(point_before_trials(task, spec, frequency));
     TODBENCH_TRY(auto trial, BarTrial::create(task, spec, imager, frequency));
-    if (auto measured = trial.measure(points.back()); !measured) return tl::unexpected(measured.error());
+    TODBENCH_TRY_VOID(trial.measure(points.back()));
   }
   return points;
 }
@@ -383,7 +383,7 @@ struct BarFrames::Frequency {
 
 Result<BarFrames> BarFrames::of(const VirtualMrtdTask& task) {
   const SensorSpec spec = as_planned(task.sensor, task.plan);
-  if (auto fine = check_bars(task, spec); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(check_bars(task, spec));
   BarFrames frames;
   for (const double frequency : task.frequencies_per_mrad)
     frames.frequencies_.push_back(std::make_shared<const Frequency>(task, spec, frequency));

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -21,7 +23,7 @@ Result<void> check_temperature(const std::string& of, double kelvin) {
 
 Result<void> check_region(const SceneRegion& region) {
   const std::string name = "region '" + region.name + "'";
-  if (auto fine = check_temperature(name, region.temperature_k); !fine) return fine;
+  TODBENCH_TRY_VOID(check_temperature(name, region.temperature_k));
   if (!(region.emissivity >= 0 && region.emissivity <= 1))
     return refuse_scene(fmt::format("{}: the emissivity must be from 0 to 1, found {:g}", name, region.emissivity));
   if (region.outline_m.size() < 3) return refuse_scene(name + ": the outline needs at least three corners");
@@ -38,7 +40,7 @@ Result<void> check_picture(const ScenePicture& picture) {
   if (!(picture.element_m > 0 && picture.element_m < 1e7))
     return refuse_scene("the picture has no valid scale: the size of its elements in metres must be known");
   for (const double value : picture.kelvin) {
-    if (auto fine = check_temperature("the picture", value); !fine) return fine;
+    TODBENCH_TRY_VOID(check_temperature("the picture", value));
   }
   if (!picture.target.empty() && picture.target.size() != picture.kelvin.size())
     return refuse_scene("the mask of the target and the picture have different sizes");
@@ -134,15 +136,15 @@ std::optional<TargetSignature> signature_of_picture(const FieldScene& scene, con
 }  // namespace
 
 Result<void> validate(const FieldScene& scene) {
-  if (auto fine = check_temperature("background", scene.background_k); !fine) return fine;
-  if (auto fine = check_temperature("surround", scene.surround_k); !fine) return fine;
+  TODBENCH_TRY_VOID(check_temperature("background", scene.background_k));
+  TODBENCH_TRY_VOID(check_temperature("surround", scene.surround_k));
   if (!(scene.background_emissivity >= 0 && scene.background_emissivity <= 1))
     return refuse_scene("the emissivity of the background must be from 0 to 1");
   if (scene.picture && !scene.regions.empty()) return refuse_scene("a scene has a picture or regions, not both");
   if (scene.picture) return check_picture(*scene.picture);
   if (scene.regions.empty()) return refuse_scene("the scene is empty: it has no region, target, plate or picture");
   for (const auto& region : scene.regions) {
-    if (auto fine = check_region(region); !fine) return fine;
+    TODBENCH_TRY_VOID(check_region(region));
   }
   return {};
 }

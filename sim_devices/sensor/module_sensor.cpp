@@ -101,7 +101,7 @@ Result<cv::Mat1f> ModuleSensor::picture(const cv::Mat1f& scene_k, std::uint64_t 
 }
 
 Result<cv::Mat1w> ModuleSensor::expose(const PlateScene& scene, std::uint64_t index) {
-  if (auto possible = check_sensor_module(spec_, scene.motion); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check_sensor_module(spec_, scene.motion));
   if (!last_ || last_->first.delta_t_k != scene.delta_t_k || !same_geometry(last_->first, scene))
     last_.emplace(scene, scene_picture_k(scene, spec_));
   TODBENCH_TRY(const auto kelvin, picture(last_->second, index));

@@ -46,7 +46,7 @@ Result<double> frame_time_ms(const SensorSpec& spec) {
   std::vector<double> times;
   for (std::uint64_t i = 0; i < 21; ++i) {
     const auto begin = std::chrono::steady_clock::now();
-    if (auto frame = sensor.picture(scene, i); !frame) return tl::unexpected(frame.error());
+    TODBENCH_TRY_VOID(sensor.picture(scene, i));
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
   std::nth_element(times.begin() + 1, times.begin() + 11, times.end());  // the first includes the start

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/sensor/effect_readout.h"
 
 namespace todbench {
 namespace {
 
 Result<void> check_view(const SensorSpec& spec, const FieldScene& scene, const SceneView& view) {
-  if (auto square = require_square_pixels(spec, "a field scene"); !square) return square;
+  TODBENCH_TRY_VOID(require_square_pixels(spec, "a field scene"));
   if (!(view.range_m > 0)) return fail(ErrorCode::invalid_input, "the range must be above 0 m");
   const double pitch_m = view.range_m * spec.ifov_mrad() * 1e-3;
   const cv::Size2d extent = extent_m(scene);
@@ -55,7 +56,7 @@ std::vector<StepEdge> edges_in_samples(const FieldScene& scene, const RadianceSc
 
 Result<cv::Mat1d> scene_signal_k(const SceneImager& imager, const SensorSpec& spec, const FieldScene& scene,
                                  const RadianceScale& scale, const SceneView& view, cv::Size size) {
-  if (auto fine = check_view(spec, scene, view); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(check_view(spec, scene, view));
   if (!scene.picture) return imager.image(edges_in_samples(scene, scale, spec, view, size), size);
   const cv::Mat1d levels = picture_levels_k(scene, scale);
   const double element = scene.picture->element_m * samples_per_metre(spec, view);

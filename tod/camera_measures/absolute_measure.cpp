@@ -64,7 +64,7 @@ class AbsoluteRun {
     if (seen.size() < least_levels)
       return fail(ErrorCode::invalid_input, "fewer than three temperatures do not saturate the camera");
     add_repeatability(seen);
-    if (auto line = add_line(); !line) return tl::unexpected(line.error());
+    TODBENCH_TRY_VOID(add_line());
     add_prnu(seen);
     const Seen& middle = seen[seen.size() / 2][0];
     add_range(middle.noise_k, static_cast<double>(middle.picture.total()));

@@ -69,12 +69,11 @@ class Run {
 
   Result<CameraMeasures> operator()() {
     CameraMeasures measures;
-    if (auto kept = keep(measures, "physical measures", locate(measures)); !kept) return tl::unexpected(kept.error());
+    TODBENCH_TRY_VOID(keep(measures, "physical measures", locate(measures)));
     if (!located_) return measures;
     for (const Step& step : steps()) {
       if (!step.requested(options_)) continue;
-      if (auto kept = keep(measures, step.name, (this->*step.take)(measures)); !kept)
-        return tl::unexpected(kept.error());
+      TODBENCH_TRY_VOID(keep(measures, step.name, (this->*step.take)(measures)));
     }
     return measures;
   }
@@ -215,7 +214,7 @@ class Run {
   /// The mean picture round the smallest triangles at a contrast.
   Result<TriangleStrip> triangles_at(double contrast_k) {
     constexpr int shown_triangles = 6;
-    if (auto shown = show(contrast_k); !shown) return tl::unexpected(shown.error());
+    TODBENCH_TRY_VOID(show(contrast_k));
     TODBENCH_TRY(const auto picture, taker_.average(options_.measurement.contrast_frames, stop_));
     TriangleStrip strip = smallest_triangles(picture.kelvin, plate(), where_, shown_triangles);
     strip.set_delta_t_k = contrast_k, strip.frames = options_.measurement.contrast_frames;
@@ -303,7 +302,7 @@ class Run {
   }
 
   Result<void> time_frames(CameraMeasures& measures) {
-    if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
+    TODBENCH_TRY_VOID(show(0));
     TODBENCH_TRY(measures.timing, measure_timing(taker_, options_.timing_frames, stop_));
     if (source_.info().frame_rate_hz > 0) measures.timing->stated_rate_hz = source_.info().frame_rate_hz;
     return {};
@@ -373,7 +372,7 @@ class Run {
 
   Result<GainLevel> gain_level(double set_k) {
     TODBENCH_TRY(const PresentedTarget shown, show(set_k));
-    if (auto settled = taken_to_settle(); !settled) return tl::unexpected(settled.error());
+    TODBENCH_TRY_VOID(taken_to_settle());
     TODBENCH_TRY(const AveragedPicture picture, taker_.average(options_.measurement.contrast_frames, stop_));
     TODBENCH_TRY(const cv::Rect where, field());
     TODBENCH_TRY(const EffectiveContrast seen,
@@ -391,7 +390,7 @@ class Run {
   /// Takes as many frames as are recorded after a step, so that the gain settles.
   Result<void> taken_to_settle() {
     for (int k = 0; k < options_.gain_control->frames; ++k) {
-      if (auto frame = taker_.next_of_moving_scene(stop_); !frame) return tl::unexpected(frame.error());
+      TODBENCH_TRY_VOID(taker_.next_of_moving_scene(stop_));
     }
     return {};
   }
@@ -467,7 +466,7 @@ class Run {
 
   Result<void> follow_drift(CameraMeasures& measures) {
     TODBENCH_TRY(const auto where, field());
-    if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
+    TODBENCH_TRY_VOID(show(0));
     const bool simulated = !options_.measurement.free_running;
     TODBENCH_TRY(const auto commanded, simulated ? Result<bool>(false) : correct());
     TODBENCH_TRY(measures.drift, measure_drift(taker_, where,
@@ -496,8 +495,8 @@ class Run {
 
   Result<void> measure_noise(CameraMeasures& measures) {
     TODBENCH_TRY(const cv::Rect where, field());
-    if (auto shown = show(0); !shown) return tl::unexpected(shown.error());
-    if (auto corrected = correct(); !corrected) return tl::unexpected(corrected.error());
+    TODBENCH_TRY_VOID(show(0));
+    TODBENCH_TRY_VOID(correct());
     NoiseOptions noise{.frames = options_.noise_frames, .field = where};
     if (options_.pixels) noise.pixel_window = pixel_window(where);
     TODBENCH_TRY(NoiseSeries series, measure_series_noise(taker_, source_.info().scale, noise, stop_));

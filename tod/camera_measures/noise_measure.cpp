@@ -48,7 +48,7 @@ struct Series {
 
 Result<void> add_frame(Series& series, const Frame& frame, const NoiseOptions& options) {
   TODBENCH_TRY(const cv::Mat1d kelvin, window_kelvin(frame, options.field));
-  if (auto added = series.cube.add(kelvin); !added) return added;
+  TODBENCH_TRY_VOID(series.cube.add(kelvin));
   series.squares.add(kelvin);
   if (!options.pixel_window || series.out.pixel_frames.size() >= most_pixel_frames) return {};
   TODBENCH_TRY(const cv::Mat1d window, window_kelvin(frame, *options.pixel_window));
@@ -67,7 +67,7 @@ Result<std::optional<Series>> take_series(FrameTaker& taker, const NoiseOptions&
     const double since_s = taker.since_nuc_s(frame);
     if (k > 0 && since_s >= 0 && (last_s < 0 || since_s < last_s)) return std::nullopt;
     last_s = since_s;
-    if (auto added = add_frame(series, frame, options); !added) return tl::unexpected(added.error());
+    TODBENCH_TRY_VOID(add_frame(series, frame, options));
     NoiseMeasure& noise = series.out.noise;
     if (k == 0) noise.first_frame = frame.sequence;
     noise.last_frame = frame.sequence;
@@ -114,7 +114,7 @@ Result<NoiseSeries> measure_series_noise(FrameTaker& taker, const RadiometricSca
   if (const auto change = series->cube.abrupt_change())
     return fail(ErrorCode::integrity,
                 fmt::format("the picture changed abruptly before frame {} of the series", *change + 1));
-  if (auto summed = sum_up(*series, scale); !summed) return tl::unexpected(summed.error());
+  TODBENCH_TRY_VOID(sum_up(*series, scale));
   return std::move(series->out);
 }
 

@@ -94,7 +94,7 @@ class ResponseRun {
                   "the settling time of the target is unknown: state [measures] response_settling_ms");
     ResponseMeasure measure{
         .delta_t_k = options_.delta_t_k, .settling_s = stepping != nullptr ? 0 : *options_.settling_s, .response = {}};
-    if (auto known = learn_pixels(measure); !known) return tl::unexpected(known.error());
+    TODBENCH_TRY_VOID(learn_pixels(measure));
     std::vector<StepSeries> series;
     for (int i = 0; i < options_.steps; ++i) {
       const bool rising = i % 2 == 0;
@@ -123,7 +123,7 @@ class ResponseRun {
     taker_.scene_changed(there_ns);
     // A gain that is controlled settles as long as it is followed after a step.
     for (int k = 0; options_.signal == StepSignal::surround && k < options_.frames; ++k) {
-      if (auto frame = taker_.next_of_moving_scene(stop_); !frame) return tl::unexpected(frame.error());
+      TODBENCH_TRY_VOID(taker_.next_of_moving_scene(stop_));
     }
     TODBENCH_TRY(auto picture, taker_.average(options_.contrast_frames, stop_));
     return picture.kelvin(field_).clone();
@@ -170,7 +170,7 @@ class ResponseRun {
     }
     if (!frames) return frames;
     if (!presented) return target_failure("presenting the target", presented.error());
-    if (const auto told = host_.asked_while_presenting(calls); !told) return tl::unexpected(told.error());
+    TODBENCH_TRY_VOID(host_.asked_while_presenting(calls));
     return {};
   }
 
@@ -188,7 +188,7 @@ class ResponseRun {
   Result<void> take(StepSeries& step, int frames) {
     for (int k = 0; k < frames; ++k) {
       TODBENCH_TRY(const auto frame, taker_.next_of_moving_scene(stop_));
-      if (auto added = add(step, frame); !added) return added;
+      TODBENCH_TRY_VOID(add(step, frame));
     }
     return {};
   }
@@ -196,7 +196,7 @@ class ResponseRun {
   Result<StepSeries> one_step(double delta_t_k, SteppingTarget* stepping) {
     StepSeries step;
     corrected_ = false;
-    if (auto taken = take(step, frames_before); !taken) return tl::unexpected(taken.error());
+    TODBENCH_TRY_VOID(take(step, frames_before));
     step.before = frames_before;
     Result<void> done;
     if (stepping != nullptr)
@@ -204,7 +204,7 @@ class ResponseRun {
     else
       done = present(at(delta_t_k), [&](const Frame& frame) { return add(step, frame); });
     if (!done) return tl::unexpected(done.error());
-    if (auto taken = take(step, options_.frames); !taken) return tl::unexpected(taken.error());
+    TODBENCH_TRY_VOID(take(step, options_.frames));
     return step;
   }
 

@@ -135,7 +135,7 @@ Result<LatencyMeasure> measure_latency(FrameTaker& taker, MovingTarget* stage, c
   LatencyMeasure out{.speed_mm_s = options.speed_mm_s};
   for (int k = 0; k < options.runs; ++k) {
     const double from_mm = (k % 2 == 0 ? -0.5 : 0.5) * options.travel_mm;
-    if (auto there = put(from_mm); !there) return tl::unexpected(there.error());
+    TODBENCH_TRY_VOID(put(from_mm));
     TODBENCH_TRY(const PlateRun run, stage->run_along_x(-from_mm, options.speed_mm_s, stop));
     if (!run.start_s)
       return fail(ErrorCode::invalid_input, "the stage does not state the start of a run in the clock of the camera");

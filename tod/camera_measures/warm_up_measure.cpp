@@ -143,8 +143,7 @@ Result<WarmUp> measure_warm_up(FrameTaker& taker, const WarmUpOptions& options,
     TODBENCH_TRY(auto group, groups.take(drift.emplace_back()));
     if (temperature) group.camera_temperature_c = temperature();
     out.groups.push_back(group);
-    if (auto waited = groups.wait((k + 1) * options.duration_s / warm_up_groups); !waited)
-      return tl::unexpected(waited.error());
+    TODBENCH_TRY_VOID(groups.wait((k + 1) * options.duration_s / warm_up_groups));
   }
   const auto quiet = undisturbed(drift, out.groups);
   if (quiet.size() < least_drift_groups) {

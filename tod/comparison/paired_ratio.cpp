@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "tod/psychometric/clustered_variance.h"
 #include "tod/psychometric/twin_shape.h"
 
@@ -59,7 +60,7 @@ std::string not_cancelled_by_pairs(bool measured_once) {
 Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const ProportionTable& table, bool with_slope,
                                   int draws, double margin_percent, const ContrastScatter& contrast,
                                   const std::optional<OwnFunctions>& own) {
-  if (auto fine = check_pairs(answers, margin_percent); !fine) return tl::unexpected(fine.error());
+  TODBENCH_TRY_VOID(check_pairs(answers, margin_percent));
   std::vector<GradedAnswer> camera, twin;
   for (const PairedAnswer& answer : answers) {
     camera.push_back(answer.camera);

@@ -88,7 +88,7 @@ void talk_to_black_body(Talk& talk, BlackBodyDevice& device, InstrumentCommands 
   settled_step(talk, device, stop);
   if (commands == InstrumentCommands::none || !there_k) return;
   talk.step(device, "difference command", device.set_command(*there_k), [&]() -> Result<std::string> {
-    if (auto done = device.send(device.set_command(*there_k), stop); !done) return tl::unexpected(done.error());
+    TODBENCH_TRY_VOID(device.send(device.set_command(*there_k), stop));
     return std::string("accepted");
   });
 }
@@ -98,7 +98,7 @@ void command_step(Talk& talk, StageDevice& device, const std::string& name, cons
                   const std::stop_token& stop) {
   talk.step(device, name, joined(texts, "; "), [&]() -> Result<std::string> {
     for (const auto& text : texts) {
-      if (auto done = device.send(text, stop); !done) return tl::unexpected(done.error());
+      TODBENCH_TRY_VOID(device.send(text, stop));
     }
     return std::string("accepted");
   });
@@ -188,7 +188,7 @@ bool InstrumentCheck::passed() const {
 Result<InstrumentCheck> check_instrument(const InstrumentTable& table, const std::string& address,
                                          InstrumentCommands commands, const ScpiClientOptions& options,
                                          const std::stop_token& stop) {
-  if (const auto place = instrument_address(address, table.speech.port); !place) return tl::unexpected(place.error());
+  TODBENCH_TRY_VOID(instrument_address(address, table.speech.port));
   if (table.kind == InstrumentKind::black_body)
     return checked<BlackBodyDevice>(table, address, commands, options, stop, talk_to_black_body);
   return checked<StageDevice>(table, address, commands, options, stop, talk_to_stage);

@@ -216,7 +216,7 @@ Result<PlateRun> StageDevice::run_along_x(double to_mm, double speed_mm_s, const
   const InstrumentUnit per_second{.name = unit.name, .scale = unit.scale, .offset = 0};
   const std::string text =
       command_of(words().run->set, {sent_number(to_mm, unit, decimals), sent_number(speed_mm_s, per_second, decimals)});
-  if (auto done = send(text, stop); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(send(text, stop));
   TODBENCH_TRY(const auto said, numbers(words().run->measured, 4, stop));
   constexpr double not_a_number = 9e37;  // SCPI-99 volume 1, 7.2.1.5: 9.91E37
   PlateRun run{
@@ -323,14 +323,14 @@ Result<void> StageDevice::command_position(const TargetState& state, const std::
     if (std::abs(miss.x) <= same_position_mm && std::abs(miss.y) <= same_position_mm) return {};
   }
   for (const auto& text : position_commands(state.shift_mm)) {
-    if (auto done = send(text, stop); !done) return done;
+    TODBENCH_TRY_VOID(send(text, stop));
   }
   return {};
 }
 
 Result<void> StageDevice::command(const TargetState& state, const std::stop_token& stop) {
-  if (auto done = command_plate(state, stop); !done) return done;
-  if (auto done = command_mounting(state, stop); !done) return done;
+  TODBENCH_TRY_VOID(command_plate(state, stop));
+  TODBENCH_TRY_VOID(command_mounting(state, stop));
   return command_position(state, stop);
 }
 

@@ -104,8 +104,7 @@ Result<std::string> RpcClient::call(std::uint32_t program, std::uint32_t version
   const std::uint32_t id = ++last_id_;
   XdrWriter message;
   for (const std::uint32_t value : {id, 0U, 2U, program, version, procedure, 0U, 0U, 0U, 0U}) message.number(value);
-  if (auto sent = send_all(socket_.get(), rpc_record(message.data() + std::string(arguments)), deadline, stop); !sent)
-    return tl::unexpected(sent.error());
+  TODBENCH_TRY_VOID(send_all(socket_.get(), rpc_record(message.data() + std::string(arguments)), deadline, stop));
   for (;;) {
     TODBENCH_TRY(auto record, take_rpc_record(received_));
     if (record) return results_of(*record, id);

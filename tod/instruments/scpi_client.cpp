@@ -132,9 +132,9 @@ Result<void> ScpiClient::identify(const std::stop_token& stop) {
   const std::string ask = speech_.identity_query.empty() ? "" : speech_.identity_query + speech_.ending;
   if (clear.empty() && ask.empty()) return {};
   if (line_->one_at_a_time() && !clear.empty()) {
-    if (auto sent = send(clear, deadline, stop); !sent) return sent;
+    TODBENCH_TRY_VOID(send(clear, deadline, stop));
     if (ask.empty()) return {};
-    if (auto sent = send(ask, deadline, stop); !sent) return sent;
+    TODBENCH_TRY_VOID(send(ask, deadline, stop));
   } else if (auto sent = send(clear + ask, deadline, stop); !sent) {
     return sent;
   }
@@ -163,7 +163,7 @@ Result<void> ScpiClient::command(std::string_view text, const std::stop_token& s
   // Two lines in one packet: after a syntax error the rest of the same line would be discarded (IEEE 488.2).
   const bool together = reports_with_command();
   const std::string report_ask = together ? speech_.error_query + speech_.ending : "";
-  if (auto sent = send(std::string(text) + speech_.ending + report_ask, deadline, stop); !sent) return sent;
+  TODBENCH_TRY_VOID(send(std::string(text) + speech_.ending + report_ask, deadline, stop));
   if (!speech_.acknowledgement.empty()) {
     auto answer = receive_line(deadline, stop);
     if (!answer) return give_up(with_context(text, answer.error()));
@@ -185,20 +185,20 @@ Result<std::string> ScpiClient::query(std::string_view text, const std::stop_tok
 Result<std::string> ScpiClient::query_with_report(std::string_view text, const std::stop_token& stop) {
   TODBENCH_TRY(const auto deadline, begin(stop));
   const std::string both = std::string(text) + speech_.ending + speech_.error_query + speech_.ending;
-  if (auto sent = send(both, deadline, stop); !sent) return tl::unexpected(sent.error());
+  TODBENCH_TRY_VOID(send(both, deadline, stop));
   auto answer = receive_line(deadline, stop);
   if (!answer) return give_up(with_context(text, answer.error()));
   // A refused query has no answer of its own: the first line already is the error report.
   if (error_report(*answer)) return fail(ErrorCode::invalid_input, refusal(text, *answer));
   auto report = receive_line(deadline, stop);
   if (!report) return give_up(with_context(text, report.error()));
-  if (auto checked = check_report(text, *report); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_report(text, *report));
   return answer;
 }
 
 Result<std::string> ScpiClient::query_before_report(std::string_view text, const std::stop_token& stop) {
   TODBENCH_TRY(const auto deadline, begin(stop));
-  if (auto sent = send(std::string(text) + speech_.ending, deadline, stop); !sent) return tl::unexpected(sent.error());
+  TODBENCH_TRY_VOID(send(std::string(text) + speech_.ending, deadline, stop));
   auto answer = receive_line(deadline, stop);
   last_exchange_ = Clock::now();
   if (!answer) {
@@ -210,14 +210,14 @@ Result<std::string> ScpiClient::query_before_report(std::string_view text, const
     return give_up(with_context(text, answer.error()));
   }
   if (any_begins(*answer, speech_.refusals)) return fail(ErrorCode::invalid_input, refusal(text, *answer));
-  if (auto checked = ask_for_errors(text, stop); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(ask_for_errors(text, stop));
   return answer;
 }
 
 Result<void> ScpiClient::ask_for_errors(std::string_view text, const std::stop_token& stop) {
   if (speech_.error_query.empty()) return {};
   TODBENCH_TRY(const auto deadline, begin(stop));
-  if (auto sent = send(speech_.error_query + speech_.ending, deadline, stop); !sent) return sent;
+  TODBENCH_TRY_VOID(send(speech_.error_query + speech_.ending, deadline, stop));
   auto report = receive_line(deadline, stop);
   if (!report) return give_up(with_context(text, report.error()));
   return check_report(text, *report);

@@ -87,8 +87,8 @@ class ScpiTarget final : public Target, public AbsoluteTarget, private MovingTar
 };
 
 Result<void> ScpiTarget::open(const std::stop_token& stop) {
-  if (auto done = black_body_.ensure_connected(stop); !done) return done;
-  if (auto done = stage_.ensure_connected(stop); !done) return done;
+  TODBENCH_TRY_VOID(black_body_.ensure_connected(stop));
+  TODBENCH_TRY_VOID(stage_.ensure_connected(stop));
   const auto failed = [](Error error) {
     if (error.code != ErrorCode::interrupted) error.code = ErrorCode::not_found;
     return fail("reading the limits of the instruments", error);
@@ -102,7 +102,7 @@ Result<void> ScpiTarget::open(const std::stop_token& stop) {
   capabilities_.description = black_body_.name() + "; " + stage_.name();
   capabilities_.sets_shift = plates().position.has_value();
   for (const TargetState& state : options_.requested) {
-    if (auto possible = check_within_limits(state); !possible) return possible;
+    TODBENCH_TRY_VOID(check_within_limits(state));
   }
   if (options_.temperatures_k.empty()) return {};
   TODBENCH_TRY(const auto absolute, temperatures_k(stop));
@@ -247,13 +247,13 @@ Result<PresentedTarget> ScpiTarget::poll_until_reached(const TargetState& asked,
 
 Result<PresentedTarget> ScpiTarget::present(const TargetState& state, std::stop_token stop) {
   if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the target was set");
-  if (auto done = check_within_limits(state); !done) return tl::unexpected(done.error());
-  if (auto done = black_body_.ensure_connected(stop); !done) return tl::unexpected(done.error());
-  if (auto done = stage_.ensure_connected(stop); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(check_within_limits(state));
+  TODBENCH_TRY_VOID(black_body_.ensure_connected(stop));
+  TODBENCH_TRY_VOID(stage_.ensure_connected(stop));
   asked_k_.reset();
   // The slowest first, so that they settle together.
-  if (auto done = black_body_.command(state.delta_t_k, stop); !done) return tl::unexpected(done.error());
-  if (auto done = stage_.command(state, stop); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(black_body_.command(state.delta_t_k, stop));
+  TODBENCH_TRY_VOID(stage_.command(state, stop));
   return wait_until_reached(state, stop);
 }
 
@@ -261,10 +261,10 @@ Result<std::array<double, 2>> ScpiTarget::temperatures_k(std::stop_token stop) {
   if (!heat().absolute)
     return fail(ErrorCode::invalid_input,
                 black_body_.name() + ": its command table has no absolute set-point (key set in [temperatures])");
-  if (auto done = black_body_.ensure_connected(stop); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(black_body_.ensure_connected(stop));
   const auto limits = black_body_.absolute_limits(stop);
   if (!limits) return limits;
-  if (const auto reading = black_body_.radiator((*limits)[0], stop); !reading) return tl::unexpected(reading.error());
+  TODBENCH_TRY_VOID(black_body_.radiator((*limits)[0], stop));
   return limits;
 }
 
@@ -273,15 +273,15 @@ Result<PresentedTarget> ScpiTarget::present_temperature(const TargetState& state
   TargetState flat = state;
   flat.delta_t_k = 0;
   if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped before the target was set");
-  if (auto done = check_within_limits(flat); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(check_within_limits(flat));
   TODBENCH_TRY(const auto limits, temperatures_k(stop));
   // This form also rejects NaN.
   if (!(temperature_k >= limits[0] && temperature_k <= limits[1]))
     return fail(ErrorCode::invalid_input, black_body_.name() + ": " + decimal(temperature_k, 3) + " K is outside " +
                                               decimal(limits[0], 3) + " to " + decimal(limits[1], 3) + " K");
-  if (auto done = stage_.ensure_connected(stop); !done) return tl::unexpected(done.error());
-  if (auto done = black_body_.command_absolute(temperature_k, stop); !done) return tl::unexpected(done.error());
-  if (auto done = stage_.command(flat, stop); !done) return tl::unexpected(done.error());
+  TODBENCH_TRY_VOID(stage_.ensure_connected(stop));
+  TODBENCH_TRY_VOID(black_body_.command_absolute(temperature_k, stop));
+  TODBENCH_TRY_VOID(stage_.command(flat, stop));
   asked_k_ = temperature_k;
   return wait_until_reached(flat, stop);
 }
@@ -303,7 +303,7 @@ Result<PlateRun> ScpiTarget::run_along_x(double to_mm, double speed_mm_s, std::s
 
 Result<std::unique_ptr<Target>> open_scpi_target(ScpiTargetOptions options, const std::stop_token& stop) {
   auto target = std::make_unique<ScpiTarget>(std::move(options));
-  if (auto opened = target->open(stop); !opened) return tl::unexpected(opened.error());
+  TODBENCH_TRY_VOID(target->open(stop));
   return target;
 }
 

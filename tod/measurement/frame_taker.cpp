@@ -204,7 +204,7 @@ Result<bool> FrameTaker::accept(const Frame& frame, Scene scene) {
       scene == Scene::moving && rejected && !(repeated && cadence_.in_rhythm()) &&
       std::find(of_the_picture.begin(), of_the_picture.end(), rejected->reason) != of_the_picture.end();
   excused_ += excused ? 1 : 0;
-  if (auto healthy = check_share(); !healthy) return tl::unexpected(healthy.error());
+  TODBENCH_TRY_VOID(check_share());
   return !rejected;
 }
 
@@ -215,7 +215,7 @@ Result<void> FrameTaker::take_while_presenting(const std::function<bool(std::int
     const auto frame = source_.next(std::min(look_every, options_.frame_timeout));
     if (!frame && frame.error().code == ErrorCode::timeout) continue;
     if (!frame) return tl::unexpected(frame.error());
-    if (auto accepted = accept(*frame, Scene::moving); !accepted) return tl::unexpected(accepted.error());
+    TODBENCH_TRY_VOID(accept(*frame, Scene::moving));
   }
   return {};
 }
@@ -260,7 +260,7 @@ Result<Frame> FrameTaker::next(std::stop_token stop) {
 }
 
 Result<void> FrameTaker::discard(std::stop_token stop) {
-  if (auto frame = next(std::move(stop)); !frame) return tl::unexpected(frame.error());
+  TODBENCH_TRY_VOID(next(std::move(stop)));
   --used_;
   return {};
 }

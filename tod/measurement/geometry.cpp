@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "acquisition/base/try.h"
 #include "tod/measurement/prepared_plate.h"
 
 namespace todbench {
@@ -31,8 +32,7 @@ Result<std::vector<Misfit>> find_misfits(const MeasurementOptions& options, Obse
   std::vector<Misfit> out;
   for (const auto& plate : options.plates) {
     PreparedPlate prepared{plate, {}, {}};
-    if (auto ready = prepare(prepared, observer, scale, options.samples_per_pitch); !ready)
-      return tl::unexpected(ready.error());
+    TODBENCH_TRY_VOID(prepare(prepared, observer, scale, options.samples_per_pitch));
     const double search = prepared.observers.empty() ? 0 : prepared.observers.front()->search_samples();
     for (auto& window : touching_windows(plate, registration, prepared.sides(), search))
       out.emplace_back(TrianglesTooNear{plate.name, std::move(window)});

@@ -44,8 +44,8 @@ class Run {
 
   Result<MeasurementResult> operator()() {
     const std::stop_callback wake(stop_, [this] { source_.stop(); });
-    if (auto started = source_.start(); !started) return tl::unexpected(started.error());
-    if (auto corrected = correct_when_due(); !corrected) return tl::unexpected(corrected.error());
+    TODBENCH_TRY_VOID(source_.start());
+    TODBENCH_TRY_VOID(correct_when_due());
     std::optional<Error> ended_by;
     while (const auto state = schedule_.next()) {
       const std::size_t before = result_.trials.size();
@@ -108,7 +108,7 @@ class Run {
 
   /// A camera that takes no command is still measured if its frames report corrections.
   Result<void> rely_on_what_the_camera_tells(const Error& refused) {
-    if (auto looked = taker_.discard(stop_); !looked) return looked;
+    TODBENCH_TRY_VOID(taker_.discard(stop_));
     if (!taker_.camera_tells_of_corrections()) return tl::unexpected(refused);
     options_.nuc_interval_s = 0;
     note("the camera rejects correction commands (" + refused.message +
@@ -137,7 +137,7 @@ class Run {
     current_contrast_.reset();
     last_nuc_ns_.reset();
     const std::int64_t presentation = presentation_;
-    if (auto shown = show(state); !shown) return shown;
+    TODBENCH_TRY_VOID(show(state));
     TODBENCH_TRY(const auto back_ns, host_.now_ns(Moment::camera_back));
     Interruption interruption{.presentation = presentation,
                               .away_s = static_cast<double>(back_ns - lost_ns) * 1e-9,
@@ -156,7 +156,7 @@ class Run {
       TODBENCH_TRY(const auto rests, host_.rests(stop_));
       if (!rests) break;
       if (!options_.free_running) continue;
-      if (auto passed = taker_.discard(stop_); !passed) return passed;
+      TODBENCH_TRY_VOID(taker_.discard(stop_));
     }
     return {};
   }
@@ -173,14 +173,14 @@ class Run {
 
   /// One presentation: target, frame, answers.
   Result<void> show(const TargetState& state) {
-    if (auto resumed = wait_while_paused(); !resumed) return resumed;
+    TODBENCH_TRY_VOID(wait_while_paused());
     if (stop_.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
     const auto plate = std::find_if(plates_.begin(), plates_.end(),
                                     [&](const PreparedPlate& p) { return p.plate.name == state.plate; });
     if (plate == plates_.end())
       return fail(ErrorCode::invalid_input,
                   "the schedule names the plate '" + state.plate + "', which the plan does not list");
-    if (auto corrected = correct_when_due(); !corrected) return corrected;
+    TODBENCH_TRY_VOID(correct_when_due());
     for (;;) {
       const Kept before{result_.set_ups.size(), result_.contrasts.size(), result_.judged_contrasts.size(),
                         result_.grey_frames.size()};
@@ -218,7 +218,7 @@ class Run {
 
   Result<void> show(PreparedPlate& prepared, const TargetState& state) {
     PreparedPlate* const plate = &prepared;
-    if (auto presented = present(state); !presented) return presented;
+    TODBENCH_TRY_VOID(present(state));
     TODBENCH_TRY(const auto there_ns, host_.now_ns(Moment::scene_changed));
     taker_.scene_changed(there_ns);
     const TargetPlate mounted_plate = mounted(plate->plate, state.mounting);
@@ -228,7 +228,7 @@ class Run {
     // The instrument's report is recorded even if the camera's frames could not be used.
     keep_presentation(state, there_ns, asked.has_value());
     if (!exposed) return tl::unexpected(exposed.error());
-    if (auto answered = answer(*plate, mounted_plate, *exposed, state); !answered) return answered;
+    TODBENCH_TRY_VOID(answer(*plate, mounted_plate, *exposed, state));
     ++presentation_;
     return {};
   }
@@ -320,10 +320,10 @@ class Run {
       read_back_noted_ = true;
     }
     if (new_set_up) {
-      if (auto located = locate(plate, mounted_plate, state); !located) return tl::unexpected(located.error());
+      TODBENCH_TRY_VOID(locate(plate, mounted_plate, state));
     }
     if (!new_set_up && !target_.capabilities().sets_shift) {
-      if (auto followed = follow(mounted_plate); !followed) return tl::unexpected(followed.error());
+      TODBENCH_TRY_VOID(follow(mounted_plate));
     }
     const Registration registration = target_.capabilities().sets_shift ? base_.shifted(state.shift_mm) : base_;
     if (new_contrast) {
@@ -368,7 +368,7 @@ class Run {
 
   /// Locates the plate of a set-up: by registration the first time, by its shift when it returns.
   Result<void> locate(PreparedPlate& plate, const TargetPlate& mounted_plate, const TargetState& state) {
-    if (auto in_place = places_.finish(); !in_place) return in_place;
+    TODBENCH_TRY_VOID(places_.finish());
     places_.set_up_located();
     TODBENCH_TRY(const auto picture, step_.look(stop_));
     const cv::Point2d shift_mm = target_.capabilities().sets_shift ? state.shift_mm : cv::Point2d(0, 0);
@@ -390,9 +390,7 @@ class Run {
     if (scale_px_per_mm_ == 0) scale_px_per_mm_ = base_.scale_px_per_mm;
     if (plate.observers.empty()) {
       const int finer = options_.judged_samples_per_pixel;
-      if (auto prepared = prepare(plate, observer_, scale_px_per_mm_ * finer, options_.samples_per_pitch * finer);
-          !prepared)
-        return prepared;
+      TODBENCH_TRY_VOID(prepare(plate, observer_, scale_px_per_mm_ * finer, options_.samples_per_pitch * finer));
     }
     return {};
   }
@@ -469,8 +467,7 @@ class Run {
 Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer, TrialSchedule& schedule,
                                   const MeasurementOptions& options, RunController& host,
                                   const MeasurementListener& listener, std::stop_token stop) {
-  if (auto checked = check_before_measuring(options, observer, source.info()); !checked)
-    return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_before_measuring(options, observer, source.info()));
   return Run(source, target, observer, schedule, options, host, listener, std::move(stop))();
 }
 

@@ -99,10 +99,9 @@ class MovingRun {
   }
 
   Result<MovingMeasurement> operator()() {
-    if (auto checked = check_moving(source_.info(), target_, observer_, options_); !checked)
-      return tl::unexpected(checked.error());
+    TODBENCH_TRY_VOID(check_moving(source_.info(), target_, observer_, options_));
     const std::stop_callback wake(stop_, [this] { source_.stop(); });
-    if (auto started = source_.start(); !started) return tl::unexpected(started.error());
+    TODBENCH_TRY_VOID(source_.start());
     auto done = all_set_ups();
     source_.stop();
     if (done) done = places_.finish();
@@ -140,10 +139,10 @@ class MovingRun {
         if (!options_.mountings_per_plate.empty() && m >= options_.mountings_per_plate[p]) break;
         const Mounting mounting = options_.mountings[m];
         MovingSetUp set_up{.plate = mounted(plate, mounting), .name = plate.name, .mounting = mounting, .base = {}};
-        if (auto found = locate(set_up, contrasts.front()); !found) return found;
-        if (auto prepared = prepare(set_up); !prepared) return prepared;
+        TODBENCH_TRY_VOID(locate(set_up, contrasts.front()));
+        TODBENCH_TRY_VOID(prepare(set_up));
         for (const double delta_t_k : contrasts) {
-          if (auto done = one_contrast(set_up, delta_t_k); !done) return done;
+          TODBENCH_TRY_VOID(one_contrast(set_up, delta_t_k));
         }
       }
     }
@@ -167,7 +166,7 @@ class MovingRun {
   }
 
   Result<void> locate(MovingSetUp& set_up, double delta_t_k) {
-    if (auto in_place = places_.finish(); !in_place) return in_place;
+    TODBENCH_TRY_VOID(places_.finish());
     places_.set_up_located();
     if (auto shown = present(set_up, delta_t_k, {0, 0}); !shown) return shown;
     TODBENCH_TRY(const auto picture, step_.look(stop_));
@@ -215,7 +214,7 @@ class MovingRun {
                                      .air_transmittance = at_rest().air_transmittance,
                                      .host_time_ns = there_ns_});
     if (listener_.on_presentation) {
-      if (auto kept = listener_.on_presentation(result_.presentations.back()); !kept) return kept;
+      TODBENCH_TRY_VOID(listener_.on_presentation(result_.presentations.back()));
     }
     for (int phase = 0; phase < options_.passes; ++phase, ++pairs_) {
       for (const double speed : options_.speeds_mrad_s) {
@@ -229,7 +228,7 @@ class MovingRun {
                               .along_x = phase % 2 == 0 ? 1.0 : -1.0,
                               .lag_s = {},
                               .dropped = {}};
-        if (auto done = one_pass(set_up, pass); !done) return done;
+        TODBENCH_TRY_VOID(one_pass(set_up, pass));
         dropped_ += pass.dropped.empty() ? 0 : 1;
         if (listener_.on_pass) listener_.on_pass(pass);
         result_.passes.push_back(std::move(pass));
@@ -250,7 +249,7 @@ class MovingRun {
     const double step_mm = step_px(pass.speed_mrad_s) * pixel_mm;
     const double half_mm = pass.along_x * step_mm * (options_.lead_frames + options_.frames + spare_frames) / 2;
     const cv::Point2d from_mm = phase_mm - cv::Point2d(half_mm, 0);
-    if (auto shown = present(set_up, pass.set_delta_t_k, from_mm); !shown) return shown;
+    TODBENCH_TRY_VOID(present(set_up, pass.set_delta_t_k, from_mm));
     const Registration begin = set_up.base.shifted(from_mm);
     Result<std::vector<LocatedFrame>> frames = pass.speed_mrad_s == 0
                                                    ? frames_at_rest(set_up, begin, pass.pair)
@@ -415,7 +414,7 @@ class MovingRun {
               static_cast<Apex>(prepared.at_ends[end].choose(kind, size, seen, own));
         }
         if (listener_.on_answer) {
-          if (auto kept = listener_.on_answer(given); !kept) return kept;
+          TODBENCH_TRY_VOID(listener_.on_answer(given));
         }
         result_.answers.push_back(std::move(given));
       }

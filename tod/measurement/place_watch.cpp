@@ -213,7 +213,7 @@ Result<PlateSeen> PlaceWatch::look(std::span<const Frame> frames, const TargetPl
                       presentation, fit.turn_rad * 180 / CV_PI, turned_px, turn_error_px, options_.max_shift_error_px));
     }
   }
-  if (auto judged = judge(); !judged) return tl::unexpected(judged.error());
+  TODBENCH_TRY_VOID(judge());
   seen.used_off_px = used_off_px_;
   return seen;
 }

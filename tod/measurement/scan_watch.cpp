@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "acquisition/base/try.h"
 #include "acquisition/core/judged_picture.h"
 #include "tod/registration/shift_fit.h"
 
@@ -70,7 +71,7 @@ Result<void> ScanWatch::look(const ScanFrames& frames, const TargetPlate& mounte
   }
   ++set_ups_;
   // Of all set-ups, with small errors, and of this one, because lost frames displace the scan from there on.
-  if (auto right = check_scan(places_); !right) return right;
+  TODBENCH_TRY_VOID(check_scan(places_));
   return check_scan(std::span(places_).subspan(before));
 }
 

@@ -47,7 +47,7 @@ Result<SequenceJudge> SequenceJudge::prepare(TemplateObserver& observer, std::sp
   const int half_a_sample = (judge.steps_ + 1) / 2;
   wider.search_range_samples += static_cast<double>(half_a_sample) / judge.steps_;
   judge.wide_reach_ = judge.reach_ + half_a_sample;
-  if (auto valid = validate(wider); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(wider));
   for (const double size : sizes) {
     TODBENCH_TRY(auto prepared, observer.prepare(size, 1));
     TODBENCH_TRY(auto bank, TemplateBank::build(wider, triangle_alternatives(), size, 1));

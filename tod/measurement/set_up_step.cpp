@@ -72,7 +72,7 @@ Result<void> check_before_measuring(const MeasurementOptions& options, Observer&
     return fail(ErrorCode::calibration,
                 "camera " + camera.id + " has no temperature scale: contrasts in kelvin cannot be measured");
   }
-  if (auto references = check_grey_references(options); !references) return references;
+  TODBENCH_TRY_VOID(check_grey_references(options));
   TODBENCH_TRY(const auto misfits, find_misfits(options, observer, {camera.width, camera.height}));
   if (!misfits.empty())
     return fail(ErrorCode::invalid_input, "not measurable at this distance: " + sentences(misfits, misfits.size()));
@@ -248,8 +248,7 @@ Result<void> SetUpStep::check_contrast(double seen_k, double error_k, const Targ
 
 Result<SeenContrast> SetUpStep::in_kelvin(const EffectiveContrast& measured, const TargetState& set) const {
   const double seen_k = measured.value / response(set.plate);
-  if (auto right = check_contrast(seen_k, measured.standard_error / response(set.plate), set); !right)
-    return tl::unexpected(right.error());
+  TODBENCH_TRY_VOID(check_contrast(seen_k, measured.standard_error / response(set.plate), set));
   const double deviation = seen_k / set.delta_t_k - 1;
   if (std::abs(deviation) > 0.2 && std::abs(seen_k - set.delta_t_k) > 3 * measured.standard_error) {
     note_(fmt::format("{}: the camera observes {:.3f} K, but {:.3f} K were set ({:+.0f} %)", plate_and_mounting(set),

@@ -5,6 +5,8 @@
 #include <thread>
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -46,7 +48,7 @@ Result<TargetChange> change_target(Target& target, FrameTaker& taker, RunControl
       break;
     case FramesWhilePresenting::take: {
       TakenChange taken = present_and_take(target, taker, state, stop);
-      if (const auto told = host.asked_while_presenting(taken.calls); !told) return tl::unexpected(told.error());
+      TODBENCH_TRY_VOID(host.asked_while_presenting(taken.calls));
       change = std::move(taken.change);
       break;
     }

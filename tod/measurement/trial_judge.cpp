@@ -109,7 +109,7 @@ Result<PresentationAnswers> TrialJudge::answers(const PresentationShown& shown, 
   for (int k = 0; k < shown.frames; ++k) {
     const auto at = static_cast<std::size_t>(k);
     TODBENCH_TRY(const auto taken, at < shown.first_frames.size() ? shown.first_frames[at] : taker_.next(stop));
-    if (auto judged = judge_frame(taken, k, shown, out, probabilities); !judged) return tl::unexpected(judged.error());
+    TODBENCH_TRY_VOID(judge_frame(taken, k, shown, out, probabilities));
   }
   if (const auto failure = observer_.failure()) return fail("the observer", *failure);
   for (std::size_t i = 0; i < out.trials.size() && options_.answers == AnswerKind::graded; ++i) {

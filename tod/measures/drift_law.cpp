@@ -9,6 +9,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/normal.h"
+#include "acquisition/base/try.h"
 #include "tod/measures/shading.h"
 
 namespace todbench {
@@ -293,7 +294,7 @@ double DriftLaw::per_minute(double change_k) const {
 }
 
 Result<DriftLaw> drift_law(std::span<const DriftGroup> groups) {
-  if (auto checked = check_groups(groups); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_groups(groups));
   DriftLaw law;
   const int count = static_cast<int>(groups.size());
   cv::Mat1d levels(count, 1), patterns(count, static_cast<int>(groups.front().mean_k.total()));

@@ -142,7 +142,7 @@ std::string_view to_string(PixelDefect kind) {
 
 Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const PixelScene& scene,
                                    const PixelDefectRules& rules) {
-  if (auto fit = check_cube(frames); !fit) return tl::unexpected(fit.error());
+  TODBENCH_TRY_VOID(check_cube(frames));
   const cv::Size size = frames[0].size();
   PixelDefects out;
   out.frames = static_cast<int>(frames.size());

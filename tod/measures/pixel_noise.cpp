@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 #include "tod/measures/medians.h"
 
 namespace todbench {
@@ -50,7 +51,7 @@ Result<void> check(std::span<const cv::Mat1d> frames) {
 }  // namespace
 
 Result<PixelNoise> pixel_noise(std::span<const cv::Mat1d> frames) {
-  if (auto checked = check(frames); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(frames));
   const double n = static_cast<double>(frames.size()), pixels = static_cast<double>(frames[0].total());
   const TimeSums sums = sums_of(frames);
   cv::Mat1d about_mean = sums.squares - sums.change.mul(sums.change) / n;

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -103,7 +105,7 @@ Result<void> check(std::span<const ShiftedPicture> pictures) {
 }  // namespace
 
 Result<SeparatedPattern> separated_pattern(std::span<const ShiftedPicture> pictures) {
-  if (auto possible = check(pictures); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check(pictures));
   const Layout layout(pictures);
   Unknowns found = layout.zeros(), residual = layout.zeros();
   for (std::size_t k = 0; k < pictures.size(); ++k) {

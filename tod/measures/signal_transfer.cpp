@@ -6,6 +6,7 @@
 #include <string>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -31,7 +32,7 @@ Result<void> check(std::span<const TemperatureStep> steps) {
 }  // namespace
 
 Result<SignalTransfer> signal_transfer(std::span<const TemperatureStep> steps) {
-  if (auto checked = check(steps); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(steps));
   const auto [least, most] = std::minmax_element(
       steps.begin(), steps.end(), [](const auto& a, const auto& b) { return a.delta_t_k < b.delta_t_k; });
   const double span_k = most->delta_t_k - least->delta_t_k;

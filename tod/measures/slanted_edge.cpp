@@ -184,7 +184,7 @@ Result<Found> settled(const Upright& in) {
     found.line.slope += found.trend.slope / found.line.cosine();
     if (std::abs(found.trend.mean) + std::abs(found.trend.slope) * in.picture.rows < 1e-7) break;
   }
-  if (auto checked = check_line(in, found.line); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_line(in, found.line));
   found.reach = reach_of(in.picture.size(), found.line);
   found.samples = samples_near(in.picture, found.line, found.reach);
   auto profile = profile_of(found.samples, found.reach);
@@ -298,7 +298,7 @@ Result<void> check_profile(const Found& found) {
     return fail(ErrorCode::invalid_input,
                 fmt::format("the edge is bent by {:.2f} pixels, expected a straight one", std::abs(found.trend.sag)));
   }
-  if (auto gaps = check_gaps(found.samples); !gaps) return gaps;
+  TODBENCH_TRY_VOID(check_gaps(found.samples));
   if (1.6 * found.levels.width_pitch + 2 > found.reach) {
     return fail(
         ErrorCode::invalid_input,
@@ -470,7 +470,7 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
     if (!found) return tl::unexpected(found.error());
   }
   found->shading = shading;
-  if (auto checked = check_profile(*found); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_profile(*found));
   SlantedEdge edge;
   edge.axis = in.axis;
   edge.angle_deg = -std::atan(found->line.slope) / degree;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -157,9 +159,9 @@ std::string_view to_string(StarDirection direction) {
 
 Result<std::vector<StarEdge>> slanted_star(const cv::Mat1d& picture, const StarPlace& star,
                                            const SlantedEdgeOptions& options) {
-  if (auto possible = check(picture, star); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check(picture, star));
   const std::vector<double> edges_deg = crossings_of(ring_of(picture, star));
-  if (auto possible = check(edges_deg); !possible) return tl::unexpected(possible.error());
+  TODBENCH_TRY_VOID(check(edges_deg));
   const cv::Point2d from_middle = star.centre_px - 0.5 * cv::Point2d(picture.cols - 1, picture.rows - 1);
   std::vector<StarEdge> edges;
   const std::size_t n = edges_deg.size();

@@ -349,7 +349,7 @@ double ThreeDNoise::temporal() const {
 Result<ThreeDNoise> three_d_noise(std::span<const cv::Mat1f> frames) {
   NoiseCube cube;
   for (const cv::Mat1f& frame : frames) {
-    if (auto added = cube.add(frame); !added) return tl::unexpected(added.error());
+    TODBENCH_TRY_VOID(cube.add(frame));
   }
   TODBENCH_TRY(const auto table, cube.table());
   const auto root = [&](NoiseComponent component) {

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -139,7 +141,7 @@ Result<void> validate(const TargetPlate& plate) {
   for (const PlateRectangle& r : straight_cut_outs(plate)) {
     if (!positive(r.size_mm.width) || !positive(r.size_mm.height) || !std::isfinite(r.angle_deg))
       return tl::unexpected(refusal(plate, r.name + ": width_mm and height_mm must be positive"));
-    if (auto added = cut_outs.add(r.name, r.position_mm, outline_mm(r)); !added) return added;
+    TODBENCH_TRY_VOID(cut_outs.add(r.name, r.position_mm, outline_mm(r)));
   }
   return {};
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "acquisition/base/try.h"
 #include "tod/psychometric/acuity.h"
 #include "tod/psychometric/psychometric_clusters.h"
 #include "tod/psychometric/psychometric_likelihood.h"
@@ -361,9 +362,8 @@ Result<void> check_lapse(const FitOptions& options) {
 }  // namespace
 
 Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options) {
-  if (auto checked = validate(levels, options.graded ? Counts::fractional : Counts::whole); !checked)
-    return tl::unexpected(checked.error());
-  if (auto checked = check_lapse(options); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(validate(levels, options.graded ? Counts::fractional : Counts::whole));
+  TODBENCH_TRY_VOID(check_lapse(options));
   return fitted(levels, options, [&](const Surface& s, PsychometricFit& fit) {
     const ClusterEffect effect = cluster_effect(levels, s.counts, s.form, s.maximum, fit.se_ln_threshold);
     fit.interval = effect.clusters > 0 ? IntervalKind::clusters : IntervalKind::independent;
@@ -375,8 +375,8 @@ Result<PsychometricFit> fit_graded(std::span<const GradedAnswer> answers, const 
   std::vector<Level> levels;
   for (const GradedAnswer& answer : answers)
     levels.push_back({.size = answer.size, .correct = answer.probability_correct, .total = 1, .cluster = -1});
-  if (auto checked = validate(levels, Counts::fractional); !checked) return tl::unexpected(checked.error());
-  if (auto checked = check_lapse(options); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(validate(levels, Counts::fractional));
+  TODBENCH_TRY_VOID(check_lapse(options));
   FitOptions graded = options;
   graded.graded = true;
   return fitted(levels, graded, [&](const Surface& s, PsychometricFit& fit) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/try.h"
 
 namespace todbench {
 namespace {
@@ -71,7 +72,7 @@ Result<RampFit> RampFit::of(std::vector<RampAnswer> answers, ContrastSurface sur
   fit.answers_ = std::move(answers);
   const auto [least, most] = std::ranges::minmax(fit.u_);
   fit.powers_ = most - least < straight_from ? 1 : most - least < bent_from ? 2 : 3;
-  if (auto found = fit.climb(Directions::together); !found) return tl::unexpected(found.error());
+  TODBENCH_TRY_VOID(fit.climb(Directions::together));
   return fit;
 }
 

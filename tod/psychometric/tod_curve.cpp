@@ -139,7 +139,7 @@ Result<TodPoint> tod_point(double set_delta_t_k, const TrialGroup& trials, const
   const auto saturated = std::ranges::count_if(trials, [](const Trial* t) { return t->saturated_pixels > 0; });
   point.saturated_share = static_cast<double>(saturated) / static_cast<double>(trials.size());
   const Fitter fitter(trials);
-  if (auto chosen = fitter.choose_levels(point, options); !chosen) return tl::unexpected(chosen.error());
+  TODBENCH_TRY_VOID(fitter.choose_levels(point, options));
   TODBENCH_TRY(point.fit, fitter.fit(point, options));
   if (!options.fixed_lapse) return point;
   FitOptions free = options;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tod/range/range_prediction.h"
+#include "acquisition/base/try.h"
 #include "tod/psychometric/acuity.h"
 
 #include <fmt/format.h>
@@ -344,7 +345,7 @@ Result<RangePoint> range_point(std::span<const TodThreshold> thresholds, const R
   RangeTask task = asked;
   task.delta_t_k = contrast_on_curve(thresholds, asked.delta_t_k);
   const std::vector<TodThreshold> sorted = sorted_by_contrast(thresholds);
-  if (auto checked = check(sorted, task); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(sorted, task));
   if (!(std::isfinite(range_m) && range_m > 0)) return fail(ErrorCode::invalid_input, "a range must be above 0 m");
   const std::vector<Node> nodes = nodes_of(sorted);
   return point_of(TargetLine(nodes, task), range_m);
@@ -354,7 +355,7 @@ Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, 
   RangeTask task = asked;
   task.delta_t_k = contrast_on_curve(thresholds, asked.delta_t_k);
   const std::vector<TodThreshold> sorted = sorted_by_contrast(thresholds);
-  if (auto checked = check(sorted, task); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(sorted, task));
   const std::vector<Node> nodes = nodes_of(sorted);
   const TargetLine line(nodes, task);
   RangePrediction prediction;

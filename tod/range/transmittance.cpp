@@ -10,6 +10,8 @@
 #include <numeric>
 #include <utility>
 
+#include "acquisition/base/try.h"
+
 namespace todbench {
 namespace {
 
@@ -49,7 +51,7 @@ Result<Transmittance> Transmittance::of_table(std::span<const TransmittancePoint
   if (rows.empty()) return fail(ErrorCode::invalid_input, "the table of transmittances is empty");
   Transmittance air;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (auto checked = check(rows[i], i > 0 ? &rows[i - 1] : nullptr); !checked) return tl::unexpected(checked.error());
+    TODBENCH_TRY_VOID(check(rows[i], i > 0 ? &rows[i - 1] : nullptr));
     if (rows[i].range_m == 0 || rows[i].transmittance < floor_of_tables) continue;
     // -log(1) is -0: the depth of clear air is 0.
     air.rows_.push_back({rows[i].range_m, std::abs(std::log(rows[i].transmittance))});

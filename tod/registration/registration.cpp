@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "tod/plate/plate_outlines.h"
 #include "tod/registration/plate_attempt.h"
 
@@ -232,7 +233,7 @@ Registration Registration::moved(cv::Point2d shift_px) const {
 
 Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                     const RegistrationOptions& options) {
-  if (auto checked = check_input(picture, mounted_plate, options); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check_input(picture, mounted_plate, options));
   const PlateSearch search = search_for(picture, mounted_plate, options);
 
   auto found = attempt_mounting(search, mounted_plate, Mounting::identity);

@@ -208,7 +208,7 @@ Result<std::vector<cv::Point2d>> frame_shifts(const std::vector<cv::Mat1f>& fram
 
 Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames, const std::vector<cv::Point2d>& shifts_px,
                                     int factor, EmptyCells empty) {
-  if (auto checked = check(frames, shifts_px.size()); !checked) return tl::unexpected(checked.error());
+  TODBENCH_TRY_VOID(check(frames, shifts_px.size()));
   if (factor < 1 || factor > 8) return fail(ErrorCode::invalid_input, "the factor of super-resolution must be 1 to 8");
   std::vector<double> xs, ys;
   for (const auto& shift : shifts_px) {

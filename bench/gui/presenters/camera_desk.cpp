@@ -60,7 +60,7 @@ Result<std::string> change_feature(FrameSource& camera, const std::string& featu
   if (!set && set.error().code != ErrorCode::disconnected) {
     camera.stop();
     set = camera.set(feature, value);
-    if (auto started = camera.start(); !started) return tl::unexpected(started.error());
+    TODBENCH_TRY_VOID(camera.start());
   }
   if (!set) return fail("setting " + feature + " = " + value, set.error());
   return camera.get(feature);

@@ -38,7 +38,7 @@ Result<Setting> setting_of(const ChainSettings& options) {
   Setting s;
   TODBENCH_TRY(auto sensor, load_sensor(options.sensor));
   TODBENCH_TRY(auto observer, load_observer(options.observer));
-  if (auto square = require_square_pixels(sensor, "this page"); !square) return tl::unexpected(square.error());
+  TODBENCH_TRY_VOID(require_square_pixels(sensor, "this page"));
   if (!(options.size_pitch > 0)) return fail(ErrorCode::invalid_input, "the size of the triangle must be above 0");
   s.sensor = sensor;
   s.observer = observer;

@@ -54,8 +54,7 @@ Result<OpenedBench> open_for_looking(const Plan& plan, const std::stop_token& st
     TODBENCH_TRY(const auto loaded, LoadedPlan::load(plan));
     auto bench = open_bench(loaded, stop);
     if (!bench) return bench;
-    if (auto shown = show_first_state(plan, loaded.plates(), *bench->target, stop); !shown)
-      return tl::unexpected(shown.error());
+    TODBENCH_TRY_VOID(show_first_state(plan, loaded.plates(), *bench->target, stop));
     return bench;
   }
   TODBENCH_TRY(auto camera, camera_registry(stop).open(plan.camera.id));
@@ -80,7 +79,7 @@ Result<void> look(const Plan& plan, LiveFeed& feed, CameraDesk& desk, const Look
       listener.note("The camera refuses a setting of the plan: " + set.error().message);
   }
   const std::stop_callback wake(stop, [&camera] { camera.stop(); });
-  if (auto started = camera.start(); !started) return started;
+  TODBENCH_TRY_VOID(camera.start());
   desk.open();
   listener.on_open(camera);
   const bool driven = plan.target.kind == TargetKind::scpi && !plan.target.black_body.empty();
@@ -94,7 +93,7 @@ Result<void> look(const Plan& plan, LiveFeed& feed, CameraDesk& desk, const Look
     if (!frame && again && frame.error().code == ErrorCode::disconnected) {
       again = false;
       camera.stop();
-      if (auto started = camera.start(); !started) return started;
+      TODBENCH_TRY_VOID(camera.start());
       continue;
     }
     again = recorded && frame.has_value();
@@ -195,8 +194,8 @@ Result<std::filesystem::path> LookPresenter::snapshot() {
   if (!latest_) return fail(ErrorCode::invalid_input, "there is no picture yet");
   const std::filesystem::path file = new_file(bench_.sessions_folder(), "snapshot", ".tif");
   TODBENCH_TRY(auto tiff, TiffWriter::create(file));
-  if (auto written = tiff.append(latest_->frame.counts); !written) return tl::unexpected(written.error());
-  if (auto pages = tiff.verified_pages(); !pages) return tl::unexpected(pages.error());
+  TODBENCH_TRY_VOID(tiff.append(latest_->frame.counts));
+  TODBENCH_TRY_VOID(tiff.verified_pages());
   return file;
 }
 

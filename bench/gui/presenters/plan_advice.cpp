@@ -75,7 +75,7 @@ QString heading_of(const ExperimentInputs& inputs) {
 Result<QString> viewing_advice(const Plan& plan, const std::stop_token& stop) {
   if (!has_display(plan)) return fail(ErrorCode::invalid_input, no_display_sentence);
   TODBENCH_TRY(const LoadedPlan loaded, LoadedPlan::load(plan));
-  if (auto none = refuse_modules(plan, loaded.sensor()); !none) return tl::unexpected(none.error());
+  TODBENCH_TRY_VOID(refuse_modules(plan, loaded.sensor()));
   TODBENCH_TRY(const auto observer, load_observer_at("hvs-2", plan.display));
   const double largest = std::abs(largest_contrast_k(plan.target.delta_t_k));
   TODBENCH_TRY(const ViewingProposal viewing,

@@ -60,8 +60,7 @@ std::vector<std::pair<int, double>> half_widths_by_frames(Plan plan, const Exper
 
 Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, ExperimentInputs inputs,
                                                            std::stop_token stop) {
-  if (auto refined = refine_thresholds(inputs, plan.seed, std::move(stop)); !refined)
-    return tl::unexpected(refined.error());
+  TODBENCH_TRY_VOID(refine_thresholds(inputs, plan.seed, std::move(stop)));
   std::vector<ExpectedThreshold> out;
   for (const double contrast : plan.target.delta_t_k) {
     ExpectedThreshold expected{.delta_t_k = contrast, .s75_mrad = {}};

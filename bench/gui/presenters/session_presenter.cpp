@@ -95,21 +95,20 @@ std::vector<SessionEntry> matching(const std::vector<SessionEntry>& sessions, co
 Result<Exported> export_reports(const OpenedSession& opened, const std::optional<std::filesystem::path>& order) {
   // The files may have changed since the session was opened.
   if (!opened.session.cut_off) {
-    if (auto intact = require_intact(opened.folder); !intact) return tl::unexpected(intact.error());
+    TODBENCH_TRY_VOID(require_intact(opened.folder));
   }
   const auto pdf = opened.folder / "report.pdf";
   PageWriter write_both = [&](const ReportData& data) -> Result<std::vector<std::string>> {
     auto pages = html_page(opened.folder)(data);
     if (!pages) return pages;
-    if (auto written = write_pdf_report(data, pdf); !written) return tl::unexpected(written.error());
+    TODBENCH_TRY_VOID(write_pdf_report(data, pdf));
     pages->emplace_back("report.pdf");
     return pages;
   };
   if (order) {
     TODBENCH_TRY(write_both, with_order(opened.folder, *order, std::move(write_both)));
   }
-  if (auto rebuilt = rebuild_report(opened.session, opened.folder, write_both); !rebuilt)
-    return tl::unexpected(rebuilt.error());
+  TODBENCH_TRY_VOID(rebuild_report(opened.session, opened.folder, write_both));
   return Exported{QString::fromStdString((opened.folder / "report.html").string()),
                   QString::fromStdString(pdf.string())};
 }

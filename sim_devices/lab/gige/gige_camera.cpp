@@ -17,6 +17,7 @@
 #include "acquisition/aravis/gev_registers.h"
 #include "acquisition/aravis/gvcp_client.h"
 #include "acquisition/base/descriptor.h"
+#include "acquisition/base/try.h"
 #include "sim_devices/lab/genicam/picture_encoder.h"
 #include "sim_devices/lab/genicam/thermal_features.h"
 
@@ -126,7 +127,7 @@ struct Unref {
 
 Result<void> validate(const EmulatedGigeCameraConfig& config) {
   const auto bad = [](const std::string& what) { return fail(ErrorCode::invalid_input, "emulated camera: " + what); };
-  if (auto common = validate_emulation("emulated camera", config); !common) return common;
+  TODBENCH_TRY_VOID(validate_emulation("emulated camera", config));
   if (config.serial.size() > 15) return bad("serial must have 1 ... 15 characters");
   if (config.vendor.size() > 31 || config.model.size() > 31 || config.firmware.size() > 31) {
     return bad("vendor, model and firmware must have at most 31 characters");
@@ -291,7 +292,7 @@ EmulatedGigeCamera::~EmulatedGigeCamera() = default;
 
 Result<std::unique_ptr<EmulatedGigeCamera>> EmulatedGigeCamera::start(EmulatedGigeCameraConfig config,
                                                                       Exposure exposure, NucObserver on_nuc) {
-  if (const auto valid = validate(config); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(config));
   if (!exposure) return fail(ErrorCode::invalid_input, "emulated camera: the exposure function is missing");
   const std::string address = config.interface_address;
   auto state = std::make_unique<State>();

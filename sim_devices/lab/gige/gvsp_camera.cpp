@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/lab/gige/gvsp_camera_state.h"
 
 namespace todbench {
@@ -12,7 +13,7 @@ using Clock = std::chrono::steady_clock;
 
 Result<void> validate(const GvspCameraConfig& c) {
   const auto bad = [](const std::string& what) { return fail(ErrorCode::invalid_input, "emulated camera: " + what); };
-  if (auto common = validate_emulation("emulated camera", c); !common) return common;
+  TODBENCH_TRY_VOID(validate_emulation("emulated camera", c));
   if (c.width < 8 || c.height < 2) return bad("the picture must be 8 x 2 ... 4096 x 4096");
   if (c.serial.size() > 15) return bad("serial must have 1 ... 15 characters");
   if (c.vendor.size() > 31 || c.model_name.size() > 31 || c.firmware.size() > 31) {
@@ -70,7 +71,7 @@ GvspCamera::~GvspCamera() {
 }
 
 Result<std::unique_ptr<GvspCamera>> GvspCamera::start(GvspCameraConfig config, Exposure exposure) {
-  if (const auto valid = validate(config); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(config));
   if (!exposure) return fail(ErrorCode::invalid_input, "emulated camera: the exposure function is missing");
   const auto where = find_interface(config.interface_address);
   if (!where) {

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/lab/usb/usbfs_state.h"
 #include "sim_devices/lab/usb/usbfs_text.h"
 
@@ -155,7 +156,7 @@ Result<std::unique_ptr<PluggedUsbDevice>> PluggedUsbDevice::plug(std::shared_ptr
     return fail(ErrorCode::internal, "emulated USB device: " + message);
   }
   state->answers = std::jthread([raw = state.get()](const std::stop_token& stop) { raw->answer_reapers(stop); });
-  if (auto added = system->add(sysfs); !added) return tl::unexpected(added.error());
+  TODBENCH_TRY_VOID(system->add(sysfs));
   return std::unique_ptr<PluggedUsbDevice>(new PluggedUsbDevice(std::move(system), std::move(state)));
 }
 

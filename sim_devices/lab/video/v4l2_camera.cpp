@@ -13,6 +13,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acquisition/base/try.h"
 #include "sim_devices/lab/video/v4l2_camera_state.h"
 
 namespace todbench {
@@ -166,7 +167,7 @@ EmulatedV4l2Camera::~EmulatedV4l2Camera() {
 Result<std::unique_ptr<EmulatedV4l2Camera>> EmulatedV4l2Camera::start(std::shared_ptr<MockSystem> system,
                                                                       VideoCameraConfig config, Exposure exposure,
                                                                       VideoDriverQuirks quirks) {
-  if (const auto valid = validate(config); !valid) return tl::unexpected(valid.error());
+  TODBENCH_TRY_VOID(validate(config));
   if (!exposure) return fail(ErrorCode::invalid_input, "emulated video camera: the exposure function is missing");
   auto state = std::make_unique<State>();
   state->config = std::move(config);
