@@ -76,17 +76,38 @@ Group group_of(std::span<const SetUpTransfer> set_ups) {
   return out;
 }
 
-template <typename Difference>
-std::optional<ConstancyFigure> largest_change(std::span<const PictureNoise> noise, double limit,
-                                              Difference difference) {
+/// Relative variance of the mean square of differences at a lag, for one independent sample per frame. Differences of
+/// white noise that share a frame have a correlation of -1/2.
+double variance_at_lag(int frames, int lag) {
+  const double pairs = std::max(1, frames - lag);
+  return (2 * pairs + std::max(0.0, pairs - lag)) / (pairs * pairs);
+}
+
+/// Relative variance of the ratio of the mean squares that gives the lag-1 correlation, likewise.
+double variance_of_ratio(int frames) {
+  const int lag = std::clamp(frames / 4, 2, 8);
+  const double pairs = std::max(1, frames - lag), successive = std::max(1, frames - 1);
+  const double common = (2 * pairs - 1) / (pairs * successive);
+  return variance_at_lag(frames, 1) + variance_at_lag(frames, lag) - 2 * common;
+}
+
+double per_sample(const PictureNoise& one) {
+  const double lines = std::max(1, one.lines);
+  return (1 + 1 / lines) / (4 * lines);
+}
+
+/// The change that is largest relative to its limit.
+template <typename Change>
+std::optional<ConstancyFigure> largest_change(std::span<const PictureNoise> noise, Change change_of) {
   std::optional<ConstancyFigure> found;
   for (std::size_t i = 0; i < noise.size(); ++i) {
     const auto same = [&](const PictureNoise& one) { return one.set_delta_t_k == noise[i].set_delta_t_k; };
     if (std::any_of(noise.begin(), noise.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;
     for (std::size_t later = i + 1; later < noise.size(); ++later) {
       if (!same(noise[later])) continue;
-      const std::optional<double> change = difference(noise[i], noise[later]);
-      if (change && (!found || std::abs(*change) > std::abs(found->value))) found = ConstancyFigure{*change, limit};
+      const std::optional<ConstancyFigure> change = change_of(noise[i], noise[later]);
+      if (change && (!found || std::abs(change->value) * found->limit > std::abs(found->value) * change->limit))
+        found = change;
     }
   }
   return found;
@@ -120,17 +141,24 @@ std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasureme
 }
 
 std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise) {
-  return largest_change(noise, most_noise_change, [](const PictureNoise& first, const PictureNoise& later) {
-    return first.noise_k > 0 && later.noise_k > 0 ? std::optional(std::log(later.noise_k / first.noise_k))
-                                                  : std::nullopt;
-  });
+  const auto variance = [](const PictureNoise& one) { return variance_at_lag(one.frames, 1) * per_sample(one) / 4; };
+  return largest_change(noise,
+                        [&](const PictureNoise& first, const PictureNoise& later) -> std::optional<ConstancyFigure> {
+                          if (!(first.noise_k > 0 && later.noise_k > 0)) return std::nullopt;
+                          const double error = std::sqrt(variance(first) + variance(later));
+                          return ConstancyFigure{std::log(later.noise_k / first.noise_k),
+                                                 std::max(most_noise_change, constancy_errors * error)};
+                        });
 }
 
 std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> noise) {
-  return largest_change(noise, most_correlation_change,
-                        [](const PictureNoise& first, const PictureNoise& later) -> std::optional<double> {
+  const auto variance = [](const PictureNoise& one) { return variance_of_ratio(one.frames) * per_sample(one); };
+  return largest_change(noise,
+                        [&](const PictureNoise& first, const PictureNoise& later) -> std::optional<ConstancyFigure> {
                           if (!first.lag1_correlation || !later.lag1_correlation) return std::nullopt;
-                          return *later.lag1_correlation - *first.lag1_correlation;
+                          const double error = std::sqrt(variance(first) + variance(later));
+                          return ConstancyFigure{*later.lag1_correlation - *first.lag1_correlation,
+                                                 std::max(most_correlation_change, constancy_errors * error)};
                         });
 }
 

@@ -16,6 +16,8 @@ struct PictureNoise {
   double set_delta_t_k = 0;
   double noise_k = 0;                        ///< from differences of successive frames; above 0
   std::optional<double> lag1_correlation{};  ///< empty: too few frames
+  int frames = 16;                           ///< of the average, at least 2
+  int lines = 120;                           ///< smaller number of rows and columns
 };
 
 /// Residue of the previous picture in the first frame of an average.
@@ -52,17 +54,24 @@ inline constexpr double transfer_false_alarm = 0.005;
 /// fewer than two set-ups, or if no set-up has two triangles.
 [[nodiscard]] std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasurement> measurements);
 
-/// ln of the noise of a later average over that of the first one of the same contrast, for the pair of averages with
-/// the largest change. The limit is ln 1.15: one standard error of the noise of 1000 pixels and 16 frames is 0.7 %; 15
-/// % are eight times the error of a ratio of two of these pictures at a correlation of 0.5.
+/// ln of the noise of a later average over that of the first one of the same contrast: of all contrasts and later
+/// averages the change that is largest relative to its limit. The limit is constancy_errors standard errors, at least
+/// most_noise_change. Of N frames the mean square of the N - 1 successive differences has the relative variance
+/// (3 N - 4) / (N - 1)^2 / n for white noise, less for noise with memory. n is the number of independent samples of a
+/// frame: 1/n = 1/(4 L) + 1/(4 L^2) if half of the variance is that of whole lines and L the smaller of rows and
+/// columns.
 [[nodiscard]] std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise);
-inline constexpr double most_noise_change = 0.1397619;  ///< ln 1.15
+inline constexpr double most_noise_change = 0.1397619;  ///< ln 1.15; five errors of 16 frames of 120 lines: 7 %
+inline constexpr double constancy_errors = 5;
 
-/// Difference of the lag-1 correlation between the first and a later average of the same contrast, for the pair with
-/// the largest difference. The limit is most_correlation_change: five standard errors of the difference for 16 frames
-/// of 120 rows if half of the noise variance is that of whole rows.
+/// Difference of the lag-1 correlation between the first and a later average of the same contrast: of all contrasts and
+/// later averages the difference that is largest relative to its limit. The limit is constancy_errors standard errors,
+/// at least most_correlation_change.
+/// The correlation follows from the ratio of the mean squares at the lags l = min(8, N / 4) and 1, whose relative
+/// variance is v(1) + v(l) - 2 c: v(l) = (2 m + max(0, m - l)) / m^2 / n with m = N - l, c = (2 m - 1) / (m (N - 1)) /
+/// n.
 [[nodiscard]] std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> noise);
-inline constexpr double most_correlation_change = 0.2;
+inline constexpr double most_correlation_change = 0.2;  ///< five errors of 16 frames of 120 lines: 0.13
 
 /// Share of `before - mean` in `first - last`, by least squares over the pixels that changed by more than four times
 /// the noise. `first`, `last`, `mean`: frames and mean of an average; `before`: the previous average. In a picture that

@@ -187,7 +187,8 @@ Result<SeenContrast> SetUpStep::contrast(const TargetPlate& mounted_plate, const
     return tl::unexpected(moves.error());
   // With noise below half a count, the result depends on rounding.
   if (!grey() && noise_counts_.value_or(0) >= dithering_noise_steps && picture->temporal_noise_k > 0)
-    constancy_.noise.push_back({set.delta_t_k, picture->temporal_noise_k, picture->lag1_correlation});
+    constancy_.noise.push_back({set.delta_t_k, picture->temporal_noise_k, picture->lag1_correlation,
+                                options_.contrast_frames, std::min(picture->kelvin.rows, picture->kelvin.cols)});
   if (options_.learn_response && !grey()) {
     const SetUpPicture seen{*picture, options_.contrast_frames, mounted_plate, registration, set};
     for (const auto& [name, learnt] : options_.learn_response(seen)) learnt_response_[name] = learnt;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "acquisition/base/rng.h"
+#include "tod/measures/temporal_noise.h"
 
 namespace todbench {
 namespace {
@@ -109,6 +110,85 @@ TEST(NoiseChange, ComparesPicturesOfTheSameContrast) {
 
 TEST(NoiseChange, OfOnePictureOfEachContrastIsNotKnown) {
   EXPECT_FALSE(noise_change(std::vector<PictureNoise>{{16.9, 0.07, 0.0}, {0.23, 0.8, 0.0}}));
+}
+
+/// Noise of an average of small frames, half of its variance that of whole rows; `memory`: correlation of successive
+/// frames.
+struct SmallAverage {
+  int frames = 4, rows = 24, columns = 32;
+  double noise_k = 0.07, memory = 0;
+};
+
+/// Estimated like in an average of a run: differences without the change of the whole frame.
+PictureNoise noise_of(const SmallAverage& average, const RandomStream& stream) {
+  std::uint64_t draw = 0;
+  const double sd = average.noise_k / std::sqrt(2.0), fresh = std::sqrt(1 - average.memory * average.memory);
+  std::vector<cv::Mat1d> seen;
+  for (int k = 0; k < average.frames; ++k) {
+    cv::Mat1d frame(average.rows, average.columns);
+    for (int y = 0; y < average.rows; ++y) {
+      const double row = stream.normal(draw++);
+      for (int x = 0; x < average.columns; ++x) frame(y, x) = sd * (row + stream.normal(draw++));
+    }
+    seen.push_back(k == 0 ? frame : cv::Mat1d(average.memory * seen.back() + fresh * frame));
+  }
+  const auto mean_square = [&](int lag) {
+    double sum = 0;
+    for (std::size_t k = static_cast<std::size_t>(lag); k < seen.size(); ++k) {
+      cv::Scalar mean, deviation;
+      cv::meanStdDev(seen[k] - seen[k - static_cast<std::size_t>(lag)], mean, deviation);
+      sum += deviation[0] * deviation[0] / 2;
+    }
+    return sum / (average.frames - lag);
+  };
+  const int lag = std::min(8, average.frames / 4);
+  PictureNoise out{.set_delta_t_k = 16.9,
+                   .noise_k = std::sqrt(mean_square(1)),
+                   .frames = average.frames,
+                   .lines = std::min(average.rows, average.columns)};
+  if (lag >= 2) out.lag1_correlation = first_order_correlation(mean_square(lag) / mean_square(1), lag);
+  return out;
+}
+
+struct ChangesFound {
+  int noise = 0, correlation = 0;
+};
+
+/// Runs of two averages.
+ChangesFound changes_found(const SmallAverage& first, const SmallAverage& later, std::uint64_t runs) {
+  ChangesFound found;
+  for (std::uint64_t seed = 0; seed < runs; ++seed) {
+    const RandomStream stream(seed, "small average");
+    const std::vector<PictureNoise> run{noise_of(first, stream.sub(0)), noise_of(later, stream.sub(1))};
+    const auto correlation = correlation_change(run);
+    found.noise += noise_change(run)->beyond() ? 1 : 0;
+    found.correlation += correlation && correlation->beyond() ? 1 : 0;
+  }
+  return found;
+}
+
+// With limits for 16 frames of 120 rows, 4 % of the right runs with four frames were called changed.
+TEST(NoiseChange, HasFewFalseAlarmsOfFewFramesOfASmallPicture) {
+  for (const int frames : {2, 4, 8, 16}) {
+    const SmallAverage same{.frames = frames};
+    const ChangesFound found = changes_found(same, same, 2000);
+    EXPECT_LE(found.noise, 2) << frames;
+    EXPECT_LE(found.correlation, 2) << frames;
+  }
+}
+
+TEST(NoiseChange, FindsTwiceTheNoiseAndAFilterInASmallPicture) {
+  EXPECT_GE(changes_found({}, {.noise_k = 0.14}, 200).noise, 198);
+  EXPECT_GE(changes_found({.frames = 16}, {.frames = 16, .memory = 0.7}, 200).correlation, 198);
+}
+
+TEST(NoiseChange, HasTheLimitsOfSixteenFramesOfALargePicture) {
+  const std::vector<PictureNoise> large{{16.9, 0.07, 0.0}, {16.9, 0.07, 0.0}};
+  EXPECT_EQ(noise_change(large)->limit, most_noise_change);
+  EXPECT_EQ(correlation_change(large)->limit, most_correlation_change);
+  // Two frames: 5 sqrt(2 / 4 * 2 (1/480 + 1/57600)) by hand.
+  const std::vector<PictureNoise> two{{16.9, 0.07, {}, 2}, {16.9, 0.07, {}, 2}};
+  EXPECT_NEAR(noise_change(two)->limit, 5 * std::sqrt(1.0 / 480 + 1.0 / 57600), 1e-12);
 }
 
 /// The first frame of an average has `share` of the picture before.
