@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <map>
+#include <memory>
 #include <string>
 
 #include "acquisition/core/judged_picture.h"
@@ -22,8 +24,11 @@ struct Scan {
   int set_ups = 4;
 };
 
+/// Pictures without noise by scan.moves, set-up and place: the same for every seed.
+using ScanPictures = std::map<std::array<double, 3>, std::shared_ptr<const cv::Mat1f>>;
+
 /// Why the watch refuses the scan; empty: it does not.
-inline std::string refusal_of(const Scan& scan, std::uint64_t seed) {
+inline std::string refusal_of(const Scan& scan, std::uint64_t seed, ScanPictures& pictures) {
   SensorSpec spec = sc2000();
   spec.fixed_pattern_k = scan.fixed_pattern_k;
   const SensorModel model(spec, full_plan(spec, {}, {}), Accuracy::draft(), seed);
@@ -42,7 +47,9 @@ inline std::string refusal_of(const Scan& scan, std::uint64_t seed) {
     for (std::uint64_t k = 0; k < 4; ++k) {
       PlateScene there = scene;
       there.centre_px += scan.moves * dither_px(2, k);
-      signals.at(k) = model.unit_signal(there);
+      auto& picture = pictures[{scan.moves, static_cast<double>(set_up), static_cast<double>(k)}];
+      if (!picture) picture = model.unit_signal(there);
+      signals.at(k) = picture;
     }
     const auto kelvin_of = [&](std::uint64_t k, double contrast_k) {
       Frame frame;
@@ -65,6 +72,11 @@ inline std::string refusal_of(const Scan& scan, std::uint64_t seed) {
       return looked.error().message;
   }
   return "";
+}
+
+inline std::string refusal_of(const Scan& scan, std::uint64_t seed) {
+  ScanPictures pictures;
+  return refusal_of(scan, seed, pictures);
 }
 
 }  // namespace todbench::test
