@@ -19,23 +19,24 @@ namespace todbench {
 /// Opens and starts a recording, by file or by id, as the input of a command, and prints its warnings.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> started_recording(Console& console, const std::string& id);
 
-/// Judges the damages that a gate counted in so many frames, each alone. Error: `integrity` if more than 1 % of the
-/// frames have one of `damages`.
+/// Checks the damages that a gate counted in `frames` frames, each kind separately. Errors: `integrity` if more than 1
+/// % of the frames have one of `damages`.
 [[nodiscard]] Result<void> judge_damages(const std::map<Rejection, std::uint64_t>& rejected, std::uint64_t frames,
                                          std::span<const Rejection> damages);
 
-/// Judges every frame of a recording of a static scene in order. Repeated frames, gaps and pixels at an end of the
-/// counts are left to the command, which knows their effect on its number.
+/// Check of every frame of a recording of a static scene, in order. Repeated frames, gaps, and pixels at the lowest or
+/// highest count are left to the command, because their effect depends on its result.
 class InputGate {
  public:
-  /// Whether the frame is a valid exposure, new or a repetition of the one before.
+  /// Returns whether the frame is a valid exposure, new or a repetition of the previous one.
   [[nodiscard]] bool takes(const Frame& frame);
-  /// Call after the last frame. `integrity` if more than 1 % of the frames are damaged. A valid recording has none:
-  /// less than one frame in 10^6 looks byte-swapped, rearranged or equal to an older one by chance.
+  /// Returns the result; call it after the last frame. Errors: `integrity` if more than 1 % of the frames are damaged.
+  /// A valid recording passes: less than one frame in 10^6 appears byte-swapped, rearranged or equal to an older one by
+  /// chance.
   [[nodiscard]] Result<void> verdict() const;
-  /// A sentence about the frames left out of a recording that passes; empty if there are none.
+  /// Returns a sentence about the frames left out of a recording that passes; empty if there are none.
   [[nodiscard]] std::string note() const;
-  /// A sentence if the camera sends each exposure several times; otherwise empty.
+  /// Returns a sentence if the camera sends each exposure several times; otherwise empty.
   [[nodiscard]] std::string cadence() const { return cadence_.sentence(); }
 
  private:

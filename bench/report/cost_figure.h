@@ -10,10 +10,10 @@
 
 namespace todbench {
 
-/// Plot of the error of a result over its wall time: tolerance, draws, trials and planner; the chosen point is marked.
-/// Both axes are logarithmic. Without measurements the axes are empty.
+/// Returns the plot of the error of a result over its processor time: tolerance, draws, trials and planner, with the
+/// chosen point marked. Both axes are logarithmic. Without measurements the axes are empty.
 [[nodiscard]] Plot cost_result_plot(const CostFrontier& frontier);
-/// Plot of the error of each numerical knob over wall time; errors below 0.001 % are drawn at 0.001 %.
+/// Returns the plot of the error of each numerical knob over processor time; errors below 0.001 % are drawn at 0.001 %.
 [[nodiscard]] Plot cost_knob_plot(const CostFrontier& frontier);
 /// Returns both figures, one above the other, as an SVG file.
 [[nodiscard]] Result<std::string> cost_document(const CostFrontier& frontier);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures into a session: trials and presentations are on the disk as soon as they are made.
+// Measurement into a session: trials and presentations are on the disk as soon as they are made.
 #pragma once
 
 #include <stop_token>
@@ -14,7 +14,8 @@
 namespace todbench {
 
 /// Measures as measure() does, and writes trials and presentations one by one. A disk error stops the run with `io`;
-/// then the trials on the disk count. `kept`: binary reduces graded answers to those to the first frame.
+/// the trials already on the disk remain valid. If `kept` is binary, each graded answer is reduced to the binary answer
+/// to its first frame.
 [[nodiscard]] Result<MeasurementResult> record_trials(const OpenSession& open, OpenedBench& bench, Observer& observer,
                                                       TrialSchedule& schedule, const MeasurementOptions& options,
                                                       SessionCurve which, AnswerKind kept, std::stop_token stop);

@@ -14,8 +14,10 @@
 
 namespace todbench {
 
+/// Program that signs and verifies.
 enum class SigningProgram { minisign, openssl };
 inline constexpr std::array signing_programs{SigningProgram::minisign, SigningProgram::openssl};
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(SigningProgram program);
 
 /// Content of signature.json. The signature itself is manifest.json.minisig or manifest.json.sig.
@@ -26,9 +28,11 @@ struct SessionSignature {
   std::string manifest_file_sha256{};  ///< SHA-256 of the file manifest.json; empty if the time is not signed
   std::string public_key{};            ///< in the format of its program
   bool signs_time = true;              ///< signature.json is signed too; false in sessions of earlier versions
+  /// Returns the SHA-256 of the public key.
   [[nodiscard]] std::string key_sha256() const;
 };
 
+/// Returns whether the session has a signature. Does not verify it.
 [[nodiscard]] bool is_signed(const std::filesystem::path& folder);
 /// Fails if the session is signed, because a signed session is never modified. Errors: `invalid_input` with the action
 /// to take.
@@ -47,6 +51,7 @@ struct ReportRevision {
   std::string utc, reason;
 };
 
+/// Result of a verification.
 struct SignatureCheck {
   SessionSignature signature;
   bool valid = false;

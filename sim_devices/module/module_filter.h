@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Filter for the system calls of a module in its own network. Private to the modules.
+// Filter for the system calls of a module in its own network. Private to this folder.
 #pragma once
 
 namespace todbench {
 
-/// File with a seccomp filter for `bwrap --seccomp`. It forbids UNIX sockets, because their paths lead out of the
-/// module's own network; pairs of sockets are allowed. The caller closes it. -1 if system or processor has no filter.
+/// Returns the descriptor of a file with a seccomp filter for `bwrap --seccomp`, which the caller closes; -1 if there
+/// is no filter for the system or processor. The filter forbids UNIX sockets, because their paths lead out of the
+/// network of the module; pairs of sockets are allowed.
 [[nodiscard]] int module_filter();
 
 }  // namespace todbench
