@@ -24,14 +24,15 @@ namespace todbench {
 /// counts are left to the caller, who knows their effect on the number.
 class InputGate {
  public:
-  /// Whether the frame is a valid exposure, new or a repetition of the one before.
+  /// Returns whether the frame is a valid exposure, new or a repetition of the previous one.
   [[nodiscard]] bool takes(const Frame& frame);
-  /// Call after the last frame. `integrity` if more than 1 % of the frames are damaged. A valid recording has none:
-  /// less than one frame in 10^6 looks byte-swapped, rearranged or equal to an older one by chance.
+  /// Returns the result; call it after the last frame. Errors: `integrity` if more than 1 % of the frames are damaged.
+  /// A valid recording passes: less than one frame in 10^6 appears byte-swapped, rearranged or equal to an older one by
+  /// chance.
   [[nodiscard]] Result<void> verdict() const;
-  /// A sentence about the frames left out of a recording that passes; empty if there are none.
+  /// Returns a sentence about the frames left out of a recording that passes; empty if there are none.
   [[nodiscard]] std::string note() const;
-  /// A sentence if the camera sends each exposure several times; otherwise empty.
+  /// Returns a sentence if the camera sends each exposure several times; otherwise empty.
   [[nodiscard]] std::string cadence() const { return cadence_.sentence(); }
   /// Byte order of all frames that are not incomplete or damaged.
   [[nodiscard]] const ByteOrderWatch& byte_order() const { return byte_order_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of commands that look at a scene through air with a sensor.
+// Options of commands that observe a scene through air with a sensor.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// The chain from a scene to the answer.
+/// Parts from a scene to the answer of an observer.
 struct SeeingChain {
   SensorSpec sensor;
   TemplateObserverSpec observer;
@@ -19,17 +19,21 @@ struct SeeingChain {
   Atmosphere air;
 };
 
-/// Adds --display: the plan with the display of an observer with an eye.
+/// Adds --display: the plan that states the display for an observer with an eye.
 void add_display_option(CLI::App& command, std::string& display);
-/// Loads an observer. One with an eye needs the name or file of a plan with a section [display]. Errors: those of the
-/// loaders; `invalid_input` for an eye without a display.
+/// Loads an observer. An observer with an eye requires `display`, the name or file of a plan with a section [display].
+/// Errors: those of the loaders; `invalid_input` for an eye without a display.
 [[nodiscard]] Result<TemplateObserverSpec> load_observer_at(const std::string& observer, const std::string& display);
 
-/// Lives as long as the command.
+/// Options of a chain; they outlive the parser.
 struct ChainOptions {
+  /// Names or files. `sensor`: sensor. `observer`: observer. `display`: plan that states the display for an observer
+  /// with an eye; empty: none. `atmosphere`: air path. `haze`: aerosol of the shipped atmospheres. `accuracy`: draft,
+  /// normal or reference.
   std::string sensor, observer = "hvs-1", display, atmosphere = "clear", haze = "rural-23km", accuracy = "normal";
+  /// Extinction coefficient of the contrast in 1/km.
   double extinction_per_km = 0;
-  int microscan = 0;  ///< 0: that of the sensor
+  int microscan = 0;  ///< samples per pitch and axis; 0: as in the sensor file
 
   /// Adds --sensor, which is required.
   void add_sensor_to(CLI::App& command);

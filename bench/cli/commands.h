@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The subcommands. Each adds itself to the parser and sets the action that returns its exit code.
+// Subcommands of the program. Each adds itself to the parser and sets the action that returns its exit code.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,6 +16,7 @@ namespace todbench {
 struct CommonOptions {
   ConsoleOptions console;
   std::uint64_t seed = 1;
+  /// True if --seed was stated.
   bool seed_given = false;
 };
 
@@ -37,6 +38,7 @@ void finish_command(CLI::App& command, Program& program, std::function<int(Conso
 /// Prints the error and returns its exit code.
 [[nodiscard]] int report_error(Console& console, const Error& error);
 
+/// Add the subcommand of this name to `app`.
 void add_fit_command(CLI::App& app, Program& program);
 void add_render_command(CLI::App& app, Program& program);
 void add_mtf_command(CLI::App& app, Program& program);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// todbench compare --boresight: change of the line of sight between two sessions.
+// Option --boresight of `todbench compare`: change of the line of sight between two sessions.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// A session and its folder as stated. Borrowed for the call.
+/// Session with its folder as stated on the command line. Borrowed for the call.
 struct NamedSession {
   const std::string& folder;
   const Session& session;

@@ -15,21 +15,23 @@
 
 namespace todbench {
 
+/// Output options.
 struct ConsoleOptions {
-  bool json = false;   ///< standard output gets exactly one JSON object and no other text
+  bool json = false;   ///< standard output contains exactly one JSON object and no other text
   bool quiet = false;  ///< no progress and no notes
 };
 
-/// Cells of one line; table() aligns the columns, numbers are already text.
+/// Cells of one line. table() aligns the columns; numbers are passed as text.
 using TableRow = std::vector<std::string>;
 
-/// Output to a terminal; every text is made safe by valid_text(). One thread at a time.
+/// Output to a terminal. Every text passes valid_text(). One thread at a time.
 class Console {
  public:
   explicit Console(ConsoleOptions options);
 
+  /// Returns whether the output is JSON.
   [[nodiscard]] bool json() const { return options_.json; }
-  /// The one JSON object of the run.
+  /// Writes the only JSON object of the run to standard output.
   void object(const Json& json) const;
   /// Writes text for people to standard output, wrapped at words on a terminal; no output with --json.
   void text(std::string_view line) const;
@@ -38,15 +40,18 @@ class Console {
   void table(const TableRow& header, const std::vector<TableRow>& rows) const;
   /// Writes a sentence to standard error; no output with --quiet.
   void note(std::string_view sentence);
-  /// Writes a sentence to standard error, also with --quiet: without it the following output could be overrated.
+  /// Writes a sentence to standard error, also with --quiet, because the following output could be misinterpreted
+  /// without it.
   void warning(std::string_view sentence);
   /// Writes an error to standard error on one line, also with --quiet.
   void error(std::string_view sentence);
   /// Starts a phase of work; progress() then shows the remaining time: in a bar if standard error is a terminal,
   /// otherwise as a line a minute.
   void phase(std::string_view name);
+  /// Shows the progress of the phase.
   void progress(std::size_t done, std::size_t planned);
-  /// The work stands still until the next progress(): this time does not count for the remaining time.
+  /// Excludes the time until the next progress() from the estimate of the remaining time, because the work does not
+  /// advance.
   void stands_still();
   /// Shows the reason of a wait: in place of the bar on a terminal, otherwise as an occasional line.
   void waiting(std::string_view sentence);
@@ -54,8 +59,9 @@ class Console {
   void picture(const std::vector<std::string>& lines);
   /// Receiver of notes and progress: none, a terminal, or a file or pipe.
   enum class Audience { nobody, terminal, lines };
+  /// Returns the receiver.
   [[nodiscard]] Audience audience() const;
-  /// Columns of the terminal; 80 if unknown.
+  /// Returns the number of columns of the terminal; 80 if unknown.
   [[nodiscard]] std::size_t columns() const;
   /// Removes the bar.
   void end_progress();
@@ -79,9 +85,9 @@ class Console {
 /// Flushes standard output. Errors: `io` if it is full or closed.
 [[nodiscard]] Result<void> finish_output();
 
-/// "0.480", "–" for a missing number, "1.2e-08" if the decimals would be all zero.
+/// Returns "0.480"; "–" for a missing number; "1.2e-08" if all decimals would be zero.
 [[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
-/// "0.468 … 0.493"; an open side is –.
+/// Returns "0.468 … 0.493"; an open side is –.
 [[nodiscard]] std::string range(const Interval& interval, int decimals);
 
 }  // namespace todbench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simulated effects of a command, as a table and as JSON: decided effects first, neutral ones in one line.
+// Simulated effects of a command, as a table and as JSON. Effects that the planner decided come first; neutral effects
+// follow in one line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,29 +13,32 @@
 
 namespace todbench {
 
-/// Options of a command that simulates a sensor. Lives as long as the command.
+/// Options of a command that simulates a sensor; they outlive the parser.
 struct EffectDecisionOptions {
-  bool why = false;      ///< neutral effects with their reasons
-  bool dry_run = false;  ///< only states the effects
+  /// Lists neutral effects with their reasons, instead of in one line.
+  bool why = false;
+  /// Prints the effects and ends without a simulation.
+  bool dry_run = false;
   void add_to(CLI::App& command);
 };
 
-/// Effects of one simulated sensor, with what they promise.
+/// Effects of one simulated sensor, with the bound on the error by skipped effects.
 struct DecidedEffects {
   std::string sensor;
   SensorPlan plan;
-  /// What the skipped effects change at most, or why none is skipped: a sentence.
+  /// Sentence with the largest change that the skipped effects cause, or with the reason why no effect is skipped.
   std::string promise;
 };
 
-/// Why a scene without criterion simulates every effect that is not neutral. `scene`: "bars", "the identification of
-/// targets".
+/// Returns the reason why a scene without criterion simulates every effect that is not neutral. `scene`: "bars", "the
+/// identification of targets".
 [[nodiscard]] std::string no_criterion_for(const std::string& scene);
 
 /// Prints the table of decisions: effects that are neutral in the sensor in one line, or with their reasons.
 void print_effect_table(const Console& console, const SensorPlan& plan, bool why);
+/// Prints the effects of a sensor with the promise.
 void print_effects(const Console& console, const DecidedEffects& effects, const EffectDecisionOptions& options);
-/// Adds "effects" as in `plan` and "promise".
+/// Adds the keys "effects" (as in `plan`) and "promise".
 void add_effects(Json& json, const DecidedEffects& effects);
 /// Prints the effects of each sensor of a dry run, or its JSON object: {"effects", "promise"}, or {"models":
 /// [{"sensor", "effects", "promise"}]} for several sensors. Returns the exit code.

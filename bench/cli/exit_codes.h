@@ -7,6 +7,7 @@
 
 namespace todbench {
 
+/// Exit code with its meaning.
 struct ExitCodeMeaning {
   int code;
   std::string_view words;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Findings of adequacy as text for people.
+// Findings of adequacy, and other tables of results, as text for people.
 #pragma once
 
 #include <optional>
@@ -12,14 +12,15 @@
 
 namespace todbench {
 
-/// Prints one line for each finding, after `about`. Lines of findings that make a number unfit say so.
+/// Prints one line for each finding, after `about`. If a finding makes a number unfit for a decision, the line states
+/// this.
 void print_findings(const Console& console, const std::optional<Adequacy>& adequacy, std::string_view about);
 
 /// Prints time against half-width as a table, with the recommended number of frames.
 void print_frontier(const Console& console, const std::vector<PrecisionChoice>& choices);
 
-/// Prints the ratios by common phases as a table, with the errors that they do not cancel; no output if there are none.
-/// `measured_once`: has_contrast_measured_once() of a camera.
+/// Prints the ratios by common phases as a table, with the errors that these ratios do not cancel; no output without
+/// ratios. `measured_once`: has_contrast_measured_once() of a camera.
 void print_paired(const Console& console, const Comparison& comparison, bool measured_once);
 
 }  // namespace todbench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// People in place of the observer of `todbench identify`: their pictures and their answers.
+// Options of `todbench identify` for people in place of the observer: pictures for people, and evaluation of their
+// answers.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,20 +14,26 @@
 
 namespace todbench {
 
-/// Lives as long as the command.
+/// Options for people; they outlive the parser.
 struct PeopleOptions {
+  /// `folder`: new folder for pictures in random order, with the truth in a separate folder; empty: no pictures are
+  /// written. `m75_out`: file for the M75 of the people, as input of `todbench range --m75-of`; empty: none.
   std::string folder, m75_out;
+  /// Files answers.csv of one or several people, for the pictures that were written with the same options and seed.
   std::vector<std::string> answers;
+  /// Pictures of every target at every range for one person.
   int per_target = 4;
+  /// Adds the options to a command.
   void add_to(CLI::App& command);
+  /// Returns whether people replace the observer.
   [[nodiscard]] bool used() const { return !folder.empty() || !answers.empty(); }
 };
 
-/// Range of 75 % correct in words, or why there is none.
+/// Returns the range of 75 % correct in words, or the reason for its absence.
 [[nodiscard]] std::string range_text(const SetCriterion& r75_m, std::string_view none_because);
-/// M75 and V50 of a set in words, or why there are none.
+/// Returns M75 and V50 of a set in words, or the reason for their absence.
 [[nodiscard]] std::string criteria_text(const IdentificationStudy& study);
-/// M75 or V50 as JSON.
+/// Returns M75 or V50 as JSON.
 [[nodiscard]] Json criterion_json(const SetCriterion& criterion, const std::string& none_because);
 
 /// Writes the pictures, or evaluates the answers. Returns the exit code.

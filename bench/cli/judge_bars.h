@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// todbench judge --bars and --answers: a person judges the bars that a session kept.
+// Options --bars and --answers of `todbench judge`: a person judges the bars that a session kept.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,11 +11,18 @@
 
 namespace todbench {
 
+/// Arguments of both options.
 struct BarsArguments {
+  /// `session`: folder of the session. `out`: new folder for the pictures. `answers`: folder of --bars with the answers
+  /// of a person; empty: no answers are read.
   std::string session, out, answers;
+  /// Writes pictures of bars and spots for a person.
   bool questions = false;
+  /// Selection of decisions.
   BarsRequest request{};
+  /// Facts of the person who answered.
   PersonFacts person{};
+  /// Accepted states of the session.
   Opening opening{};
 };
 

@@ -13,10 +13,11 @@
 
 namespace todbench {
 
-/// Values from the command line: path of the key -> given words. Absent: the value of the plan applies.
+/// Values from the command line: path of the key -> given words. An absent key keeps the value of the plan.
 struct KeyOverrides {
   std::map<std::string, std::vector<std::string>, std::less<>> given;
 
+  /// Returns whether a value was given for a key.
   [[nodiscard]] bool has(std::string_view path) const;
 };
 
@@ -24,12 +25,12 @@ struct KeyOverrides {
 /// the parser.
 void add_key_options(CLI::App& command, OptionOf of, KeyOverrides& overrides, std::string_view without = "");
 
-/// Returns the given value; `invalid_input` "--option: REASON". Precondition: has(path).
+/// Returns the given value. Errors: `invalid_input` "--option: REASON". Precondition: has(path).
 [[nodiscard]] Result<KeyValue> given_value(const KeyOverrides& overrides, std::string_view path);
 /// Sets the given values in the plan, files as absolute paths. Errors: those of given_value().
 [[nodiscard]] Result<void> apply(const KeyOverrides& overrides, Plan& plan);
 
-/// Rewords an error about a key of the plan for a user who gave options and no plan.
+/// Returns an error about a key of the plan in terms of the options, for a user who stated options and no plan.
 [[nodiscard]] Error in_terms_of_options(const Error& error);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stack that is independent of the limit of the shell.
+// Stack whose size does not depend on the limit of the shell.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The seven noise components of a complete recording, without corrections.
+// Seven noise components of a complete recording, without corrections.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace todbench {
 /// Treatment of a recording with a correction of the camera or a moving scene.
 enum class AcrossCorrections { refuse, take };
 
-/// `todbench noise RECORDING --components-only`: prints or writes the components; returns the exit code.
+/// Runs `todbench noise RECORDING --components-only`: prints or writes the components. Returns the exit code.
 [[nodiscard]] int run_noise_components(Console& console, const std::string& recording, AcrossCorrections across);
 
 }  // namespace todbench

@@ -19,20 +19,20 @@ namespace todbench {
 /// Prints, for each limit, time against the probability of a decision, and the decisions of the planned design.
 void print_decisions(const Console& console, const std::vector<DecisionForecast>& forecasts);
 
-/// Key "decide" of `plan --decide --json`.
+/// Returns the value of the key "decide" of `plan --decide --json`.
 [[nodiscard]] Json decisions_json(const std::vector<DecisionForecast>& forecasts);
 
-/// Prints the design of least bench time beside the plan as it was.
+/// Prints the design of least bench time, with the original plan for comparison.
 void print_design(const Console& console, const BestDesign& found);
 
 /// Returns the object of `plan --optimise --json`.
 [[nodiscard]] Json best_design_json(const BestDesign& found);
 
-/// Returns zoom and distance for an observer with an eye, at the largest contrast; empty for others, and if that
-/// contrast has no threshold. Errors: `interrupted`.
+/// Returns zoom and distance for an observer with an eye, at the largest contrast; empty for other observers, and if
+/// that contrast has no threshold. Errors: `interrupted`.
 [[nodiscard]] Result<std::optional<ViewingProposal>> viewing_of(const std::vector<double>& delta_t_k,
                                                                 const ExperimentInputs& inputs, std::stop_token stop);
-/// Key "viewing_proposal" of `plan --json` and `doctor --json`.
+/// Returns the value of the key "viewing_proposal" of `plan --json` and `doctor --json`.
 [[nodiscard]] Json viewing_json(const ViewingProposal& viewing);
 
 /// Returns the design as the text of a plan file.

@@ -15,7 +15,7 @@ struct Program;
 /// process. Prints errors in one line on standard error.
 [[nodiscard]] int run_program(int argc, char** argv, void (*add_commands)(CLI::App&, Program&));
 
-/// The same with the demonstration as the only command.
+/// Runs the program with the demonstration as the only command.
 [[nodiscard]] int run_demonstration(int argc, char** argv);
 
 }  // namespace todbench

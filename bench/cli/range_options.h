@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of `todbench range` besides the TOD curve: air, other models, their curves, figures.
+// Options of `todbench range` other than the TOD curve: air, other models and their curves, figures.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,39 +14,66 @@
 
 namespace todbench {
 
+/// Options of `todbench range`.
 struct RangeOptions {
+  /// Names and files. `atmosphere`: air path (load_atmosphere()). `haze`: aerosol of the built-in atmospheres. `band`:
+  /// spectral band LOW-HIGH in um; empty: that of the sensor. `sensor`: sensor of the formula models; empty: that of
+  /// the session. `mrtd_file`, `mtdp_file`, `ctf_file`: CSV files that replace the formulas. `svg`, `page`: output
+  /// files of the figure and of the page.
   std::string atmosphere, haze = "rural-23km", band, sensor, mrtd_file, mtdp_file, ctf_file, svg, page;
+  /// Computes the MTDP-like curve from the TOD thresholds, by this transfer; empty: by formula or file.
   std::optional<TodTransfer> transfer{};
+  /// Models to evaluate.
   std::vector<RangeModel> models{RangeModel::tod};
+  /// Temperatures in K. `background_k`: background; if stated, the contrast is computed as radiance. `air_k`: air;
+  /// empty: that of the model atmosphere. `surround_k`: reflected surroundings; empty: that of the background.
+  /// `target_contrast`: luminance contrast of the target for TTP; empty: |dT| / (2 scene contrast).
   std::optional<double> background_k, air_k, surround_k, target_contrast;
+  /// Emissivity of target and background.
   double emissivity = 1;
-  double asked_delta_t_k = 0;  ///< as on the command line
+  /// Contrast of the target in K, as stated on the command line.
+  double asked_delta_t_k = 0;
+  /// Source of M75 and V50.
   CriterionSource criterion_source = CriterionSource::published;
-  std::string curve_observer{};  ///< of the session; empty: none
-  std::string m75_observer{};    ///< of the file of --m75-of
+  /// Observer of the TOD curve of the session; empty: no session.
+  std::string curve_observer{};
+  /// Observers that the file of --m75-of states.
+  std::string m75_observer{};
+  /// `n50`, `mtdp_n50`: cycles for 50 % by ACQUIRE and by the MTDP-like model. `extinction_u_percent`,
+  /// `curve_u_percent`: relative standard uncertainties of the extinction, and of the MRTD, MTDP-like and CTF
+  /// thresholds; they widen the intervals.
   double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0, curve_u_percent = 0;
+  /// Relative standard uncertainty of M75 in percent; it widens the interval of the TOD model.
   double m75_u_percent = 0;
+  /// `cn2`: structure parameter of the turbulence along the path, m^(-2/3); 0: none. `tolerance_percent`: change of the
+  /// acuity below which the TOD model skips turbulence.
   double cn2 = 0, tolerance_percent = 1;
-  RangeGridAxes grid{};  ///< no sizes: no grid is requested
+  /// Grid of targets. Without sizes no grid is computed.
+  RangeGridAxes grid{};
+  /// Parameters of the formula models.
   FormulaConditions formula{};
 
   /// Adds the options; `this` outlives the parser.
   void add_to(CLI::App& command);
 
+  /// Returns whether a model is requested.
   [[nodiscard]] bool asks(RangeModel model) const;
-  /// Whether the air is more than one coefficient.
+  /// Returns whether the air is given by more than one extinction coefficient.
   [[nodiscard]] bool has_table() const;
   /// Returns the sensor of --sensor, or that of the session with its microscan.
   [[nodiscard]] Result<std::optional<SensorSpec>> sensor_of(const std::optional<Session>& session) const;
+  /// Returns the air path of the options.
   [[nodiscard]] Result<Atmosphere> air(const std::optional<SensorSpec>& sensor, double extinction_per_km) const;
-  /// Returns the contrast of the target in kelvin at the scale of the NETD, converted once from the radiance of target
-  /// and background; `delta_t_k` itself if no background is given.
+  /// Returns the contrast of the target in kelvin on the scale of the NETD, converted from the radiances of target and
+  /// background; `delta_t_k` itself if no background is given.
   [[nodiscard]] Result<double> equivalent_contrast_k(double delta_t_k, const std::optional<SensorSpec>& sensor,
                                                      const Atmosphere& air) const;
+  /// Returns the inputs that all models share.
   [[nodiscard]] RangeQuestion question(const RangeTask& task, std::optional<double> v50, const Atmosphere& air) const;
+  /// Returns curves and sensor of the models.
   [[nodiscard]] Result<RangeSources> sources(std::vector<TodThreshold> thresholds,
                                              const std::optional<SensorSpec>& sensor) const;
-  /// Writes the requested figure and page; `said`: sentences about the results, for the page.
+  /// Writes the requested figure and page. `said`: sentences about the results, for the page.
   [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question,
                                    const std::vector<std::string>& said, const Json& grids) const;
 
@@ -54,19 +81,21 @@ struct RangeOptions {
   [[nodiscard]] Result<Json> grid_json(const RangeSources& sources, const RangeQuestion& question,
                                        const std::optional<SensorSpec>& sensor) const;
 
+  /// Returns the band of the options, or that of the sensor.
   [[nodiscard]] Result<SpectralBand> band_of(const std::optional<SensorSpec>& sensor) const;
-  /// Precondition: a background is given.
+  /// Returns the radiative scene. Precondition: a background is given.
   [[nodiscard]] RadiativeScene scene(double delta_t_k, const Atmosphere& air) const;
 };
 
-/// "atmosphere": name, source, and effect at the 75 % range of the TOD model.
+/// Returns the value of the key "atmosphere": name, source, and effect at the 75 % range of the TOD model.
 [[nodiscard]] Json atmosphere_json(const Atmosphere& air, const RangeTask& task, std::optional<double> r75_m,
                                    const RangeOptions& options, const std::optional<SensorSpec>& sensor);
-/// "models": the results by name.
+/// Returns the value of the key "models": the results by name.
 [[nodiscard]] Json models_json(const std::vector<ModelRange>& models, const RangeSources& sources,
                                const RangeQuestion& question, std::optional<double> twin_r75_m);
 /// Prints a table of R75 for every model of a grid.
 void print_grid(Console& console, const Json& grid);
+/// Prints the results of the models as a table.
 void print_models(Console& console, const std::vector<ModelRange>& models);
 
 }  // namespace todbench

@@ -8,10 +8,12 @@
 
 namespace todbench {
 
-/// Checks a folder for results: new, empty, or allowed to be overwritten. `invalid_input` in one sentence.
+/// Treatment of a folder with results.
 enum class ExistingResults { refused, overwritten };
+/// Checks that a folder for results is new, empty, or allowed to be overwritten. Errors: `invalid_input` in one
+/// sentence.
 [[nodiscard]] Result<void> check_result_folder(const std::filesystem::path& folder, ExistingResults existing);
-/// The same, and creates it.
+/// Checks the folder in the same way and creates it.
 [[nodiscard]] Result<void> make_result_folder(const std::filesystem::path& folder, ExistingResults existing);
 
 }  // namespace todbench

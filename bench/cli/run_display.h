@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Display of a run on the terminal: phases, progress, waits, the growing curve.
+// Display of a run on the terminal: phases, progress, waits, the TOD curve as it develops.
 #pragma once
 
 #include <chrono>
@@ -12,18 +12,19 @@
 
 namespace todbench {
 
-/// Shows phases, notes, progress and waits, without the curve.
+/// Returns a listener that shows phases, notes, progress and waits, without the curve.
 [[nodiscard]] ExperimentListener listener_of(Console& console);
 
-/// The same with the curve: a picture on a terminal, otherwise an occasional line. Outlives the run.
+/// Display of a run with the curve: a picture on a terminal, otherwise an occasional line. It outlives the run.
 class RunDisplay {
  public:
   /// Viewers of the curve.
   enum class Curve { of_the_terminal, of_others_too };
   RunDisplay(Console& console, const Plan& plan, Curve curve = Curve::of_the_terminal);
 
+  /// Returns the listener of the run.
   [[nodiscard]] ExperimentListener listener();
-  /// The curve, fitted while it grows; null if it has no viewer.
+  /// Returns the curve fitted so far; null if it has no viewer.
   [[nodiscard]] const LiveCurve* curve() const { return curve_ ? &*curve_ : nullptr; }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace todbench {
 
-/// Parts of the output that not every command has.
+/// Parts of the output that only some commands have.
 struct RunShown {
   bool curve = true;     ///< printed; the JSON object has it always
   bool effects = false;  ///< of the simulated sensor, printed
@@ -18,11 +18,12 @@ struct RunShown {
 /// Prints curve, comparison, uncertainty, measures, bill and verdict of a run, or its JSON object, and returns the exit
 /// code.
 [[nodiscard]] int show_run(Console& console, const ExperimentOutcome& outcome, const RunShown& shown = {});
-/// The printed text of show_run().
+/// Prints the text of show_run().
 void print_run(const Console& console, const ExperimentOutcome& outcome, const RunShown& shown);
-/// Names the session, or why the run ended early, and returns the exit code.
+/// Prints the session, or the reason of an early end, and returns the exit code.
 [[nodiscard]] int finish_run(Console& console, const ExperimentOutcome& outcome);
 
+/// Prints the curve as a table.
 void print_curve(const Console& console, const TodCurve& curve);
 [[nodiscard]] AccuracyBill bill_of(const ExperimentOutcome& outcome);
 /// Adds the verdict to the JSON of a run.

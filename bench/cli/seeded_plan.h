@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plan with the seed of --seed.
+// Plan with the seed of --seed.
 #pragma once
 
 #include "bench/cli/commands.h"

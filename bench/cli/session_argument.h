@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session folder on the command line.
+// Session folder on the command line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,7 +17,7 @@ void add_accept_changed(CLI::App& command, bool& accepted);
 
 /// Calls open_session(); reports accepted changes on standard error, also with --quiet.
 [[nodiscard]] Result<Session> opened(Console& console, const std::string& folder, const Opening& opening);
-/// "s: changed, removed or added after the session ended: fits.json"; empty if no change was accepted.
+/// Returns "s: changed, removed or added after the session ended: fits.json"; empty if no change was accepted.
 [[nodiscard]] std::string accepted_sentence(const std::string& folder, const Session& session);
 /// Adds "accepted_changes" to the JSON output of a command, if changes may be accepted.
 void add_accepted_changes(Json& json, const Opening& opening, const std::vector<std::string>& files);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plan of `todbench simulate`: a file with overrides from the command line, or the command line alone.
+// Plan of `todbench simulate`: a file with overrides from the command line, or the command line alone.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 
 namespace todbench {
 
-/// Overrides from the command line; absent ones leave the plan as it is. A sensor brings its own microscan, a tolerance
-/// alone sets the accuracy for it, and effects to skip or force are added to those of the plan.
+/// Overrides from the command line; absent ones leave the plan unchanged. A sensor also sets its microscan. A tolerance
+/// alone also sets the accuracy. Effects to skip or force are added to those of the plan.
 struct SimulationOverrides {
   std::string plan;  ///< name or file; empty: the options define the simulation
   std::optional<std::uint64_t> seed;
   KeyOverrides keys;
 };
 
-/// Returns the plan with the overrides, checked like a plan file. Without a plan file the plates stand at a distance
-/// that suits the sensor, from a draft estimate. Errors: `invalid_input` naming the option, `interrupted`.
+/// Returns the plan with the overrides, checked like a plan file. Without a plan file, the distance of the plates is
+/// chosen for the sensor by a draft estimate. Errors: `invalid_input` naming the option, `interrupted`.
 [[nodiscard]] Result<LoadedPlan> simulation_plan(const SimulationOverrides& overrides, std::stop_token stop);
 
 }  // namespace todbench

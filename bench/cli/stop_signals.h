@@ -9,14 +9,15 @@
 namespace todbench {
 
 /// Turns SIGINT, SIGTERM and SIGHUP into a stop request, except signals that the parent process set to be ignored
-/// (nohup, background jobs). A second signal ends the process at once with exit code 130. Create before any other
-/// thread starts: threads inherit the blocked signals.
+/// (nohup, background jobs). A second signal ends the process at once with exit code 130. Create it before any other
+/// thread starts, because threads inherit the blocked signals.
 class StopSignals {
  public:
   StopSignals();
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
+  /// Returns the token of the stop request.
   [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
   /// Waits for a signal.
   void wait();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `todbench sweep tasks` and `submit`: the task list for the scheduler of a laboratory.
+// Commands `todbench sweep tasks` and `submit`: the task list for the scheduler of a laboratory.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,26 @@ namespace todbench {
 
 /// Arguments of the parts of `todbench sweep`.
 struct SweepArguments {
+  /// `file`: sweep file. `scheduler`: of `tasks`: parallel, slurm, gridengine, snakemake or make. `engine`: of
+  /// `submit`: local or slurm. `options_file`: file with scheduler options of the site; empty: none. `csv`, `sqlite`,
+  /// `page`: output files of `collect`; empty: default beside the results, or no page. `response`: column whose
+  /// dependence on the parameters is computed; empty: default of the kind of sweep.
   std::string file, scheduler = "parallel", engine = "local", options_file, csv, sqlite, page, response;
+  /// `index`: index of the task to run, or of the chunk with --chunk. `jobs`: number of parallel processes. Empty: not
+  /// stated.
   std::optional<std::size_t> index, jobs;
+  /// Tasks to run as FIRST-LAST, both included; empty: not stated.
   std::string range;
-  std::size_t chunk = 0;  ///< 0: not given
+  /// Number of tasks per index; 0: not stated.
+  std::size_t chunk = 0;
+  /// Command that starts todbench on the computers of the scheduler.
   std::string program = "todbench";
+  /// `list`: lists every task. `predict`: predicts the time per task. `partial`: skips tasks without a result, which
+  /// are otherwise an error. `dry_run`: writes the script without submitting it.
   bool list = false, predict = false, partial = false, dry_run = false;
 };
 
-/// Prints the list or script without submitting it; returns the exit code.
+/// Prints the task list or script without submitting it; returns the exit code.
 [[nodiscard]] int print_tasks(Console& console, const SweepArguments& a);
 /// Writes the script next to the results and, unless it is a dry run, calls sbatch; returns the exit code.
 [[nodiscard]] int submit_to_slurm(Console& console, SweepArguments a);

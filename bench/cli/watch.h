@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows a growing session that another process writes.
+// Display of a session that another process is writing.
 #pragma once
 
 #include <filesystem>

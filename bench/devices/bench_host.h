@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The host of a measurement on an opened bench.
+// Host of a measurement on an opened bench.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Settings read back from a camera: compared with the written ones, and at the end of a run with its start.
+// Settings read back from a camera: comparison with the written ones, and of the end of a run with its start.
 #pragma once
 
 #include <map>
@@ -11,16 +11,17 @@
 
 namespace todbench {
 
-/// Whether a feature, by its name, affects the meaning of a count: gain, range, case, temperature scale, radiometric
-/// constants, object parameters, exposure.
+/// Returns whether a feature, judged by its name, affects the meaning of a count: gain, range, case, temperature scale,
+/// radiometric constants, object parameters, exposure.
 [[nodiscard]] bool scales_counts(std::string_view feature);
 
-/// Whether two values are the same: equal text ignoring case, the same switch (1, true, on), or numbers within 0.1 %,
-/// because devices round.
+/// Returns whether two values are the same: equal text ignoring case, the same switch (1, true, on), or numbers that
+/// differ by at most 0.1 %, because devices round.
 [[nodiscard]] bool same_setting(std::string_view written, std::string_view read);
 
 /// Reads back the written features. Returns a sentence for each feature with another value. Features that cannot be
-/// read (commands) are left out. Errors: `calibration` (a feature with another value scales counts), `disconnected`.
+/// read (commands) are left out. Errors: `calibration` (a feature that scales counts has another value),
+/// `disconnected`.
 [[nodiscard]] Result<std::vector<std::string>> check_written_settings(
     FrameSource& camera, const std::map<std::string, std::string>& written);
 
@@ -32,7 +33,7 @@ struct ChangedSetting {
 /// Reads the settings of `at_start` again and returns the changed ones. Ignores temperatures of the camera, connection
 /// parameters and correction modes. Returns an empty list if the camera no longer answers.
 [[nodiscard]] std::vector<ChangedSetting> changed_settings(FrameSource& camera, const SourceInfo& at_start);
-/// "SensorGainMode was HighGain at the start and is LowGain at the end"
+/// Returns "SensorGainMode was HighGain at the start and is LowGain at the end".
 [[nodiscard]] std::string sentence(const ChangedSetting& changed);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opens the devices that a plan names.
+// Devices that a plan names: cameras, targets and the bench of both.
 #pragma once
 
 #include <chrono>
@@ -25,38 +25,38 @@ namespace todbench {
 /// Receives progress messages while a camera is opened, one sentence each.
 using SayProgress = std::function<void(std::string_view sentence)>;
 
-/// All back ends of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors. `stop` aborts a slow
-/// opening (`interrupted`); `on_progress` is called about once a second.
+/// Returns all back ends of this build: GigE Vision, USB3 Vision, V4L2, recordings, simulated sensors. `stop` aborts a
+/// slow opening (`interrupted`); `on_progress` is called about once a second.
 [[nodiscard]] CameraRegistry camera_registry(std::stop_token stop = {}, const SayProgress& on_progress = {});
 
-/// Opens a camera as soon as it answers: it may be off, or belong to a killed program until the time of its heartbeat
-/// is over. Errors: those of CameraRegistry::open(); only `not_found` is waited for. `stop` ends the wait with
-/// `interrupted`.
+/// Opens a camera as soon as it responds. A camera may be off, or be controlled by a killed program until its heartbeat
+/// times out. Errors: those of CameraRegistry::open(); the function waits only after `not_found`. `stop` ends the wait
+/// with `interrupted`.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_when_there(const std::string& id,
                                                                    const CameraPatience& patience, std::stop_token stop,
                                                                    const SayProgress& on_progress = {});
 
-/// The library behind GigE Vision and USB3 Vision cameras.
+/// Library behind GigE Vision and USB3 Vision cameras.
 struct CameraLibrary {
-  std::string version;              ///< "Aravis 0.8.26", the one that runs
+  std::string version;              ///< version at run time, "Aravis 0.8.26"
   std::vector<std::string> faults;  ///< known faults of this version, one sentence each
 };
-/// Empty: this build has none.
+/// Returns the library; empty if this build has none.
 [[nodiscard]] std::optional<CameraLibrary> camera_library();
 
-/// A camera, the target in front of it, and the host that controls a measurement with them.
+/// Camera, target in front of it, and host that controls a measurement with both.
 struct OpenedBench {
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<Target> target;
   bool simulated = false;                 ///< the camera is a sensor model and provides the clock
   std::chrono::milliseconds patience{0};  ///< time to wait for a lost camera; 0 in a replay
   std::unique_ptr<RunController> host = std::make_unique<UnattendedHost>();  ///< may use `camera`
-  std::vector<std::string> warnings{};  ///< settings that read back otherwise, one sentence each
+  std::vector<std::string> warnings{};  ///< settings whose read-back differs, one sentence each
 };
 
 /// Opens the devices of the plan and writes its settings into the camera. Errors: `not_found`, `invalid_input` (the
-/// target cannot work with this camera, or a setting is refused), `calibration` (a setting that scales counts reads
-/// back otherwise), `interrupted`. `host` controls the measurement; `on_wait` is called while the target
+/// target cannot work with this camera, or a setting is refused), `calibration` (a setting that scales counts has
+/// another value on read-back), `interrupted`. `host` controls the measurement; `on_wait` is called while the target
 /// settles.
 [[nodiscard]] Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop,
                                              const ExperimentHost& host = {}, const SayProgress& on_progress = {},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A monitor in front of the camera: the bench draws the plate on it, with mountings and shifts.
+// Monitor in front of the camera: the bench draws the plate on it, with mountings and shifts.
 #pragma once
 
 #include <chrono>
@@ -24,11 +24,15 @@ struct DisplayTone {
   /// Measured luminance at equally spaced levels from black to white, rising, any unit, linear between them. More than
   /// two values replace gamma.
   std::vector<double> luminance{0, 1};
+  /// Returns whether the light is proportional to the level.
   [[nodiscard]] bool in_proportion() const { return luminance.size() < 3 && gamma == 1; }
+  /// Returns the light of a level, both from 0 to 1.
   [[nodiscard]] double light_of(double level) const;
+  /// Returns the level of a light, both from 0 to 1.
   [[nodiscard]] double level_of(double light) const;
 };
 
+/// Options of display_target().
 struct DisplayTargetOptions {
   std::vector<TargetPlate> plates;  ///< in identity mounting
   DisplayGeometry display{};
@@ -44,16 +48,16 @@ struct DisplayTargetOptions {
 /// target reports the contrast that the two levels give. Mountings and sub-pixel shifts are drawn by exact area: a
 /// pixel has the level of the mean light over its area. After each picture the screen has to show the drawn levels,
 /// every pixel within half a level. Errors of present(): `invalid_input` (unknown plate, plate larger than the display,
-/// contrast beyond the span or with fewer than 16 levels: edges would be off by more than 1/32 of a pixel); `integrity`
-/// (the screen shows other levels); those of `show`.
+/// contrast beyond the span, or with fewer than 16 levels, which would shift edges by more than 1/32 of a pixel);
+/// `integrity` (the screen shows other levels); those of `show`.
 [[nodiscard]] std::unique_ptr<Target> display_target(DisplayTargetOptions options, ShowLevels show);
 
-/// Background and pattern level of a contrast.
+/// Background and pattern level for a contrast.
 struct DisplayLevels {
   int ground = 0, pattern = 0;  ///< 0 to 255
   double light_difference = 0;  ///< pattern minus background, as a fraction of white minus black; signed
 };
-/// `contrast`: fraction of the span, -1 to 1.
+/// Returns the levels for `contrast`, a fraction of the span from -1 to 1.
 [[nodiscard]] DisplayLevels display_levels(double contrast, const DisplayTone& tone);
 
 /// Creates the target together with the program that shows its pictures. First shows a flat picture at half the light.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emulated laboratory of `emulate`, `demo` and the window.
+// Emulated laboratory of `emulate`, `demo` and the window.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +14,33 @@
 
 namespace todbench {
 
-/// Names for `--camera` of the cameras that this build can emulate: "gige", "gige-ax5" and other families on plain
-/// sockets, "u3v" (USB3 Vision), "seek" (a CompactPRO; the sensor has to have 320 x 240 pixels), "v4l2" (Y16 with
-/// telemetry, like a Lepton), "v4l2-yuyv" (temperatures below a picture, like a Tiny1).
+/// Returns the names for `--camera` of the cameras that this build can emulate: "gige", "gige-ax5" and other families
+/// on plain sockets, "u3v" (USB3 Vision), "seek" (a CompactPRO; the sensor has to have 320 x 240 pixels), "v4l2" (Y16
+/// with telemetry, like a Lepton), "v4l2-yuyv" (temperatures below a picture, like a Tiny1).
 [[nodiscard]] std::vector<std::string> emulated_cameras();
 
 /// Restarts the program under the preload library if `camera` needs an emulated device node. Call it first in main().
 void enter_emulation(const std::string& camera);
 
+/// Arguments of `todbench emulate`.
 struct EmulationArguments {
-  std::string camera = "gige";    ///< one of emulated_cameras()
-  std::string sensor = "sc2000";  ///< name or file
-  std::string interface_address = "127.0.0.1";
-  std::string serial = "TB0001";
+  std::string camera = "gige";                  ///< one of emulated_cameras()
+  std::string sensor = "sc2000";                ///< name or file
+  std::string interface_address = "127.0.0.1";  ///< IPv4 address of the interface of the camera
+  std::string serial = "TB0001";                ///< serial number of the camera
   std::vector<std::string> plates{"tcat-a", "tcat-b", "edge", "bars", "apertures", "mrtd", "open"};  ///< all shipped
-  double distance_m = 2;
+  double distance_m = 2;  ///< distance from camera to plate, or focal length of the collimator
   std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses
   /// Standard deviation of the stage position while the stage moves.
   double stage_jitter_mm = 0;
-  /// Collimator before the plate: its transmission, the temperature of its mirrors, its blur. The distance is then its
+  /// Collimator in front of the plate: transmission, temperature of the mirrors, and blur. `distance_m` is then the
   /// focal length.
   double collimator_transmission = 1, collimator_mirror_c = 21.85, collimator_blur_mrad = 0;
-  double latency_ms = 0;                      ///< of the time stamps of frames
-  bool celsius = false;                       ///< the black body answers absolute temperatures in degrees Celsius
-  double black_body_time_constant_s = 0.004;  ///< of the approach to a set-point, > 0
-  /// Drift of the camera after a correction, initial rate in K/min: mean of the picture, standard deviation over the
-  /// pixels; their time constant, 0: linear drift.
+  double latency_ms = 0;                      ///< latency of the time stamps of frames
+  bool celsius = false;                       ///< the black body reports absolute temperatures in degrees Celsius
+  double black_body_time_constant_s = 0.004;  ///< time constant of the approach to a set-point, > 0
+  /// Drift of the camera after a correction: initial rates of the mean of the picture and of the standard deviation
+  /// over the pixels (K/min), and their time constant (s; 0: linear drift).
   double drift_k_per_min = 0, drift_pattern_k_per_min = 0, drift_time_constant_s = 0;
   bool trigger = true;  ///< the stage reports the start of a run in the camera's clock
   /// Picture in .npy format, levels from 0 to 1, shown by a monitor in front of the camera. Read again after each
@@ -53,6 +54,7 @@ struct EmulationArguments {
 /// Returns the laboratory for a plan: its sensor, plates and distance, on ports that the system chooses.
 [[nodiscard]] EmulationArguments emulation_for(const Plan& plan);
 
+/// Length of the demonstration.
 enum class DemonstrationLength {
   quick,  ///< without the parts of the plan 'acceptance' that need many frames of their own
   full,   ///< the plan 'acceptance'
@@ -62,7 +64,7 @@ enum class DemonstrationLength {
 [[nodiscard]] Result<Plan> demonstration_plan(DemonstrationLength length);
 
 #ifdef TODBENCH_WITH_ARAVIS
-/// Options of start_laboratory(). Errors: those of sensor and plates.
+/// Returns the options of start_laboratory(). Errors: those of sensor and plates.
 [[nodiscard]] Result<LaboratoryOptions> laboratory_options(const EmulationArguments& arguments);
 
 /// Starts camera, black body and plate stage. They settle faster than a real bench: black body with 4 ms time constant

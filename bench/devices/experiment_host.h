@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The host that controls an experiment.
+// Host that controls an experiment.
 #pragma once
 
 #include <chrono>
@@ -23,29 +23,29 @@ struct OpenedBench;
 /// Stages of an enhancement package, behind the modules of the plan. They process the frames of the camera and of its
 /// twin.
 struct AddedStages {
-  /// Creates the stages. Lines of their standard error are passed on. Empty: there are none.
+  /// Creates the stages and passes on lines of their standard error. Empty: no stages.
   std::function<std::vector<std::unique_ptr<ChainStage>>(const std::function<void(std::string_view line)>&)> make{};
-  int dither = 1;         ///< n: the twin observes n x n places of a pixel in turn, as the recorded stage did
+  int dither = 1;         ///< n: the twin observes n x n positions within a pixel in turn, as the recorded stage did
   int memory_frames = 0;  ///< exposures of the twin that are discarded after a change of the target
-  /// Answers of the recorded run: a recording gives its frames only to the questions of that run. The answers are then
-  /// reduced to right and wrong ones.
+  /// Sets the options of the recorded run. They are required because a recording replays only the questions of that
+  /// run. The answers are then reduced to binary ones. Empty: no recorded run.
   std::function<void(MeasurementOptions& camera)> as_recorded{};
 };
 
-/// How long and how often a camera that is not there yet is opened again.
+/// Repeated attempts to open a camera that is not available yet.
 struct CameraPatience {
-  std::chrono::milliseconds longest{0};  ///< from the call; 0: one attempt
+  std::chrono::milliseconds longest{0};  ///< longest time from the call; 0: one attempt
   std::chrono::milliseconds between_attempts{500};
-  std::function<void(const Error& reason)> on_waiting{};  ///< called after each failed attempt but the last
+  std::function<void(const Error& reason)> on_waiting{};  ///< called after each failed attempt except the last
 };
 
 /// Controls of a run beyond its plan. An ExperimentListener only receives progress.
 struct ExperimentHost {
   /// Lets a run pause between two presentations; null: it never pauses. Outlives the run.
   const Pause* pause = nullptr;
-  /// Answers the requests of a target of kind prompt; empty: asks at the terminal.
+  /// Passes requests of a target of kind prompt to the operator; empty: at the terminal.
   AskOperator ask_operator{};
-  /// Wait for a camera that cannot be opened yet.
+  /// Attempts to open a camera that is not available yet.
   CameraPatience camera_patience{};
   HostClocks clocks = host_clocks();
   AddedStages added{};

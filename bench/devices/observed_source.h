@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera with a second listener to its frames.
+// Camera with a second listener to its frames.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,8 @@
 
 namespace todbench {
 
-/// Returns `camera` with a callback: `on_frame` gets every frame that next() returns, on the thread that calls next().
+/// Returns `camera` with a callback: `on_frame` receives every frame that next() returns, on the thread that calls
+/// next().
 [[nodiscard]] std::unique_ptr<FrameSource> observed_source(std::unique_ptr<FrameSource> camera,
                                                            std::function<void(const Frame&)> on_frame);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pause of a run between two presentations.
+// Pause of a run between two presentations.
 #pragma once
 
 #include <condition_variable>
@@ -8,13 +8,16 @@
 
 namespace todbench {
 
-/// Pause switch: set by one thread, obeyed by another. Thread-safe.
+/// Pause switch: one thread sets it, and another waits while it is set. Thread-safe.
 class Pause {
  public:
+  /// Requests a pause.
   void pause();
+  /// Ends the pause.
   void resume();
+  /// Returns whether a pause is requested.
   [[nodiscard]] bool paused() const;
-  /// Returns at once if not paused; otherwise waits for at most 50 ms, less if resumed or stopped. Returns true if
+  /// Returns immediately if not paused; otherwise waits for at most 50 ms, or until resumed or stopped. Returns true if
   /// still paused.
   [[nodiscard]] bool rest(std::stop_token stop) const;
 

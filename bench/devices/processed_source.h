@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera whose pictures pass through stages.
+// Camera whose pictures pass through stages.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace todbench {
 
 /// Record of the processing so far.
 struct ProcessingRecord {
-  std::vector<double> frame_ms;  ///< of every complete frame, all stages together
+  std::vector<double> frame_ms;  ///< processing time of every complete frame, all stages together
   std::size_t clipped = 0;       ///< pixels clipped at the range of the camera's counts
   cv::Mat1w picture;             ///< output for the requested frame number
 };
@@ -23,11 +23,11 @@ enum class ProcessedAs {
   counts,  ///< Frame::counts, as if the camera had sent them, and Frame::judged; for stages with one sample per pixel
 };
 
-/// Samples per pixel and axis of the output of all stages.
+/// Returns the number of samples per pixel and axis in the output of all stages.
 [[nodiscard]] int samples_per_pixel(const std::vector<std::unique_ptr<ChainStage>>& stages);
 
 /// Returns `camera` with every complete frame passed through all stages in order; outputs are rounded to counts and
-/// clipped to their range. Incomplete frames stay as they are. next() returns the errors of a stage. The picture of the
+/// clipped to their range. Incomplete frames are unchanged. next() returns the errors of a stage. The picture of the
 /// record is that of frame `picture_frame`, counted from 0.
 [[nodiscard]] std::unique_ptr<FrameSource> processed_source(std::unique_ptr<FrameSource> camera,
                                                             std::vector<std::unique_ptr<ChainStage>> stages,

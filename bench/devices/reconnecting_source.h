@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera that reconnects: one FrameSource over several connections to the same camera.
+// Camera that reconnects: one FrameSource over several connections to the same camera.
 #pragma once
 
 #include <chrono>
@@ -15,16 +15,18 @@
 
 namespace todbench {
 
+/// Options of the reconnection.
 struct ReconnectionOptions {
-  std::chrono::milliseconds patience{60000};      ///< a camera away for longer is lost
-  std::map<std::string, std::string> settings{};  ///< of the plan: written first
+  std::chrono::milliseconds patience{60000};      ///< a camera that is away for longer is lost
+  std::map<std::string, std::string> settings{};  ///< settings of the plan, which are written first
 };
 
-/// Reopens the camera. Called on a thread that may outlive an aborted source: the function owns all it needs.
+/// Reopens the camera. Called on a thread that may outlive an aborted source: the function must own all objects that it
+/// uses.
 using ReopenCamera = std::function<Result<std::unique_ptr<FrameSource>>()>;
 
-/// Forwards all calls to the present connection, for every back end. Sequence numbers continue across connections. One
-/// thread at a time, except stop().
+/// Source that forwards all calls to the present connection, for every back end. Sequence numbers continue across
+/// connections. One thread at a time, except stop().
 class ReconnectingSource final : public FrameSource {
  public:
   ReconnectingSource(std::unique_ptr<FrameSource> source, ReopenCamera reopen, ReconnectionOptions options);
@@ -37,14 +39,15 @@ class ReconnectingSource final : public FrameSource {
   [[nodiscard]] Result<void> set(const std::string& feature, const std::string& value) override;
   [[nodiscard]] Result<void> correct_nonuniformity() override;
 
-  /// Reconnects after `disconnected`, from releasing to registering. Returns when the camera with the same serial
-  /// number streams again with the same settings. Errors: `disconnected` (not back in time, or settings, geometry or
-  /// scale differ; the message states which), `interrupted` within 0.1 s of a stop request in every state. A connection
-  /// attempt under way then ends on its own thread.
+  /// Reconnects after `disconnected`, through the states from releasing to registering. Returns when the camera with
+  /// the same serial number streams again with the same settings. Errors: `disconnected` (not back in time, or
+  /// settings, geometry or scale differ; the message states which), `interrupted` within 0.1 s of a stop request in
+  /// every state. A connection attempt under way then ends on its own thread.
   [[nodiscard]] Result<void> recover(std::stop_token stop);
-  /// Confirms that the plate is at its former place: the last step.
+  /// Confirms that the plate is at its former place. This is the last step of a reconnection.
   void confirm_registration();
 
+  /// Returns the state of the connection.
   [[nodiscard]] LinkState state() const { return state_; }
 
  private:
@@ -60,7 +63,7 @@ class ReconnectingSource final : public FrameSource {
 
   ReopenCamera reopen_;
   ReconnectionOptions options_;
-  SourceInfo info_;  ///< of the first connection, with the settings at its loss
+  SourceInfo info_;  ///< description of the camera from the first connection, with the settings at its loss
   LinkState state_ = LinkState::streaming;
   std::string reason_;
   mutable std::mutex mutex_;             ///< guards the pointer
@@ -69,7 +72,7 @@ class ReconnectingSource final : public FrameSource {
   std::uint64_t next_sequence_ = 0;
 };
 
-/// Writes all settings again and compares the camera with its former state. Success: it is the same. Errors:
+/// Writes all settings again and compares the camera with its former state. Succeeds if both are the same. Errors:
 /// `disconnected`; `not_found` with the differences. Temperatures that the camera measures may differ.
 [[nodiscard]] Result<void> restore_settings(FrameSource& source, const std::map<std::string, std::string>& settings,
                                             const SourceInfo& before);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States and transitions between losing a camera and measuring with it again. A pure function; reconnecting_source.h
-// acts on it.
+// States and transitions between the loss of a camera and the continued measurement. A pure function, which
+// reconnecting_source.h executes.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 
 namespace todbench {
 
+/// State of the connection to a camera.
 enum class LinkState {
   streaming,    ///< frames arrive
   releasing,    ///< lost: all objects of the old connection are destroyed
@@ -21,9 +22,10 @@ enum class LinkState {
   aborted,      ///< final: stopped on request
 };
 
+/// Event that changes the state.
 enum class LinkEvent {
   done,         ///< the task of the state succeeded
-  lost,         ///< no frames, no answer
+  lost,         ///< no frames and no response
   failed,       ///< the attempt failed; the next one may succeed
   refused,      ///< the camera is there but differs from before
   out_of_time,  ///< away longer than the patience
@@ -36,6 +38,7 @@ inline constexpr std::array all_link_states{LinkState::streaming, LinkState::rel
 inline constexpr std::array all_link_events{LinkEvent::done,    LinkEvent::lost,        LinkEvent::failed,
                                             LinkEvent::refused, LinkEvent::out_of_time, LinkEvent::abort};
 
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(LinkState state);
 
 /// Returns the state after an event; empty if the event cannot happen in that state.
@@ -49,12 +52,13 @@ inline constexpr std::array all_link_events{LinkEvent::done,    LinkEvent::lost,
 ///   any but a final one                abort -> aborted
 [[nodiscard]] std::optional<LinkState> next_state(LinkState state, LinkEvent event);
 
+/// Returns whether no event leaves the state.
 [[nodiscard]] constexpr bool is_final(LinkState state) {
   return state == LinkState::gave_up || state == LinkState::aborted;
 }
 
-/// Returns the wait before attempt `attempt`, from 0: 0.1 s, doubled each time, at most 3 s, the heartbeat after which
-/// a camera releases a vanished client.
+/// Returns the wait before attempt `attempt`, counted from 0: 0.1 s, doubled each time, at most 3 s. After a heartbeat
+/// of 3 s a camera releases a client that has vanished.
 [[nodiscard]] std::chrono::milliseconds back_off(int attempt);
 
 }  // namespace todbench

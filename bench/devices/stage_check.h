@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks the movements of a stage (signs, axes, scale) by the pictures of the camera.
+// Check of the movements of a stage (signs, axes, scale) with the pictures of the camera.
 #pragma once
 
 #include <stop_token>
@@ -11,8 +11,9 @@
 
 namespace todbench {
 
+/// Result of the check.
 struct StageMovement {
-  double driven_px = 0;  ///< to either side of the centre, along each axis
+  double driven_px = 0;  ///< requested movement to either side of the centre, along each axis
   StageFit fit;          ///< observed positions fitted to requested ones
   std::string cause{};   ///< reason of a deviation, as a clause; empty: the stage moves correctly
 };

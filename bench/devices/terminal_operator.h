@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The operator at the terminal of the program.
+// Operator at the terminal of the program.
 #pragma once
 
 #include "tod/presentation/operator_request.h"
 
 namespace todbench {
 
-/// Writes requests to standard error and reads answers from standard input; the default of a run without another host.
+/// Returns a function that writes requests to standard error and reads answers from standard input. It is the default
+/// of a run without another host.
 [[nodiscard]] AskOperator ask_at_terminal();
 
 }  // namespace todbench

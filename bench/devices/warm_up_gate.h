@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gate before a run: waits until the camera is warm.
+// Wait before a run until the camera has warmed up.
 #pragma once
 
 #include <deque>
@@ -18,11 +18,12 @@ namespace todbench {
 class DriftWindow {
  public:
   explicit DriftWindow(double window_s) : window_s_(window_s) {}
+  /// Adds the level of a frame.
   void add(double time_s, double level_k);
-  /// After a correction the level of earlier frames does not continue.
+  /// Discards all levels. Call it after a correction, because the level of earlier frames does not continue.
   void clear() { points_.clear(); }
-  /// Slope with the 95 % interval in K/min, by least squares; empty before the window is full, or with fewer than ten
-  /// frames.
+  /// Returns the slope with its 95 % interval in K/min, by least squares; empty before the window is full, or with
+  /// fewer than ten frames.
   [[nodiscard]] std::optional<Estimate> k_per_min() const;
 
  private:

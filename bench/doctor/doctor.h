@@ -14,14 +14,17 @@
 
 namespace todbench {
 
+/// Result of a check.
 enum class Finding {
   ok,
   warning,  ///< may cause errors; a run is possible
   problem,  ///< a run will lose frames, or cannot start
   unknown,  ///< could not be determined
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(Finding finding);
 
+/// One check with its result.
 struct DoctorCheck {
   std::string name{};  ///< "socket_buffer", "mtu" ...: stable, for programs
   Finding finding = Finding::unknown;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decisions of a person between the windows of bars that a session kept: in the window, or as pictures in a folder.
+// Decisions of a person between the windows of bars that a session kept: shown in the program's window, or as pictures
+// in a folder.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +15,17 @@
 
 namespace todbench {
 
-/// Selects decisions.
+/// Selection of decisions.
 struct BarsRequest {
-  bool all_places = false;            ///< otherwise the bars of each axis and the spot nearest to the next two values
-  double frequency_per_pitch = 0.25;  ///< of the plan
-  double spot_px = 3;                 ///< of the plan
-  int times = 1;                      ///< decisions at each contrast of each set-up of a place
-  int magnification = 12;             ///< screen pixels per pixel of the camera
+  /// Uses all places. Otherwise only the bars of each axis nearest to `frequency_per_pitch`, and the spot nearest to
+  /// `spot_px`.
+  bool all_places = false;
+  /// Frequency in cycles per pitch, as in the plan.
+  double frequency_per_pitch = 0.25;
+  /// Side of the spot in pixels, as in the plan.
+  double spot_px = 3;
+  int times = 1;           ///< decisions at each contrast of each set-up of a place
+  int magnification = 12;  ///< screen pixels per pixel of the camera
   std::uint64_t seed = 1;
 };
 
@@ -30,17 +35,18 @@ struct BarsQuestion {
   bool target_left = false;
 };
 
-/// All decisions of a request in random order. Errors: `invalid_input` (no place or fewer than five set-ups, so that no
-/// threshold could follow).
+/// Returns all decisions of a request in random order. Errors: `invalid_input` (no place, or fewer than five set-ups,
+/// which do not give a threshold).
 [[nodiscard]] Result<std::vector<BarsQuestion>> bars_questions(const KeptBars& kept, const BarsRequest& request);
-/// Both windows side by side, separated by a strip of background: 8-bit grey, enlarged by bicubic interpolation. The
-/// grey scale spans three contrasts, or six standard deviations of both windows, whichever is more: it does not depend
-/// on the side of the target.
+/// Returns both windows side by side, separated by a strip of background: 8-bit grey, enlarged by bicubic
+/// interpolation. The grey scale spans the larger of three contrasts and six standard deviations of both windows. It
+/// does not depend on the side of the target.
 [[nodiscard]] cv::Mat1b bars_picture(const KeptBars& kept, const BarsQuestion& question, int magnification);
+/// Returns the answer to a decision, for the record.
 [[nodiscard]] BarsAnswer bars_answer(const KeptBars& kept, const BarsQuestion& question, bool answered_left);
 
 /// Writes the pictures of all decisions to a new folder (0001.png ...), answers.csv with an empty answer for each, and
-/// bars.json with the request. The folder does not tell which side has the target. Errors: `invalid_input` (folder
+/// bars.json with the request. The folder does not reveal the side of the target. Errors: `invalid_input` (folder
 /// exists; as bars_questions()), `io`.
 [[nodiscard]] Result<std::size_t> write_bars_questions(const std::filesystem::path& folder,
                                                        const std::filesystem::path& session, const KeptBars& kept,

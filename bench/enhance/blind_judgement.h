@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A person judges the pictures of several sources (camera, twin, enhanced, super-resolved) blind, in one mixed order.
+// Blind judgement by a person of the pictures of several sources (camera, twin, enhanced, super-resolved), in one mixed
+// order.
 #pragma once
 
 #include <cstdint>
@@ -22,28 +23,29 @@ namespace todbench {
 /// Pictures of one origin.
 struct BlindSource {
   std::string name;           ///< "camera", "simulated", or the name of a package
-  int samples_per_pixel = 1;  ///< of its patches, along each axis
+  int samples_per_pixel = 1;  ///< samples per pixel and axis of the patches of the source
   std::vector<JudgedTrial> trials;
 };
 
-/// A patch as shown. The source stays with the program until the last answer.
+/// Patch as shown. The program does not reveal the source before the last answer.
 struct BlindPatch {
   std::size_t source = 0;
   JudgedTrial judged;         ///< cut to the field that all sources have in common
   int samples_per_pixel = 1;  ///< a person sees a pixel at one size, however many samples it has
 };
 
+/// Answer to a patch.
 struct BlindAnswer {
   std::size_t source = 0;
   Trial trial;  ///< with the answer of the person
   ShownPatch shown{};
 };
 
-/// Each source by itself, and its acuity as a ratio to that of the first one.
+/// Result of each source, and its acuity as a ratio to that of the first source.
 struct BlindResult {
   std::vector<std::string> sources;
   std::vector<HumanRecord> records;  ///< one per source
-  std::vector<Comparison> ratios;    ///< of the second and later sources
+  std::vector<Comparison> ratios;    ///< ratios of the second and later sources
 };
 
 /// Replays the recorded frames of a session, and again through each package; the sessions of the model observer go to

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides which results of compared chains may be used, by the gates of a measurement.
+// Decision which results of compared chains may be used, by the gates of a measurement.
 #pragma once
 
 #include <string>
@@ -9,24 +9,25 @@
 
 namespace todbench {
 
-/// Returns why the point of a curve may not be used: no threshold, no interval, or a finding that makes it unfit.
-/// Empty: it may.
+/// Returns the reason why the point of a curve may not be used: no threshold, no interval, or a finding that makes it
+/// unfit. Empty: it may be used.
 [[nodiscard]] std::string why_undecided(const PackageResult& result, double set_delta_t_k);
 /// Removes the ratios to `without` at contrasts at which either point may not be used, and stores the reason.
 void withhold_undecided(std::vector<PairedRatio>& ratios, const PackageResult& with, const PackageResult& without);
-/// Exit code of a result without an error: 3 if a point may not be used, as for a measurement, otherwise 0.
+/// Returns the exit code of a result without an error: as for a measurement, 3 if a point may not be used, otherwise 0.
 [[nodiscard]] int exit_code(const PackageResult& result);
 /// Returns the acuity of a point that has a threshold with an interval.
 [[nodiscard]] std::optional<double> identified_acuity_per_mrad(const TodPoint& point);
-/// Mean gain and noise of a point over its set-ups, as judged. Empty if no stage stands behind the camera.
+/// Mean gain and noise of a point over its set-ups, as judged. Only with stages behind the camera.
 struct JudgedPoint {
   double gain = 0;        ///< contrast behind the stages over that in front of them
   double gain_error = 0;  ///< standard error
   double noise_k = 0;     ///< passed to the observer, referred to the contrast in front of the stages
 };
+/// Returns gain and noise at a contrast; empty without stages behind the camera.
 [[nodiscard]] std::optional<JudgedPoint> judged_point(const PackageResult& result, double set_delta_t_k);
-/// Returns a sentence if the gains at two contrasts differ by more than 5 % and more than four standard errors: the
-/// stages are not linear, so that large and small triangles have different gains. Empty: no difference.
+/// Returns a sentence if the gains at two contrasts differ by more than 5 % and more than four standard errors. The
+/// stages are then not linear, so that large and small triangles have different gains. Empty: no difference.
 [[nodiscard]] std::string why_not_linear(const PackageResult& result);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Test of enhancement: the same frames of a simulated sensor through several packages and without a package.
+// Test of enhancement: the same frames of a simulated sensor through several packages, and without a package.
 #pragma once
 
 #include <filesystem>
@@ -24,29 +24,30 @@ namespace todbench {
 struct PairedRatio {
   double set_delta_t_k = 0;
   std::optional<double> ratio;  ///< empty: a threshold is missing
-  /// Jackknife of ln ratio over at most 20 groups of whole presentations, left out of both runs, with Student's t.
-  /// Common variation cancels, above all the noise of the frames.
+  /// Jackknife of ln ratio over at most 20 groups of whole presentations, which are left out of both runs together,
+  /// with Student's t. Common variation cancels, in particular the noise of the frames.
   Interval ci95;
-  /// Lowest and highest ratio by the observer and by those at both ends of its open parameters, each for both runs. It
-  /// is not a confidence interval. Empty: no open parameters, or a threshold is missing.
+  /// Lowest and highest ratio by the observer as stated and by the observers at both limits of its open parameters,
+  /// each used in both runs. Not a confidence interval. Empty: no open parameters, or a threshold is missing.
   std::optional<std::pair<double, double>> spread{};
-  std::string withheld{};  ///< reason of a missing ratio if a point may not be used
+  std::string withheld{};  ///< reason why the ratio is withheld: a point may not be used
 };
 /// Result of one package, or without a package.
 struct PackageResult {
   std::string name;
   std::vector<Trial> trials;
-  EndTrials at_ends{};              ///< with an eye
+  EndTrials at_ends{};              ///< with an eye: trials at both limits of the open parameters
   TodCurve curve;                   ///< empty if no fit was possible
   std::vector<PairedRatio> ratios;  ///< to the result without a package; empty for that result itself
   double frame_ms = 0;              ///< median processing time of its stages per frame
   std::size_t frames = 0, clipped_pixels = 0;
-  int samples_per_pixel = 1;             ///< of the judged pictures, along each axis
+  int samples_per_pixel = 1;             ///< samples per pixel and axis of the judged pictures
   std::vector<JudgedContrast> judged;    ///< by set-up and contrast; empty: no stages
-  cv::Mat1w picture;                     ///< of the same frame for all results
+  cv::Mat1w picture;                     ///< picture of one frame, the same frame for all results
   std::optional<Error> error;            ///< reason of an early end or a failed measurement; the trials so far are kept
   std::vector<std::string> error_lines;  ///< standard error of its modules, the first hundred lines
 };
+/// Results of all packages.
 struct Enhancement {
   std::vector<PackageResult> results;  ///< without a package first, then the packages in their order
   int settle_frames = 0;               ///< exposures discarded after every change, the same for all
@@ -56,43 +57,47 @@ struct Enhancement {
   std::vector<std::string> warnings;   ///< one sentence each
 };
 
+/// Options of the test.
 struct EnhancementOptions {
   std::function<void(const std::string& name)> on_package{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
   int dither = 1;  ///< n: the simulated sensor observes n x n places of a pixel in turn (dither_px())
 };
 /// Simulates the plan's sensor with every effect, once without and once with each package, with the same random
-/// numbers: the exposures are identical bit for bit. After a change of the target, as many exposures as the longest
-/// memory of all packages are discarded. Place of the plate and contrast come from the pictures of the camera itself. A
-/// package that fails has its error; the others continue. With an eye, the observers at both ends of its open
-/// parameters judge the same patches: thresholds and ratios have a spread, or a warning says why not. Errors:
-/// `invalid_input` for a plan whose schedule depends on the answers; those of the simulation without a package.
+/// numbers: the exposures are identical bit for bit. After a change of the target, as many exposures are discarded as
+/// the package with the longest memory stores. Place of the plate and contrast come from the pictures of the camera
+/// itself. If a package fails, its result contains the error, and the other packages continue. For an observer with an
+/// eye, the observers at both limits of its open parameters judge the same patches, which gives thresholds and ratios a
+/// spread; otherwise a warning states the reason. Errors: `invalid_input` for a plan whose schedule depends on the
+/// answers; those of the simulation without a package.
 [[nodiscard]] Result<Enhancement> compare_packages(const LoadedPlan& loaded,
                                                    const std::vector<EnhancementPackage>& packages,
                                                    const EnhancementOptions& options, std::stop_token stop);
 
 /// Returns the plan of a session, to measure it again from its recording. Errors: those of open_session().
 [[nodiscard]] Result<LoadedPlan> recorded_plan(const std::filesystem::path& session, const Opening& opening);
-/// The same with the recorded frames of a session whose plan is `loaded`: without a package the answers are those of
-/// the session. At most as many frames can be discarded after a change as the run discarded; a warning names packages
-/// with a longer memory. Errors: those of compare_packages() and open_recorded_bench().
+/// Compares the packages with the recorded frames of a session whose plan is `loaded`. Without a package the answers
+/// are those of the session. After a change, at most as many frames can be discarded as the run discarded; a warning
+/// names packages that store more frames. Errors: those of compare_packages() and open_recorded_bench().
 [[nodiscard]] Result<Enhancement> compare_packages_recorded(const std::filesystem::path& session,
                                                             const LoadedPlan& loaded,
                                                             const std::vector<EnhancementPackage>& packages,
                                                             const EnhancementOptions& options, std::stop_token stop);
 
-/// Returns the inputs with every effect simulated: one that is negligible for the sensor alone may matter behind a
-/// package. Errors: `invalid_input`.
+/// Returns the inputs with every effect simulated, because an effect that is negligible for the sensor alone may be
+/// important behind a package. Errors: `invalid_input`.
 [[nodiscard]] Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded);
-/// Simulates one chain with every effect: sensor, its own modules, the stages of the package (null: none), and asks
-/// both ends of the open parameters of an observer with an eye, for add_spreads(). Errors are in the result.
+/// Simulates one chain with every effect: sensor, modules of the sensor, and stages of the package (null: none). For an
+/// observer with an eye, also runs the observers at both limits of its open parameters, for add_spreads(). Errors are
+/// in the result.
 [[nodiscard]] PackageResult simulate_package(const LoadedPlan& loaded, const EnhancementPackage* package,
                                              int settle_frames, const EnhancementOptions& options,
                                              std::stop_token stop);
-/// Returns the number of exposures after which the sensor's modules and the package have forgotten a change. Memories
-/// of successive stages add up.
+/// Returns the number of exposures after which a change no longer affects the output of the sensor's modules and of the
+/// package. The numbers of successive stages add up.
 [[nodiscard]] int memory_frames(const SensorSpec& sensor, const EnhancementPackage& package);
-/// `invalid_input` for a plan that shows each package other frames, or whose functions are those of the sensor alone.
+/// Fails with `invalid_input` for a plan that would show each package different frames, or whose psychometric functions
+/// are those of the sensor alone.
 [[nodiscard]] Result<void> check_paired_plan(const Plan& plan);
 
 /// Returns the paired ratios of two runs of the same presentations.

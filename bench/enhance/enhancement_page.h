@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The comparison of packages as a page and as a picture.
+// Comparison of packages as a page and as a picture.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -12,7 +12,7 @@
 namespace todbench {
 
 /// Returns a page with the curves compared to the one without a package, ratios with paired intervals, times, failures,
-/// sources of the packages. Contains no times of day and no hosts.
+/// sources of the packages. The page contains no times of day and no host names.
 [[nodiscard]] Document enhancement_page(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
                                         const Enhancement& enhancement);
 

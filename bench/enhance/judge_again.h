@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Judges the recorded frames of a session again, by another observer or through an enhancement package.
+// Repeated judgement of the recorded frames of a session, by another observer or through an enhancement package.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace todbench {
 
-/// What judges the frames. An empty member leaves that of the session.
+/// Observer, package and display of the new judgement. An empty member keeps that of the session.
 struct JudgeRequest {
   std::string observer{};                       ///< name or file
   std::optional<EnhancementPackage> package{};  ///< behind the camera and its twin
@@ -25,8 +25,8 @@ struct JudgeRequest {
 /// the answers are right or wrong and fitted with a Weibull function, because the functions of the sensor do not
 /// include it. Manifest and signature of the session are verified first. Errors: those of open_recorded_run() and
 /// measure_on_bench(); `invalid_input` for an adaptive schedule, whose frames follow from the answers, for grey levels
-/// with a package, for a display that the observer needs, and for an invalid signature; `not_found` if the program that
-/// verifies the signature is missing.
+/// with a package, for a missing display that the observer requires, and for an invalid signature; `not_found` if the
+/// program that verifies the signature is missing.
 [[nodiscard]] Result<ExperimentOutcome> judge_again(const std::filesystem::path& session, const JudgeRequest& request,
                                                     ExperimentOptions options, const ExperimentListener& listener,
                                                     std::stop_token stop, const Opening& opening = {},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An enhancement package: a sequence of stages behind the camera, read from a file.
+// Enhancement package: a sequence of stages behind the camera, read from a file.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace todbench {
 
-/// One stage. Each number belongs to the kind in its comment.
+/// Stage with its parameters. Each parameter belongs to the kind in its comment.
 struct StagePlan {
   enum class Kind {
     recursive,
@@ -41,11 +41,12 @@ struct StagePlan {
   int plateau_counts = 0;                                   ///< agc
   SuperResolutionStageOptions super_resolution{};           ///< super_resolution
 };
+/// Content of the file of a package.
 struct EnhancementPackage {
   std::string name, description;
   std::vector<StagePlan> stages;
-  std::string text, sha256;             ///< of the file
-  std::vector<std::string> provenance;  ///< of its modules: command, version, hashes of the files they name
+  std::string text, sha256;             ///< content of the file and its SHA-256
+  std::vector<std::string> provenance;  ///< origin of its modules: command, version, hashes of the files that they name
 };
 
 /// Reads name, description, and [[stage]] with kind and its numbers; kind "module" has command, version, parameters,
@@ -53,20 +54,20 @@ struct EnhancementPackage {
 /// Errors: `invalid_input` "FILE:LINE: ..." in one sentence.
 [[nodiscard]] Result<EnhancementPackage> read_package(const std::filesystem::path& file);
 
-/// Returns `invalid_input` in one sentence for a package with super-resolution. `what`: the user of the package, which
-/// needs the camera's own pixels.
+/// Fails with `invalid_input` and one sentence for a package with super-resolution. `what`: user of the package, which
+/// requires pictures with one sample per pixel of the camera.
 [[nodiscard]] Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what);
 
-/// Largest distance, in samples, over which a picture influences a sample behind the stages; empty: the whole picture
-/// does.
+/// Returns the largest distance, in samples, over which a picture influences a sample behind the stages; empty if the
+/// whole picture has an influence.
 [[nodiscard]] std::optional<int> reach_px(const EnhancementPackage& package);
 
-/// Stages of a package, made anew for every use, and their reach.
+/// Function that creates the stages of a package anew for every use, and their reach.
 struct PackageStages {
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages;
   std::optional<int> reach_px{};  ///< as reach_px()
 };
-/// Reads a package whose pictures must have the camera's own pixels. Errors: those of read_package() and
+/// Reads a package whose pictures must have one sample per pixel of the camera. Errors: those of read_package() and
 /// refuse_finer_pictures().
 [[nodiscard]] Result<PackageStages> read_package_stages(const std::filesystem::path& file, std::string_view what);
 

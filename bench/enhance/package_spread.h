@@ -21,17 +21,17 @@ struct FitOptions;
 
 /// Trials of the same patches by the best and then the worst observer of the open parameters.
 struct EndTrials {
-  std::array<std::vector<Trial>, 2> trials;  ///< empty: not asked
-  std::optional<Error> failure;              ///< why an observer could not answer; the trials are then incomplete
+  std::array<std::vector<Trial>, 2> trials;  ///< empty: not computed
+  std::optional<Error> failure;              ///< error of an observer; the trials are then incomplete
 };
 
-/// The observers at both ends of the open parameters. They judge the patches of a run after the observer itself, so
-/// that frames, modules and packages are asked once. Reusable for all packages, which share the templates.
+/// Observers at both limits of the open parameters. They judge the patches of a run after the observer itself, so that
+/// frames, modules and packages are computed once. Reusable for all packages, which share the templates.
 class OpenEnds {
  public:
-  /// Asks nobody if the observer has no eye.
+  /// Creates no observers if `observer` has no eye.
   explicit OpenEnds(const TemplateObserverSpec& observer);
-  /// Appends the answers of both ends to the patch of a trial. They use the random numbers of the observer itself.
+  /// Appends the answers of both observers to the patch of a trial. They use the random numbers of the observer itself.
   /// `options` are those of the run.
   void judge(const Trial& trial, const Patch& patch, const MeasurementOptions& options, EndTrials& into);
 

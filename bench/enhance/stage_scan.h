@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stage that scans a pixel for super-resolution: it moves the plate between the frames of a camera.
+// Scan of a pixel by a stage for super-resolution: the stage moves the plate between the frames of a camera.
 #pragma once
 
 #include <functional>
@@ -12,30 +12,31 @@
 
 namespace todbench {
 
+/// Parameters of the scan.
 struct StageScan {
   int steps = 2;              ///< places of a pixel along each axis; a presentation needs at least steps^2 frames
-  double pixel_mm = 0;        ///< of the plate: distance times the angle of a pixel
+  double pixel_mm = 0;        ///< side of a pixel on the plate: distance times the angle of a pixel
   int frames_after_move = 2;  ///< exposures of a free-running camera that are dropped after each move (in flight)
 };
 
 /// Replaces camera and target of the bench: before frame k the stage moves the plate by dither_px(steps, k) from the
 /// requested place, as super_resolution_stage() assumes with FrameShifts::scan. Frames taken while the target changes
-/// count, but the plate is not moved for them. Sequence numbers continue without the dropped frames, so that lost
-/// frames remain visible. Whether the plate really moves, the frames show (ScanWatch). Call before the bench is
-/// recorded. Returns the note of the session about the scan. Errors: `invalid_input` if the target does not set shifts,
-/// or the pixel has no size. A move that fails ends the run with `integrity`, or `interrupted`.
+/// are counted in k, but the plate is not moved for them. Sequence numbers continue without the dropped frames, so that
+/// lost frames remain detectable. ScanWatch checks with the frames whether the plate really moves. Call before the
+/// bench is recorded. Returns the note of the session about the scan. Errors: `invalid_input` if the target does not
+/// set shifts, or the pixel has no size. A move that fails ends the run with `integrity`, or `interrupted`.
 [[nodiscard]] Result<std::string> scan_with_stage(OpenedBench& bench, const StageScan& scan);
 
-/// Returns, for each super-resolution of the package by a known scan, how many places along an axis of a pixel it
-/// needs.
+/// Returns the required number of places along an axis of a pixel, for each super-resolution by a known scan in the
+/// package.
 [[nodiscard]] std::vector<int> scan_factors(const EnhancementPackage& package);
 
-/// `invalid_input` for a package with a scan that differs from the dither of sensor or stage: super-resolution would
-/// combine wrong places.
+/// Fails with `invalid_input` for a package with a scan that differs from the dither of sensor or stage, because
+/// super-resolution would combine wrong places.
 [[nodiscard]] Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither);
 
-/// ExperimentHost::on_opened for a stage that scans steps x steps places of a pixel: calls scan_with_stage().
-/// `invalid_input` for an observer that cannot judge the frames of a scan.
+/// Returns ExperimentHost::on_opened for a stage that scans steps x steps places of a pixel: it calls
+/// scan_with_stage(). Errors: `invalid_input` for an observer that cannot judge the frames of a scan.
 [[nodiscard]] Result<std::function<Result<std::string>(OpenedBench&)>> scan_on_opened(const LoadedPlan& loaded,
                                                                                       int steps);
 

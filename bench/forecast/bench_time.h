@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time that a plan occupies the bench: the only formula, for the command line and the window.
+// Time that a plan occupies the bench. The only formula for it, used by command line and window.
 #pragma once
 
 #include <cstdint>
@@ -23,14 +23,15 @@ struct MeasureTime {
 /// Changes of the target and frames of the camera, in the order in which measure() and measure_camera() request them.
 struct BenchTime {
   std::uint64_t presentations = 0;
-  /// Presentations that change each property; the first presentation changes all.
+  /// Number of presentations that change each property; the first presentation changes all.
   std::uint64_t plate_changes = 0, mounting_changes = 0, contrast_changes = 0, shift_changes = 0;
   /// Changes of one presentation run in parallel: black body and stage settle at the same time, and an operator brings
   /// another plate in the right mounting. So each presentation takes as long as its slowest change.
   double changes_s = 0;  ///< including those of the physical measures
-  /// For registration, contrast, answers and physical measures, including frames discarded after a change.
+  /// Frames for registration, contrast, answers and physical measures, including frames discarded after a change.
   std::uint64_t frames = 0;
-  /// Of `frames`: those that locate the plate and measure contrasts, and those of the presentations by set contrast.
+  /// Parts of `frames`: those that locate the plate and measure contrasts, and those of the presentations by set
+  /// contrast.
   std::uint64_t looking_frames = 0;
   std::map<double, std::uint64_t> presentation_frames{};
   double frames_s = 0;
@@ -43,16 +44,16 @@ struct BenchTime {
 
 /// Computes the bench time of a plan whose frames per presentation are chosen (with_frames()). `presentations`: the
 /// number expected of an adaptive schedule, which visits the same set-ups repeatedly; empty: the number that the plan
-/// lists, or the cap of an adaptive schedule. For a target of kind scene only counts are computed, no times: it is as
-/// fast as the processor.
+/// lists, or the cap of an adaptive schedule. For a target of kind scene only counts are computed, no times, because
+/// such a target is limited only by the processor.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
                                    std::optional<double> presentations);
-/// The same for presentations that are already listed.
+/// Computes the bench time for presentations that are already listed.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates,
                                    const std::vector<TargetState>& listed, double frame_rate_hz,
                                    std::optional<double> presentations);
 
-/// Returns a sentence if a run of this bench time keeps no frames, so that `measure --resume` could not go on with it
+/// Returns a sentence if a run of this bench time records no frames, so that `measure --resume` could not continue it
 /// after an interruption; empty for runs of less than ten minutes and of a simulated scene.
 [[nodiscard]] std::string resume_remark(const Plan& plan, double bench_s);
 

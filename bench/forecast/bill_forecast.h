@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The accuracy bill before a run.
+// Forecast of the accuracy bill before a run.
 #pragma once
 
 #include "acquisition/base/result.h"

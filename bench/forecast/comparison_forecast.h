@@ -12,17 +12,19 @@
 
 namespace todbench {
 
+/// Expected power of a comparison.
 struct ComparisonForecast {
   std::optional<ComparisonOutlook> outlook;  ///< empty if a contrast identifies no threshold
   std::string sentence;                      ///< begins with "warning" if the power is below 80 %
 };
 
-/// Forecasts the comparison of camera and twin. Standard errors: those of the ratio by common phases if the plan makes
-/// pairs, because it decides then; otherwise the predicted uncertainty of the simulated design. Both are scaled to the
+/// Forecasts the comparison of camera and twin. Standard errors: if the plan makes pairs, those of the ratio by common
+/// phases, which then decides; otherwise the predicted uncertainty of the simulated design. Both are scaled to the
 /// camera's own number of phases.
 [[nodiscard]] ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction);
 
-/// Forecasts the comparison of two curves at its contrasts. Standard errors: from their intervals, clusters included.
+/// Forecasts the comparison of two curves at its contrasts. The standard errors follow from the intervals of the
+/// curves, which include clusters.
 [[nodiscard]] ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b,
                                                      const Comparison& comparison);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the decision backwards: bench time against the probability that a limit on acuity is decided.
+// Bench time against the probability that a limit on acuity is decided.
 #pragma once
 
 #include <optional>
@@ -32,26 +32,27 @@ struct ExpectedUncertainty {
 [[nodiscard]] std::optional<ExpectedUncertainty> expected_uncertainty(const ContrastPrediction& contrast,
                                                                       const CurveUncertainty* budget);
 
+/// Probabilities of the three decisions; their sum is 1.
 struct DecisionChances {
   double pass = 0, fail = 0, inconclusive = 0;
 };
 
-/// Probabilities of the decisions for a camera whose ln acuity exceeds that of the limit by `ln_over_limit`. The
-/// estimate is normal with the standard error of the trials joined with the stated rows. The stated standard error of
-/// the trials scatters as chi over its degrees of freedom, and the interval as judge() makes it: the larger of the
-/// statistical half-width and the half-width of all rows. Without stated rows, the probability of a pass is that of a
-/// noncentral t. Integrated over 200 quantiles of the chi-square distribution: errors below 0.001. A conditional
-/// decision counts as inconclusive. Precondition: se > 0, interval_factor > 0.
+/// Returns the probabilities of the decisions for a camera whose ln acuity exceeds that of the limit by
+/// `ln_over_limit`. The estimate is normal with the standard error of the trials joined with the stated rows. The
+/// stated standard error of the trials scatters as chi over its degrees of freedom. The interval is that of judge():
+/// the larger of the statistical half-width and the half-width of all rows. Without stated rows, the probability of a
+/// pass is that of a noncentral t. Integrated over 200 quantiles of the chi-square distribution: errors below 0.001. A
+/// conditional decision counts as inconclusive. Precondition: se > 0, interval_factor > 0.
 [[nodiscard]] DecisionChances decision_chances(double ln_over_limit, const ExpectedUncertainty& expected,
                                                const LimitsPlan& limits);
 
-/// Half-width of the trials below which the deciding interval shrinks by less than 5 %, in ln acuity: 0.32 times the
-/// half-width of the stated rows. 0: no rows, every presentation counts.
+/// Returns the half-width of the trials, in ln acuity, below which the deciding interval shrinks by less than 5 %: 0.32
+/// times the half-width of the stated rows. 0 without rows, because every presentation then reduces the interval.
 [[nodiscard]] double smallest_half_width_ln(const JoinedUncertainty& stated);
 
-/// Camera relative to the limit.
+/// Decisions for a camera of a given acuity.
 struct CameraChance {
-  double over_limit_percent = 0;  ///< acuity over that of the limit
+  double over_limit_percent = 0;  ///< acuity of the camera over that of the limit, in percent above it
   DecisionChances chances;
 };
 
@@ -69,7 +70,7 @@ struct DecisionDesign {
   std::optional<double> consumer_risk{}, producer_risk{};
 };
 
-/// Row of the budget.
+/// Row of the budget that the trials do not reduce.
 struct FloorRow {
   std::string name;
   double half_width_percent = 0;  ///< 1.96 standard uncertainties of ln acuity
@@ -79,7 +80,8 @@ struct FloorRow {
 struct DecisionForecast {
   double delta_t_k = 0;
   double least_acuity_per_mrad = 0;
-  double expected_over_limit_percent = 0;  ///< of the simulated sensor
+  /// Acuity of the simulated sensor over that of the limit, in percent above it.
+  double expected_over_limit_percent = 0;
   double floor_percent = 0;                ///< half-width of all stated rows; 0: no budget
   double smallest_half_width_percent = 0;  ///< smallest_half_width_ln()
   std::vector<FloorRow> rows{};            ///< largest first
@@ -87,7 +89,7 @@ struct DecisionForecast {
   std::optional<double> enough_bench_s{};  ///< least time with the smallest half-width that matters
 };
 
-/// Bench time in s. A simulated scene counts with the change times of the plan, as a bench would take.
+/// Returns the bench time in s. For a simulated scene, the change times of the plan are used, as if it ran on a bench.
 [[nodiscard]] double laboratory_time(Plan plan, const ExperimentInputs& inputs, std::optional<double> presentations);
 
 /// Forecasts every limit on acuity with a threshold: the plan itself; with graded answers 1 to 64 frames, otherwise a
@@ -100,7 +102,7 @@ struct DecisionForecast {
 /// Errors: those of curve_uncertainty().
 [[nodiscard]] Result<std::vector<double>> floors_ln(const Plan& plan, const PlanPrediction& prediction);
 
-/// "0.23 K, at least 0.2 1/mrad: ..."
+/// Returns "0.23 K, at least 0.2 1/mrad: ..."
 [[nodiscard]] std::string in_words(const DecisionForecast& forecast);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A measurement design for a sensor without a plan.
+// Measurement design for a sensor without a plan.
 #pragma once
 
 #include <stop_token>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Design of least bench time for a half-width or for the decisions of a plan.
+// Search for the design with the least bench time for a half-width or for the decisions of a plan.
 #pragma once
 
 #include <optional>
@@ -16,11 +16,12 @@ namespace todbench {
 
 /// Requirement on a design.
 struct DesignRequest {
-  /// Half-width of the 95 % interval of S75 from the trials at every contrast, which 19 of 20 runs do not exceed;
-  /// empty: that of the plan as it is.
+  /// Half-width of the 95 % interval of S75 from the trials at every contrast; 19 of 20 runs do not exceed it. Empty:
+  /// the half-width of the plan as it is.
   std::optional<double> half_width_percent{};
-  /// Decides every limit on an acuity for a camera like the simulated one with a probability of 95 %, in place of a
-  /// half-width. Contrasts without a limit have at most a third of the equivalence margin, or 10 %.
+  /// If true, the design decides every limit on an acuity for a camera like the simulated one with a probability of 95
+  /// %; `half_width_percent` is not used. The half-width at contrasts without a limit is at most a third of the
+  /// equivalence margin, or 10 %.
   bool decide = false;
 };
 
@@ -28,7 +29,7 @@ struct DesignRequest {
 struct PricedDesign {
   Plan plan;
   double bench_s = 0;                          ///< laboratory_time(): changes, frames, corrections; without computing
-  double changes_s = 0;                        ///< of it, changes of the target
+  double changes_s = 0;                        ///< part of bench_s for changes of the target
   std::optional<double> half_width_percent{};  ///< the largest of the contrasts
   std::vector<ContrastPrediction> contrasts{};
 };
@@ -56,9 +57,9 @@ struct BestDesign {
 };
 
 /// Searches mountings of each plate, phases, frames of each contrast, and whether the contrasts settle. The
-/// presentations are in the order of constant_stimuli(): its fast changes run during the slow ones, so that no other
-/// nesting takes less time. A design has at least five set-ups, which the intervals of graded answers need (or those of
-/// the plan, if it has fewer), three phases and eight presentations of a contrast. Mountings are taken in pairs of
+/// presentations are in the order of constant_stimuli(): fast changes run during slow ones, so no other nesting takes
+/// less time. A design has at least five set-ups, which the intervals of graded answers require (or as many as the
+/// plan, if the plan has fewer), three phases, and eight presentations per contrast. Mountings are taken in pairs of
 /// counterparts. The plate is located in fewer frames than planned if their noise is at most 0.15 % of the highest
 /// contrast. With `decide` and without an equivalence margin, contrasts without a limit are left out, except the
 /// highest one, which locates the plate. A ramp between the strongest and the weakest contrast is compared, at the
@@ -69,7 +70,7 @@ struct BestDesign {
 [[nodiscard]] Result<BestDesign> best_design(const Plan& plan, const ExperimentInputs& inputs,
                                              const DesignRequest& request, std::stop_token stop);
 
-/// Sentences about a design: time, what takes it, what the set-ups guarantee.
+/// Returns sentences about a design: its time, the parts of that time, and the effect of its set-ups.
 [[nodiscard]] std::vector<std::string> in_words(const BestDesign& found);
 
 }  // namespace todbench

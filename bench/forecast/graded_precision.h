@@ -13,10 +13,10 @@ struct GradedDesignFigures {
   double pattern_share = 0;  ///< share of the sensor's fixed pattern in the same variance, part of sensor_share
   double size_pitch = 4;     ///< at the threshold
   int frames = 1;            ///< per presentation
-  int draws = 32;            ///< of the observer's noise, per frame
+  int draws = 32;            ///< draws of the observer's noise, per frame
   int set_ups = 8;           ///< plates times mountings
-  /// Number of set-ups by their shares of the information, (sum)^2 / sum of squares; 0: all alike. It decides whether
-  /// set-ups are the clusters of the interval (clustered_variance.h).
+  /// Number of set-ups by their shares of the information, (sum)^2 / sum of squares; 0: equal shares. It determines
+  /// whether set-ups are the clusters of the interval (clustered_variance.h).
   double informative_set_ups = 0;
   int presentations = 96;        ///< per contrast
   double noise_correlation = 0;  ///< lag-1 correlation of the sensor's temporal noise, 0 to 1

@@ -10,23 +10,23 @@
 
 namespace todbench {
 
-/// The plan with other answers, otherwise unchanged.
+/// Variant of the plan with other answers.
 struct PrecisionChoice {
   AnswerKind answers = AnswerKind::binary;
-  std::vector<int> frames{1};  ///< per presentation: of every contrast, or one number for each
+  std::vector<int> frames{1};  ///< per presentation: one number for all contrasts, or one for each
   std::vector<ContrastPrediction> contrasts{};
   std::optional<double> half_width_percent{};  ///< half the 95 % interval of S75, the largest over the contrasts
-  double bench_s = 0;                          ///< of the bench alone; 0 without a camera
-  double seconds = 0;    ///< of the measurement with the camera, or of the simulation if the plan has no camera
-  bool planned = false;  ///< the choice of the plan
+  double bench_s = 0;                          ///< time on the bench alone; 0 without a camera
+  double seconds = 0;    ///< time of the measurement with the camera, or of the simulation if the plan has no camera
+  bool planned = false;  ///< true for the plan itself
   /// The graded choice with the smallest squared half-width times the seconds of the bench (without a camera, of the
   /// simulation), so that the load of the computer changes no recommendation. The half-width contains the rows of the
   /// budget, which frames do not reduce; with such rows, the fastest choice within 5 % of the smallest product.
   bool recommended = false;
 };
 
-/// Returns the plan with the camera's number of phases for the simulation, if there is a camera: predict_plan() then
-/// predicts the camera's curve.
+/// Returns the plan with the number of phases of the camera for the simulation too, if the plan has a camera.
+/// predict_plan() then predicts the curve of the camera.
 [[nodiscard]] Plan as_measured(Plan plan);
 
 /// Returns the choices for the camera's curve, if there is one: binary answers, and graded ones with 1, 2, 4 and 8
@@ -36,7 +36,7 @@ struct PrecisionChoice {
 [[nodiscard]] Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                                       std::stop_token stop);
 
-/// Key "frontier" of `plan --json` and `cost --json`.
+/// Returns the value of the key "frontier" of `plan --json` and `cost --json`.
 [[nodiscard]] Json frontier_json(const std::vector<PrecisionChoice>& choices);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Predicts the computing time of a plan from the present speed of this machine.
+// Prediction of the computing time of a plan from the present speed of this computer.
 #pragma once
 
 #include <stop_token>
@@ -9,15 +9,16 @@
 
 namespace todbench {
 
+/// Computing times of a plan.
 struct TimePrediction {
-  double simulation_s = 0;  ///< of the simulated sensor with its direct estimate, on one core
+  double simulation_s = 0;  ///< computing time of the simulated sensor with its direct estimate, on one core
   double measuring_s = 0;   ///< computing time for a camera; add that of its bench (bench/forecast/bench_time.h)
 };
 
-/// Times each kind of work once with the plan's sensor, plates and observer (a picture, a frame, a registration, a
-/// contrast, the decisions of each plate, a size of the direct estimate of each contrast) and multiplies by its number
-/// in the plan. Takes some tenths of a second. Errors: the plate is not found in its own simulated picture, an observer
-/// that cannot be prepared; `interrupted`.
+/// Measures the time of each kind of work once with the plan's sensor, plates and observer (a picture, a frame, a
+/// registration, a contrast, the decisions of each plate, a size of the direct estimate of each contrast) and
+/// multiplies by its number in the plan. Takes some tenths of a second. Errors: the plate is not found in its own
+/// simulated picture, an observer that cannot be prepared; `interrupted`.
 [[nodiscard]] Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& inputs,
                                                   std::stop_token stop = {});
 

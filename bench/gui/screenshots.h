@@ -11,7 +11,8 @@ namespace todbench {
 /// Drives the window through its views and writes one PNG per view into `folder`. Returns the exit code of the program.
 [[nodiscard]] int take_screenshots(MainWindow& window, const std::filesystem::path& folder);
 
-/// Takes the pages without a camera: the start page, the plan, and the report of a session. Returns the same.
+/// Writes the pages without a camera: the start page, the plan, and the report of a session. Returns the exit code of
+/// the program.
 [[nodiscard]] int take_session_screenshots(MainWindow& window, const std::filesystem::path& folder,
                                            const std::filesystem::path& session);
 

@@ -26,6 +26,7 @@ struct ChartDesign {
   std::optional<double> scatter{};    ///< known scatter; replaces the estimate
 };
 
+/// One check in the charts.
 struct ChartPoint {
   double days = 0, value = 0, u = 0;
   double z = 0;  ///< standardised deviation from the reference
@@ -35,31 +36,34 @@ struct ChartPoint {
   bool signal = false;  ///< beyond a limit of either chart
 };
 
+/// Charts of one measure.
 struct ControlChart {
   double reference = 0, reference_u = 0;
-  double scatter = 0;  ///< of the true values between checks, in excess of their uncertainties
+  double scatter = 0;  ///< standard deviation of the true values between checks, in excess of their uncertainties
   std::vector<ChartPoint> points;
   [[nodiscard]] bool signalled() const { return !points.empty() && points.back().signal; }
 };
 
 /// Returns the chart of values in the order of time. Reference: weighted mean of the first values; its error widens the
-/// limits of the EWMA, which are the usual ones if it is 0. Scatter: half the mean square of successive differences
-/// minus the mean u^2 (von Neumann 1941), at least 0. Empty if there is no value after the reference, or if a value has
-/// neither uncertainty nor scatter.
+/// limits of the EWMA; without an error the limits are the usual ones. Scatter: half the mean square of successive
+/// differences minus the mean u^2 (von Neumann 1941), at least 0. Empty if there is no value after the reference, or if
+/// a value has neither uncertainty nor scatter.
 [[nodiscard]] std::optional<ControlChart> control_chart(const std::vector<ChartValue>& values,
                                                         const ChartDesign& design);
 
-/// Returns the average number of checks until a signal of a chart with constant limits, from its neutral state, at a
-/// shift in standard deviations, to 1e-8. Solves the integral equation (EWMA: Crowder 1987; CUSUM: Page 1954) by
+/// Return the average number of checks until a signal of a chart with constant limits, from its neutral state, for a
+/// shift in standard deviations; error 1e-8. Solves the integral equation (EWMA: Crowder 1987; CUSUM: Page 1954) by
 /// Gaussian quadrature.
 [[nodiscard]] double ewma_run_length(double lambda, double limit, double shift);
 [[nodiscard]] double cusum_run_length(double k, double h, double shift);
 
+/// Kind of a predicted crossing.
 enum class CrossingKind {
   found,       ///< between `earliest_days` and `latest_days`
-  not_before,  ///< the late end is open: the slope is not significant
+  not_before,  ///< the interval has no late limit, because the slope is not significant
   never,       ///< the data exclude a future crossing
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(CrossingKind kind);
 
 /// Time at which a straight line through the values meets a limit.
@@ -70,8 +74,9 @@ struct LimitCrossing {
 };
 
 /// Fits the weighted line x = a + b t with weights 1 / (u^2 + scatter^2). The 95 % interval of the crossing (Fieller
-/// 1954) contains all t with (a + b t - limit)^2 <= z^2 (1 / W + (t - tm)^2 var b). Only times after the last value
-/// count; a last value already beyond the limit is not reported. Empty for fewer than three values or a single time.
+/// 1954) contains all t with (a + b t - limit)^2 <= z^2 (1 / W + (t - tm)^2 var b). Only times after the last value are
+/// used; a last value that is already beyond the limit is not reported. Empty for fewer than three values or a single
+/// time.
 [[nodiscard]] std::optional<LimitCrossing> crossing(const std::vector<ChartValue>& values, double scatter,
                                                     double limit);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fleet prior from the units of one kind in the history.
+// Fleet prior from units of one kind in the history.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@
 
 namespace todbench {
 
-/// Selection of units. Empty members match all, but the selected units must share vendor and lens.
+/// Selection of units. Empty members match all units. The selected units must share vendor and lens.
 struct FleetKind {
   std::string vendor{}, model{}, lens{};
   std::string without_serial{};  ///< unit to be judged; its own sessions are left out
 };
 
-/// Row of a plan, or the reason for its absence.
+/// Row of a plan, or the reason why there is none.
 struct FleetFound {
   FleetRow row;
   std::string unit_text;
-  std::string first_utc, last_utc;  ///< of its sessions
+  std::string first_utc, last_utc;  ///< times of the first and last session of the units
   std::string refused;              ///< reason for rejection, a sentence; empty: usable
 };
 
@@ -30,7 +30,7 @@ struct FleetFound {
 /// lenses), and those of the index.
 [[nodiscard]] Result<std::vector<FleetFound>> fleets_of(const HistoryIndex& index, const FleetKind& kind);
 
-/// Returns rows of [[limits.fleet]]; rejected rows as comments.
+/// Returns the rows of [[limits.fleet]] as TOML; rejected rows are comments.
 [[nodiscard]] std::string fleets_toml(const std::vector<FleetFound>& fleets);
 
 }  // namespace todbench

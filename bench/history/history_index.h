@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SQLite index of sessions by unit. The session folders are the master; the index can be rebuilt from them.
+// SQLite index of sessions by unit. The session folders are the original data, from which the index can be rebuilt.
 #pragma once
 
 #include <chrono>
@@ -16,20 +16,21 @@ struct sqlite3;
 
 namespace todbench {
 
-/// Event of a unit (repair, recalibration, transport, firmware); its charts restart after it.
+/// Event of a unit (repair, recalibration, transport, firmware). The charts of the unit restart after the event.
 struct HistoryEvent {
   std::string serial, utc, kind, text;
 };
 
+/// Result of adding a session.
 enum class Adding {
   added,
   known,         ///< same manifest at the same place, or a copy of a session that still exists
-  moved,         ///< same manifest at another place; the old place no longer has it
+  moved,         ///< same manifest at another place; it no longer exists at the old place
   judged_again,  ///< not added: its frames are those of another session
 };
 
-/// Index of sessions. Events exist only here, so they are also kept in FILE.events.csv next to the index, and a rebuilt
-/// index reads them. One writer at a time; one thread.
+/// Index of sessions. Events are not in the session folders. They are therefore also stored in FILE.events.csv next to
+/// the index, from which a rebuilt index reads them. One writer at a time; one thread.
 class HistoryIndex {
  public:
   /// Opens the index, or creates it and its folder. A write-protected index is opened for reading. Errors:
@@ -45,9 +46,11 @@ class HistoryIndex {
   /// Adds the session with the conditions of stated_condition(). If it resumed an interrupted session, it replaces the
   /// values of that session, because it contains the same frames.
   [[nodiscard]] Result<Adding> add(const HistorySession& session);
+  /// Adds an event to the index and to its file of events.
   [[nodiscard]] Result<void> add_event(const HistoryEvent& event);
   /// Returns the sessions of all units, or of those with this serial number, ordered by unit and time.
   [[nodiscard]] Result<std::vector<HistorySession>> sessions(const std::optional<std::string>& serial) const;
+  /// Returns the events of a unit.
   [[nodiscard]] Result<std::vector<HistoryEvent>> events(const std::string& serial) const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace todbench {
 
-/// Value from before the last event or change of firmware; not part of a chart.
+/// Value from before the last event or change of firmware. It is not part of a chart.
 struct EarlierValue {
   std::string started_utc;
   ChartValue value;      ///< on the scale of the chart
@@ -28,7 +28,7 @@ struct HistorySeries {
   std::vector<EarlierValue> earlier{};
 };
 
-/// Whether to list measures that have only earlier values.
+/// Treatment of measures that have only earlier values.
 enum class WithoutChart { left_out, listed };
 
 /// Returns the series of a serial number and a measure; empty text: all. Errors: those of the index.

@@ -11,32 +11,34 @@
 
 namespace todbench {
 
-/// Unit under test. Another lens makes another unit.
+/// Unit under test. The same camera with another lens is another unit.
 struct HistoryUnit {
   std::string vendor, model, serial, lens;
   bool operator==(const HistoryUnit&) const = default;
 };
 
-/// Value with its uncertainty; values without one are not kept.
+/// Value with its uncertainty. Values without an uncertainty are not stored.
 struct HistoryValue {
   std::string measure;    ///< "acuity", or a name of measures.json
   std::string condition;  ///< "dT=2K"; empty: none
-  std::string unit;       ///< of the value; for a logarithm, of the quantity itself
+  std::string unit;       ///< unit of the value; for a logarithm, unit of the quantity itself
   std::string scale;      ///< "ln" or "linear"
   double value = 0;
   double u = 0;  ///< standard uncertainty, without the part common to a series
 };
 
+/// Record of a session.
 struct HistorySession {
   HistoryUnit unit;
   std::string path, manifest_sha256, started_utc, program, state, firmware;
   std::vector<HistoryValue> values;
-  std::string observer{};        ///< that judged the curve; empty: not known
-  bool judged_again = false;     ///< the frames are those of another session: no further check of the unit
-  std::string resumes_sha256{};  ///< digest of the manifest of the interrupted session whose frames it contains too
+  std::string observer{};     ///< observer of the curve; empty: not known
+  bool judged_again = false;  ///< the frames are those of another session, so this is no further check of the unit
+  /// Digest of the manifest of the interrupted session whose frames this session contains too.
+  std::string resumes_sha256{};
 };
 
-/// The condition under which a value is compared. It contains the observer of an acuity, unless that is hvs-1:
+/// Returns the condition under which a value is compared. For an acuity it contains the observer, unless that is hvs-1:
 /// "dT=2K observer hvs-2". Acuities by different observers are not compared.
 [[nodiscard]] std::string stated_condition(const HistorySession& session, const HistoryValue& value);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Budget of a plan applied to a measured curve: intervals that include more than the finite number of trials.
+// Budget of a plan applied to a measured curve: intervals that include other sources of uncertainty than the finite
+// number of trials.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,8 @@ struct AppliedRow {
   BudgetRow row;
   BudgetInput input = BudgetInput::acuity;
   double standard_uncertainty = 0;  ///< in the unit of the row
-  double contribution = 0;          ///< to ln acuity
-  double share_percent = 0;         ///< of the variance
+  double contribution = 0;          ///< contribution to the uncertainty of ln acuity
+  double share_percent = 0;         ///< share of the variance
   bool from_run = false;            ///< added by the run, not stated in the plan
 };
 
@@ -41,18 +42,20 @@ struct PointUncertainty {
   Interval statistical_mrad{};  ///< 95 % interval of S75 from the finite number of trials
   /// 95 % interval of S75 from all rows; on each side the widest of GUM, Monte Carlo and statistical.
   Interval expanded_mrad{};
-  /// For the mean of both half-widths; empty if the threshold or an end of its interval is missing.
+  /// Combined uncertainty for the mean of both half-widths; empty if the threshold or a limit of its interval is
+  /// missing.
   std::optional<CombinedUncertainty> combined{};
-  double u_stated = 0;      ///< of all rows except the finite trials
-  double u_not_twin = 0;    ///< of those that do not cancel in the ratio to the twin
-  double u_not_series = 0;  ///< of those that do not cancel in a trend over a series
-  double u_not_contrasts = 0;
+  double u_stated = 0;                   ///< from all rows except the finite trials
+  double u_not_twin = 0;                 ///< from the rows that do not cancel in the ratio to the twin
+  double u_not_series = 0;               ///< from the rows that do not cancel in a trend over a series
+  double u_not_contrasts = 0;            ///< from the rows that do not cancel between contrasts
   std::optional<ExpandedRatio> ratio{};  ///< to the twin; empty without a comparison
 };
 
+/// Uncertainty of a curve.
 struct CurveUncertainty {
   std::vector<PointUncertainty> points;   ///< in the order of the curve
-  std::vector<std::string> not_stated{};  ///< rows that a complete budget would have
+  std::vector<std::string> not_stated{};  ///< rows of a complete budget that are missing
   double u_scale = 0;  ///< relative, of the temperature scale and quantities divided by it (relative_u_of_scale())
   double u_camera_scale = 0;  ///< relative, of kelvin on the camera's scale
   double u_distance = 0;      ///< relative, of an angle per pixel (relative_u_of_distance())
@@ -61,14 +64,14 @@ struct CurveUncertainty {
 /// Returns the point at this set contrast; null if absent.
 [[nodiscard]] const PointUncertainty* point_at(const CurveUncertainty& uncertainty, double set_delta_t_k);
 
-/// Returns the interval of S75 in mrad that decides. For a point with a lapse warning it is the hull of both fits. It
-/// is empty if the slope is at its lower bound, which makes a threshold meaningless, or if the likelihood has a ridge
-/// instead of a maximum.
+/// Returns the interval of S75 in mrad that the decision uses. For a point with a lapse warning it is the hull of both
+/// fits. It is empty if the slope is at its lower bound, which makes a threshold meaningless, or if the likelihood has
+/// a ridge instead of a maximum.
 [[nodiscard]] Interval deciding_interval(const TodPoint& point);
 
 /// Returns the expanded intervals; empty if the plan has no budget. `plan.seed` seeds the Monte Carlo check.
-/// `source_loss`: share of the contrast that the size-of-source effect takes from the triangles that measure it; empty:
-/// not measured. Errors: combined().
+/// `source_loss`: relative loss of contrast by the size-of-source effect at the triangles that measure the contrast;
+/// empty: not measured. Errors: combined().
 [[nodiscard]] Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, const TodCurve& curve,
                                                                         std::span<const Presentation> presentations,
                                                                         const std::optional<Comparison>& comparison,

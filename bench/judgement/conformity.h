@@ -10,6 +10,7 @@
 
 namespace todbench {
 
+/// Result of a decision rule.
 enum class ConformityDecision { pass, conditional_pass, inconclusive, conditional_fail, fail };
 /// Returns the words, for example "conditional pass".
 [[nodiscard]] std::string_view to_string(ConformityDecision decision);
@@ -23,9 +24,10 @@ struct ToleranceLimits {
 struct MeasuredValue {
   double value = 0;
   double u = 0;                                ///< standard uncertainty
-  std::optional<double> degrees_of_freedom{};  ///< of u; empty: infinite
+  std::optional<double> degrees_of_freedom{};  ///< degrees of freedom of u; empty: infinite
 };
 
+/// Decision with its guard band and probabilities.
 struct Conformity {
   ConformityDecision decision = ConformityDecision::inconclusive;
   double guard_band = 0;  ///< 0 for the simple rule
@@ -47,7 +49,7 @@ struct Conformity {
 /// limit; t instead of z for finite degrees of freedom. Precondition: 0 < risk <= 0.5, u > 0.
 [[nodiscard]] double guard_band_for_risk(double risk, const MeasuredValue& measured);
 
-/// Returns the guard band of 2 u, and with finite degrees of freedom that with the same risk by Student's t.
+/// Returns the guard band 2 u; with finite degrees of freedom, the guard band with the same risk by Student's t.
 [[nodiscard]] double usual_guard_band(const MeasuredValue& measured);
 
 /// Normal distribution of true values over a fleet.
@@ -59,15 +61,15 @@ struct Fleet {
 /// freedom, the error over u follows Student's t.
 struct GlobalRisks {
   double p_conforming = 0, p_accepted = 0;
-  double consumer_risk = 0;                ///< accepted and outside the tolerance
-  double producer_risk = 0;                ///< rejected and inside the tolerance
+  double consumer_risk = 0;                ///< probability: accepted and outside the tolerance
+  double producer_risk = 0;                ///< probability: rejected and inside the tolerance
   double p_nonconforming_if_accepted = 0;  ///< 0 if no unit is accepted
 };
 
 /// Measurement error of a unit of the fleet.
 struct MeasurementError {
   double u = 0;                                ///< standard uncertainty
-  std::optional<double> degrees_of_freedom{};  ///< of u; empty: infinite
+  std::optional<double> degrees_of_freedom{};  ///< degrees of freedom of u; empty: infinite
 };
 
 /// Computes the risks. Errors: `invalid_input` (sd, u or degrees of freedom of 0 or less, or no limit).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table of demand kinds: one row for each DemandKind with its unit, its rule of judgement and its words.
+// Table of demand kinds: one row for each DemandKind with its unit, its rule of judgement and its text.
 #pragma once
 
 #include <span>
@@ -12,18 +12,20 @@
 
 namespace todbench {
 
+/// Row of the table of demand kinds.
 struct DemandKindRow {
   DemandKind kind;
-  std::string_view unit;  ///< of limit, result and interval
+  std::string_view unit;  ///< unit of limit, result and interval
   LimitSide side;
   /// Returns all demands of this kind; empty if there are none.
   std::vector<Demand> (*judge)(const DemandKindRow& row, const JudgementInput& evidence);
   std::string (*in_words)(const DemandKindRow& row, const Demand& demand);
-  const Quantity* quantity = nullptr;  ///< of a limit on a physical measure
+  const Quantity* quantity = nullptr;  ///< for a limit on a physical measure
 };
 
 /// Returns all kinds in the order of judgement and presentation.
 [[nodiscard]] std::span<const DemandKindRow> demand_kinds();
+/// Returns the row of a kind.
 [[nodiscard]] const DemandKindRow& row_of(DemandKind kind);
 
 /// Returns the measured quantity with this name (measures.json); null if not measured. Lives as long as the evidence.

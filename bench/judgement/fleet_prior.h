@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prior from earlier units of the same kind, and the risks of a decision with it (JCGM 106:2012).
+// Distribution of earlier units of the same kind as a prior, and the risks of a decision with it (JCGM 106:2012).
 #pragma once
 
 #include <span>
@@ -31,17 +31,19 @@ struct FleetPrior {
 /// uncertainty, or a scatter not above the uncertainties, so that the spread is unknown).
 [[nodiscard]] Result<FleetPrior> fleet_prior(std::span<const UnitValue> units);
 
-/// 95 % interval of the standard deviation from the chi-squared distribution of the variance of the values; its lower
-/// end may be 0.
+/// 95 % interval of the standard deviation, from the chi-squared distribution of the variance of the values. Its lower
+/// limit may be 0.
 struct SpreadInterval {
   double low = 0, high = 0;
 };
+/// Returns the interval of the standard deviation of a prior.
 [[nodiscard]] SpreadInterval spread_interval(const FleetPrior& prior);
 
-/// Risks of a measured unit: value and u on the scale of the prior, the error over u normal or Student's t. Its true
-/// value is drawn from the fleet, whose mean has the standard uncertainty sqrt((sd^2 + u^2) / units); the variances
-/// add. `p_conformity`: share of the posterior inside the tolerance (JCGM 106:2012, 7.2). The others: as GlobalRisks
-/// (9). `most`: largest value over the ends of the interval of the spread.
+/// Risks of a measured unit. Its value and u are on the scale of the prior; the error over u is normal or follows
+/// Student's t. Its true value is drawn from the fleet, whose mean has the standard uncertainty sqrt((sd^2 + u^2) /
+/// units); the variances add. `p_conformity`: share of the posterior inside the tolerance (JCGM 106:2012, 7.2). The
+/// other members: as GlobalRisks (JCGM 106:2012, 9). `..._most`: the larger value at the two limits of the spread
+/// interval.
 struct FleetRisks {
   double p_conformity = 0;
   double consumer_risk = 0, producer_risk = 0;
@@ -51,11 +53,11 @@ struct FleetRisks {
 [[nodiscard]] Result<FleetRisks> fleet_risks(const FleetPrior& prior, const MeasuredValue& measured,
                                              const ToleranceLimits& tolerance, const ToleranceLimits& acceptance);
 
-/// Forecast of the effect of a limit on future units of a fleet. `most`: largest value over the ends of the interval of
-/// the spread.
+/// Forecast of the effect of a limit on future units of a fleet. `..._most`: the larger value at the two limits of the
+/// spread interval.
 struct FleetForecast {
   int units = 0;             ///< number of units of the prior
-  double p_good = 0;         ///< inside the tolerance
+  double p_good = 0;         ///< probability that a unit is inside the tolerance
   double good_rejected = 0;  ///< share of the conforming units that are not accepted
   double good_rejected_most = 0;
   double bad_accepted = 0;  ///< share of all units: accepted and outside the tolerance
@@ -67,12 +69,12 @@ struct FleetForecast {
 
 /// Returns the row of the plan for a demand; null if absent.
 [[nodiscard]] const FleetRow* fleet_of(const LimitsPlan& limits, const Demand& demand);
-/// Returns the prior of a row, on its scale.
+/// Returns the prior of a row; for an acuity, in ln acuity.
 [[nodiscard]] FleetPrior prior_of(const FleetRow& row);
 
-/// Adds the risks to every demand that is a number with both ends of its interval and has a row in the plan. u is the
-/// half-width towards the limit over 1.96, or over Student's t for the demand's degrees of freedom. The acceptance
-/// limit is that of the rule.
+/// Adds the risks to every demand with a number, both limits of its interval, and a row in the plan. u is the
+/// half-width towards the limit divided by 1.96, or by Student's t for the degrees of freedom of the demand. The
+/// acceptance limit is that of the decision rule.
 void add_fleet_risks(std::vector<Demand>& demands, const LimitsPlan& limits);
 
 }  // namespace todbench

@@ -17,10 +17,11 @@
 namespace todbench {
 
 /// Relative standard uncertainty of the contrast estimate itself. Estimates are corrected for the blur of the simulated
-/// camera, which differs from that of the real one (up to 2.6 % observed, half-width of a rectangular distribution).
+/// camera, whose effect differs from that of the real camera by up to 2.6 % (observed; half-width of a rectangular
+/// distribution).
 inline constexpr double reading_relative_u = 0.015;
-/// Relative standard uncertainty of black body and camera scale if the plan has no budget for either: 2 % for each and
-/// 1 % for the emissivity.
+/// Relative standard uncertainty of black body and camera scale together if the plan has no budget for either: 2 % for
+/// each, and 1 % for the emissivity.
 inline constexpr double assumed_relative_u = 0.03;
 /// Probability of a false alarm over all contrasts of a run.
 inline constexpr double contrast_false_alarm = 0.005;
@@ -30,7 +31,7 @@ inline constexpr double contrast_false_alarm = 0.005;
 /// rows of the budget, the estimate, and the effective contrast itself. `contrasts`: number of tested contrasts.
 [[nodiscard]] double allowed_contrast_deviation(const Plan& plan, const TodPoint& point, std::size_t contrasts);
 
-/// Relative deviation from which all numbers of a run are meaningless, so the run ends.
+/// Relative deviation above which all results of a run are meaningless, so that the run ends.
 inline constexpr double gross_contrast_deviation = 1.0 / 3;
 /// Returns MeasurementOptions::max_contrast_error: the larger of gross_contrast_deviation and
 /// allowed_contrast_deviation(). Empty for contrasts in grey levels.
@@ -41,8 +42,8 @@ inline constexpr double gross_contrast_deviation = 1.0 / 3;
 [[nodiscard]] std::optional<double> contrast_deviation(const Plan& plan, const TodPoint& point,
                                                        std::span<const Presentation> presentations);
 
-/// Returns JudgementInput::air_transmittance of a camera's run; empty if its contrasts are grey levels or none was
-/// shown.
+/// Returns JudgementInput::air_transmittance of a camera's run; empty if its contrasts are grey levels or no contrast
+/// was presented.
 [[nodiscard]] std::optional<double> contrast_transmittance(const Plan& plan,
                                                            std::span<const Presentation> presentations);
 

@@ -15,19 +15,21 @@
 
 namespace todbench {
 
+/// Budget of one quantity.
 struct UncertaintyBudget {
   std::string quantity{};
-  std::string unit{};  ///< of the result
+  std::string unit{};  ///< unit of the result
   std::vector<BudgetRow> rows;
 };
 
 /// Contribution of a row.
 struct BudgetShare {
   double standard_uncertainty = 0;  ///< in the unit of the row
-  double contribution = 0;          ///< |sensitivity| times that, in the unit of the result
-  double share_percent = 0;         ///< of the variance
+  double contribution = 0;          ///< absolute sensitivity times standard_uncertainty, in the unit of the result
+  double share_percent = 0;         ///< share of the variance
 };
 
+/// Uncertainty from all rows of a budget.
 struct CombinedUncertainty {
   double u = 0;                     ///< standard uncertainty
   std::optional<double> nu_eff{};   ///< Welch-Satterthwaite; empty: infinite
@@ -40,7 +42,7 @@ struct CombinedUncertainty {
 
 /// Draws of the Monte Carlo check: the half-width has a standard error of at most 0.15 %.
 inline constexpr int budget_draws = 1000000;
-/// Draws for each contrast of a session: 0.35 %.
+/// Draws for each contrast of a session: the half-width has a standard error of 0.35 %.
 inline constexpr int session_budget_draws = 200000;
 
 /// Combines the rows. `seed` seeds the draws; without draws `expanded` is that of the GUM. Errors: `invalid_input`, one
@@ -51,6 +53,7 @@ inline constexpr int session_budget_draws = 200000;
 
 /// Reads the file of `todbench budget` (docs/method/conformity.md). Errors: `invalid_input` with file and line.
 [[nodiscard]] Result<UncertaintyBudget> read_budget(const std::filesystem::path& file);
+/// Parses text already read; `name` is its name in messages.
 [[nodiscard]] Result<UncertaintyBudget> parse_budget(std::string_view text, const std::string& name);
 
 }  // namespace todbench

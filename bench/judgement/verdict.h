@@ -18,7 +18,9 @@
 
 namespace todbench {
 
+/// Decision of a verdict.
 enum class VerdictKind { pass, fail, inconclusive };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(VerdictKind kind);
 
 /// Returns the decision rule of the plan in words.
@@ -29,6 +31,7 @@ enum class JudgedWhen {
   at_end_of_run,
   afterwards,  ///< the run stored none: older program or run that was cut off
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(JudgedWhen when);
 /// Returns a sentence for a verdict that was made afterwards; otherwise empty.
 [[nodiscard]] std::string_view remark_on(JudgedWhen when);
@@ -38,14 +41,15 @@ enum class JudgedWhen {
 struct DemandKind {
   std::string_view name;
   static const DemandKind acuity;  ///< 75 % acuity at a contrast, [[limits.acuity]]
-  /// A threshold with both ends of its interval, at every contrast without a limit on acuity.
+  /// A threshold with both limits of its interval, at every contrast without a limit on acuity.
   static const DemandKind identified;
   static const DemandKind equivalence;       ///< to the simulated twin, [limits] equivalence_margin_percent
-  static const DemandKind scene_dependence;  ///< of the response to a hot bar, `todbench scene-dependence`
+  static const DemandKind scene_dependence;  ///< dependence of the response on a hot bar, `todbench scene-dependence`
   auto operator<=>(const DemandKind&) const = default;
 };
 inline constexpr DemandKind DemandKind::acuity{"acuity"}, DemandKind::identified{"identified"},
     DemandKind::equivalence{"equivalence"}, DemandKind::scene_dependence{"scene_dependence"};
+/// Returns the name of the kind.
 [[nodiscard]] constexpr std::string_view to_string(DemandKind kind) {
   return kind.name;
 }
@@ -56,6 +60,7 @@ enum class RatioKind {
   paired,    ///< from the phases that both observed (tod/comparison/paired_ratio.h)
 };
 inline constexpr std::array all_ratio_kinds{RatioKind::unpaired, RatioKind::paired};
+/// Returns the name of the enumerator.
 [[nodiscard]] constexpr std::string_view to_string(RatioKind kind) {
   return kind == RatioKind::paired ? "paired" : "unpaired";
 }
@@ -86,15 +91,16 @@ struct Demand {
   /// Probability that the demand is met, given the result (decide()). Empty: unknown.
   std::optional<double> p_conformity{};
 
-  std::optional<double> degrees_of_freedom{};  ///< of the interval; empty: infinite
+  std::optional<double> degrees_of_freedom{};  ///< degrees of freedom of the interval; empty: infinite
 
   std::optional<DemandFleet> fleet{};  ///< if the plan states one
 
-  std::optional<std::string> zone{};  ///< of the frame; empty if the demand is not about a zone
-  std::optional<RatioKind> ratio{};   ///< of an equivalence demand that could be judged
+  std::optional<std::string> zone{};  ///< zone of the frame; empty if the demand does not concern a zone
+  std::optional<RatioKind> ratio{};   ///< kind of ratio of an equivalence demand that was judged
 
-  /// Specific risks of this decision: of a wrong acceptance for a pass, of a wrong rejection for a fail.
+  /// Returns the specific risk of a wrong acceptance; empty unless the demand passes.
   [[nodiscard]] std::optional<double> consumer_risk() const;
+  /// Returns the specific risk of a wrong rejection; empty unless the demand fails.
   [[nodiscard]] std::optional<double> producer_risk() const;
 };
 
@@ -125,7 +131,7 @@ struct JudgementInput {
   const std::optional<Comparison>& comparison;
   std::optional<std::string> ended_early{};
   JudgedWhen judged = JudgedWhen::at_end_of_run;
-  const CurveUncertainty* uncertainty = nullptr;  ///< of the curve; null: the plan has no budget
+  const CurveUncertainty* uncertainty = nullptr;  ///< uncertainty of the curve; null: the plan has no budget
   /// Transmittance of the bench, if camera and target both state the contrast in kelvin. Without a budget, a limit is
   /// then judged at the set contrast as each of them shows it. Empty: the contrasts are not compared.
   std::optional<double> air_transmittance{};
@@ -133,21 +139,23 @@ struct JudgementInput {
   std::optional<std::vector<MeasuredQuantity>> measures{};
 };
 
-/// Judges all demands. The verdict is fail if one demand fails; inconclusive if one demand is, if there are no results,
-/// or if the run ended early (missing data could change it); otherwise pass. The only code that decides.
+/// Judges all demands. The verdict is fail if one demand fails; inconclusive if one demand is inconclusive, if there
+/// are no results, or if the run ended early, because missing data could change the verdict; otherwise pass. No other
+/// code makes this decision.
 [[nodiscard]] Verdict judge(const JudgementInput& evidence);
 
 /// Returns whether the plan has limits. Without limits a verdict states only whether every threshold was found.
 [[nodiscard]] bool limits_asked(const Verdict& verdict);
-/// The decision as a word; "not judged" in place of "pass" if the plan has no limits.
+/// Returns the decision as a word; "not judged" in place of "pass" if the plan has no limits.
 [[nodiscard]] std::string_view decision_word(const Verdict& verdict);
 
-/// Returns whether a fit identifies the threshold: it has a value and both ends of its interval, the slope is not at
+/// Returns whether a fit identifies the threshold: it has a value and both limits of its interval, the slope is not at
 /// its lower bound, and the likelihood has no ridge (fewer sizes than parameters).
 [[nodiscard]] bool threshold_identified(const PsychometricFit& fit);
 
 /// Converts decisions; conditional ones become inconclusive.
 [[nodiscard]] VerdictKind kind_of(ConformityDecision decision);
+/// Converts a decision to the terms of a rule.
 [[nodiscard]] ConformityDecision conformity_of(VerdictKind kind);
 /// Returns the decision on an equivalence demand.
 [[nodiscard]] VerdictKind decision_of(ComparisonVerdict verdict);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares two models (sensors, observers or packages of stages) with the same scenes and seeds.
+// Comparison of two models (sensors, observers or packages of stages) with the same scenes and seeds.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,10 @@ namespace todbench {
 
 /// Kind of the compared models; both sides have the same kind.
 enum class ModelKind { sensor, observer, package };
+/// Returns the name of the kind.
 [[nodiscard]] std::string_view to_string(ModelKind kind);
 
-/// One side. Only the members of its kind are set.
+/// One side of the comparison. Only the members of its kind are set.
 struct ComparedModel {
   ModelKind kind = ModelKind::sensor;
   std::string name, reference, sha256;
@@ -32,18 +33,19 @@ struct ComparedModel {
 struct KeyDifference {
   std::string key, a, b;
 };
-/// B minus A over the whole picture, or the reason of its absence.
+/// Difference B minus A over the whole picture, or the reason for its absence.
 struct PixelDifference {
   std::string what;
   std::optional<double> mean_k, rms_k, largest_k;  ///< largest by magnitude, with its sign
   cv::Point largest_at{};
   std::string reason;
 };
-/// Modulus of the transfer functions along x. For observers it is that of their blur; absent if either is a program.
+/// Modulus of the transfer functions along x. For observers it is that of their blur. Absent if a model is a program.
 struct TransferPoint {
   double frequency_per_mrad = 0;
   double a = 0, b = 0;
 };
+/// Result of the comparison.
 struct ModelComparison {
   ComparedModel a, b;
   std::vector<KeyDifference> keys;
@@ -55,13 +57,13 @@ struct ModelComparison {
   std::vector<std::string> notes;
 };
 
-/// Simulates the plan with both models: every effect, the seed of the plan, the same presentations. Errors:
-/// `invalid_input` for two kinds, for a plan with modules or an adaptive schedule; those of the simulation of A or B.
-/// The error of a module is in its result instead.
+/// Simulates the plan with both models, with every effect, the seed of the plan and the same presentations. Errors:
+/// `invalid_input` for models of different kinds, for a plan with modules or an adaptive schedule; those of the
+/// simulation of A or B. An error of a module is part of its result.
 [[nodiscard]] Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, ComparedModel b,
                                                      const EnhancementOptions& options, std::stop_token stop);
 
-/// Whether the paired interval excludes 1; empty if there is no interval.
+/// Returns whether the paired interval excludes 1; empty if there is no interval.
 [[nodiscard]] std::optional<bool> parts(const PairedRatio& ratio);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The comparison of two models as a page.
+// Comparison of two models as a page.
 #pragma once
 
 #include "bench/model_comparison/model_comparison.h"
@@ -8,7 +8,7 @@
 namespace todbench {
 
 /// Returns a page with the deviations, curves, transfer functions, differences of pixels and keys, and sources of the
-/// models. Contains no times of day and no hosts.
+/// models. The page contains no times of day and no host names.
 [[nodiscard]] Document model_comparison_page(const LoadedPlan& plan, const ModelComparison& comparison);
 
 }  // namespace todbench

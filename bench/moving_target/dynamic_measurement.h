@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures the dynamic TOD: a camera in front of a plate that its stage moves, or the simulated sensor of a plan in
-// front of its scene.
+// Measurement of the dynamic TOD: a camera in front of a plate that its stage moves, or the simulated sensor of a plan
+// in front of its scene.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ namespace todbench {
 /// Acuities at one contrast, by speed; the first is that of the plate at rest.
 struct DynamicContrast {
   double set_delta_t_k = 0;
-  double delta_t_k = 0;  ///< as the camera observed it, mean over the passes
+  double delta_t_k = 0;  ///< observed by the camera, mean over the passes
   std::vector<DynamicAcuity> speeds;
 };
 
@@ -26,28 +26,29 @@ struct DynamicContrast {
 struct MeasuredTimeConstant {
   double time_constant_ms = 0;
   Interval ci95_ms;
-  double exposure_ms = 0;  ///< stated by the plan's sensor; half of it is subtracted from the lag
+  double exposure_ms = 0;  ///< exposure of the sensor of the plan; half of it is subtracted from the lag
   double offset_px = 0;    ///< error of the registration at rest, eliminated by reversed motion
   int passes = 0;
 };
-/// Least-squares fit of v lag = v (tau + T / 2) + direction x offset over the moving passes with a known start of the
-/// run; interval by Student's t. Empty: fewer than four of these passes, or only one direction.
+/// Fits v lag = v (tau + T / 2) + direction x offset by least squares over the moving passes with a known start of the
+/// run; interval by Student's t. Empty: fewer than four such passes, or only one direction.
 [[nodiscard]] std::optional<MeasuredTimeConstant> time_constant_of(const std::vector<MovingPassRecord>& passes,
                                                                    double exposure_ms);
 
+/// Result of a measurement.
 struct DynamicMeasurement {
   MovingMeasurement measured;
   std::vector<DynamicContrast> contrasts;
   std::optional<MeasuredTimeConstant> time_constant;
   std::string camera;
-  double residual_px = 0;  ///< rms deviation of the places in moving passes from the stage's line
+  double residual_px = 0;  ///< rms deviation of the positions in moving passes from the motion of the stage
 };
 
 /// Callbacks of a measurement, including those of measure_moving().
 struct DynamicListener {
   MovingListener moving{};
   std::function<Result<void>(const OpenedBench&)> on_open{};  ///< before the first measurement
-  /// All passes, or those before an early end.
+  /// Receives all passes, or those before an early end.
   std::function<Result<void>(const MovingMeasurement&)> on_measured{};
 };
 

@@ -10,18 +10,20 @@
 
 namespace todbench {
 
+/// Result with its session.
 struct DynamicSession {
   DynamicMeasurement found;
-  ExperimentOutcome outcome;  ///< of the plate at rest, by its first frames; the limits of the plan apply to it
+  /// Outcome for the plate at rest, from its first frames; the limits of the plan apply to it.
+  ExperimentOutcome outcome;
 };
 
-/// Rejects requests of a plan that do not apply to a moving target: `invalid_input` in one sentence.
+/// Fails with `invalid_input` and one sentence if the plan requests something that does not apply to a moving target.
 [[nodiscard]] Result<void> check_dynamic_plan(const Plan& plan, const SensorSpec& sensor);
 
 /// Runs measure_dynamic() into a session folder. trials.csv, fits, verdict and report are those of the plate at rest,
 /// `single-frame`; dynamic.json contains all results, moving-trials.csv the answers of all speeds and observers.
-/// Errors: those of measure_dynamic() and check_dynamic_plan(). They leave no folder before the devices are open, later
-/// one marked interrupted with the trials so far.
+/// Errors: those of measure_dynamic() and check_dynamic_plan(). An error before the devices are open leaves no folder;
+/// a later one leaves a folder that is marked interrupted and contains the trials so far.
 [[nodiscard]] Result<DynamicSession> measure_dynamic_session(
     const LoadedPlan& loaded, const ExperimentOptions& options, const ExperimentListener& listener,
     const std::function<void(const MovingPassRecord&)>& on_pass, std::stop_token stop);

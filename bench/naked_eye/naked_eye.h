@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles on a calibrated display, without camera and sensor, for a person: plain, or in white noise. Such answers
+// Triangles on a calibrated display, without camera and sensor, for a person: plain, or in white noise. The answers
 // determine the open parameters of an observer with an eye.
 #pragma once
 
@@ -13,6 +13,7 @@
 
 namespace todbench {
 
+/// Experiment for one person.
 struct NakedEyeTask {
   TemplateObserverSpec model;  ///< with an eye, and with the calibrated display of the person
   /// Luminance contrasts: target minus background over background, above 0. Targets are brighter than the background.
@@ -23,22 +24,25 @@ struct NakedEyeTask {
   bool operator==(const NakedEyeTask&) const = default;
 };
 
-/// Error: `invalid_input` with one sentence (no eye, no display, a contrast or noise that the display cannot show).
+/// Checks a task. Errors: `invalid_input` with one sentence (no eye, no display, a contrast or noise that the display
+/// cannot show).
 [[nodiscard]] Result<void> validate(const NakedEyeTask& task);
 
-/// The display with luminance in proportion to the level, on which 1 K is a luminance contrast of 1. Pictures are drawn
-/// through the measured luminances, so this is what the person sees. Precondition: validate() of the display succeeds.
+/// Returns the display with luminance in proportion to the level, on which 1 K is a luminance contrast of 1. It
+/// describes the pictures on the screen, because they are drawn through the measured luminances. Precondition:
+/// validate() of the display succeeds.
 [[nodiscard]] ViewedDisplay linear_display(const ViewedDisplay& display);
 
-/// The model before that display. Precondition: validate() of the task succeeds.
+/// Returns the model that looks at this display. Precondition: validate() of the task succeeds.
 [[nodiscard]] TemplateObserverSpec model_at_linear_display(const NakedEyeTask& task);
-/// Angle of a displayed sample at the eye, in mrad.
+/// Returns the angle of a displayed sample at the eye, in mrad.
 [[nodiscard]] double mrad_per_sample(const ViewedDisplay& display);
 
 /// Number of sizes at each contrast, and the ratio of neighbouring ones; the fourth is near the predicted threshold.
 inline constexpr int naked_eye_sizes = 8;
 inline constexpr double naked_eye_size_ratio = 1.22;
 
+/// One triangle.
 struct NakedEyeTrial {
   double contrast = 0;
   double size_samples = 0;  ///< square root of area, in displayed samples
@@ -54,13 +58,15 @@ struct NakedEyePicture {
   double noise = 0;    ///< standard deviation per sample: the noise of the task, and that of rounding to levels
 };
 
-/// Draws a square picture of `window_samples` on a side. A sample's luminance is that of the covered share of it. It is
-/// rounded to one of 256 levels up or down at random, with the luminance as the mean: contrasts far below one level are
-/// shown. Noise and rounding follow from the seed of the task and the number of the trial.
+/// Draws a square picture of `window_samples` on a side. The luminance of a sample follows from the share that the
+/// triangle covers. It is rounded up or down at random to one of 256 levels, so that the mean is the luminance and
+/// contrasts far below one level can be shown. Noise and rounding follow from the seed of the task and the number of
+/// the trial.
 [[nodiscard]] NakedEyePicture naked_eye_picture(const NakedEyeTask& task, const NakedEyeTrial& trial,
                                                 int window_samples);
 
-/// Trials of every contrast and size, each direction equally often, in random order. `sizes_samples`: by contrast.
+/// Returns the trials of every contrast and size, with each direction equally often, in random order. `sizes_samples`:
+/// by contrast.
 [[nodiscard]] std::vector<NakedEyeTrial> naked_eye_trials(const NakedEyeTask& task,
                                                           const std::vector<std::vector<double>>& sizes_samples);
 

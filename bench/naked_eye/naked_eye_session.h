@@ -20,11 +20,11 @@ namespace todbench {
 inline constexpr std::string_view naked_eye_name = "naked_eye.json";
 inline constexpr std::string_view naked_eye_comparison_name = "naked_eye_comparison.json";
 
-/// A session with its pictures, and the answers so far. Used by one thread at a time.
+/// Session with its pictures and the answers so far. Used by one thread at a time.
 class NakedEyeSession {
  public:
-  /// Predicts, and writes the task and the prediction into a new folder. Errors: predict_naked_eye(); `invalid_input`
-  /// if the folder exists; `io` with the path.
+  /// Computes the prediction, and writes task and prediction into a new folder. Errors: predict_naked_eye();
+  /// `invalid_input` if the folder exists; `io` with the path.
   [[nodiscard]] static Result<NakedEyeSession> begin(const NakedEyeTask& task, const std::filesystem::path& folder,
                                                      int pictures, const std::stop_token& stop);
 
@@ -33,16 +33,18 @@ class NakedEyeSession {
   [[nodiscard]] std::size_t planned() const { return trials_.size(); }
   [[nodiscard]] std::size_t done() const { return answers_.size(); }
   [[nodiscard]] bool complete() const { return done() == planned(); }
-  /// The next trial and its picture. Precondition: not complete.
+  /// Returns the next trial. Precondition: not complete.
   [[nodiscard]] const NakedEyeTrial& trial() const { return trials_[done()]; }
+  /// Returns the picture of the next trial. Precondition: not complete.
   [[nodiscard]] const NakedEyePicture& picture() const { return picture_; }
-  /// Takes the answer to picture(). `response_s`: time from display to answer.
+  /// Records the answer to picture(). `response_s`: time from display to answer.
   void answer(Apex answer, double response_s, std::optional<int> limit_ms);
   /// Writes the answers so far, the facts of the person who gave them and the comparison, once. Errors:
   /// `invalid_input` (no answers), `io`.
   [[nodiscard]] Result<void> finish(const PersonFacts& person);
-  /// After finish().
+  /// Returns the record. Precondition: finish() was called.
   [[nodiscard]] const HumanRecord& record() const { return *record_; }
+  /// Returns naked_eye_comparison(). Precondition: finish() was called.
   [[nodiscard]] const Json& comparison() const { return comparison_; }
 
  private:
@@ -52,7 +54,7 @@ class NakedEyeSession {
   NakedEyeTask task_;
   NakedEyePrediction prediction_;
   std::filesystem::path folder_;
-  std::shared_ptr<TemplateObserver> windows_;  ///< knows the size of the window of each target
+  std::shared_ptr<TemplateObserver> windows_;  ///< provides the size of the window of each target
   std::vector<NakedEyeTrial> trials_;
   NakedEyePicture picture_;
   std::vector<Trial> answers_;
@@ -61,7 +63,7 @@ class NakedEyeSession {
   Json comparison_;
 };
 
-/// Answers of a person against the prediction: "contrasts" (s75_mrad, s75_ci95_mrad, predicted_s75_mrad,
+/// Returns the answers of a person with the prediction: "contrasts" (s75_mrad, s75_ci95_mrad, predicted_s75_mrad,
 /// predicted_spread_mrad, inside_spread, sizes), and the chi-squared test of the model itself.
 [[nodiscard]] Json naked_eye_comparison(const NakedEyePrediction& prediction, const HumanRecord& record);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parameter file of an observer fitted to people.
+// Parameter file of an observer fitted to people.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 namespace todbench {
 
 /// Returns an observer description as plans name it, with a table [fit] of its origin: program, parameters with
-/// intervals, correlations, and hashes of the sessions. The lapse rate stands only there, because the template observer
-/// has none.
+/// intervals, correlations, and hashes of the sessions. The lapse rate is only in [fit], because the template observer
+/// has no lapse rate.
 [[nodiscard]] std::string observer_file(const PeopleFit& fit);
 
 }  // namespace todbench

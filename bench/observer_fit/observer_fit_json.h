@@ -7,8 +7,8 @@
 
 namespace todbench {
 
-/// "observer", "from", "free", "estimates", "correlations", "goodness", "accepted", "not_identified", "persons",
-/// "between_persons".
+/// Returns an object with the keys "observer", "from", "free", "estimates", "correlations", "goodness", "accepted",
+/// "not_identified", "persons", "between_persons".
 [[nodiscard]] Json people_fit_json(const PeopleFit& fit);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page of an observer fitted to people.
+// Page of an observer fitted to people.
 #pragma once
 
 #include "bench/observer_fit/people_fit.h"
@@ -7,7 +7,8 @@
 
 namespace todbench {
 
-/// Parameters with intervals and adequacy, and for each person residuals, figures and the confusion matrix.
+/// Returns the page: parameters with intervals and adequacy, and for each person residuals, figures and the confusion
+/// matrix.
 [[nodiscard]] Document people_fit_document(const PeopleFit& fit);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fits an observer to people, from the human runs of sessions.
+// Fit of an observer to people, from the answers that they gave in sessions.
 #pragma once
 
 #include <cstdint>
@@ -22,44 +22,46 @@ namespace todbench {
 struct AnsweredSession {
   std::string folder;           ///< its name without the parent folders
   std::string person{};         ///< code of the person; empty: not stated
-  std::size_t number = 1;       ///< of the sitting in the session, in the order of the answers
-  std::size_t sittings = 1;     ///< of the session
+  std::size_t number = 1;       ///< number of the sitting in the session, in the order of the answers
+  std::size_t sittings = 1;     ///< number of sittings in the session
   std::string manifest_sha256;  ///< empty: no manifest
-  std::string shown_sha256;     ///< of the file with the pictures of this person
+  std::string shown_sha256;     ///< SHA-256 of the file with the pictures of this person
   int samples_per_pitch = 1;
-  double noise_k = 0;                      ///< temporal noise of the run, for answers that do not state theirs
-  std::optional<ViewedDisplay> display{};  ///< of the plan, for an observer with an eye
+  double noise_k = 0;                      ///< temporal noise of the run, for answers without a stated noise
+  std::optional<ViewedDisplay> display{};  ///< display of the plan, for an observer with an eye
   HumanRecord human;
 };
 /// Reads the answers of all people of an opened session, in their order, or those of one person: a code, or for a
-/// person without a code the number of the sitting. `invalid_input`: it has no answers or not this person, or the shown
-/// pictures were not stored.
+/// person without a code the number of the sitting. Errors: `invalid_input` (no answers, or none of this person, or the
+/// shown pictures were not stored).
 [[nodiscard]] Result<std::vector<AnsweredSession>> answered_sessions(const std::filesystem::path& folder,
                                                                      const Session& session,
                                                                      const std::optional<std::string>& person);
-/// Folder of the answers, and the person if the session has several.
+/// Returns the folder of the answers, and the person if the session has several.
 [[nodiscard]] std::string label_of(const AnsweredSession& session);
 
+/// Assignment of sittings to people.
 enum class PersonsAre {
   codes,  ///< sittings with one code are a person; every sitting without a code is a person
   one,    ///< one person answered in all sessions
 };
 
+/// Options of the fit.
 struct PeopleFitOptions {
   TemplateObserverSpec from;
-  std::string from_sha256;                      ///< of the text of `from`
-  std::string name;                             ///< of the fitted observer
+  std::string from_sha256;                      ///< SHA-256 of the text of `from`
+  std::string name;                             ///< name of the fitted observer
   std::array<bool, observer_key_count> free{};  ///< parameters to fit; the others stay as in `from`
   PersonsAre persons = PersonsAre::codes;
-  int replicates = 299;  ///< of the bootstrap of the goodness of fit, at least 19
+  int replicates = 299;  ///< replicates of the bootstrap of the goodness of fit, at least 19
   int draws = 384;       ///< noise vectors per answer probability, an even number
   std::uint64_t seed = 1;
-  /// The model is rejected if its p is at most this, divided by the number of people (Bonferroni).
+  /// The model is rejected if its p is at most this value divided by the number of people (Bonferroni).
   double least_p = 0.01;
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
 
   [[nodiscard]] FittedKind kind() const { return from.eye ? FittedKind::eye : FittedKind::blurred; }
-  /// Name of a parameter, by ObserverKey.
+  /// Returns the name of a parameter, by ObserverKey.
   [[nodiscard]] std::string parameter(std::size_t key) const {
     return std::string(parameter_name(all_observer_keys[key], kind()));
   }
@@ -71,6 +73,7 @@ struct ShownSize {
   auto operator<=>(const ShownSize&) const = default;
 };
 
+/// Fit of one person.
 struct FittedPerson {
   std::vector<std::size_t> sessions;  ///< index of each
   PersonFit fit;
@@ -78,16 +81,18 @@ struct FittedPerson {
   std::vector<ShownSize> cells;  ///< by Goodness::cells[].cell
 };
 
+/// Fit of all people.
 struct PeopleFit {
   PeopleFitOptions options;
   std::vector<AnsweredSession> sessions;
   std::vector<FittedPerson> people;
-  std::array<PeopleSpread, observer_key_count> spread{};  ///< of the free parameters; empty for one person
-  ObserverValues values{};                                ///< of the person, or the means over people
+  std::array<PeopleSpread, observer_key_count> spread{};  ///< spread of the free parameters; empty for one person
+  ObserverValues values{};                                ///< values of the person, or means over people
   std::array<Interval, observer_key_count> ci95{};
   double least_p = 1;                       ///< smallest p of the model over people
   bool accepted = false;                    ///< p exceeds least_p of the options for every person
   std::vector<std::string> not_identified;  ///< sentences: parameters that the answers do not determine
+  /// Returns whether the fitted observer may be used.
   [[nodiscard]] bool usable() const { return accepted && not_identified.empty(); }
 };
 
@@ -96,12 +101,12 @@ struct PeopleFit {
 [[nodiscard]] Result<PeopleFit> fit_people(std::vector<AnsweredSession> sessions, const PeopleFitOptions& options,
                                            std::stop_token stop);
 
-/// Values of an observer before the fit, by ObserverKey.
+/// Returns the values of an observer before the fit, by ObserverKey.
 [[nodiscard]] ObserverValues start_values(const TemplateObserverSpec& from);
 
-/// Distance of a fitted value from that of `from`, in units of the spread of hvs-2: half of the range over which public
-/// data leave the parameter open (gain +-4 dB, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2; decibels and
-/// factors by logarithms). Empty for other parameters, and for an observer without an eye.
+/// Returns the distance of a fitted value from that of `from`, in units of the spread of hvs-2: half of the range over
+/// which public data leave the parameter open (gain +-4 dB, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2;
+/// decibels and factors by logarithms). Empty for other parameters, and for an observer without an eye.
 [[nodiscard]] std::optional<double> spreads_from_default(const PeopleFit& fit, std::size_t key);
 
 /// Returns the fitted observer.

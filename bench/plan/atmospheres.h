@@ -15,18 +15,19 @@ namespace todbench {
 
 /// Inputs of an air path besides its name.
 struct AtmosphereRequest {
-  SpectralBand band{};                ///< of the camera
+  SpectralBand band{};                ///< band of the camera
   std::string haze = "rural-23km";    ///< one of haze_names(); shipped table only
-  double weight_temperature_k = 300;  ///< temperature of the weight dL/dT; for spectra
+  double weight_temperature_k = 300;  ///< temperature of the weight dL/dT, for air given as a spectrum
   double extinction_per_km = 0;       ///< for "beer-lambert" only
 };
 
+/// Air path of a range prediction, with its origin.
 struct Atmosphere {
   std::string name;    ///< as requested
   std::string source;  ///< a sentence: program, table, aerosol, band and weight; or the file
   Transmittance air = Transmittance::beer_lambert(0);
-  std::optional<double> air_k{};  ///< air temperature of the model atmosphere at the ground
-  std::optional<SpectralBand> table_band{};
+  std::optional<double> air_k{};             ///< air temperature of the model atmosphere at the ground
+  std::optional<SpectralBand> table_band{};  ///< band of the shipped table that was used; empty for other air
   std::vector<std::string> notes{};
 };
 

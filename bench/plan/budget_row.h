@@ -19,18 +19,20 @@ enum class BudgetDistribution {
 };
 inline constexpr std::array budget_distributions{BudgetDistribution::normal, BudgetDistribution::rectangular,
                                                  BudgetDistribution::triangular, BudgetDistribution::u_shaped};
+/// Returns the name in plans, for example "u-shaped".
 [[nodiscard]] std::string_view to_string(BudgetDistribution distribution);
 
 /// Quantities that share a row: it cancels in a ratio to the twin, in a trend, or between contrasts.
 enum class BudgetCommon { twin, series, contrasts };
 inline constexpr std::array budget_commons{BudgetCommon::twin, BudgetCommon::series, BudgetCommon::contrasts};
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(BudgetCommon common);
 
 /// Input through which a row affects the acuity.
 enum class BudgetInput {
-  by_name,  ///< input given by the name of the row: "distance", "entrance pupil" ...; others: acuity
+  by_name,  ///< the name of the row determines the input: "distance", "entrance pupil" ...; any other name: acuity
   distance,
-  entrance_pupil,  ///< its position; the distance is counted from it
+  entrance_pupil,  ///< position of the entrance pupil, from which the distance is measured
   cut_outs,        ///< size of the triangles of the plate
   ifov,
   black_body_calibration,
@@ -104,6 +106,7 @@ enum class InputKind {
   contrast,  ///< the same relative error times the slope of the curve
   direct,    ///< an error of the acuity itself
 };
+/// Returns the effect of an input on the acuity.
 [[nodiscard]] InputKind kind_of(BudgetInput input);
 /// Value of 1 in a unit, converted to metres (geometry), to kelvin (contrast) or to a relative value.
 struct BudgetUnit {

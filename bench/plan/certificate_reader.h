@@ -23,9 +23,10 @@ struct CertifiedValue {
   double coverage_factor = 0;
 };
 
+/// Content of the certificate of an instrument, as far as the budget uses it.
 struct InstrumentCertificate {
-  std::string number;  ///< its unique identifier
-  std::string serial;  ///< of the item
+  std::string number;  ///< unique identifier of the certificate
+  std::string serial;  ///< serial number of the item
   std::string item;    ///< name of the item
   std::vector<CertifiedValue> values;
 };
@@ -34,16 +35,18 @@ struct InstrumentCertificate {
 /// uncertainty that is negative or not a number).
 [[nodiscard]] Result<InstrumentCertificate> parse_certificate(std::string_view xml);
 
-/// Returns the row of the budget of a black body: the largest standard uncertainty of its temperatures of this name
-/// (empty: of all), as expanded uncertainty with its coverage factor. Errors: `invalid_input` (no such temperature has
-/// an expanded uncertainty; the certificate has angles, so that it is that of a camera).
+/// Returns the budget row of a black body: the largest standard uncertainty of the temperatures with the name
+/// `quantity` (empty: of all temperatures), stated as expanded uncertainty with its coverage factor. Errors:
+/// `invalid_input` (no such temperature has an expanded uncertainty; the certificate contains angles and is therefore
+/// that of a camera).
 [[nodiscard]] Result<BudgetRow> black_body_row(const InstrumentCertificate& certificate, const std::string& quantity,
                                                const std::string& file);
 
 /// Fills in the serial number and the certificate of an instrument from its file `dcc`, relative to `folder`, adds the
-/// row of a black body to the budget, and clears `dcc`: the plan then has all numbers. Errors: `invalid_input` (file
-/// too large, parse_certificate(), another serial number or certificate than stated, an instrument without a role, a
-/// quantity for another instrument than a black body, a second row for the calibration of the black body).
+/// row of a black body to the budget, and clears `dcc`, because the plan then contains all values. Errors:
+/// `invalid_input` (file too large, parse_certificate(), another serial number or certificate than stated, an
+/// instrument without a role, a quantity for an instrument that is not a black body, a second row for the calibration
+/// of the black body).
 [[nodiscard]] Result<void> apply_certificate(Plan& plan, std::size_t row, const std::filesystem::path& folder);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The collimator of a plan: transmission, rows of the budget, temperatures through it.
+// Collimator of a plan: transmission, budget rows, and temperatures observed through it.
 #pragma once
 
 #include "bench/plan/plan.h"
@@ -7,12 +7,13 @@
 
 namespace todbench {
 
-/// Mean of a table of transmissions over the band, weighted with the derivative of Planck's law at 295 K; the stated
-/// transmission without a table. A loaded plan has this value in `transmission`.
+/// Returns the mean of the table of transmissions over the band, weighted with the derivative of Planck's law at 295 K;
+/// without a table, the stated transmission. A loaded plan contains this value in `transmission`.
 [[nodiscard]] double mean_transmission(const CollimatorPlan& collimator, const SpectralBand& band);
 
-/// Temperature that a correct camera shows for a black body behind the collimator: band radiance
-/// transmission L(black body) + (1 - transmission) L(mirrors), as a temperature. The same without a collimator.
+/// Returns the temperature (K) that a camera with a correct scale reports for a black body behind the collimator: the
+/// temperature whose band radiance is transmission L(black body) + (1 - transmission) L(mirrors). Without a collimator,
+/// returns `black_body_k`.
 [[nodiscard]] double seen_through_k(const Plan& plan, const SpectralBand& band, double black_body_k);
 
 /// Names of the rows that a collimator adds to a budget.

@@ -16,6 +16,7 @@ enum class ConformityRule {
 };
 inline constexpr std::array conformity_rules{ConformityRule::guarded_acceptance_and_rejection, ConformityRule::simple,
                                              ConformityRule::guarded, ConformityRule::non_binary};
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(ConformityRule rule);
 
 }  // namespace todbench

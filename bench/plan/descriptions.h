@@ -27,10 +27,10 @@ struct DescribedObserver {
 [[nodiscard]] Result<SensorSpec> load_sensor(std::string_view reference);
 /// Loads a sensor with its modules, for callers that run them.
 [[nodiscard]] Result<SensorSpec> load_sensor_with_modules(std::string_view reference);
-/// Loads an observer. An observer with a module is rejected: plans have their own [[module]]. So is one with an eye:
-/// only a plan has a display.
+/// Loads an observer. Rejects an observer with a module, because plans have their own [[module]], and an observer with
+/// an eye, because only a plan has a display.
 [[nodiscard]] Result<TemplateObserverSpec> load_observer(std::string_view reference);
-/// Loads an observer, with or without an eye, and puts it before a display.
+/// Loads an observer, with or without an eye, that looks at `display`.
 [[nodiscard]] Result<TemplateObserverSpec> load_observer_at(std::string_view reference, const ViewedDisplay& display);
 /// Fails if the observer has an eye, for work that does not model a display: "WORK does not model ...".
 [[nodiscard]] Result<void> refuse_eye(const TemplateObserverSpec& observer, std::string_view work);
@@ -44,7 +44,7 @@ struct DescribedObserver {
 /// Reads the keys of a [[module]] except `place`. Mistakes are recorded in the reader of the table.
 [[nodiscard]] ModulePlan read_module(TomlReader& table);
 
-/// The same functions for text already read.
+/// Parse text that is already read; otherwise as the functions load_...().
 [[nodiscard]] Result<SensorSpec> parse_sensor(const Resource& resource);
 [[nodiscard]] Result<TemplateObserverSpec> parse_observer(const Resource& resource);
 /// Parses an observer with its optional [[module]] (at most one, with place observer), for callers that run it.

@@ -12,6 +12,7 @@ class JoinedUncertainty {
  public:
   /// Adds a standard uncertainty in the unit of the result; empty degrees of freedom: infinite.
   void add(double standard, const std::optional<double>& degrees_of_freedom);
+  /// Returns the combined standard uncertainty in the unit of the result.
   [[nodiscard]] double u() const { return u_; }
   /// Returns u times Student's t for this upper tail probability.
   [[nodiscard]] double half_width(double upper_tail) const;

@@ -15,6 +15,7 @@
 
 namespace todbench {
 
+/// Return all values of an enumeration, in the order of its names.
 constexpr const auto& values_of(const TargetKind&) {
   return all_target_kinds;
 }
@@ -88,6 +89,7 @@ E value_named(const std::string& name) {
   return values_of(E{})[0];
 }
 
+/// Convert the member of a plan to a key value.
 template <typename T>
 KeyValue to_key_value(const T& member) {
   if constexpr (std::is_enum_v<T>) {
@@ -112,6 +114,7 @@ requires std::is_enum_v<E> KeyValue to_key_value(const std::vector<E>& member) {
   return names_of(member);
 }
 
+/// Set the member of a plan from a key value of the matching type.
 template <typename T>
 void from_key_value(T& member, const KeyValue& value) {
   if constexpr (std::is_enum_v<T>) {
@@ -152,26 +155,27 @@ KeyPlace place_of(Reach reach, T Struct::*member) {
                      const KeyValue& value) { from_key_value(reach(plan, row).*member, value); }};
 }
 
-/// Access to a member of the plan itself.
+/// Returns access to a member of the plan itself.
 template <typename T>
 KeyPlace in_plan(T Plan::*member) {
   return place_of(
       [](auto& plan, std::size_t) -> auto& { return plan; }, member);
 }
 
-/// Access to a member of one of its structs.
+/// Returns access to a member of a section of the plan.
 template <typename Struct, typename T>
 KeyPlace in(Struct Plan::*section, T Struct::*member) {
   return place_of(
       [section](auto& plan, std::size_t) -> auto& { return plan.*section; }, member);
 }
 
-/// Access to the rows of the list `reach(plan)`.
+/// Returns access to the rows of the list `reach(plan)`.
 template <typename Reach>
 SectionRows rows_of(Reach reach) {
   return {.count = [=](const Plan& plan) { return reach(plan).size(); },
           .resize = [=](Plan& plan, std::size_t count) { reach(plan).resize(count); }};
 }
+/// Returns access to a member of one row of the list `reach(plan)`.
 template <typename Reach, typename Struct, typename T>
 KeyPlace in_row(Reach reach, T Struct::*member) {
   return place_of(

@@ -21,20 +21,24 @@ namespace todbench {
 using KeyValue = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>,
                               std::vector<std::string>, std::map<std::string, std::string>>;
 
+/// Text.
 struct TextKey {};
+/// True or false.
 struct FlagKey {};
+/// Number in a range.
 struct NumberKey {
   NumberRange range;
 };
-/// Optional number; empty: the file does not have the key.
+/// Optional number; empty if the file does not contain the key.
 struct OptionalNumberKey {
   NumberRange range;
 };
-/// Optional number; `word` in the file stands for empty.
+/// Optional number; the file contains `word` if it is empty.
 struct NumberOrWordKey {
   NumberRange range;
   std::string_view word;
 };
+/// Whole number from `low` to `high`.
 struct WholeKey {
   std::int64_t low = 0;
   std::int64_t high = 0;
@@ -43,9 +47,11 @@ struct WholeKey {
 struct WholesKey {
   WholeKey each{};
 };
+/// One of `words`.
 struct ChoiceKey {
   std::vector<std::string> words;
 };
+/// Whether an empty list is accepted.
 enum class MayBeEmpty { no, yes };
 /// List of numbers. `noun` is the name of an element in messages.
 struct NumbersKey {
@@ -65,8 +71,9 @@ enum class PlateUse { mtf, ctf, source_size, absolute, mrtd };
 /// Name or file of a description.
 struct ResourceKey {
   ResourceKind kind;
-  PlateUse use = PlateUse::mtf;  ///< of a plate
+  PlateUse use = PlateUse::mtf;  ///< use of the plate, for kind plate
 };
+/// List of names or files of descriptions.
 struct ResourcesKey {
   ResourceKind kind;
 };
@@ -86,7 +93,7 @@ struct ValueMistake {
 };
 using ValueMistakes = std::vector<ValueMistake>;
 
-/// Returns the mistakes that the type alone shows. Resources are not looked up.
+/// Returns the mistakes that follow from the type alone. Resources are not looked up.
 [[nodiscard]] std::vector<ValueMistake> mistakes_of(const KeyType& type, const KeyValue& value);
 
 /// Reads a key. A wrong value is recorded in the reader, and the fallback is returned. Without a fallback the key is
@@ -102,8 +109,8 @@ using ValueMistakes = std::vector<ValueMistake>;
 /// Returns the value as one line of text for people: plain numbers, lists with commas, yes and no; an absent value as
 /// empty text or as its word.
 [[nodiscard]] std::string plain_text(const KeyType& type, const KeyValue& value);
-/// Inverse of plain_text(). Errors: `invalid_input`, a sentence with the accepted range but without the name of the
-/// key.
+/// Converts the text of plain_text() back to the value. Errors: `invalid_input`, a sentence with the accepted range but
+/// without the name of the key.
 [[nodiscard]] Result<KeyValue> value_from_text(const KeyType& type, std::string_view text);
 
 }  // namespace todbench

@@ -14,6 +14,7 @@
 
 namespace todbench {
 
+/// Content of a letterhead.
 struct Letterhead {
   std::string title;      ///< heading of the first page; empty: title of the report
   std::string logo_png;   ///< as returned by checked_png(); empty: no logo
@@ -36,6 +37,7 @@ struct Letterhead {
 /// (key unknown or out of range, text over 2000 characters, more than 20 entries of a kind, control character, invalid
 /// logo).
 [[nodiscard]] Result<Letterhead> parse_letterhead(const Resource& resource);
+/// Reads a letterhead from a file. Errors: as parse_letterhead(); `invalid_input` if the file cannot be read.
 [[nodiscard]] Result<Letterhead> load_letterhead(const std::filesystem::path& file);
 
 /// Files of the letterhead, relative to the session folder.

@@ -68,10 +68,11 @@ class LoadedPlan {
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const std::vector<TargetPlate>& plates() const { return parts_.plates; }
-  /// Returns every plate that the target must be able to show: for the trials, MTF and CTF.
+  /// Returns every plate that the target must be able to show: the plates of the trials, and those of the requested
+  /// measures (MTF, CTF, size-of-source effect, absolute temperatures, MRTD).
   [[nodiscard]] std::vector<TargetPlate> shown_plates() const;
   [[nodiscard]] const TemplateObserverSpec& observer() const { return parts_.observer; }
-  /// Sensor with the microscan of the plan.
+  /// Returns the sensor with the microscan of the plan.
   [[nodiscard]] const SensorSpec& sensor() const { return sensor_; }
   [[nodiscard]] const PlanParts& parts() const { return parts_; }
 
@@ -84,7 +85,7 @@ class LoadedPlan {
   SensorSpec sensor_;
 };
 
-/// Like load_plan() and parse_plan(), with the parts.
+/// Read a plan as load_plan() and parse_plan() do, and also its parts.
 [[nodiscard]] Result<LoadedPlan> read_plan(std::string_view reference, const ResourceFinder& find = find_resource);
 [[nodiscard]] Result<LoadedPlan> read_plan(const Resource& resource, const std::filesystem::path& folder,
                                            const ResourceFinder& find = find_resource);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The order behind a calibration or test: the entries of a report that ISO/IEC 17025:2017, 7.8.2 requires beyond
+// Order of a calibration or test: the entries of a report that ISO/IEC 17025:2017, 7.8.2 requires in addition to the
 // results.
 #pragma once
 
@@ -19,14 +19,14 @@ namespace todbench {
 /// Section [order]. Empty texts and values: not stated. Dates are "YYYY-MM-DD".
 struct OrderPlan {
   std::string customer{}, customer_address{};
-  std::string report_number{};  ///< of the laboratory, unique
+  std::string report_number{};  ///< number of the report, unique in the laboratory
   std::string laboratory{}, laboratory_address{};
-  std::string country{};                 ///< of the laboratory, two letters (ISO 3166-1)
+  std::string country{};                 ///< country of the laboratory, two letters (ISO 3166-1)
   std::string item{}, item_condition{};  ///< item under test, and its state when it was received
   std::string received{}, issued{};      ///< dates of receipt of the item and of issue of the report
   std::string method{}, method_reference{};
   std::optional<double> room_temperature_c{}, humidity_percent{}, camera_temperature_c{};
-  std::string deviations{};  ///< from the method
+  std::string deviations{};  ///< deviations from the method
   std::string authorised_by{}, authorised_role{};
   bool operator==(const OrderPlan&) const = default;
 };
@@ -37,18 +37,21 @@ enum class OrderForm {
   date,     ///< "YYYY-MM-DD"
   country,  ///< two capital letters
 };
-/// Keys of [order]: name in the file, title in reports, meaning.
+/// Key of [order] with a text: name in the file, title in reports, meaning.
 struct OrderText {
   std::string_view name, title, sentence;
   std::string OrderPlan::*member;
   OrderForm form = OrderForm::free;
 };
+/// Key of [order] with a number.
 struct OrderNumber {
   std::string_view name, unit, title, sentence;
   NumberRange range;
   std::optional<double> OrderPlan::*member;
 };
+/// Returns the keys with texts, in the order of reports.
 [[nodiscard]] std::span<const OrderText> order_text_keys();
+/// Returns the keys with numbers, in the order of reports.
 [[nodiscard]] std::span<const OrderNumber> order_number_keys();
 /// Returns the mistake of a text; empty if it has its form or is empty.
 [[nodiscard]] std::optional<std::string> order_mistake(OrderForm form, std::string_view text);

@@ -32,8 +32,8 @@ namespace todbench {
 /// [camera] warm_up: condition that the camera meets before a run. All defaults: no condition.
 struct WarmUpPlan {
   double time_s = 0;           ///< frames are taken for this time before the run
-  double drift_k_per_min = 0;  ///< the mean of the frames must drift more slowly; 0: not checked
-  double window_s = 60;        ///< of frames from which the drift is computed
+  double drift_k_per_min = 0;  ///< the drift of the frame mean must be below this; 0: not checked
+  double window_s = 60;        ///< duration of the frames from which the drift is computed
   double timeout_s = 3600;     ///< the run ends if the drift is not below the bound by then
   /// Returns whether the run waits.
   [[nodiscard]] bool stated() const { return time_s > 0 || drift_k_per_min > 0; }
@@ -42,13 +42,13 @@ struct WarmUpPlan {
 
 /// [camera]: the real or emulated camera. Without an id the plan can only be simulated.
 struct CameraPlan {
-  std::string id;                               ///< as listed by `todbench devices`, e.g. "gige:FLIR-48000123"
-  double ifov_mrad = 0;                         ///< of one pixel along x; required with an id
-  double pixel_aspect = 1;                      ///< height over width of a pixel; no key: LoadedPlan takes the sensor's
-  double nuc_interval_s = 0;                    ///< period of commanded corrections; 0: never commanded
-  double nuc_wait_s = 1;                        ///< frames within this time after a correction are not measured
-  std::map<std::string, std::string> settings;  ///< feature -> value; set before the run and read back
-  double reconnect_s = 60;                      ///< maximum time to wait for a lost camera; 0: no reconnection
+  std::string id;             ///< as listed by `todbench devices`, e.g. "gige:FLIR-48000123"
+  double ifov_mrad = 0;       ///< field of view of one pixel along x; required with an id
+  double pixel_aspect = 1;    ///< height over width of a pixel; without the key, LoadedPlan uses that of the sensor
+  double nuc_interval_s = 0;  ///< period of commanded corrections; 0: never commanded
+  double nuc_wait_s = 1;      ///< frames within this time after a correction are not measured
+  std::map<std::string, std::string> settings;   ///< feature -> value; set before the run and read back
+  double reconnect_s = 60;                       ///< maximum time to wait for a lost camera; 0: no reconnection
   ContrastUnit contrast = ContrastUnit::kelvin;  ///< camera only; the twin is measured in kelvin
   std::string frame_size;                        ///< "640x512": requested size; empty: chosen by the back end
   std::string nuc_command;                       ///< feature that triggers a correction; empty: found by name
@@ -56,6 +56,7 @@ struct CameraPlan {
   bool operator==(const CameraPlan&) const = default;
 };
 
+/// Kind of target.
 enum class TargetKind {
   scpi,    ///< black body and plate stage on the network
   prompt,  ///< the operator changes the target on request
@@ -64,19 +65,22 @@ enum class TargetKind {
 };
 inline constexpr std::array all_target_kinds{TargetKind::scpi, TargetKind::prompt, TargetKind::scene,
                                              TargetKind::display};
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(TargetKind kind);
 
 /// [target] collimator: a mirror or lens that shows the plate at infinity. It replaces the distance.
 struct CollimatorPlan {
   double focal_length_mm = 0;    ///< 0: no collimator
   double focal_length_u_mm = 0;  ///< standard uncertainty
-  double transmission = 1;       ///< of a contrast; with a table its mean, once the plan is loaded
-  double transmission_u = 0;     ///< standard uncertainty
-  /// Table: wavelengths in rising order and the transmission at each. The mean over the camera's band is used.
+  /// Transmission of a contrast. In a loaded plan with a table: the mean of the table over the band.
+  double transmission = 1;
+  double transmission_u = 0;  ///< standard uncertainty
+  /// Table of the transmission: wavelengths in rising order, and the transmission at each. Empty: no table.
   std::vector<double> wavelengths_um{}, transmissions{};
-  /// Temperature of its mirrors; empty: that of the air.
+  /// Temperature of the mirrors; empty: temperature of the air.
   std::optional<double> mirror_temperature_c{};
   double blur_mrad = 0;  ///< aberration: standard deviation of a normal blur per axis
+  /// Returns whether the plan has a collimator.
   [[nodiscard]] bool stated() const { return focal_length_mm > 0; }
   bool operator==(const CollimatorPlan&) const = default;
 };
@@ -93,14 +97,16 @@ struct TargetPlan {
   std::string display = "todbench-gui --pictures";
   int display_width_px = 1920, display_height_px = 1080;
   double display_pixel_mm = 0, display_span_k = 0, display_gamma = 1, display_settle_s = 0.2;
-  std::vector<double> display_luminance{0, 1};  ///< replaces display_gamma: at equally spaced levels, black to white
-  /// Entrance pupil to plate, or the focal length of the collimator. A file states either this or a collimator.
+  /// Luminance at equally spaced levels, black to white; replaces display_gamma.
+  std::vector<double> display_luminance{0, 1};
+  /// Distance from the entrance pupil to the plate, or the focal length of the collimator. A file states either this or
+  /// a collimator.
   double distance_m = 2;
   CollimatorPlan collimator{};
   std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
   std::vector<Mounting> mountings{all_mountings.begin(), all_mountings.end()};
-  /// How many of `mountings`, the first ones, show a plate: one number for all plates, or one for each of `plates` in
-  /// its order; 0: all.
+  /// Number of `mountings` in which a plate is shown, counted from the first: one number for all plates, or one for
+  /// each of `plates` in its order; 0: all.
   std::vector<int> mountings_per_plate{0};
   std::vector<double> delta_t_k{16.9, 1.93, 0.23};  ///< set contrasts, never 0; the sign is the polarity
   int phases = 16;                                  ///< sub-pixel shifts per plate, mounting and contrast
@@ -112,11 +118,11 @@ struct TargetPlan {
   /// Largest deviation of the effective contrast from the set contrast; empty: derived from the budget
   /// (allowed_contrast_deviation()).
   std::optional<double> max_contrast_deviation_percent{};
-  /// A presentation begins within this share of the set contrast, and its own frames give its contrast; 0: the target
-  /// has to settle.
+  /// A presentation begins when the contrast is within this percentage of the set contrast, and its contrast is
+  /// measured from its own frames; 0: the target must settle first.
   double contrast_settling_band_percent = 0;
-  /// Largest time by which the contrast in the middle of the plate lags that at the large triangles; required for a
-  /// ramp. Empty: not stated.
+  /// Largest time by which the contrast in the middle of the plate lags behind the contrast at the large triangles;
+  /// required for a ramp. Empty: not stated.
   std::optional<double> max_contrast_lag_s{};
   /// Durations of changes of the target; the order of presentations follows from them.
   double plate_change_s = 60, mounting_change_s = 30, contrast_change_s = 20, shift_change_s = 0.1;
@@ -135,27 +141,30 @@ struct SimulationPlan {
   double tolerance_percent = 1;     ///< allowed numerical error of the 75 % acuity
   int microscan = 1;                ///< samples per pitch and axis; replaces the value of the sensor file
   int phases = 16;                  ///< sub-pixel shifts per plate, mounting and contrast of the twin
-  SceneMotion motion{};             ///< of the target; has an effect if the sensor has a time constant
+  SceneMotion motion{};             ///< motion of the target; it has an effect if the sensor has a time constant
   std::vector<Effect> skip, force;  ///< effects left out, or simulated, regardless of the planner
   bool paired = true;               ///< graded answers: the twin also judges the camera's presentations
   bool operator==(const SimulationPlan&) const = default;
 };
 
+/// Order of presentations and rule by which the run ends.
 enum class ScheduleKind {
   constant,  ///< every combination of [target] at every phase
   adaptive,  ///< chosen from the answers so far until intervals are narrow enough (tod/schedule/adaptive_schedule.h)
   ramp,      ///< the contrast falls and rises in every set-up while the plate is shifted (tod/schedule/ramp_schedule.h)
 };
 inline constexpr std::array all_schedule_kinds{ScheduleKind::constant, ScheduleKind::adaptive, ScheduleKind::ramp};
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(ScheduleKind kind);
 
-/// Kind of answers.
+/// Kind of the recorded answers.
 enum class AnswersChoice {
   automatic,  ///< graded if validated for the plan (chosen_answers()), otherwise binary
   binary,     ///< right or wrong
   graded,     ///< also the probability of the correct answer for the observed picture
 };
 inline constexpr std::array all_answers_choices{AnswersChoice::automatic, AnswersChoice::binary, AnswersChoice::graded};
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(AnswersChoice choice);
 
 /// Section [schedule], for camera and twin.
@@ -163,7 +172,8 @@ struct SchedulePlan {
   ScheduleKind kind = ScheduleKind::constant;
   double half_width_percent = 10;  ///< adaptive: target half-width of the 95 % interval of S75
   int max_presentations = 1000;    ///< adaptive: maximum over all contrasts
-  /// Ramp: rate at `from_delta_t_k`, which falls in proportion to the contrast; contrast of its begin and end.
+  /// Ramp: rate of the contrast at `from_delta_t_k` (it decreases in proportion to the contrast), and the contrasts at
+  /// its beginning and end.
   std::optional<double> ramp_k_per_s{}, from_delta_t_k{}, to_delta_t_k{};
   AnswersChoice answers = AnswersChoice::automatic;
   /// Successive valid frames that a graded answer averages: one number for all contrasts, or one for each of delta_t_k
@@ -182,6 +192,7 @@ enum class EstimatorChoice {
 };
 inline constexpr std::array all_estimator_choices{EstimatorChoice::automatic, EstimatorChoice::weibull,
                                                   EstimatorChoice::twin_shape};
+/// Returns the name in plans, for example "twin-shape".
 [[nodiscard]] std::string_view to_string(EstimatorChoice choice);
 
 /// Section [fit].
@@ -274,6 +285,7 @@ enum class PixelArea {
   frame,  ///< whole frame; the flat field must fill the picture
 };
 inline constexpr std::array all_pixel_areas{PixelArea::plate, PixelArea::frame};
+/// Returns the name of the enumerator.
 [[nodiscard]] constexpr std::string_view to_string(PixelArea area) {
   return area == PixelArea::frame ? "frame" : "plate";
 }
@@ -284,71 +296,124 @@ enum class PixelRule {
   gbt_17444,  ///< GB/T 17444-2013: response below half of the mean, noise above twice the mean
 };
 inline constexpr std::array all_pixel_rules{PixelRule::own, PixelRule::gbt_17444};
+/// Returns the name in plans, "own" or "gbt-17444".
 [[nodiscard]] constexpr std::string_view to_string(PixelRule rule) {
   return rule == PixelRule::gbt_17444 ? "gbt-17444" : "own";
 }
 
 /// Section [measures]: physical measures of the camera, after the trials with the same target, and of the twin.
 struct MeasuresPlan {
-  bool noise = false;  ///< temporal noise, NETD and 3-D noise of the first plate at contrast 0
-  int noise_frames = CameraMeasuresOptions{}.noise_frames;  ///< frames of the noise cube
-  bool pixels = false;                                      ///< bad and substituted pixels, from the noise cube
+  /// Measures temporal noise, NETD and 3-D noise from a noise cube of the first plate at contrast 0.
+  bool noise = false;
+  /// Frames of the noise cube.
+  int noise_frames = CameraMeasuresOptions{}.noise_frames;
+  /// Searches the first 256 frames of the noise cube for bad, blinking and substituted pixels.
+  bool pixels = false;
+  /// Area of the pixel check.
   PixelArea pixels_area = PixelArea::plate;
+  /// Rule by which a pixel is bad. The thresholds below apply to PixelRule::own.
   PixelRule pixel_rule = PixelRule::own;
-  double pixels_response =
-      BadPixelRules{}.dead_responsivity;  ///< dead: response deviates from the median by more than this share
-  double pixels_offset =
-      BadPixelRules{}.offset;  ///< dead or hot: level deviates by more than this many 1.4826 median deviations
-  double pixels_noisy = BadPixelRules{}.noisy;           ///< noisy: temporal noise above this many medians
-  double pixels_blinking = PixelDefectRules{}.blinking;  ///< blinking: change of level above this many medians
-  bool transfer = false;                                 ///< signal transfer: observed contrast over target read-back
+  /// A pixel is dead if its response to temperature deviates from the median by more than this share.
+  double pixels_response = BadPixelRules{}.dead_responsivity;
+  /// A pixel is dead or hot if its level deviates by more than this number times 1.4826 median deviations.
+  double pixels_offset = BadPixelRules{}.offset;
+  /// A pixel is noisy if its temporal noise exceeds this number times the median.
+  double pixels_noisy = BadPixelRules{}.noisy;
+  /// A pixel is blinking if its largest change of level, in standard uncertainties, exceeds this number times the
+  /// median.
+  double pixels_blinking = PixelDefectRules{}.blinking;
+  /// Measures the signal transfer: observed contrast over read-back of the target.
+  bool transfer = false;
+  /// Contrasts of the signal transfer. The plate is located at the largest of them.
   std::vector<double> transfer_steps_k{-4, -2, -1, 1, 2, 4};
-  bool drift = false;                                       ///< growth of mean and spatial noise after a correction
-  double drift_s = DriftOptions{}.drift_s;                  ///< duration of the observation
-  bool response = false;                                    ///< time constant, from contrast steps of the first plate
-  double response_delta_t_k = ResponseOptions{}.delta_t_k;  ///< the contrast steps between this and 0
-  int response_steps = ResponseOptions{}.steps;             ///< up and down in turn
-  int response_frames = ResponseOptions{}.frames;           ///< recorded after each step
-  std::optional<double> response_settling_ms{};             ///< of the target, to 0.1 %; empty only if it is simulated
-  bool gain_control = false;       ///< automatic gain: levels, and settling after the same steps as response
-  bool geometry = false;           ///< IFOV and distortion, from the positions of the triangles
-  bool triangles = false;          ///< mean pictures of the smallest triangles at every contrast
-  bool mtf = false;                ///< along both axes, from the edges of mtf_plate
-  std::string mtf_plate = "edge";  ///< name or file
-  double mtf_delta_t_k = CameraMeasuresOptions{}.mtf_delta_t_k;  ///< contrast of the plate
-  int mtf_frames = CameraMeasuresOptions{}.mtf_frames;           ///< frames averaged
-  /// Frequency at which the MTF is reported and limited.
+  /// Measures the growth of mean and spatial noise after a correction of the camera.
+  bool drift = false;
+  /// Duration of the drift measurement. The next correction ends it earlier.
+  double drift_s = DriftOptions{}.drift_s;
+  /// Measures the time constant of the camera from contrast steps of the first plate.
+  bool response = false;
+  /// Contrast of the steps: the target steps between 0 and this contrast.
+  double response_delta_t_k = ResponseOptions{}.delta_t_k;
+  /// Number of steps, up and down alternately. With at least 8, rise and fall are measured separately.
+  int response_steps = ResponseOptions{}.steps;
+  /// Frames recorded after each step.
+  int response_frames = ResponseOptions{}.frames;
+  /// Time in which the target completes 99.9 % of a step; empty only if the target is simulated.
+  std::optional<double> response_settling_ms{};
+  /// Describes the automatic gain: levels and gain at the contrasts of transfer_steps_k, and their settling after the
+  /// steps of the response measurement.
+  bool gain_control = false;
+  /// Measures IFOV and distortion from the positions of the triangles.
+  bool geometry = false;
+  /// Keeps mean pictures of the smallest triangles at every contrast.
+  bool triangles = false;
+  /// Measures the MTF along both axes from the edges of mtf_plate.
+  bool mtf = false;
+  /// Plate with slanted rectangles, by name or file.
+  std::string mtf_plate = "edge";
+  /// Contrast of mtf_plate.
+  double mtf_delta_t_k = CameraMeasuresOptions{}.mtf_delta_t_k;
+  /// Frames averaged for the MTF.
+  int mtf_frames = CameraMeasuresOptions{}.mtf_frames;
+  /// Frequency at which the MTF is reported and limited, in cycles per pixel pitch.
   double mtf_frequency_per_pitch = CameraMeasuresOptions{}.mtf_frequency_per_pitch;
-  bool ctf = false;                                              ///< along both axes, from the bars of ctf_plate
-  std::string ctf_plate = "bars";                                ///< name or file
-  double ctf_delta_t_k = CameraMeasuresOptions{}.ctf_delta_t_k;  ///< contrast of the plate
-  int ctf_frames = CameraMeasuresOptions{}.ctf_frames;           ///< frames averaged
-  /// The nearest bar group is reported and limited.
+  /// Measures the CTF along both axes from the bars of ctf_plate.
+  bool ctf = false;
+  /// Plate with bars and squares, by name or file.
+  std::string ctf_plate = "bars";
+  /// Contrast of ctf_plate.
+  double ctf_delta_t_k = CameraMeasuresOptions{}.ctf_delta_t_k;
+  /// Frames averaged for the CTF.
+  int ctf_frames = CameraMeasuresOptions{}.ctf_frames;
+  /// Frequency in cycles per pixel pitch. The group of bars nearest to it is reported and limited.
   double ctf_frequency_per_pitch = CameraMeasuresOptions{}.ctf_frequency_per_pitch;
-  bool source_size = false;                                                 ///< size-of-source effect
-  std::string source_size_plate = "apertures";                              ///< name or file
-  double source_size_delta_t_k = CameraMeasuresOptions{}.source_delta_t_k;  ///< contrast of the plate
-  int source_size_frames = CameraMeasuresOptions{}.source_frames;  ///< averaged; without contrast twice as many
-  double source_size_px = CameraMeasuresOptions{}.source_size_px;  ///< side of the source whose loss is reported
-  bool absolute = false;                ///< accuracy, non-uniformity and range over absolute temperatures
-  std::string absolute_plate = "open";  ///< plate whose cut-out is larger than the picture, by name or file
-  std::vector<double> absolute_temperatures_k{285, 290, 295, 300, 305};  ///< of the black body, in order
-  int absolute_frames = AbsoluteOptions{}.frames;                        ///< averaged at each temperature
-  /// Shift of the source on the stage by which the patterns of camera and source are told apart; 0: they are not.
+  /// Measures the size-of-source effect from the apertures and opaque spots of source_size_plate.
+  bool source_size = false;
+  /// Plate with square apertures, by name or file.
+  std::string source_size_plate = "apertures";
+  /// Contrast of source_size_plate.
+  double source_size_delta_t_k = CameraMeasuresOptions{}.source_delta_t_k;
+  /// Frames averaged with the contrast; as many are averaged before and after it, without contrast.
+  int source_size_frames = CameraMeasuresOptions{}.source_frames;
+  /// Side of the square source whose loss is reported and limited.
+  double source_size_px = CameraMeasuresOptions{}.source_size_px;
+  /// Measures accuracy, non-uniformity and repeatability over absolute temperatures of the black body.
+  bool absolute = false;
+  /// Plate whose cut-out is larger than the picture, by name or file.
+  std::string absolute_plate = "open";
+  /// Temperatures of the black body in rising order. They are shown upwards and downwards.
+  std::vector<double> absolute_temperatures_k{285, 290, 295, 300, 305};
+  /// Frames averaged at each temperature.
+  int absolute_frames = AbsoluteOptions{}.frames;
+  /// Shift of the black body on the stage that separates the fixed pattern of the camera from the non-uniformity of the
+  /// black body; 0: they are not separated.
   int absolute_shift_px = AbsoluteOptions{}.shift_px;
-  bool timing = false;              ///< frame rate, jitter, gaps
-  int timing_frames = 500;          ///< observed
-  bool latency = false;             ///< from runs of the stage on the clock of the camera
-  double latency_mrad_s = 50;       ///< speed of the runs
-  int latency_runs = 8;             ///< to the right and to the left in turn
-  bool mrtd = false;                ///< MRTD of four bars, MDTD of spots, by the observer
-  std::string mrtd_plate = "mrtd";  ///< name or file
-  std::vector<double> mrtd_delta_t_k = MrtdOptions{}.contrasts_k;       ///< magnitudes, shown at both polarities
-  int mrtd_frames = MrtdOptions{}.frames;                               ///< judged at each contrast of each set-up
-  int mrtd_set_ups = MrtdOptions{}.set_ups;                             ///< places of the plate between the pixels
-  int mrtd_kept_frames = MrtdOptions{}.kept_frames;                     ///< of them, kept for people to judge
-  double mrtd_frequency_per_pitch = MrtdOptions{}.frequency_per_pitch;  ///< the nearest bars are reported and limited
-  double mdtd_size_px = MrtdOptions{}.spot_px;                          ///< the nearest spot is reported and limited
+  /// Measures frame rate, jitter and gaps from the times of the frames.
+  bool timing = false;
+  /// Frames whose times are examined.
+  int timing_frames = 500;
+  /// Measures the latency from runs of the stage, in the clock of the camera.
+  bool latency = false;
+  /// Speed of the runs.
+  double latency_mrad_s = 50;
+  /// Number of runs, to the right and to the left alternately.
+  int latency_runs = 8;
+  /// Measures the MRTD from the bars and the MDTD from the spots of mrtd_plate, as judged by the observer.
+  bool mrtd = false;
+  /// Plate with groups of bars and with spots, by name or file.
+  std::string mrtd_plate = "mrtd";
+  /// Magnitudes of the contrasts; each is shown at both polarities.
+  std::vector<double> mrtd_delta_t_k = MrtdOptions{}.contrasts_k;
+  /// Frames judged at each contrast of each set-up.
+  int mrtd_frames = MrtdOptions{}.frames;
+  /// Number of set-ups: positions of the plate relative to the pixels.
+  int mrtd_set_ups = MrtdOptions{}.set_ups;
+  /// Frames of each contrast and set-up that are kept for people to judge; 0: none.
+  int mrtd_kept_frames = MrtdOptions{}.kept_frames;
+  /// Frequency in cycles per pixel pitch. The bars nearest to it are reported and limited.
+  double mrtd_frequency_per_pitch = MrtdOptions{}.frequency_per_pitch;
+  /// Side of a spot. The spot nearest to it is reported and limited.
+  double mdtd_size_px = MrtdOptions{}.spot_px;
   bool operator==(const MeasuresPlan&) const = default;
 
   /// Returns whether any measure is on.
@@ -401,6 +466,7 @@ enum class InstrumentRole {
 };
 inline constexpr std::array all_instrument_roles{InstrumentRole::by_name, InstrumentRole::black_body,
                                                  InstrumentRole::plate_stage, InstrumentRole::other};
+/// Returns the role in words.
 [[nodiscard]] constexpr std::string_view to_string(InstrumentRole role) {
   switch (role) {
     case InstrumentRole::by_name:
@@ -420,9 +486,10 @@ inline constexpr std::array all_instrument_roles{InstrumentRole::by_name, Instru
 struct InstrumentPlan {
   std::string name, serial, certificate;
   std::string calibration_due;  ///< "YYYY-MM-DD", the last valid day; empty: no due date
-  /// Digital calibration certificate. Empty in a plan that was read: the numbers of the file are then in the plan.
+  /// File of the digital calibration certificate. Empty in a plan that was read, because the plan then contains its
+  /// values.
   std::string dcc{};
-  std::string dcc_quantity{};  ///< quantity of that certificate that is the calibration; empty: all temperatures
+  std::string dcc_quantity{};  ///< quantity of the certificate that is the calibration; empty: all temperatures
   InstrumentRole role = InstrumentRole::by_name;
   bool operator==(const InstrumentPlan&) const = default;
 };
@@ -443,7 +510,8 @@ struct Plan {
   std::string observer = "hvs-1";  ///< name or file; key `name` of [observer]
   /// Section [display]: the display of the operator, for an observer with an eye. All defaults: not stated.
   ViewedDisplay display;
-  /// States the thresholds of hvs-2 at the display beside those of the observer; key `as_operator` of [display].
+  /// Reports the thresholds of hvs-2 at the display in addition to those of the observer; key `as_operator` of
+  /// [display].
   bool display_as_operator = false;
   SimulationPlan simulation;
   SchedulePlan schedule;
@@ -487,12 +555,14 @@ struct Plan {
 [[nodiscard]] Result<void> validate(const Plan& plan);
 
 /// Returns the relative standard uncertainty of the camera's temperature scale from the contrast rows of the budget,
-/// without the camera's own row. Rows in kelvin are divided by the largest step of the signal transfer. The value is
-/// that of a normal distribution with the same 95 % interval (factor 1.96).
+/// without the camera-scale row. Rows in kelvin are divided by the largest step of the signal transfer. The value is
+/// converted to that of a normal distribution with the same 95 % interval (factor 1.96); this holds for the two
+/// functions below as well.
 [[nodiscard]] double relative_u_of_scale(const Plan& plan);
-/// The same for a temperature difference on the camera's scale, from the camera-scale row.
+/// Returns the relative standard uncertainty of a temperature difference on the camera's scale, from the camera-scale
+/// row.
 [[nodiscard]] double relative_u_of_camera_scale(const Plan& plan);
-/// The same for an angle per pixel, from the rows of distance and entrance pupil.
+/// Returns the relative standard uncertainty of an angle per pixel, from the rows of distance and entrance pupil.
 [[nodiscard]] double relative_u_of_distance(const Plan& plan);
 /// Returns the standard uncertainty of ln acuity from the rows whose sensitivity is known before the measurement,
 /// without those shared with `common`.

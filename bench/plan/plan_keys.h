@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table of all plan keys: name, unit, range, sentence and member. Reader, writer, form, command line, validation and
-// docs/reference/plan-keys.md are made from it.
+// Table of all plan keys: name, unit, range, sentence and member. It is the source of reader, writer, form, command
+// line, validation and docs/reference/plan-keys.md.
 #pragma once
 
 #include <cstddef>
@@ -30,6 +30,7 @@ enum class OptionOf {
   simulations,   ///< simulate and plan
   measurements,  ///< measure and demo
 };
+/// Command-line option for a key.
 struct KeyOption {
   std::string_view name{};  ///< "--delta-t-k"; empty: none
   OptionOf of = OptionOf::simulations;
@@ -47,7 +48,7 @@ struct KeyFallback {
   std::function<KeyValue(const Plan&, const PlanParts&)> value{};
 };
 
-/// Whether a file must have a key.
+/// Condition under which a file must contain a key.
 enum class Required {
   never,
   with_section,  ///< if the file has the section
@@ -61,6 +62,7 @@ struct KeyReplaced {
   [[nodiscard]] bool in(const Plan& plan) const { return by && by(plan); }
 };
 
+/// One key of a plan.
 struct PlanKey {
   std::string_view name;
   KeyType type;
@@ -81,12 +83,13 @@ struct PlanKey {
   std::vector<std::string_view> other_names{};  ///< alternatives to `name` in a file
 };
 
-/// Rows of a repeated section, [[name]].
+/// Access to the rows of a repeated section, [[name]].
 struct SectionRows {
   std::function<std::size_t(const Plan&)> count{};
   std::function<void(Plan&, std::size_t)> resize{};  ///< new rows have the defaults of their struct
 };
 
+/// One section of a plan with its keys.
 struct PlanSection {
   std::string_view name;  ///< as in the file, "limits.acuity"; empty: keys before the first section
   std::string_view sentence;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Conversion of a plan into options of measurement, schedule, fit and comparison.
+// Conversion of a plan to options of measurement, schedule, fit and comparison.
 #pragma once
 
 #include <map>
@@ -19,6 +19,7 @@ enum class Side {
   measured,   ///< camera of the plan
   simulated,  ///< simulated sensor of the plan
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(Side side);
 
 /// Returns the options with the seed of the plan. `ifov_mrad`: of the camera, or of the sensor for the simulated side.
@@ -32,17 +33,20 @@ enum class Side {
                                                      double ifov_mrad, Side side);
 /// Returns the ramp of a plan of kind ramp, for the camera.
 [[nodiscard]] RampOptions ramp_options(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad);
-/// Returns the plan of the twin of a camera: settled contrasts, one after another.
+/// Returns the plan for the twin of a camera: a ramp becomes a constant schedule, and every contrast settles.
 [[nodiscard]] Plan with_settled_contrasts(Plan plan);
-/// Returns a ramp's plan with the contrasts of its limits among those of the points.
+/// Adds the contrasts of the acuity limits to those of the target, if the schedule is a ramp. Returns other plans
+/// unchanged.
 [[nodiscard]] Plan with_limits_in_ramp(Plan plan);
-/// Returns whether each presentation has the contrast of its own frames.
+/// Returns whether the contrast of each presentation is measured from its own frames.
 [[nodiscard]] bool has_own_contrasts(const Plan& plan);
 /// Returns the schedule of the plan. `ifov_mrad`: as for stimuli_options(). `functions`:
-/// psychometric functions of the twin by contrast; an adaptive schedule stops by them if they are fitted.
+/// psychometric functions of the twin by contrast; the stopping rule of an adaptive schedule uses them if they are
+/// fitted.
 [[nodiscard]] std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                            double ifov_mrad, Side side, const RandomStream& stream,
                                                            std::map<double, ProportionTable> functions = {});
+/// Returns the options of the fit, from [fit].
 [[nodiscard]] FitOptions fit_options(const Plan& plan);
 /// Fitted function and the reason for it.
 struct ChosenEstimator {
@@ -54,7 +58,7 @@ struct ChosenEstimator {
 [[nodiscard]] ChosenEstimator chosen_estimator(const Plan& plan, const SensorSpec& sensor);
 /// Frames that a graded answer averages if the plan leaves the number open.
 inline constexpr int frames_of_graded_answers = 4;
-/// Fewest presentations of a contrast for graded answers: with fewer, their scatter has not been studied.
+/// Smallest number of presentations per contrast for graded answers. The scatter with fewer has not been studied.
 inline constexpr int least_graded_presentations = 8;
 /// Returns the frames per presentation that the plan states for a contrast; 0: left open, or no such contrast.
 [[nodiscard]] int frames_at(const Plan& plan, double delta_t_k);

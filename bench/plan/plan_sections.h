@@ -14,7 +14,7 @@ inline constexpr NumberRange not_negative = NumberRange::between(0, 1e12);
 inline constexpr NumberRange any_sign = NumberRange::between(-1e12, 1e12);
 inline constexpr NumberRange share = NumberRange::between(0, 1);
 
-// bench_keys.cpp
+/// Return one section each. Defined in bench_keys.cpp:
 [[nodiscard]] PlanSection about_section();
 [[nodiscard]] PlanSection camera_section();
 [[nodiscard]] PlanSection target_section();
@@ -23,27 +23,27 @@ inline constexpr NumberRange share = NumberRange::between(0, 1);
 [[nodiscard]] PlanSection module_section();
 [[nodiscard]] PlanSection report_section();
 
-// condition_keys.cpp
+// Defined in condition_keys.cpp:
 [[nodiscard]] PlanSection warm_up_section();
 [[nodiscard]] PlanSection collimator_section();
 
-// display_keys.cpp
+// Defined in display_keys.cpp:
 [[nodiscard]] PlanSection display_section();
 
-// order_keys.cpp
+// Defined in order_keys.cpp:
 [[nodiscard]] PlanSection order_section();
 
-// run_keys.cpp
+// Defined in run_keys.cpp:
 [[nodiscard]] PlanSection observer_section();
 [[nodiscard]] PlanSection simulation_section();
 [[nodiscard]] PlanSection schedule_section();
 [[nodiscard]] PlanSection fit_section();
 [[nodiscard]] PlanSection measurement_section();
 
-// measure_keys.cpp
+// Defined in measure_keys.cpp:
 [[nodiscard]] PlanSection measures_section();
 
-// limit_keys.cpp
+// Defined in limit_keys.cpp:
 [[nodiscard]] PlanSection limits_section();
 [[nodiscard]] PlanSection acuity_limits_section();
 [[nodiscard]] PlanSection measure_limits_section();

@@ -22,18 +22,19 @@ enum class LimitSide {
 /// Uncertainty of the budget that the judgement of a quantity includes.
 enum class StatedUncertainty {
   none,          ///< common errors cancel, for example in a ratio of contrasts in one picture
-  camera_scale,  ///< of kelvin on the camera's scale
-  scale,         ///< of the temperature scale and of quantities divided by it
-  distance,      ///< of an angle per pixel
+  camera_scale,  ///< uncertainty of a temperature difference on the camera's scale
+  scale,         ///< uncertainty of the temperature scale, for temperatures and quantities divided by one
+  distance,      ///< uncertainty of an angle per pixel
 };
 
 /// Demand that a limit on a quantity makes.
 struct QuantityLimit {
   std::string_view demand;  ///< name in verdict.json; empty: the quantity cannot have this limit
-  std::string_view words;   ///< before the number of the limit
+  std::string_view words;   ///< text in front of the number of the limit
   [[nodiscard]] constexpr bool possible() const { return !demand.empty(); }
 };
 
+/// Quantity of measures.json.
 struct Quantity {
   std::string_view name;        ///< as in measures.json, without a place
   std::string_view unit;        ///< "1" for ratios and numbers of objects

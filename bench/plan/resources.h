@@ -13,6 +13,7 @@
 
 namespace todbench {
 
+/// Kind of description.
 enum class ResourceKind {
   plate,
   sensor,
@@ -26,6 +27,7 @@ enum class ResourceKind {
   stage,
   letterhead
 };
+/// Returns the kind in words.
 [[nodiscard]] std::string_view to_string(ResourceKind kind);
 
 /// Compiled-in file. The name has no folder and no extension.
@@ -54,7 +56,7 @@ struct Resource {
 /// Finds a resource; relative files are relative to the current folder. Errors: `invalid_input` (unknown name: the
 /// message lists the known ones and the nearest; unreadable file).
 [[nodiscard]] Result<Resource> find_resource(ResourceKind kind, std::string_view reference);
-/// find_resource() or a replacement.
+/// Function find_resource(), or a replacement of it.
 using ResourceFinder = std::function<Result<Resource>(ResourceKind kind, std::string_view reference)>;
 
 }  // namespace todbench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks of keys of schedule, ramp, simulation and fit against the rest of the plan. Each
-// returns the mistakes of the value; its comment states the condition for a correct one.
+// Checks of keys of schedule, ramp, simulation and fit against the rest of the plan. Each returns the mistakes of the
+// value; its comment states the condition for a correct one.
 #pragma once
 
 #include <cstddef>
@@ -10,23 +10,25 @@
 
 namespace todbench {
 
-/// A ramp: instruments or a scene, graded answers with the function of the twin, at least five set-ups.
+/// Requires for a ramp: instruments or a scene, graded answers with the function of the twin, and at least five
+/// set-ups.
 [[nodiscard]] ValueMistakes check_schedule_kind(const Plan& plan, std::size_t row);
-/// A ramp: above 0.
+/// Requires for a ramp: a rate above 0.
 [[nodiscard]] ValueMistakes check_ramp_rate(const Plan& plan, std::size_t row);
-/// A ramp: stated.
+/// Requires for a ramp: a stated value.
 [[nodiscard]] ValueMistakes check_ramp_from(const Plan& plan, std::size_t row);
-/// A ramp: nearer to 0 than from_delta_t_k, of its sign, with the contrasts of the target between both.
+/// Requires for a ramp: a value nearer to 0 than from_delta_t_k, of the same sign, and all contrasts of the target
+/// between the two.
 [[nodiscard]] ValueMistakes check_ramp_to(const Plan& plan, std::size_t row);
-/// A ramp: stated.
+/// Requires for a ramp: a stated value.
 [[nodiscard]] ValueMistakes check_contrast_lag(const Plan& plan, std::size_t row);
-/// Instruments or a scene, and graded answers with the function of the twin.
+/// Requires instruments or a scene, and graded answers with the function of the twin.
 [[nodiscard]] ValueMistakes check_settling_band(const Plan& plan, std::size_t row);
-/// No effect that is also skipped.
+/// Requires effects that are not also skipped.
 [[nodiscard]] ValueMistakes check_force(const Plan& plan, std::size_t row);
-/// More than one frame requires graded answers: other answers use one frame.
+/// Requires graded answers for more than one frame, because other answers use one frame.
 [[nodiscard]] ValueMistakes check_frames_per_presentation(const Plan& plan, std::size_t row);
-/// The function of the twin excludes a lapse rate; graded answers require the function of the twin.
+/// Requires no lapse rate with the function of the twin, and the function of the twin for graded answers.
 [[nodiscard]] ValueMistakes check_estimator(const Plan& plan, std::size_t row);
 
 }  // namespace todbench

@@ -19,7 +19,7 @@ namespace todbench {
 inline const NumberRange scene_kelvin_range = NumberRange::between(100, 5000);
 inline const NumberRange scene_share_range = NumberRange::between(0, 1);
 
-/// Picture as stored in its file: whole counts or numbers.
+/// Picture as stored in its file.
 struct StoredPicture {
   cv::Mat1d values;
   enum class Kind { counts, numbers } kind = Kind::numbers;
@@ -27,7 +27,7 @@ struct StoredPicture {
 /// Reads a picture file; the TIFF reader is not part of this library. Errors: `invalid_input` with the path.
 using PictureReader = std::function<Result<StoredPicture>(const std::string& path)>;
 
-/// Loads a scene or target by name ("craft-01-side") or file. Files that a scene names are relative to its folder.
+/// Load a scene or target by name ("craft-01-side") or file. Files that a scene names are relative to its folder.
 /// Errors: `invalid_input` with file and line (key unknown, missing or out of range; contradictory scene).
 [[nodiscard]] Result<FieldScene> load_scene(std::string_view reference, const PictureReader& read_picture);
 [[nodiscard]] Result<TargetModel> load_target(std::string_view reference);

@@ -26,30 +26,34 @@ class TomlReader {
   /// Parses `text`; `file` is its name in messages. Errors: `invalid_input` "FILE:LINE: ..." (invalid TOML).
   [[nodiscard]] static Result<TomlReader> parse(std::string_view text, const std::string& file);
 
+  /// Reads a text.
   [[nodiscard]] std::string text(std::string_view key, const std::optional<std::string>& fallback);
+  /// Reads a number in `range`.
   [[nodiscard]] double number(std::string_view key, const NumberRange& range, std::optional<double> fallback);
+  /// Reads a whole number from `low` to `high`.
   [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t low, std::int64_t high,
                                    std::optional<std::int64_t> fallback);
-  /// A whole number, or a list of at least one.
+  /// Reads a whole number, or a list of at least one.
   [[nodiscard]] std::vector<double> wholes(std::string_view key, std::int64_t low, std::int64_t high,
                                            const std::optional<std::vector<double>>& fallback);
+  /// Reads true or false.
   [[nodiscard]] bool flag(std::string_view key, std::optional<bool> fallback);
-  /// One of the words in `allowed`.
+  /// Reads one of the words in `allowed`.
   [[nodiscard]] std::string choice(std::string_view key, Words allowed, const std::optional<std::string>& fallback);
-  /// Lists. An empty list is a value, not a missing key.
+  /// Read lists. An empty list is a value, not a missing key.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, const NumberRange& range,
                                             const std::optional<std::vector<double>>& fallback);
   [[nodiscard]] std::vector<std::string> texts(std::string_view key,
                                                const std::optional<std::vector<std::string>>& fallback);
   [[nodiscard]] std::vector<std::string> choices(std::string_view key, Words allowed,
                                                  const std::optional<std::vector<std::string>>& fallback);
-  /// A number in `range`; empty for the word `word`; `fallback` if the key is missing.
+  /// Reads a number in `range`; empty for the word `word`; `fallback` if the key is missing.
   [[nodiscard]] std::optional<double> number_or(std::string_view key, const NumberRange& range, std::string_view word,
                                                 std::optional<double> fallback);
-  /// A number in `range`; empty if the key is missing.
+  /// Reads a number in `range`; empty if the key is missing.
   [[nodiscard]] std::optional<double> optional_number(std::string_view key, const NumberRange& range);
-  /// A table with free keys and values as text, for example camera settings. Numbers and booleans become their TOML
-  /// text.
+  /// Reads a table with free keys and values as text, for example camera settings. Numbers and booleans become their
+  /// TOML text.
   [[nodiscard]] std::map<std::string, std::string> free_table(std::string_view key);
 
   /// Returns a sub-table; if absent, an empty one in which all keys are missing.
@@ -57,8 +61,9 @@ class TomlReader {
   /// Returns an array of tables ([[key]]); empty if absent.
   [[nodiscard]] std::vector<TomlReader> sections(std::string_view key);
 
+  /// Returns whether the table contains the key.
   [[nodiscard]] bool has(std::string_view key) const;
-  /// Returns whether the file has this table.
+  /// Returns whether the file contains this table.
   [[nodiscard]] bool present() const;
 
   /// Records a mistake at a key of this table, or at element `index` of its list: "FILE:LINE: key 'KEY' in [SECTION]:

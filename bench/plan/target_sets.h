@@ -15,8 +15,9 @@
 
 namespace todbench {
 
-/// Reads the mean of the first `frames` pictures of a recording in kelvin. `file` is its path, with "?QUERY" behind it
-/// if the file needs one. Errors: those of the recording; `calibration` if it has no temperatures.
+/// Reads the mean of the first `frames` pictures of a recording in kelvin. `file` is the path of the recording,
+/// followed by "?QUERY" if the recording needs a query. Errors: those of the recording; `calibration` if it has no
+/// temperatures.
 using TemperatureReader = std::function<Result<cv::Mat1d>(const std::string& file, int frames)>;
 /// Readers of the files that a set names. They are not part of this library.
 struct SetReaders {
@@ -29,7 +30,7 @@ struct TargetSet {
   std::string name, description;
   std::vector<IdentificationTarget> targets;  ///< at least two
   std::vector<double> azimuths_deg;           ///< sides from which models are seen; empty: the views are pictures
-  std::vector<std::string> notes;             ///< for people: backgrounds of the pictures that are not uniform
+  std::vector<std::string> notes;             ///< text for people about backgrounds of pictures that are not uniform
 };
 /// Loads a target set by name ("small-craft") or file. Files that it names are relative to its folder. Without readers
 /// a set of pictures is refused. Errors: `invalid_input` with the file (as load_scene(); a picture without a target, a
@@ -40,7 +41,7 @@ struct TargetSet {
 struct PictureCut {
   cv::Rect region{};  ///< in pixels; empty: the whole picture
   std::optional<double> above_k{}, below_k{};
-  cv::Mat1b mask{};  ///< of the whole picture, instead of thresholds
+  cv::Mat1b mask{};  ///< mask of the whole picture, in place of thresholds
   std::optional<double> background_k{};
 };
 /// A target of a picture in front of its background.
@@ -48,13 +49,14 @@ struct CutTarget {
   ScenePicture picture;  ///< without a scale; other elements have the background's temperature
   cv::Size target_px;    ///< extent of the target
   double background_k = 0;
-  std::optional<double> background_sd_k{};  ///< of the pixels beside the target; empty if too few are there
+  /// Standard deviation of the pixels beside the target; empty if there are too few.
+  std::optional<double> background_sd_k{};
 };
 /// Cuts the target. The background is that of the cut, or the mean of the pixels 3 to 5 pixels beside the target:
 /// nearer ones contain the blur of the camera that took the picture. Errors: `invalid_input` in one sentence.
 [[nodiscard]] Result<CutTarget> cut_target(const cv::Mat1d& kelvin, const PictureCut& cut);
 
-/// Smallest and largest element of the pictures of a set in metres; empty for models.
+/// Returns the smallest and largest element of the pictures of a set in metres; empty for models.
 [[nodiscard]] std::optional<std::pair<double, double>> element_range_m(const TargetSet& set);
 
 }  // namespace todbench

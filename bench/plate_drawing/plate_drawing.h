@@ -11,8 +11,9 @@
 
 namespace todbench {
 
-/// Purpose of a line; the name of its layer in the file.
+/// Purpose of a line, which is also the name of its layer in the file.
 enum class SheetLayer { cut, dimension, text };
+/// Returns the name of the layer, in capitals.
 [[nodiscard]] std::string_view to_string(SheetLayer layer);
 
 /// Line through points. A closed line returns to its first point.
@@ -25,11 +26,11 @@ struct SheetLine {
 /// One line of text. `at_mm` is the left end of its baseline.
 struct SheetText {
   cv::Point2d at_mm;
-  double height_mm = 2.5;  ///< of a capital letter
+  double height_mm = 2.5;  ///< height of a capital letter
   std::string text;
 };
 
-/// The drawing. The origin is the centre of the plate, x right, y down, as the camera sees the plate in identity
+/// Drawing of a plate. The origin is the centre of the plate, x right, y down, as the camera sees the plate in identity
 /// mounting. Lines of the layer `cut` are the outline of the plate and of its cut-outs, and no others.
 struct PlateSheet {
   std::string title;
@@ -39,20 +40,20 @@ struct PlateSheet {
   std::vector<SheetText> texts;
 };
 
-/// A cut-out with the numbers that the workshop needs.
+/// Cut-out with the numbers that the workshop needs.
 struct CutOutRow {
   std::string name;
   std::string shape;  ///< "triangle, apex up", "rectangle", "bar"
   cv::Point2d position_mm;
   double size_mm = 0;            ///< triangles: square root of the area; otherwise the shorter side
   double side_mm = 0;            ///< triangles: side; otherwise the longer side
-  double angle_deg = 0;          ///< of rectangles and bars, clockwise
+  double angle_deg = 0;          ///< angle of rectangles and bars, clockwise
   double edge_tolerance_mm = 0;  ///< largest displacement of all edges outwards or inwards
   Polygon outline_mm;
 };
 /// Returns the cut-outs in the order of the plate: triangles, rectangles, bars. `size_percent`: permitted error of a
 /// size. All edges of an equilateral triangle displaced by d change its size S by d / (3^(-3/4) S), so the tolerance of
-/// an edge is size_percent of 0.4387 S; for rectangles and bars it is that of half the shorter side.
+/// an edge is size_percent of 0.4387 S; for rectangles and bars it is size_percent of half the shorter side.
 [[nodiscard]] std::vector<CutOutRow> cut_out_rows(const TargetPlate& plate, double size_percent);
 
 /// Relative errors of the size of a triangle, in percent. An error of all sizes changes the acuity by the same
@@ -60,8 +61,9 @@ struct CutOutRow {
 struct SizeErrors {
   double edges_percent = 0;    ///< all edges displaced outwards: d / (0.4387 S)
   double corners_percent = 0;  ///< corners rounded with a radius r: 1.027 (r / S)^2, always smaller
-  double sheet_percent = 0;    ///< straight walls of a sheet, seen from the distance at the place of the triangle
+  double sheet_percent = 0;  ///< straight walls of a sheet, observed from the distance, at the position of the triangle
 };
+/// Errors of manufacture, and the distance of observation.
 struct MakingErrors {
   double edge_mm = 0.01;
   double corner_radius_mm = 0.1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The drawing of a plate as SVG, DXF and PDF. Equal drawings give equal bytes.
+// Drawing of a plate as SVG, DXF and PDF. Equal drawings give equal bytes.
 #pragma once
 
 #include <string>

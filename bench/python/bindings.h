@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of the Python module. Each unit adds the classes and functions of a few rooms; nothing is computed here.
+// Parts of the Python module. Each source file adds the classes and functions of a few folders and computes no results
+// itself.
 #pragma once
 
 #include <optional>
@@ -13,7 +14,7 @@ namespace todbench {
 
 namespace py = pybind11;
 
-/// Numbers of an argument. A contiguous array of doubles is not copied.
+/// Array of numbers as an argument. A contiguous array of doubles is not copied.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// Returns the comment of a declaration ("PsychometricFit::threshold", "fit_psychometric") as the build read it from
@@ -21,12 +22,13 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 [[nodiscard]] const char* doc(std::string_view name);
 
 // NOLINTBEGIN(cppcoreguidelines-macro-usage)
-/// A member with the comment of its declaration: read only, or readable and writable.
+/// Bind a member with the comment of its declaration: read only, or readable and writable.
 #define TODBENCH_READ(Type, member) .def_readonly(#member, &Type::member, doc(#Type "::" #member))
 #define TODBENCH_WRITE(Type, member) .def_readwrite(#member, &Type::member, doc(#Type "::" #member))
 // NOLINTEND(cppcoreguidelines-macro-usage)
 
-/// Constructor whose keyword arguments set members: SensorSpec(netd_k=0.05). An unknown name raises AttributeError.
+/// Returns a constructor whose keyword arguments set members: SensorSpec(netd_k=0.05). An unknown name raises
+/// AttributeError.
 template <typename T>
 auto from_keywords() {
   return py::init([](const py::kwargs& values) {
@@ -40,13 +42,14 @@ auto from_keywords() {
 /// Returns a document of the bench as dictionaries, lists and numbers.
 [[nodiscard]] py::object python_of(const Json& json);
 
-/// Pictures of an array of three dimensions, or of a sequence of pictures, in place where they have the type. `kept`
-/// holds the arrays.
+/// Pictures of an array of three dimensions, or of a sequence of pictures. They are used without a copy if they have
+/// the pixel type. `kept` holds the arrays.
 template <typename Pixel>
 struct GivenPictures {
   std::vector<py::object> kept;
   std::vector<cv::Mat_<Pixel>> pictures;
 };
+/// Returns the pictures of an argument. Raises `invalid_input` for other values.
 template <typename Pixel>
 GivenPictures<Pixel> given_pictures(const py::sequence& frames) {
   GivenPictures<Pixel> given;
@@ -66,7 +69,8 @@ GivenPictures<Pixel> given_pictures(const py::sequence& frames) {
   return given;
 }
 
-/// In this order: a signature names classes that are already known.
+/// Add the parts to the module. Call them in this order, because a signature can only name classes that are already
+/// added.
 void add_observers(py::module_& module);
 void add_plates(py::module_& module);
 void add_sensors(py::module_& module);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of the libraries as values of Python: pictures as numpy arrays that share their pixels, enumerators as their
-// names, intervals and points as tuples. Every unit of the module includes this header.
+// Conversion of values of the libraries to values of Python: pictures to numpy arrays that share their pixels,
+// enumerators to their names, intervals and points to tuples. Every source file of the module includes this header.
 #pragma once
 
 #include <pybind11/functional.h>
@@ -26,7 +26,7 @@
 
 namespace todbench {
 
-/// An Error on its way to Python, where it is todbench.Error.
+/// Error that is thrown to Python, where it becomes todbench.Error.
 struct RaisedError {
   Error error;
 };
@@ -58,7 +58,7 @@ pybind11::array_t<T> array_of(const std::vector<T>& values) {
   return pybind11::array_t<T>(static_cast<pybind11::ssize_t>(values.size()), values.data());
 }
 
-/// Returns the names of an enumeration that Python may pass; empty: it is only returned.
+/// Returns the names of an enumeration that Python may pass; empty: the enumeration is only returned.
 template <typename Enum>
 constexpr std::span<const Enum> names_taken() {
   return {};
@@ -180,7 +180,8 @@ struct type_caster<cv::Rect> {
   }
 };
 
-/// A picture that Python passes is used in place if its numbers have the type and its rows are whole, during the call.
+/// A picture that Python passes is used without a copy during the call, if its numbers have the pixel type and its rows
+/// are contiguous.
 template <typename Pixel>
 struct type_caster<cv::Mat_<Pixel>> {
   using Array = array_t<Pixel, array::c_style | array::forcecast>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares several range models for one target and one air.
+// Comparison of several range models for one target and one air path.
 #pragma once
 
 #include <array>
@@ -17,15 +17,17 @@
 
 namespace todbench {
 
+/// Range model.
 enum class RangeModel { tod, acquire, ttp, mtdp };
 inline constexpr std::array all_range_models{RangeModel::tod, RangeModel::acquire, RangeModel::ttp, RangeModel::mtdp};
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(RangeModel model);
 
-/// Where M75 and V50 come from.
+/// Source of M75 and V50.
 enum class CriterionSource {
   published,   ///< V50 = 8.5 of people with small craft (Krapels et al. 2006), M75 = 5.1 by EO-VISTA, 4.2.3
   m75_stated,  ///< V50 is M75 / 0.6
-  m75_file,    ///< of an identification experiment; V50 is M75 / 0.6
+  m75_file,    ///< M75 of an identification experiment; V50 is M75 / 0.6
   v50_stated,  ///< M75 is 0.6 V50
 };
 
@@ -33,23 +35,25 @@ enum class CriterionSource {
 struct RangeQuestion {
   double size_m = 0;     ///< square root of the projected area, > 0
   double delta_t_k = 0;  ///< at the target, in kelvin at the scale of the NETD; the sign is ignored
-  double m75 = 5.1;
+  double m75 = 5.1;      ///< M75 of the TOD model
   CriterionSource criterion_source = CriterionSource::published;
-  /// Relative standard uncertainty of M75, for the interval of TOD. The published value has none.
+  /// Relative standard uncertainty of M75, for the interval of TOD; 0 for the published value, which states none.
   double m75_u_percent = 0;
-  std::string m75_observer{};    ///< with m75_file: who answered, and on whose curve M75 lies
-  std::string curve_observer{};  ///< of the TOD curve; empty: not known
-  double n50 = 6;                ///< cycles of ACQUIRE (2-D) for 50 %; 6: identification
-  double mtdp_n50 = 6;           ///< cycles of the MTDP-like curve for 50 %; 6: identification
-  double v50 = 8.5;
-  Atmosphere air{};
+  std::string m75_observer{};  ///< with m75_file: observer of the answers, and observer of the curve on which M75 lies
+  std::string curve_observer{};     ///< observer of the TOD curve; empty: not known
+  double n50 = 6;                   ///< cycles of ACQUIRE (2-D) for 50 %; 6: identification
+  double mtdp_n50 = 6;              ///< cycles of the MTDP-like curve for 50 %; 6: identification
+  double v50 = 8.5;                 ///< V50 of the TTP model
+  Atmosphere air{};                 ///< air between target and camera
   double extinction_u_percent = 0;  ///< relative standard uncertainty of the extinction
-  double curve_u_percent = 0;       ///< of thresholds of MRTD, MTDP-like curve and CTF; TOD has its own
+  /// Relative standard uncertainty of the thresholds of MRTD, MTDP-like curve and CTF; TOD has its own.
+  double curve_u_percent = 0;
   /// Relative standard uncertainties of the temperature scale and of the angle of a pixel, from the budget of a
   /// session. For the models by formula; those of TOD are in its curve.
   double scale_u_percent = 0, ifov_u_percent = 0;
-  FormulaConditions formula{};
-  std::optional<double> target_contrast{};  ///< of luminances, for TTP; otherwise |dT| / (2 x scene contrast)
+  FormulaConditions formula{};  ///< parameters of the models by formula
+  /// Luminance contrast of the target, for TTP; empty: |dT| / (2 x scene contrast).
+  std::optional<double> target_contrast{};
 };
 
 /// Curves and sensor of the models.
@@ -57,21 +61,21 @@ struct RangeSources {
   std::vector<TodThreshold> thresholds;
   std::optional<SensorSpec> sensor{};                   ///< for curves that are not given
   std::optional<LogLinearCurve> mrtd{}, mtdp{}, ctf{};  ///< over cycles/mrad, the same for both axes
-  /// The MTDP-like curve is computed from the thresholds of the question's observer. Needs the sensor.
+  /// If set, the MTDP-like curve is computed from the thresholds of the observer of the question. Requires the sensor.
   std::optional<TodTransfer> transfer{};
 };
 
 /// Evaluates every requested model, with P at common ranges up to twice the longest R75. A model without a result
-/// states the reason in `reason`; the results are not averaged. TOD has the numbers of predict_range(), with the air's
-/// uncertainty added to its interval. Errors: `invalid_input` (a number of the question out of range).
+/// states the reason in `reason`; the results are not averaged. The results of TOD are those of predict_range(), with
+/// the uncertainty of the air added to the interval. Errors: `invalid_input` (a number of the question out of range).
 [[nodiscard]] Result<std::vector<ModelRange>> range_models(std::span<const RangeModel> asked,
                                                            const RangeSources& sources, const RangeQuestion& question);
 
-/// Returns an interval of the TOD range joined with the uncertainty of M75, in quadrature in ln R: the change of R75 by
-/// M75 exp(+-1.96 u). A side that leaves the curve is open.
+/// Returns an interval of the TOD range combined with the uncertainty of M75, in quadrature in ln R: the change of R75
+/// when M75 is multiplied by exp(+-1.96 u). A side on which R75 leaves the curve is open.
 [[nodiscard]] Interval joined_with_m75(std::span<const TodThreshold> thresholds, const RangeTask& task, double r75_m,
                                        const Interval& of_curve, double m75_u_percent);
-/// Returns whose criterion M75 or V50 of a model is, for which targets, and its source, as a phrase.
+/// Returns a phrase about the criterion M75 or V50 of a model: its observer, its targets and its source.
 [[nodiscard]] std::string criterion_origin(const RangeQuestion& question, RangeModel which);
 /// Returns a sentence if the curve of the question is judged by a model observer and M75 belongs to people; otherwise
 /// empty.
@@ -82,6 +86,7 @@ struct RangeGridAxes {
   std::vector<double> sizes_m, contrasts_k;
   std::vector<double> ranges_m;  ///< may be empty: only R75
 };
+/// Results of one model on a grid.
 struct RangeGrid {
   RangeModel model = RangeModel::tod;
   std::vector<std::optional<double>> r75_m;        ///< [size][contrast]
@@ -92,10 +97,11 @@ struct RangeGrid {
 [[nodiscard]] Result<std::vector<RangeGrid>> range_grid(std::span<const RangeModel> asked, const RangeSources& sources,
                                                         const RangeQuestion& question, const RangeGridAxes& axes);
 
-/// Ranges by the TTP model with the given form of P.
+/// Ranges by the TTP model for the given form of P.
 struct TtpRanges {
   std::optional<double> r50_m{}, r75_m{};
 };
+/// Returns the ranges for 50 % and 75 %.
 [[nodiscard]] TtpRanges ttp_ranges(const RangeSources& sources, const RangeQuestion& question, ProbabilityForm form);
 
 /// Ranges for 50 % by the MTDP-like model for the nominal target of STANAG 4347: 2.3 m x 2.3 m, 2 K, 0.2 per km, with
@@ -104,7 +110,7 @@ struct NominalRanges {
   double size_m = 2.3, delta_t_k = 2, extinction_per_km = 0.2;
   std::optional<double> detection_m{}, recognition_m{}, identification_m{};
 };
-/// Empty if there is no MTDP-like curve.
+/// Returns the nominal ranges; empty if there is no MTDP-like curve.
 [[nodiscard]] std::optional<NominalRanges> nominal_ranges(const RangeSources& sources, const RangeQuestion& question);
 
 }  // namespace todbench

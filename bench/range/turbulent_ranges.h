@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ranges through turbulence. Its blur grows with the range, so the inputs of the models depend on their result.
+// Ranges through turbulence. The blur of turbulence grows with the range, so the inputs of the models depend on their
+// result.
 #pragma once
 
 #include <functional>
@@ -17,19 +18,24 @@ namespace todbench {
 /// Inputs of the range models behind a given turbulent path of constant Cn2. Immutable.
 class TurbulentSources {
  public:
-  /// `still` has a sensor. Thresholds of the TOD curve change like those of the simulated observer (survey_scene()), at
-  /// paths up to `longest_m` with ln S75 linear between them; without an observer they stay. Formulas are computed
-  /// anew; given curves are divided by the transfer function of the turbulence. Errors: `invalid_input` (Cn2 or path
-  /// not above 0, or no sensor).
+  /// Prepares the sources. `still`: sources without turbulence, with a sensor. Thresholds of the TOD curve change by
+  /// the same factor as those of the simulated observer (survey_scene()), which is computed at several paths up to
+  /// `longest_m` and interpolated linearly in ln S75; without an observer they do not change. Formulas are computed
+  /// again for each path; given curves are divided by the transfer function of the turbulence. Errors: `invalid_input`
+  /// (Cn2 or path not above 0, or no sensor).
   [[nodiscard]] static Result<TurbulentSources> of(RangeSources still,
                                                    const std::optional<TemplateObserverSpec>& observer, double cn2,
                                                    double longest_m);
 
-  /// A contrast without a threshold behind this turbulence is left out.
+  /// Returns the thresholds behind a path of this length. A contrast without a threshold is left out.
   [[nodiscard]] std::vector<TodThreshold> thresholds_at(std::span<const TodThreshold> still, double path_m) const;
+  /// Returns the sources behind a path of this length.
   [[nodiscard]] RangeSources at(double path_m) const;
+  /// Returns the sensor with a path of this length.
   [[nodiscard]] SensorSpec sensor_at(double path_m) const;
+  /// Returns the sources without turbulence.
   [[nodiscard]] const RangeSources& still() const { return still_; }
+  /// Returns the longest path, in m.
   [[nodiscard]] double longest_m() const { return longest_m_; }
 
  private:
@@ -42,7 +48,8 @@ class TurbulentSources {
   std::map<double, std::vector<std::optional<double>>> ln_factors_;  ///< by contrast, at `paths_m_`
 };
 
-/// Returns the range that equals its own path; `range_behind` does not increase. Empty if it has no value.
+/// Returns the range that equals the path behind which it is computed. Precondition: `range_behind` does not increase.
+/// Empty if `range_behind` has no value.
 [[nodiscard]] std::optional<double> self_consistent_range(
     double still_m, const std::function<std::optional<double>(double path_m)>& range_behind);
 
@@ -52,17 +59,19 @@ struct TurbulenceDecision {
   double bound_percent = 0;  ///< on the change of the acuity at the 75 % range
   std::string reason;        ///< a sentence
 };
-/// Decides like the planner of effects: turbulence is skipped if it changes the acuity by at most four fifths of the
-/// tolerance, bounded at the range without turbulence.
+/// Decides like the planner of effects: turbulence is skipped if the bound on the change of the acuity, at the range
+/// without turbulence, is at most four fifths of the tolerance.
 [[nodiscard]] TurbulenceDecision decide_turbulence(const SensorSpec& sensor, double cn2, const RangeQuestion& question,
                                                    std::optional<double> still_r75_m, double tolerance_percent);
 
-/// As range_models(): every range is solved with the curve behind its own path, P at every range is interpolated
-/// between 16 paths. Sensitivities are those of the curve behind the 75 % range.
+/// Evaluates the models as range_models() does, with turbulence. Every range is solved with the curve behind its own
+/// path, and P at every range is interpolated between 16 paths. Sensitivities are those of the curve behind the 75 %
+/// range.
 [[nodiscard]] Result<std::vector<ModelRange>> turbulent_range_models(std::span<const RangeModel> asked,
                                                                      const TurbulentSources& sources,
                                                                      const RangeQuestion& question);
-/// The TOD model with notes, findings and points, as predict_range(), from thresholds without turbulence.
+/// Returns the prediction of the TOD model with notes, findings and points, as predict_range() does, from thresholds
+/// without turbulence.
 [[nodiscard]] Result<RangePrediction> turbulent_prediction(const TurbulentSources& sources,
                                                            std::span<const TodThreshold> still, const RangeTask& task);
 

@@ -15,10 +15,10 @@ namespace todbench {
 struct ReferenceCase {
   std::string name;  ///< "case-1"
   SensorSpec sensor;
-  double delta_t_k = 0;  ///< of the triangles against the surround
+  double delta_t_k = 0;  ///< contrast of the triangles against the surround
 };
 
-/// True threshold of the case by the direct estimate: without trials and without a psychometric function.
+/// True threshold of a case by the direct estimate, which uses neither trials nor a psychometric function.
 struct ReferenceTruth {
   std::string name;
   double s75_mrad = 0, standard_error_mrad = 0;

@@ -17,7 +17,7 @@ namespace todbench {
 struct ReferenceResult {
   std::string name;
   double s75_mrad = 0;
-  std::optional<Interval> ci95_mrad;  ///< both ends
+  std::optional<Interval> ci95_mrad;  ///< with both limits
 };
 /// Parses columns case, s75_mrad and optionally the pair s75_ci95_low_mrad, s75_ci95_high_mrad, in any order; one row
 /// for each of `truths`. Errors: `invalid_input` "NAME:LINE: ..." (column unknown, missing or repeated; case unknown,
@@ -25,6 +25,7 @@ struct ReferenceResult {
 [[nodiscard]] Result<std::vector<ReferenceResult>> parse_reference_result(std::string_view text, std::string_view name,
                                                                           std::span<const ReferenceTruth> truths);
 
+/// Score of one case.
 struct CaseScore {
   ReferenceTruth truth;
   ReferenceResult result;
@@ -32,12 +33,14 @@ struct CaseScore {
   bool within = false;                 ///< within the tolerance
   std::optional<bool> interval_holds;  ///< whether the interval contains the true threshold
 };
+/// Score of all cases.
 struct ReferenceScore {
   std::vector<CaseScore> cases;       ///< in the order of the truths
-  double mean_deviation_percent = 0;  ///< of the logarithm: a common bias
+  double mean_deviation_percent = 0;  ///< mean of the deviations of the logarithm: a common bias
   double rms_deviation_percent = 0;
   bool passed = false;  ///< every case is within the tolerance
 };
+/// Returns the score of these results.
 [[nodiscard]] ReferenceScore score(std::span<const ReferenceTruth> truths, std::span<const ReferenceResult> results);
 
 }  // namespace todbench

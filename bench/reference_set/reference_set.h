@@ -12,6 +12,7 @@
 
 namespace todbench {
 
+/// Options of the set.
 struct ReferenceSetOptions {
   std::uint64_t seed = 1;
   /// Frames per case, half of them for each plate. 24 frames of six cases need 44 MB as TIFF and recording.

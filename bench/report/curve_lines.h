@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Input of the lines: acuity 1/S75 at every contrast of the plan with its 95 % interval, that of the twin, and the
+/// Input of the lines: acuity 1/S75 at every contrast of the plan with its 95 % interval, acuity of the twin, and
 /// limits.
 struct CurveLines {
   std::vector<double> delta_t_k;       ///< set contrasts, in this order
@@ -21,7 +21,7 @@ struct CurveLines {
 };
 /// Returns a heading and a line for each contrast, each of at most `columns` characters (at least 40 are used).
 [[nodiscard]] std::vector<std::string> curve_lines(const CurveLines& shown, std::size_t columns);
-/// Returns the same in one line: "16.9 K 0.512 [0.470, 0.559], 1.93 K –".
+/// Returns the curve in one line: "16.9 K 0.512 [0.470, 0.559], 1.93 K –".
 [[nodiscard]] std::string curve_in_one_line(const CurveLines& shown);
 
 }  // namespace todbench

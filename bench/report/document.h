@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Document as a value: content of a page without its appearance. html.h writes it as HTML, the window as PDF.
+// Document as a value: content of a page without its appearance. html.h writes it as HTML, and the window as PDF.
 #pragma once
 
 #include <string>
@@ -22,6 +22,7 @@ enum class Meaning {
   bad,
   open,
 };
+/// Text with its role.
 struct Phrase {
   std::string text;  ///< plain text from any source; writers of files escape it
   Meaning meaning = Meaning::plain;
@@ -34,6 +35,7 @@ struct RichText {
   RichText& operator+=(const RichText& more);
   friend RichText operator+(RichText left, const RichText& right) { return left += right; }
 };
+/// Return text with the role of the same name.
 [[nodiscard]] RichText plain(std::string_view text);
 [[nodiscard]] RichText strong(std::string_view text);
 [[nodiscard]] RichText unbroken(std::string_view text);
@@ -41,16 +43,20 @@ struct RichText {
 [[nodiscard]] RichText missing(std::string_view reason);
 /// Returns `text`, or missing(reason) if it is empty.
 [[nodiscard]] RichText text_or_missing(std::string_view text, std::string_view reason);
+/// Meaning of a word for the reader.
 enum class Mood { good, bad, open };
 /// Returns a word with its sign and colour.
 [[nodiscard]] RichText badge(std::string_view word, Mood mood);
 
+/// Paragraph of text, or a note.
 struct Paragraph {
   RichText text;
   enum class Role { text, note } role = Role::text;
 };
+/// Returns a paragraph in the style of a note.
 [[nodiscard]] Paragraph note(const RichText& text);
 
+/// List of items.
 struct List {
   std::vector<RichText> items;
 };
@@ -62,6 +68,7 @@ struct Table {
   std::vector<std::vector<RichText>> rows;
 };
 
+/// Row of a value table.
 struct NamedValue {
   std::string name;
   RichText value;
@@ -72,19 +79,22 @@ struct ValueTable {
   std::vector<NamedValue> values;
 };
 
+/// Figure with its caption.
 struct Figure {
   Result<Drawing> drawing;  ///< or the reason for its absence
   std::string caption;
 };
 
-/// Blocks of the same kind side by side, two in a row if there is room.
+/// Figures side by side, two in a row if there is room.
 struct FigurePairs {
   std::vector<Figure> figures;
 };
+/// Tables side by side, two in a row if there is room.
 struct TablePairs {
   std::vector<std::variant<Table, ValueTable>> tables;
 };
 
+/// Box with a verdict.
 struct VerdictBox {
   std::string word;  ///< with its sign: "✓ PASS"
   Mood mood = Mood::open;
@@ -110,13 +120,15 @@ struct Imprint {
 using Block =
     std::variant<Paragraph, List, Table, ValueTable, Figure, FigurePairs, TablePairs, VerdictBox, Signatures, Imprint>;
 
+/// Section of a document.
 struct Section {
   std::string title;
   std::vector<Block> blocks;
 };
 
+/// Content of a document.
 struct Document {
-  std::string title;       ///< of the file
+  std::string title;       ///< title of the file
   std::string heading;     ///< heading of the first page
   std::string subtitle;    ///< below the heading
   std::string page_label;  ///< footer of every printed page: report and unit

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drawing as a value: lines, areas and text with their roles, in its own units. svg.h writes it as text, the window
-// paints it.
+// Drawing as a value: lines, areas and text with their roles, in units of the drawing. svg.h writes it as text, and the
+// window paints it.
 #pragma once
 
 #include <array>
@@ -19,6 +19,7 @@ enum class PlotTone { first, second, third, muted };
 struct Place {
   double x = 0, y = 0;
 };
+/// Straight line.
 struct Segment {
   Place from, to;
 };
@@ -26,9 +27,11 @@ struct Segment {
 struct Polyline {
   std::vector<std::vector<Place>> runs;
 };
+/// Rectangle.
 struct Box {
   double x = 0, y = 0, width = 0, height = 0;
 };
+/// Filled circle.
 struct Disc {
   Place centre;
   double radius = 0;
@@ -43,12 +46,14 @@ struct Raster {
 /// Role of a mark; style_of() returns its appearance.
 enum class Pen { frame, grid, axis, reference, curve, dashed, dotted, bar, marker, hollow, limit, band };
 
+/// Shape with its role and tone.
 struct Mark {
   std::variant<Segment, Polyline, Box, Disc, Raster> shape;
   Pen pen = Pen::axis;
   PlotTone tone = PlotTone::first;  ///< used if style_of(pen) takes the colour of the tone
 };
 
+/// Role of a text; style_of() returns its appearance.
 enum class LabelRole { x_tick, y_tick, x_axis, y_axis, note, legend };
 
 /// One line of text. `at` is the anchor of its role on the baseline. The label of a y axis reads upwards.
@@ -58,6 +63,7 @@ struct Label {
   LabelRole role = LabelRole::legend;
 };
 
+/// Content of a drawing.
 struct Drawing {
   std::string id;           ///< unique on the page; letters, digits, hyphens
   std::string title;        ///< for screen readers
@@ -69,8 +75,10 @@ struct Drawing {
   std::vector<Label> labels;  ///< painted over both
 };
 
+/// Colour by its role; DrawingPalette::of() returns it.
 enum class Ink { none, ground, ink, grid, muted, tone };
 
+/// Appearance of a mark.
 struct PenStyle {
   std::string_view name;  ///< CSS class
   Ink stroke = Ink::none;
@@ -79,11 +87,14 @@ struct PenStyle {
   Ink fill = Ink::none;
   double fill_opacity = 1;
 };
+/// Returns the appearance of marks with this role.
 [[nodiscard]] PenStyle style_of(Pen pen);
 inline constexpr std::array all_pens{Pen::frame,  Pen::grid, Pen::axis,   Pen::reference, Pen::curve, Pen::dashed,
                                      Pen::dotted, Pen::bar,  Pen::marker, Pen::hollow,    Pen::limit, Pen::band};
 
+/// Place of the anchor in the text.
 enum class Anchor { start, middle, end };
+/// Appearance of a label.
 struct LabelStyle {
   std::string_view name;  ///< CSS class
   Anchor anchor = Anchor::start;
@@ -91,6 +102,7 @@ struct LabelStyle {
   Ink ink = Ink::ink;
   double halo = 0;  ///< outline in the background colour, half of it outside the letters
 };
+/// Returns the appearance of labels with this role.
 [[nodiscard]] LabelStyle style_of(LabelRole role);
 inline constexpr std::array all_label_roles{LabelRole::x_tick, LabelRole::y_tick, LabelRole::x_axis,
                                             LabelRole::y_axis, LabelRole::note,   LabelRole::legend};
@@ -104,7 +116,7 @@ struct DrawingPalette {
   /// Returns the colour; empty for Ink::none.
   [[nodiscard]] std::string_view of(Ink ink, PlotTone tone) const;
 };
-/// Palettes for paper and light pages, and for dark pages.
+/// Return the palettes for paper and light pages, and for dark pages.
 [[nodiscard]] DrawingPalette light_palette();
 [[nodiscard]] DrawingPalette dark_palette();
 

@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Returns sentences about the function and its fit. Contrasts with another function than the first are named with the
-/// reason.
+/// Returns sentences about the function and its fit. Names contrasts whose function differs from the first one, with
+/// the reason.
 [[nodiscard]] std::string form_in_words(const ReportData& data);
 /// Returns sentences about the kind of answers, preceded by a space; empty if unknown. States the frames of each
 /// contrast if they differ, and the twin separately if its answers differ.

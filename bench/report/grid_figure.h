@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grid of targets as figures: range over contrast, a line for each size.
+// Grid of targets as figures: range over contrast, with a line for each size.
 #pragma once
 
 #include <optional>

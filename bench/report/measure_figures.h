@@ -11,37 +11,40 @@
 
 namespace todbench {
 
-// Each returns the figures of the camera (of the simulated sensor if not `camera`) and of the twin; empty if neither
-// has the measure.
+// Each returns the figures of the camera (or of the simulated sensor, if `camera` is false) and of the twin; empty if
+// the measure is absent for both.
 
+/// Returns the signal transfer.
 [[nodiscard]] std::optional<FigurePairs> transfer_figures(const SessionMeasures& measures, bool camera);
-/// One figure for each place and axis: camera with intervals, twin, closed form.
+/// Returns one figure for each place and axis: camera with intervals, twin, closed form.
 [[nodiscard]] std::optional<FigurePairs> mtf_figures(const SessionMeasures& measures, bool camera);
-/// Of the camera alone.
+/// Returns the drift of the camera alone.
 [[nodiscard]] std::optional<FigurePairs> drift_figures(const SessionMeasures& measures, bool camera);
+/// Returns the response to contrast steps.
 [[nodiscard]] std::optional<FigurePairs> response_figures(const SessionMeasures& measures, bool camera);
+/// Returns the distortion.
 [[nodiscard]] std::optional<FigurePairs> geometry_figures(const SessionMeasures& measures, bool camera);
-/// One figure for each axis: best and worst sampling phase of every group of bars, and the closed form.
+/// Returns one figure for each axis: best and worst sampling phase of every group of bars, and the closed form.
 [[nodiscard]] std::optional<FigurePairs> ctf_figures(const SessionMeasures& measures, bool camera);
-/// Loss of apertures and gain of opaque spots against their size, with the fitted curve.
+/// Returns the loss of apertures and gain of opaque spots against their size, with the fitted curve.
 [[nodiscard]] std::optional<FigurePairs> source_size_figures(const SessionMeasures& measures, bool camera);
-/// Error against temperature, of the camera alone.
+/// Returns the error against temperature, of the camera alone.
 [[nodiscard]] std::optional<FigurePairs> absolute_figures(const SessionMeasures& measures, bool camera);
-/// Histogram over the frames of all runs, of the camera alone.
+/// Returns the histogram over the frames of all runs, of the camera alone.
 [[nodiscard]] std::optional<FigurePairs> latency_figures(const SessionMeasures& measures, bool camera);
-/// Levels against contrast, and the settling after steps, of the camera alone.
+/// Returns the levels against contrast, and the settling after steps, of the camera alone.
 [[nodiscard]] std::optional<FigurePairs> gain_control_figures(const SessionMeasures& measures, bool camera);
-/// Remaining part of steps over time with the fitted first-order response; empty if it cannot be drawn.
+/// Returns the remaining part of steps over time with the fitted first-order response; empty if it cannot be drawn.
 [[nodiscard]] std::optional<Figure> settling_figure(const StepResponse& response, const std::string& id,
                                                     const std::string& who);
-/// One figure for each axis: MRTD, best phase; and one of the spots.
+/// Returns one figure of the MRTD for each axis, with the best phase, and one figure of the spots.
 [[nodiscard]] std::optional<FigurePairs> mrtd_figures(const SessionMeasures& measures, bool camera);
-/// A contrast with three digits, or "none".
+/// Returns a contrast with three digits, or "none".
 [[nodiscard]] RichText contrast_cell(const std::optional<double>& value);
-/// Table of bars and spots as an acceptance document lists them: frequency, contrast of each polarity, offset, half
-/// difference of each axis, best phase. Of one side, with its name in the captions.
+/// Returns the tables of bars and spots as an acceptance document lists them: frequency, contrast of each polarity,
+/// offset, half difference of each axis, best phase. `who` names the side in the captions.
 [[nodiscard]] std::vector<Table> mrtd_tables(const MrtdMeasure& mrtd, const std::string& who);
-/// Maps of the camera next to those of the twin.
+/// Returns the maps of the camera next to those of the twin.
 [[nodiscard]] std::optional<FigurePairs> pixel_figures(const SessionMeasures& measures, bool camera);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers for people: independent of the locale, with the digits that their interval supports, never NaN.
+// Numbers for people: independent of the locale, with the digits that their interval supports; NaN is shown as a dash.
 #pragma once
 
 #include <optional>
@@ -23,12 +23,12 @@ namespace todbench {
 [[nodiscard]] std::string stated(double value);
 
 /// Returns the digits after the point that leave two significant digits of the half-width of the interval (JCGM
-/// 100:2008, 7.2.6). If one end is open, the distance from the value to the other end counts; without any width, three
-/// significant digits of the value.
+/// 100:2008, 7.2.6). If one limit is open, the distance from the value to the other limit is used; without any width,
+/// the value has three significant digits.
 [[nodiscard]] int decimals_for(std::optional<double> value, const Interval& interval);
 
-/// Returns "0.480 [0.468, 0.493]"; "0.480 [≥ 0.468]" if one end is open; "≥ 0.468" without a value; a dash if both are
-/// absent.
+/// Returns "0.480 [0.468, 0.493]"; "0.480 [≥ 0.468]" if one limit is open; "≥ 0.468" without a value; a dash if both
+/// are absent.
 [[nodiscard]] std::string with_interval(std::optional<double> value, const Interval& interval);
 
 /// Returns whether there is a value or a bound.

@@ -13,16 +13,20 @@
 
 namespace todbench {
 
+/// Marker of the points of a series.
 enum class PlotMarker { none, disc, square, bar };
+/// Line through the points of a series.
 enum class PlotLine { none, solid, dashed, dotted };
 
-/// Point, or only its bounds. An interval with one open end is an arrow to the edge of the plot; with both ends open it
-/// is not drawn. A point without x or y has no marker and interrupts the line; its interval needs the other coordinate.
+/// Point, or only its bounds. An interval with one open limit is drawn as an arrow to the edge of the plot; with two
+/// open limits it is not drawn. A point without x or y has no marker and interrupts the line; its interval needs the
+/// other coordinate.
 struct PlotPoint {
   std::optional<double> x, y;
   Interval x_interval, y_interval;
 };
 
+/// Points with a common appearance.
 struct PlotSeries {
   std::string label;  ///< legend text; empty: not in the legend
   PlotTone tone = PlotTone::first;
@@ -37,7 +41,7 @@ struct PlotSeries {
 struct PlotBand {
   std::string label;
   PlotTone tone = PlotTone::first;
-  Interval x;  ///< an open end reaches the edge
+  Interval x;  ///< an open limit reaches the edge
 };
 
 /// Horizontal line with its name above its right end.
@@ -46,6 +50,7 @@ struct PlotReference {
   std::string label;
 };
 
+/// Content of a plot.
 struct Plot {
   std::string id;                    ///< unique on the page; letters, digits, hyphens
   std::string title;                 ///< for screen readers

@@ -9,12 +9,14 @@
 
 namespace todbench {
 
+/// Scale of an axis.
 enum class AxisScale {
   linear,
   logarithmic,
   dates,  ///< days since 1970-01-01, labelled "2026-11-27"
 };
 
+/// Axis of a plot.
 struct PlotAxis {
   std::string label;  ///< with its unit: "Size S (mrad)"
   AxisScale scale = AxisScale::linear;
@@ -22,6 +24,7 @@ struct PlotAxis {
   std::vector<double> ticks;  ///< labelled ticks; empty: chosen automatically
 };
 
+/// Tick of an axis.
 struct Tick {
   double value = 0;
   std::string label;  ///< empty for a minor tick

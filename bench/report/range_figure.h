@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparison of range models: probability over range as a figure, results as a table.
+// Comparison of range models: probability over range as a figure, and results as a table.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ namespace todbench {
 /// Returns the figure as an SVG file. Errors: `invalid_input` (no model has a curve).
 [[nodiscard]] Result<std::string> range_svg(std::span<const ModelRange> models);
 
-/// Text of the page besides the models.
+/// Text of the page in addition to the models.
 struct RangePage {
   std::string target;  ///< "4.9 m, 2 K"
   std::string air;

@@ -33,8 +33,8 @@
 
 namespace todbench {
 
-/// Verdict shown at the top of a report. The report shows decisions and makes none. An interrupted run or a run without
-/// limits never shows "pass".
+/// Verdict at the top of a report. A report only shows decisions that were made before. The verdict of an interrupted
+/// run or of a run without limits is never "pass".
 enum class ReportVerdict {
   pass,          ///< every limit is met
   fail,          ///< a limit is not met
@@ -49,23 +49,24 @@ enum class ReportVerdict {
 struct ReportData {
   std::string title = "TOD acceptance report";
   std::string session;      ///< unique name of the session folder
-  std::string description;  ///< of the plan
+  std::string description;  ///< description of the plan
   std::string started, finished;
   std::string operator_name, place;
   /// Name with unit, and value: customer, lens, room temperature ...
   std::vector<std::pair<std::string, std::string>> conditions;
 
-  std::optional<SourceInfo> camera;        ///< unit under test, as read from the device; empty: simulation only
-  std::string temperature_scale;           ///< of the camera, in words; empty: as described by the scale in `camera`
+  std::optional<SourceInfo> camera;  ///< unit under test, as read from the device; empty: simulation only
+  /// Temperature scale of the camera in words; empty: as the scale in `camera` describes it.
+  std::string temperature_scale;
   double distance_m = 0;                   ///< entrance pupil to plate, or focal length of a collimator; 0: not stated
   bool collimated = false;                 ///< the plate is behind a collimator
   double ifov_mrad = 0;                    ///< 0: not stated
-  double air_temperature_c = 20;           ///< of the plan
-  std::optional<ViewedDisplay> display{};  ///< of the plan; empty: none
+  double air_temperature_c = 20;           ///< air temperature of the plan
+  std::optional<ViewedDisplay> display{};  ///< display of the plan; empty: none
   std::string target;                      ///< instruments with serial numbers
   std::vector<TargetPlate> plates;         ///< in identity mounting
   std::vector<SetUpRecord> set_ups;
-  std::vector<Presentation> presentations;  ///< of the camera, or of the simulation without a camera
+  std::vector<Presentation> presentations;  ///< presentations of the camera, or of the simulation without a camera
   std::string observer;                     ///< name and version
 
   FitOptions fit;
@@ -78,16 +79,17 @@ struct ReportData {
 
   std::optional<SessionMeasures> measures;  ///< physical measures; empty: not requested
 
-  std::optional<DisplayRecord> at_display;  ///< beside the results, never in the verdict
+  std::optional<DisplayRecord> at_display;  ///< in addition to the results; it does not affect the verdict
 
-  std::optional<CurveUncertainty> uncertainty;  ///< of the measured curve, or of the simulated one alone
+  /// Uncertainty of the measured curve, or of the curve of a simulation alone.
+  std::optional<CurveUncertainty> uncertainty;
 
-  std::optional<OrderPlan> order;  ///< the order behind the test; empty: not stated
+  std::optional<OrderPlan> order;  ///< order of the test; empty: not stated
 
-  std::optional<Verdict> verdict;  ///< of the session
+  std::optional<Verdict> verdict;  ///< verdict of the session
 
   std::optional<SensorSpec> simulated_sensor;
-  SensorPlan plan;                   ///< of the simulated sensor
+  SensorPlan plan;                   ///< effects of the simulated sensor
   std::optional<CostFrontier> cost;  ///< cost of accuracy in time; empty: not measured, no section
 
   double wall_s = 0;                       ///< of the run with its physical measures, without the twin; 0: not stated
@@ -99,24 +101,26 @@ struct ReportData {
   std::uint64_t frames_lost = 0;
   double temporal_noise_k = 0;  ///< per pixel; 0: not measured
 
-  std::optional<Letterhead> letterhead;  ///< of the laboratory; empty: default layout
+  std::optional<Letterhead> letterhead;  ///< letterhead of the laboratory; empty: default layout
 
   std::vector<std::pair<std::string, std::string>> provenance;  ///< versions, seeds, host
-  std::string manifest_sha256;                ///< of the manifest that confirms these data; empty: none
+  std::string manifest_sha256;                ///< digest of the manifest that confirms these data; empty: none
   std::vector<std::string> accepted_changes;  ///< files of the session that were changed after the run
   bool cut_off = false;                       ///< the run wrote no manifest
-  std::optional<ReportRevision> revision;     ///< of the report of a signed session; empty: first report
+  std::optional<ReportRevision> revision;     ///< revision of the report of a signed session; empty: first report
   std::vector<std::string> notes;
   std::optional<std::string> interrupted;   ///< reason of an early end of the run
   std::vector<Interruption> interruptions;  ///< camera losses after which the run continued
 };
 
-/// Returns the verdict to show: the decision of the verdict; only a fail for an interrupted run; not_judged instead of
-/// a pass without limits; `changed` for changed files.
+/// Returns the verdict to show. It is the decision of the verdict, with these exceptions: for an interrupted run only a
+/// fail is shown, otherwise `interrupted`; a pass without limits is shown as `not_judged`; changed files give
+/// `changed`.
 [[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
 
-/// Returns the TOD curve of the report, and one psychometric function per contrast.
+/// Returns the TOD curve of the report.
 [[nodiscard]] Plot tod_plot(const ReportData& data);
+/// Returns one psychometric function per contrast.
 [[nodiscard]] std::vector<Plot> psychometric_plots(const ReportData& data);
 /// Returns the psychometric functions of person and model; empty without a person.
 [[nodiscard]] std::vector<Plot> human_plots(const ReportData& data);

@@ -15,7 +15,7 @@ namespace todbench {
 /// | name             | of the number, with its unit: "s75_mrad"
 /// | set_delta_t_k    | set contrast, if there is one
 /// | value            | the number, if there is one
-/// | low, high        | ends of its interval; empty: absent or open
+/// | low, high        | limits of its interval; empty: absent or open
 /// | interval_percent | confidence of the interval; empty: no interval
 /// | limit            | of a demand, in the unit of its value
 /// | unit             | of value, interval and limit; empty for texts, counts and ratios

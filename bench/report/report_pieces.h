@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sections of a report and the words that they share.
+// Sections of a report, and texts that several sections use.
 #pragma once
 
 #include <optional>
@@ -22,14 +22,15 @@ inline constexpr std::string_view one_sided_note =
 [[nodiscard]] RichText interval_or_missing(std::optional<double> value, const Interval& interval,
                                            std::string_view reason);
 
-/// Returns the meaning of a verdict for readers who do not know the program.
+/// Return the meaning of a value in words, for readers who do not know the program.
 [[nodiscard]] std::string_view in_words(FitVerdict verdict);
 [[nodiscard]] std::string_view in_words(Mounting mounting);
 [[nodiscard]] std::string_view in_words(Effect effect);
+/// Return the mood of a verdict.
 [[nodiscard]] Mood mood_of(VerdictKind verdict);
 [[nodiscard]] Mood mood_of(ComparisonVerdict verdict);
 
-// Results.
+/// Return the sections of results; an empty section is absent from the report.
 [[nodiscard]] VerdictBox verdict_box(const ReportData& data);
 [[nodiscard]] Section limits_section(const ReportData& data);
 [[nodiscard]] Section curve_section(const ReportData& data);
@@ -38,16 +39,16 @@ inline constexpr std::string_view one_sided_note =
 /// Returns MRTD and MDTD of the model and of people with their conditions, and how they differ from STANAG 4349; empty
 /// if they were not measured.
 [[nodiscard]] std::optional<Section> mrtd_section(const ReportData& data);
-/// Returns what limits the acuity, and the thresholds of an operator at the display.
+/// Returns the factors that limit the acuity, and the thresholds of an operator at the display.
 [[nodiscard]] std::optional<Section> viewing_section(const ReportData& data);
 [[nodiscard]] Section comparison_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> answers_section(const ReportData& data);
 
-// Conditions and provenance.
+/// Return the sections of conditions and provenance.
 [[nodiscard]] Section identification_section(const ReportData& data);
 [[nodiscard]] Section set_up_section(const ReportData& data);
-/// Returns a part of the set-up: set contrast, read-back and effective contrast side by side; empty if no presentations
-/// are known.
+/// Returns a table of the set-up section: set contrast, read-back and effective contrast side by side; empty if no
+/// presentations are known.
 [[nodiscard]] std::optional<Table> target_table(const ReportData& data);
 [[nodiscard]] Section effects_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> frames_section(const ReportData& data);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparison of a published experiment with our own figures, as a document.
+// Comparison of a published experiment with results of this program, as a document.
 #pragma once
 
 #include <optional>
@@ -19,20 +19,20 @@ struct ReproducedThreshold {
   std::optional<double> acuity_per_mrad;
   Interval ci95;
   std::string method;  ///< method of determination
-  /// The same from graded answers of a camera; empty: none.
+  /// Acuity of the same threshold from graded answers of a camera; empty: none.
   std::optional<double> graded_acuity_per_mrad{};
   Interval graded_ci95{};
   std::string graded_method{};
 };
 
-/// Kind of a figure, which determines the form of differences.
+/// Kind of a figure. It determines whether differences are relative or in percentage points.
 enum class FigureKind {
   amount,  ///< in its unit; differences are relative
   share,   ///< share of a total in percent; differences are in percentage points
   change,  ///< change of one relative to another in percent, signed; differences are in percentage points
 };
 
-/// Published figure with ours. Texts are plain.
+/// Published figure and the corresponding result of this program. Texts are plain.
 struct ReproducedFigure {
   FigureKind kind = FigureKind::amount;
   std::string quantity, unit;
@@ -41,7 +41,7 @@ struct ReproducedFigure {
   std::optional<double> value;
   Interval ci95;
   std::string remark;  ///< reason for a difference, or dependence
-  /// The same from graded answers of a camera; empty: no threshold has any.
+  /// Value from graded answers of a camera; empty: no threshold has graded answers.
   std::optional<double> graded_value{};
   Interval graded_ci95{};
 };
@@ -52,9 +52,10 @@ struct ReproducedRange {
   RangePrediction prediction;
 };
 
+/// Content of the page.
 struct Reproduction {
   std::string title, source;
-  /// Names that distinguish the curves, as in thresholds and ranges. Other observers stand for people.
+  /// Observer that distinguishes the curves, named as in thresholds and ranges. Other observers represent people.
   std::string model_observer;
   std::vector<std::string> simulated_sensors, cameras;
   std::vector<ReproducedFigure> figures;
@@ -64,8 +65,8 @@ struct Reproduction {
   std::vector<std::pair<std::string, std::string>> settings;
 };
 
-/// Returns the difference between our value and the published one: in percentage points for percentages, otherwise in
-/// percent of the published value.
+/// Returns the difference between the value of this program and the published one: in percentage points for
+/// percentages, otherwise in percent of the published value.
 [[nodiscard]] std::string difference_in_words(const ReproducedFigure& figure);
 
 /// Returns the page for render_html(). A pure function.

@@ -13,7 +13,8 @@ namespace todbench {
 /// Returns one <svg> element for a page that contains drawing_style().
 [[nodiscard]] Markup svg_element(const Drawing& drawing);
 
-/// Returns the CSS of all drawings of a page: light or dark by the reader's preference, always light on paper.
+/// Returns the CSS of all drawings of a page: light or dark according to the preference of the reader, always light on
+/// paper.
 [[nodiscard]] std::string drawing_style();
 
 /// Returns a stand-alone SVG file for any viewer: the drawings one below the other, in light shades.

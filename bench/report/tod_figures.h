@@ -23,13 +23,13 @@ struct AnswersAtSize {
 /// Sums levels of equal size (to 1e-6) and returns them by increasing size, without levels that have no trials.
 [[nodiscard]] std::vector<AnswersAtSize> answers_by_size(const TodPoint& point);
 
-/// Returns Wilson's 95 % score interval of a proportion (Wilson 1927; Brown, Cai and DasGupta 2001, eq. 4). Both ends
+/// Returns Wilson's 95 % score interval of a proportion (Wilson 1927; Brown, Cai and DasGupta 2001, eq. 4). Both limits
 /// are open if total is 0.
 [[nodiscard]] Interval wilson_interval(double correct, double total);
 
-/// Returns the 95 % interval of the proportion at a size. Binary answers: Wilson's interval, all answers taken as
-/// independent. Graded answers scatter less than binomially: mean -+ t s over K presentations, limited to 0 and 1, with
-/// s^2 = K / (K - 1) sum (c - m n)^2 / N^2 for a ratio of sums; open below two presentations. It is longer than
+/// Returns the 95 % interval of the proportion at a size. Binary answers: Wilson's interval, with all answers treated
+/// as independent. Graded answers scatter less than binomially: mean -+ t s over K presentations, limited to 0 and 1,
+/// with s^2 = K / (K - 1) sum (c - m n)^2 / N^2 for a ratio of sums; open below two presentations. It is longer than
 /// necessary if the phases of a set-up cancel.
 [[nodiscard]] Interval proportion_interval(const AnswersAtSize& answers);
 

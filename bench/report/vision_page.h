@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An observer with an eye against figures of people, as a document.
+// Comparison of an observer with an eye with published results of people, as a document.
 #pragma once
 
 #include <string>
@@ -10,13 +10,14 @@
 
 namespace todbench {
 
-/// How the figures of people relate to the observer.
+/// Relation of the figures of people to the parameters of the observer.
 enum class VisionRole {
-  fitted,     ///< some or all of them were in the fit of its parameters
-  chosen,     ///< a parameter was chosen with these figures in sight
-  predicted,  ///< nothing was adjusted to them
-  from_file,  ///< figures of a user, the relation is not known
+  fitted,     ///< some or all of these figures were used in the fit of the parameters
+  chosen,     ///< a parameter was chosen with knowledge of these figures
+  predicted,  ///< no parameter was adjusted to these figures
+  from_file,  ///< figures of a user; the relation is not known
 };
+/// Returns the role in words.
 [[nodiscard]] std::string_view to_string(VisionRole role);
 
 /// Measure of the error of the observer.
@@ -25,9 +26,10 @@ enum class VisionError {
   log10,    ///< log10(model / people)
   points,   ///< model - people, both in percent
 };
-/// Unit of the error.
+/// Returns the unit of the error.
 [[nodiscard]] std::string_view to_string(VisionError error);
 
+/// One condition: result of people, and of the observer.
 struct VisionPoint {
   std::string condition;
   double people = 0, model = 0;
@@ -37,29 +39,32 @@ struct VisionPoint {
 struct VisionKind {
   std::string name;      ///< for programs, "small_discs"
   std::string title;     ///< "Small discs"
-  std::string quantity;  ///< of the points with its unit, "sensitivity (1 / contrast)"
+  std::string quantity;  ///< quantity of the points with its unit: "sensitivity (1 / contrast)"
   VisionError error = VisionError::decibel;
   VisionRole role = VisionRole::predicted;
-  std::string failure;  ///< what is wrong with the model here; empty: it describes these figures
+  std::string failure;  ///< error of the model for these figures; empty: the model describes them
   std::string source, remark;
   std::vector<VisionPoint> points;
 };
+/// Returns the error of the observer at a point, in the unit of the kind.
 [[nodiscard]] double error_of(const VisionKind& kind, const VisionPoint& point);
 
+/// Errors over all points of a kind.
 struct VisionErrors {
-  double mean = 0, rms = 0, largest = 0;  ///< largest: by its size, with its sign
+  double mean = 0, rms = 0, largest = 0;  ///< largest: the error with the largest magnitude, with its sign
 };
-/// Precondition: the kind has points.
+/// Returns the errors over all points. Precondition: the kind has points.
 [[nodiscard]] VisionErrors errors_of(const VisionKind& kind);
 
-/// A published figure without one of ours.
+/// Published figure without a corresponding result of this program.
 struct VisionOutside {
   std::string quantity, published, reason;
 };
 
+/// Content of the page.
 struct VisionComparison {
   std::string observer;
-  std::string statement;          ///< what the observer is not
+  std::string statement;          ///< statement about the limits of the observer
   std::vector<VisionKind> kinds;  ///< failures first
   std::vector<VisionOutside> not_comparable;
   std::vector<std::pair<std::string, std::string>> settings;

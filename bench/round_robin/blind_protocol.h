@@ -10,13 +10,14 @@
 
 namespace todbench {
 
+/// Facts for the protocol.
 struct ProtocolFacts {
   std::string laboratory;
   std::vector<ReferenceCase> cases;
   int frames = 0;
-  std::string sealed_sha256;  ///< of the coordinator's file with the true values
+  std::string sealed_sha256;  ///< SHA-256 of the file with the true values, which the coordinator keeps
 };
-/// States items, files, measurand and the file of results; nothing that is sealed.
+/// Returns the protocol: items, files, measurand and the file of results. It contains no sealed value.
 [[nodiscard]] Document blind_protocol(const ProtocolFacts& facts);
 
 }  // namespace todbench

@@ -23,11 +23,13 @@ struct ComparedItem {
 /// Kind of reference value (assigned value of ISO 13528).
 enum class ReferenceMethod {
   weighted_mean,  ///< Cox 2002, procedure A: the results that are not outlying are consistent
-  median,         ///< Cox 2002, procedure B: they are not, but at least three quarters of them are
-  paule_mandel,   ///< they scatter more than their uncertainties explain
+  median,         ///< Cox 2002, procedure B: they are not consistent, but at least three quarters of them are
+  paule_mandel,   ///< the results scatter more than their uncertainties explain
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(ReferenceMethod method);
 
+/// Reference value of an item.
 struct ReferenceValue {
   ReferenceMethod method = ReferenceMethod::weighted_mean;
   Consensus value;
@@ -39,19 +41,20 @@ struct ReferenceValue {
 struct DegreeOfEquivalence {
   LaboratoryValue result;
   double difference = 0;  ///< value minus reference value
-  double expanded_u = 0;  ///< of the difference, k = 2
+  double expanded_u = 0;  ///< expanded uncertainty of the difference, k = 2
   double e_n = 0;         ///< difference / expanded_u
   double zeta = 0;        ///< 2 e_n
   bool in_reference = true;
   bool outlying = false;  ///< the result, or its laboratory
 };
 
+/// Evaluation of one item.
 struct ItemComparison {
   ComparedItem item;
   ReferenceValue reference;
-  ConsistencyCheck all, kept;  ///< of all results, and of those that are not outlying
+  ConsistencyCheck all, kept;  ///< checks of all results, and of the results that are not outlying
   std::vector<DegreeOfEquivalence> degrees;
-  // Other estimates, from the results that the reference value comes from.
+  // Other estimates, from the same results as the reference value.
   Consensus weighted, median;
   RandomEffects dersimonian_laird, paule_mandel;
   double dersimonian_laird_sd = 0, paule_mandel_sd = 0;  ///< between laboratories
@@ -64,36 +67,37 @@ struct LaboratorySummary {
   std::string laboratory;
   int items = 0;
   double combined_zeta = 0;  ///< sum of its zeta against the other laboratories over sqrt(items); standard normal
-  double p = 1;              ///< of a combined zeta so large by chance, for this laboratory alone
+  double p = 1;              ///< probability of a combined zeta at least as large by chance, for this laboratory alone
   bool outlying = false;
 };
 
-/// Laboratory, or single result, that chance does not explain.
+/// Laboratory or single result with a deviation that is too large to be random.
 struct OutlyingResult {
   std::string laboratory, item, quantity;  ///< empty item: the laboratory over all its items
   double zeta = 0;                         ///< against the others that were kept when it was found
-  double p = 0;                            ///< of such a deviation of any laboratory by chance
+  double p = 0;                            ///< probability of such a deviation of any laboratory by chance
 };
 
+/// Evaluation of a comparison.
 struct RoundRobin {
   std::vector<ItemComparison> items;
   std::vector<LaboratorySummary> laboratories;  ///< by name
   std::vector<OutlyingResult> outlying;         ///< in the order in which they were found
-  /// Several laboratories are outlying: reference values and estimates come from all results, because the others agree
-  /// by selection.
+  /// True if several laboratories are outlying. Reference values and estimates then come from all results, because the
+  /// agreement of the others is a consequence of the selection.
   bool reference_from_all = false;
-  /// No result outlying and every item consistent.
+  /// Returns whether no result is outlying and every item is consistent.
   [[nodiscard]] bool consistent() const;
 };
 
-/// Probability that a comparison of correct laboratories names one of them or one of their results.
+/// Probability that a comparison of correct laboratories reports one of them or one of their results as outlying.
 inline constexpr double outlying_significance = 0.025;
 
 /// Evaluates a comparison. The errors of a laboratory are taken as independent between items. The most improbable
-/// outlying laboratory or result is set aside and the rest tested again. If this would leave no more than half of the
-/// laboratories of an item, none is set aside. If several laboratories are outlying, all may understate their
-/// uncertainties: the reference values then come from all results. `seed` draws the medians. Errors: `invalid_input`
-/// (no item, or an item with fewer than two laboratories).
+/// outlying laboratory or result is excluded, and the others are tested again. If this would leave no more than half of
+/// the laboratories of an item, none is excluded. If several laboratories are outlying, all may understate their
+/// uncertainties; the reference values then come from all results. `seed`: of the draws of the medians. Errors:
+/// `invalid_input` (no item, or an item with fewer than two laboratories).
 [[nodiscard]] Result<RoundRobin> evaluated(std::vector<ComparedItem> items, std::uint64_t seed);
 
 }  // namespace todbench

@@ -12,13 +12,14 @@
 
 namespace todbench {
 
-/// Returns "consistent", "outlying" (a laboratory or result is named) or "inconsistent" (the results scatter more than
-/// their uncertainties explain, and none is named).
+/// Returns "consistent", "outlying" (a laboratory or result is outlying) or "inconsistent" (the results scatter more
+/// than their uncertainties explain, and none is outlying).
 [[nodiscard]] std::string_view verdict_word(const RoundRobin& found);
-/// `truths` is empty or has one check for each item.
+/// Returns the evaluation as JSON. `truths` is empty or has one check for each item.
 [[nodiscard]] Json round_robin_json(const RoundRobin& found, const std::vector<TruthCheck>& truths);
-/// Returns the degrees of equivalence as CSV; texts that a spreadsheet would treat as formulas are disarmed.
+/// Returns the degrees of equivalence as CSV; texts that a spreadsheet would treat as formulas are escaped.
 [[nodiscard]] std::string round_robin_csv(const RoundRobin& found);
+/// Returns the page for render_html().
 [[nodiscard]] Document round_robin_page(const RoundRobin& found, const std::vector<TruthCheck>& truths);
 
 }  // namespace todbench

@@ -23,12 +23,12 @@ inline constexpr std::string_view sealed_schema = "todbench-round-robin-1";
 /// Reads a sealed file. Errors: `invalid_input` (not such a file, value not finite, uncertainty below 0).
 [[nodiscard]] Result<std::vector<SealedValue>> read_sealed(const std::filesystem::path& file);
 
-/// Reference value of an item against its true value.
+/// Comparison of the reference value of an item with its true value.
 struct TruthCheck {
   SealedValue truth;
   double difference = 0;  ///< reference value minus true value
   double e_n = 0;         ///< difference / sqrt(U^2 of the reference value + 4 u^2 of the truth)
-  bool held = false;      ///< |e_n| <= 1: the interval of the reference value holds the truth
+  bool held = false;      ///< |e_n| <= 1: the interval of the reference value contains the true value
 };
 /// Returns the checks in the order of the items. Errors: `invalid_input` for an item or quantity that was not sealed.
 [[nodiscard]] Result<std::vector<TruthCheck>> checked_against(const RoundRobin& found,

@@ -26,8 +26,10 @@ enum class AlignmentHint {
   near_edge,     ///< an observer's window leaves the picture
   drifting,      ///< the plate has moved by more than 0.2 px since the first look
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(AlignmentHint hint);
 
+/// Fault of the alignment, with a sentence for the user.
 struct AlignmentRemark {
   AlignmentHint hint = AlignmentHint::not_found;
   std::string sentence;
@@ -45,8 +47,8 @@ struct Alignment {
   std::optional<Registration> registration;  ///< empty: the plate was not found, see remarks
   std::vector<AlignedTriangle> triangles;
   Polygon plate_px;                      ///< the corners of the plate
-  double expected_blur_px = 0;           ///< of the simulated sensor; 0: unknown
-  double drift_px = 0;                   ///< of the centre of the plate since the first look
+  double expected_blur_px = 0;           ///< edge blur of the simulated sensor; 0: unknown
+  double drift_px = 0;                   ///< drift of the centre of the plate since the first look
   double temporal_noise_k = 0;           ///< per pixel
   std::vector<AlignmentRemark> remarks;  ///< empty: ready to measure
 };

@@ -33,7 +33,7 @@ struct ExperimentListener {
   std::function<void(std::string_view sentence)> on_note{};
   /// The camera is lost and awaited for at most `patience` (0 in a replay); also reported as a note.
   std::function<void(const SourceInfo& camera, std::chrono::milliseconds patience)> on_lost{};
-  /// The run waits for the target; empty: no longer.
+  /// Called while the run waits for the target, and with an empty value when the wait ends.
   OnTargetWait on_wait{};
   /// The session folder exists and contains the plan.
   std::function<void(const std::filesystem::path& folder)> on_session{};
@@ -45,11 +45,12 @@ struct ExperimentListener {
   std::function<void(SessionCurve, const Trial&, const Patch&)> on_trial{};
 };
 
+/// Folder and control of a run.
 struct ExperimentOptions {
-  std::filesystem::path folder;
-  ExistingFolder existing = ExistingFolder::refuse;
-  ExperimentHost host{};                 ///< controls the run
-  std::optional<OriginRecord> origin{};  ///< of a run on the recorded frames of another session
+  std::filesystem::path folder;                      ///< session folder to create
+  ExistingFolder existing = ExistingFolder::refuse;  ///< treatment of a folder that is not empty
+  ExperimentHost host{};                             ///< controls the run
+  std::optional<OriginRecord> origin{};  ///< origin of a run on the recorded frames of another session; empty: none
 };
 
 /// Result of a run. The session folder contains the same.
@@ -76,18 +77,19 @@ struct ExperimentOutcome {
 /// read again.
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
-/// Calls LoadedPlan::load() first.
+/// Loads the plan first (LoadedPlan::load()).
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
 
-/// The same as measure_plan(), on an open bench.
+/// Measures as measure_plan(), with devices that are already open.
 [[nodiscard]] Result<ExperimentOutcome> measure_on_bench(const LoadedPlan& loaded, const ExperimentInputs& inputs,
                                                          OpenedBench bench, const ExperimentOptions& options,
                                                          const ExperimentListener& listener, std::stop_token stop);
 
-/// The same with the simulated sensor in place of the camera, and its direct estimate.
+/// Measures as measure_plan(), but with the simulated sensor in place of the camera, and adds its direct estimate.
 [[nodiscard]] Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
                                                       const ExperimentListener& listener, std::stop_token stop);
+/// Loads the plan first (LoadedPlan::load()).
 [[nodiscard]] Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,
                                                       const ExperimentListener& listener, std::stop_token stop);
 

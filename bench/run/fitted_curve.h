@@ -22,7 +22,7 @@
 
 namespace todbench {
 
-/// Answers of a run as they are fitted, and the function over contrast if presentations have contrasts of their own.
+/// Answers of a run as they are fitted, and the function over contrast if each presentation has its own contrast.
 struct FittedTrials {
   std::vector<Trial> own{};                  ///< at the set contrasts
   std::optional<ContrastSurface> surface{};  ///< empty: contrasts were settled
@@ -33,11 +33,12 @@ struct FittedTrials {
   }
 };
 
+/// Returns the answers of a run as they are fitted.
 [[nodiscard]] FittedTrials trials_to_fit(const MeasurementResult& run, const Plan& plan, const ExperimentInputs& inputs,
                                          const std::stop_token& stop);
 
 /// Fits a curve with the functions of its simulated sensor, if the plan requests it and the run is complete. `known`:
-/// of fit_twin_shapes().
+/// as in fit_twin_shapes().
 [[nodiscard]] TwinShapesOutcome take_shape(TodCurve& curve, std::span<const Trial> trials, bool complete,
                                            const Plan& plan, const ExperimentInputs& inputs,
                                            const std::map<double, double>& shown_delta_t_k, const TodCurve* known,
@@ -71,9 +72,9 @@ struct FittedCurve {
   [[nodiscard]] const TodCurve& functions_of_twin() const { return by_twin ? *by_twin : curve; }
 };
 
-/// Fits on its own thread: an effective contrast that differs by more than 2 % from the set one needs its own function,
-/// which takes a second. Borrowed objects outlive it. `functions`: null if an adaptive schedule stopped by those of
-/// `measured`.
+/// Starts the fit on its own thread. An effective contrast that differs by more than 2 % from the set one needs its own
+/// function of the twin, which takes a second. Borrowed objects outlive the task. `functions`: null if the adaptive
+/// schedule already computed them (`measured.functions`).
 [[nodiscard]] std::unique_ptr<BackgroundTask<FittedCurve>> fit_in_background(
     TodCurve curve, const MeasuredRun& measured, const FittedTrials& to_fit, const Plan& plan,
     const ExperimentInputs& inputs, BackgroundTwinFunctions* functions, const CameraSurrogate& surrogate);

@@ -24,16 +24,19 @@ struct GreySummary {
   int frames = 0;
   double levels = 0;  ///< mean contrast
   double levels_per_k = 0, lowest_per_k = 0, highest_per_k = 0;
-  /// Root mean square over the frames: it does not fall with their number: frames share fixed pattern and rounding.
+  /// Root mean square over the frames. It does not decrease with the number of frames, because frames share fixed
+  /// pattern and rounding.
   double relative_uncertainty = 0;
   double noise_steps = 0;  ///< the lowest of any frame
 };
+/// Returns the summary of the frames of one contrast.
 [[nodiscard]] GreySummary grey_summary(const std::vector<GreyFrame>& frames, double set_delta_t_k);
-/// "+16.900 K: 201.3 grey levels, 11.9 a kelvin (11.8 to 12.0 in 24 frames), known to 0.8 %; ..."
+/// Returns "+16.900 K: 201.3 grey levels, 11.9 a kelvin (11.8 to 12.0 in 24 frames), known to 0.8 %; ..."
 [[nodiscard]] std::string sentence(const GreySummary& summary);
 
-/// Writes grey-levels.csv of the session and a note for every contrast. Adds their uncertainty to the contrast
-/// uncertainty of the points and stores the noise in steps. No effect if contrasts are in kelvin. Errors: `io`.
+/// Writes grey-levels.csv of the session and a note for every contrast. Adds the uncertainty of the grey levels to the
+/// contrast uncertainty of the points, and stores the noise in steps. No effect if contrasts are in kelvin. Errors:
+/// `io`.
 [[nodiscard]] Result<void> keep_grey_levels(TodCurve& curve, MeasurementResult& result, const OpenSession& open);
 
 }  // namespace todbench

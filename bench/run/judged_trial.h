@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An answer with the patch that was judged, for a person who judges it again.
+// Answers with the patches that were judged, for people who judge them again.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct JudgedTrial {
   double noise_k = 0;  ///< temporal noise of a sample, as passed to the observer
 };
 
-/// Fisher-Yates shuffle with reproducible random numbers.
+/// Shuffles the items (Fisher-Yates) with reproducible random numbers.
 template <typename T>
 void shuffle(std::vector<T>& items, const RandomStream& stream) {
   for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[stream.below(i, i)]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The TOD curve of a running measurement, fitted on a thread of its own.
+// TOD curve of a running measurement, fitted on its own thread.
 #pragma once
 
 #include <condition_variable>
@@ -23,14 +23,15 @@ struct FittedCurves {
   std::optional<TodCurve> measured, twin;
 };
 
-/// Fits on its own thread about once a second, so that the run does not wait, with the same function as the result
-/// (RunningFit). Any thread.
+/// Fit of the answers so far, about once a second on its own thread, so that the run does not wait. Uses the same
+/// function as the result (RunningFit). Any thread.
 class LiveCurve {
  public:
   explicit LiveCurve(const Plan& plan);
 
+  /// Adds an answer to the next fit.
   void add(SessionCurve curve, const Trial& trial);
-  /// Null before the first fit.
+  /// Returns the latest fit; null before the first.
   [[nodiscard]] std::shared_ptr<const FittedCurves> latest() const;
 
  private:

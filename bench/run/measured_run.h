@@ -31,17 +31,18 @@ struct MeasuredRun {
   double measures_s = 0;                          ///< of the physical measures; 0: none were taken
 };
 
-/// Returns the response of the contrast estimator for the plates, by the twin of the plan.
+/// Returns the response of the contrast estimator for each plate, computed with the twin of the plan.
 [[nodiscard]] Result<std::map<std::string, double>> responses_of_camera(const Plan& plan,
                                                                         const ExperimentInputs& inputs,
                                                                         std::stop_token stop);
 
-/// Measures with the camera of the plan, into the session. `surrogate` learns from its frames.
+/// Measures with the camera of the plan and writes to the session. `surrogate` is estimated from the frames of the
+/// camera.
 [[nodiscard]] Result<MeasuredRun> run_measured(const Plan& plan, const ExperimentInputs& inputs,
                                                CameraSurrogate& surrogate, OpenedBench& bench, const OpenSession& open,
                                                const AddedStages& added, std::stop_token stop);
 
-/// Returns the curve of these trials without the shape of the twin. Fails if they make none.
+/// Returns the curve of these trials without the shape of the twin. Fails if the trials give no curve.
 [[nodiscard]] Result<TodCurve> curve_of_camera(MeasurementResult& result, std::span<const Trial> trials,
                                                const Plan& plan, const ExperimentInputs& inputs, const SourceInfo& info,
                                                const OpenSession& open);
@@ -53,7 +54,8 @@ struct MeasuredRun {
                                                                FrameStreamWriter* recording, const OpenSession& open,
                                                                std::stop_token stop);
 
-/// Waits for the warm-up of [camera.warm_up] and returns its sentence. A camera that warms up corrects itself often.
+/// Waits until the camera meets the condition of [camera.warm_up], and returns the sentence about it. Tolerates up to
+/// half of the frames rejected, because a camera that warms up corrects itself often.
 [[nodiscard]] Result<std::string> warmed_up(FrameSource& camera, const Plan& plan, const std::stop_token& stop);
 
 }  // namespace todbench

@@ -22,14 +22,14 @@ namespace todbench {
                                                                       OpenedBench& bench, const OpenSession& open,
                                                                       std::stop_token stop);
 
-/// Returns the same for the plan's sensor as described, with all effects, also those that the planner skips in the
-/// trials. Adds the closed forms of its MTF and CTF.
+/// Returns the measures of the sensor of the plan as described, with all effects, including those that the planner
+/// skips in the trials. Adds the closed forms of its MTF and CTF.
 [[nodiscard]] Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded,
                                                                        const ExperimentInputs& inputs,
                                                                        const OpenSession& open, std::stop_token stop);
 
-/// Runs simulated_measures() on its own thread: they depend on the plan alone, and a measuring camera leaves processor
-/// time. With a program in place of the sensor, they start at take().
+/// Call of simulated_measures() on its own thread. The measures depend on the plan alone, and a measuring camera leaves
+/// processor time. With a program in place of the sensor, the call begins at take().
 class BackgroundMeasures {
  public:
   /// Starts, unless the sensor is a program; `loaded` and `inputs` outlive it.
@@ -43,7 +43,8 @@ class BackgroundMeasures {
   std::optional<BackgroundTask<Result<std::optional<CameraMeasures>>>> made_;
 };
 
-/// Adds the picture of the plan's sensor to the mean picture of the plate, if any; a reason if they are not comparable.
+/// Adds the picture of the plan's sensor to the mean picture of the plate, if any; adds a reason if the two are not
+/// comparable.
 void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const ExperimentInputs& inputs);
 
 }  // namespace todbench

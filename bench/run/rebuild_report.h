@@ -23,8 +23,8 @@ using PageWriter = std::function<Result<std::vector<std::string>>(const ReportDa
 [[nodiscard]] Result<ReportData> report_data_of(const Session& session, const std::filesystem::path& folder);
 
 /// Stores the verdict if it had to be made, calls `write_pages`, and updates the manifest with both. A signed session
-/// is refused. If changed files of a session were accepted, its manifest stays as it is, so that it keeps reporting
-/// them. Errors: `io` with the path; those of report_data_of() and `write_pages`.
+/// is refused. If changed files of a session were accepted, its manifest stays unchanged, so that later checks still
+/// report them. Errors: `io` with the path; those of report_data_of() and `write_pages`.
 [[nodiscard]] Result<ReportData> rebuild_report(const Session& session, const std::filesystem::path& folder,
                                                 const PageWriter& write_pages);
 /// Writes the report of a signed session as a revision in revisions/, signed with the key of the session. Errors:
@@ -35,13 +35,13 @@ using PageWriter = std::function<Result<std::vector<std::string>>(const ReportDa
                                                const std::stop_token& stop = {});
 /// File of the order in a session.
 inline constexpr std::string_view order_file = "inputs/order.toml";
-/// Calls `write` with an order (a file with a section [order]) that the session stores for later reports. Errors: those
-/// of load_order(), `io`.
+/// Returns a function that calls `write` with an order (a file with a section [order]), which the session stores for
+/// later reports. Errors: those of load_order(), `io`.
 [[nodiscard]] Result<PageWriter> with_order(std::filesystem::path folder, const std::filesystem::path& order,
                                             PageWriter write);
-/// Writes report.html and report.csv.
+/// Returns a function that writes report.html and report.csv.
 [[nodiscard]] PageWriter html_page(std::filesystem::path folder);
-/// The same with a letterhead, which the session stores for later reports.
+/// Returns the same function with a letterhead, which the session stores for later reports.
 [[nodiscard]] PageWriter html_page_with(std::filesystem::path folder, Letterhead letterhead);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Answers that a measurement got besides its frames, as recorded: each with its question.
+// Recorded answers of a measurement, other than its frames: each is stored with its question.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +19,22 @@ namespace todbench {
 /// replayed.
 inline constexpr std::string_view answers_format = "2";
 
+/// Returns the record of the time of the clock.
 [[nodiscard]] Reading clock_answer(Moment why, std::int64_t now_ns);
+/// Returns the record of whether the run pauses.
 [[nodiscard]] Reading rest_answer(bool rests);
+/// Returns the record of the number of frames requested while the target presented a state.
 [[nodiscard]] Reading calls_answer(std::int64_t calls);
+/// Returns the record of the outcome of a recovery.
 [[nodiscard]] Reading recovery_answer(const Result<void>& back);
-/// The target asks for its state again. Recorded only if it does.
+/// Returns the record of a request of the target for its state. A request is recorded only if it occurs.
 [[nodiscard]] Reading again_answer();
+/// Returns the record of a state that was requested from the target, and of its report.
 [[nodiscard]] Reading target_answer(const TargetState& set, const Result<PresentedTarget>& said);
 
-/// Replays the recorded answers in order, to the same questions in the same order. A question that differs from the
-/// recorded one is `invalid_input`, and so are all later ones; after the last answer it is `disconnected`, because the
-/// frames end there too. One thread at a time.
+/// Replay of the recorded answers to the same questions in the same order. Errors: `invalid_input` for a question that
+/// differs from the recorded one, and for all later ones; `disconnected` after the last answer, because the frames end
+/// there too. One thread at a time.
 class RecordedAnswers {
  public:
   /// `name`: name of the recording in messages.
@@ -39,13 +44,13 @@ class RecordedAnswers {
   [[nodiscard]] Result<std::int64_t> clock(Moment why);
   [[nodiscard]] Result<bool> rest();
   [[nodiscard]] Result<std::int64_t> calls();
-  /// The recorded outcome.
+  /// Returns the recorded outcome of the recovery.
   [[nodiscard]] Result<void> recovery();
-  /// The recorded report of the target. Errors: `invalid_input` if the target was set otherwise, because the frames
-  /// show another target.
+  /// Returns the recorded report of the target. Errors: `invalid_input` if the target was set differently, because the
+  /// frames then show another state.
   [[nodiscard]] Result<PresentedTarget> target(const TargetState& set);
 
-  /// Returns whether the target asked for its state again at this point.
+  /// Returns whether the target requested its state again at this point.
   [[nodiscard]] bool again();
 
   /// Returns whether every recorded answer was given.

@@ -16,12 +16,12 @@ struct StreamHeader;
 /// Returns the header of a recording of this camera that begins now.
 [[nodiscard]] StreamHeader header_now(SourceInfo info);
 
-/// Path of the recording of a session.
+/// Returns the path of the recording of a session.
 [[nodiscard]] std::filesystem::path recorded_frames(const std::filesystem::path& session);
 
 /// Starts recording: appends all inputs of the measurement beyond the plan to the recording of the session: frames,
-/// failures, reports of the target and answers of the host, each with its question. Ask the returned writer at the end
-/// whether the recording is complete on disk. Errors: `io`.
+/// failures, reports of the target and answers of the host, each with its question. At the end, the returned writer
+/// reports whether the recording is complete on disk. Errors: `io`.
 [[nodiscard]] Result<std::shared_ptr<FrameStreamWriter>> record_bench(OpenedBench& bench,
                                                                       const std::filesystem::path& session);
 
@@ -31,10 +31,10 @@ struct RecordedBench {
   std::shared_ptr<const RecordedAnswers> answers;  ///< reports afterwards whether the questions were the recorded ones
 };
 
-/// Opens the bench of a session's recording. A measurement that asks in the same order gets the same answers, bit for
-/// bit; otherwise it fails with `invalid_input`. `pause`: lets the replay pause; null: it never pauses; outlives the
-/// bench. Errors: `invalid_input` (no recording in the session, not one of a measurement, or another format of
-/// answers), `io`.
+/// Opens the bench of a session's recording. A measurement with the same questions in the same order receives the same
+/// answers, bit for bit; otherwise it fails with `invalid_input`. `pause`: lets the replay pause; null: it never
+/// pauses; outlives the bench. Errors: `invalid_input` (no recording in the session, not one of a measurement, or
+/// another format of answers), `io`.
 [[nodiscard]] Result<RecordedBench> open_recorded_bench(const std::filesystem::path& session, const Pause* pause);
 
 }  // namespace todbench

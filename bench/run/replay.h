@@ -13,16 +13,17 @@
 
 namespace todbench {
 
+/// Result of a replay.
 struct ReplayOutcome {
   ExperimentOutcome run;  ///< with a new session folder
   bool same_trials = false;
-  /// Of the measured curve. Empty if the session ended before its fit, or if its version computed the intervals of
-  /// graded answers without places in the picture.
+  /// Whether the fits of the measured curve are equal. Empty if the session ended before its fit, or if its program
+  /// version computed the intervals of graded answers without the positions in the picture.
   std::optional<bool> same_fits;
-  std::vector<std::string> accepted_changes{};  ///< of the replayed session
+  std::vector<std::string> accepted_changes{};  ///< accepted changes of the replayed session
 };
 
-/// Whether to start the programs that a session names.
+/// Permission to start the programs that a session names.
 enum class RunModules { no, yes };
 
 /// Returns the observer of a plan for the record, without a package.
@@ -33,7 +34,8 @@ struct RecordedRun {
   std::filesystem::path folder;
   Session session;
   RecordedBench recording;
-  /// Of the session, without recording, physical measures and their limits: the frames are those of the trials.
+  /// Plan of the session without recording, physical measures and their limits, because the frames are those of the
+  /// trials.
   Plan plan;
   std::vector<std::string> warnings;
 };
@@ -46,7 +48,7 @@ struct RecordedRun {
 /// byte for byte. An interrupted session is replayed to the end of its frames and compared to the end of its trials.
 /// Losses that the run survived are replayed too. `accept_changed` of `opening` accepts changed files, and the new
 /// session states it. Errors: `invalid_input` (not a session, no recording, modules that may not run, changed files, or
-/// a recording by a program version that asked other questions), those of measure_plan().
+/// a recording by a program version with other questions), those of measure_plan().
 [[nodiscard]] Result<ReplayOutcome> replay_session(const std::filesystem::path& session,
                                                    const ExperimentOptions& options, const ExperimentListener& listener,
                                                    std::stop_token stop, const Opening& opening = {},

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Returns the name of a session: that of its folder, for every way to write the path.
+/// Returns the name of a session, which is the name of its folder, independent of how the path is written.
 [[nodiscard]] std::string session_name(const std::filesystem::path& folder);
 
 /// Reads the data for render_report() from a session. `name`: of the session. Errors: `invalid_input` if a plate or

@@ -14,8 +14,9 @@ struct OpenSession {
   const ExperimentListener& listener;
 };
 
-/// Reports a phase or a sentence to the log and the listener.
+/// Reports a phase to the log and the listener.
 void phase(SessionFolder& folder, const ExperimentListener& listener, const std::string& text);
+/// Reports a sentence to the log and the listener.
 void note(SessionFolder& folder, const ExperimentListener& listener, const std::string& sentence);
 
 /// Creates the folder, reserves disk space for the end, and writes all that is known before the first frame. Sets the
@@ -35,8 +36,8 @@ void note_failed_selftest(const OpenSession& open, const Provenance& provenance)
 [[nodiscard]] Result<void> close_session(const OpenSession& open, const Provenance& provenance, const Verdict& verdict,
                                          const std::optional<Error>& ended_by);
 
-/// Last step of every run with a curve: judges it and writes results, state, report and manifest. If the disk refuses,
-/// the session ends early: files that do not fit are left out, and the caller still gets the results.
+/// Last step of every run with a curve: judges it and writes results, state, report and manifest. If a write fails, the
+/// session ends early: files that do not fit are left out, and the caller still receives the results.
 [[nodiscard]] ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const OpenSession& open,
                                           const Provenance& provenance);
 

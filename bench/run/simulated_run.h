@@ -26,7 +26,7 @@ struct FromCamera {
   const TodCurve* curve = nullptr;
   const TodCurve* functions = nullptr;         ///< fitted with the functions of the twin
   std::map<double, double> shown_delta_t_k{};  ///< observed contrast for each set contrast
-  std::map<std::string, double> responses{};   ///< of simulated_responses(), if they are those of the twin too
+  std::map<std::string, double> responses{};   ///< results of simulated_responses(), if they also apply to the twin
 };
 
 /// Simulates the trials into the session, fits them, and adds the direct estimate. Errors: those of record_trials(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the simulated twin adds to the results of a camera: its curve, the comparison, its physical measures.
+// Results of the simulated twin that are added to those of a camera: curve, comparison and physical measures.
 #pragma once
 
 #include <stop_token>
@@ -14,7 +14,7 @@ namespace todbench {
 
 /// Work started in parallel to the camera.
 struct BackgroundWork {
-  BackgroundTask<Pairs>* pairs;  ///< null: none are made
+  BackgroundTask<Pairs>* pairs;  ///< null: no pairs are computed
   BackgroundMeasures& measures;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The HTTP interface of run control without sockets: from a request to an answer. docs/reference/openapi.json describes
-// it.
+// HTTP interface of run control without sockets: from a request to a response. docs/reference/openapi.json describes
+// the interface.
 #pragma once
 
 #include <filesystem>
@@ -17,46 +17,51 @@
 
 namespace todbench {
 
-/// The OpenAPI 3.0 description, compiled in.
+/// Returns the OpenAPI 3.0 description, which is compiled in.
 [[nodiscard]] std::string_view openapi_json();
 
 /// Returns {"cameras": [{"id", "vendor", ...}], "warnings": [...]}.
 [[nodiscard]] Json cameras_json(const CameraRegistry::Listing& listing);
 
+/// HTTP request.
 struct ControlRequest {
   std::string method;  ///< "GET", "POST", "HEAD"
   std::string path;    ///< decoded, without the query
-  std::string token;   ///< of the header Authorization: Bearer, or of the query; empty: none
+  std::string token;   ///< token of the header Authorization: Bearer, or of the query; empty: none
   std::string body{};
 };
 
+/// HTTP response.
 struct ControlAnswer {
   int status = 200;
   std::string type = "application/json";
   std::string body{};
-  std::string location{};                       ///< of a new run
+  std::string location{};                       ///< location of a new run
   std::string allow{};                          ///< methods of a path, with status 405
   std::optional<std::filesystem::path> file{};  ///< sent in place of `body`
   std::optional<std::string> events_of{};       ///< id of the run whose events follow
 };
 
+/// Options of the interface.
 struct ControlOptions {
   std::string token;
-  PlanPrograms programs = PlanPrograms::none;
-  std::function<CameraRegistry::Listing()> list_cameras{};
+  PlanPrograms programs = PlanPrograms::none;               ///< programs that a plan may start
+  std::function<CameraRegistry::Listing()> list_cameras{};  ///< lists the cameras
 };
 
-/// Answers requests. Every path but the page, its files and the description needs the token. Any thread.
+/// Handler of requests. Every path except the page, its files and the description requires the token. Any thread.
 class ControlApi {
  public:
   /// `queue` must outlive this object.
   ControlApi(RunQueue& queue, ControlOptions options) : queue_(queue), options_(std::move(options)) {}
 
-  /// Returns the answer to a request that is refused before its body is read: 401, 404, 405.
+  /// Returns the response to a request that is rejected before its body is read: 401, 404, 405. Empty: the request is
+  /// accepted.
   [[nodiscard]] std::optional<ControlAnswer> refusal(const ControlRequest& request) const;
+  /// Returns the response to a request.
   [[nodiscard]] ControlAnswer answer(const ControlRequest& request);
 
-  /// Path of the description with the names of its parameters, and its method; for the test of the description.
+  /// Path of the description with the names of its parameters, and its method. Used by the test of the description.
   struct Route {
     std::string_view method, path;
   };
@@ -70,7 +75,7 @@ class ControlApi {
   CameraRegistry::Listing last_listing_;
 };
 
-/// Answer with an error: {"error": SENTENCE}.
+/// Returns a response with an error: {"error": SENTENCE}.
 [[nodiscard]] ControlAnswer control_error(int status, std::string_view sentence);
 
 }  // namespace todbench

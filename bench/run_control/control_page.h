@@ -6,7 +6,7 @@
 
 namespace todbench {
 
-/// Returns the page; it refers to control.css and control.js in the same folder.
+/// Return the page, its style and its script. The page refers to control.css and control.js in the same folder.
 [[nodiscard]] std::string_view control_html();
 [[nodiscard]] std::string_view control_css();
 [[nodiscard]] std::string_view control_js();

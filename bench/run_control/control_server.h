@@ -12,25 +12,27 @@
 
 namespace todbench {
 
+/// Options of the server.
 struct ControlServerOptions {
-  ServeAddress address{};
-  std::string token{};  ///< empty: a random one of 128 bits
-  std::filesystem::path sessions = ".";
-  PlanPrograms programs = PlanPrograms::none;
+  ServeAddress address{};                      ///< address to listen on
+  std::string token{};                         ///< empty: a random one of 128 bits
+  std::filesystem::path sessions = ".";        ///< folder in which session folders are created
+  PlanPrograms programs = PlanPrograms::none;  ///< programs that a plan may start
   std::function<CameraRegistry::Listing()> list_cameras{};
 };
 
-/// Returns the token in a file, without blanks at its ends. Creates the file, readable by its owner only, with a random
-/// token if it is absent. Errors: `invalid_input` (fewer than 16 characters, blanks or control characters), `io`.
+/// Returns the token in a file, without leading and trailing blanks. Creates the file, readable by its owner only, with
+/// a random token if it is absent. Errors: `invalid_input` (fewer than 16 characters, blanks or control characters),
+/// `io`.
 [[nodiscard]] Result<std::string> kept_token(const std::filesystem::path& file);
 
-/// Serves on its own threads, at most four requests and 16 streams of events at a time.
+/// Server on its own threads, with at most four requests and 16 streams of events at a time.
 class ControlServer {
  public:
   static constexpr std::size_t longest_body = std::size_t{256} * 1024;
   static constexpr std::size_t longest_path = 512;
 
-  /// Errors: `io` (cannot listen on the address).
+  /// Starts the server. Errors: `io` (cannot listen on the address).
   [[nodiscard]] static Result<std::unique_ptr<ControlServer>> start(const ControlServerOptions& options);
   /// Stops the current run and waits for the end of its session.
   ~ControlServer();
@@ -39,6 +41,7 @@ class ControlServer {
 
   /// Returns "http://127.0.0.1:8765/".
   [[nodiscard]] const std::string& url() const { return url_; }
+  /// Returns the token.
   [[nodiscard]] const std::string& token() const { return token_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Server-sent events of runs to several clients, from one thread that waits for none of them. Private to
+// Server-sent events of runs for several clients. One thread sends them and waits for no client. Private to
 // bench/run_control.
 #pragma once
 
@@ -16,11 +16,11 @@
 
 namespace todbench {
 
-/// Every client gets the latest state of its run as soon as it has taken the one before; a slow client misses states in
-/// between. A client that takes no byte for 30 s is disconnected. Any thread.
+/// Every client receives the latest state of its run as soon as it has received the previous one; a slow client misses
+/// intermediate states. A client that receives no byte for 30 s is disconnected. Any thread.
 class EventStreams {
  public:
-  /// Returns the state of a run; empty: the run is not kept any more.
+  /// Returns the state of a run; empty: the state of the run is no longer stored.
   using Look = std::function<std::optional<RunSnapshot>(const std::string& id)>;
   static constexpr std::size_t most_streams = 16;
 
@@ -29,12 +29,14 @@ class EventStreams {
   EventStreams(const EventStreams&) = delete;
   EventStreams& operator=(const EventStreams&) = delete;
 
+  /// Returns whether another stream is accepted.
   [[nodiscard]] bool has_room() const;
-  /// Takes the socket of a client whose answer has begun. It is closed after the last state, or if there is no room.
+  /// Takes ownership of the socket of a client whose response has begun. The socket is closed after the last state, or
+  /// if there are too many streams.
   void add(int socket, std::string id);
-  /// The state of a run has changed.
+  /// Reports that the state of a run has changed.
   void wake() const;
-  /// Closes all streams; `look` is not called after it.
+  /// Closes all streams; `look` is not called afterwards.
   void shut_down();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs one after the other, on one thread, with their states for clients.
+// Queue that executes runs one after the other on one thread and stores their states for clients.
 #pragma once
 
 #include <condition_variable>
@@ -24,6 +24,7 @@
 
 namespace todbench {
 
+/// State of a run in the queue.
 enum class QueuedRunState {
   queued,
   running,
@@ -41,12 +42,12 @@ struct RunSnapshot {
   bool over = false;
 };
 
-/// Runs in order of their arrival, one at a time. All functions return at once and can be called by any thread: the
-/// thread of the run never waits for a client.
+/// Queue of runs in order of their arrival, one at a time. All functions return immediately and can be called by any
+/// thread; the thread of the run never waits for a client.
 class RunQueue {
  public:
   static constexpr std::size_t most_waiting = 32;
-  /// Runs whose states are kept. The sessions of older ones stay on disk.
+  /// Largest number of runs whose states are stored. The sessions of older runs stay on disk.
   static constexpr std::size_t most_kept = 200;
 
   /// Session folders are created in `sessions`. `changed` is called after every change of a state.
@@ -56,22 +57,22 @@ class RunQueue {
   RunQueue(const RunQueue&) = delete;
   RunQueue& operator=(const RunQueue&) = delete;
 
-  /// Returns the id of the run. Errors: `not_found` (queue full).
+  /// Adds a run to the queue and returns its id. Errors: `not_found` (queue full).
   [[nodiscard]] Result<std::string> add(RequestedRun run);
-  /// Null if there is no such run.
+  /// Returns the state of a run; empty if there is no such run.
   [[nodiscard]] std::optional<RunSnapshot> snapshot(const std::string& id) const;
-  /// States of all runs, oldest first.
+  /// Returns the states of all runs, oldest first.
   [[nodiscard]] Json list() const;
   /// Answers the request to the operator. `number`: of the request, empty: the current one. Errors: `not_found` (no
   /// such run), `invalid_input` (no request, or another one).
   [[nodiscard]] Result<void> answer(const std::string& id, std::optional<std::uint64_t> number, OperatorAnswer answer);
   /// Stops a run or removes it from the queue; no effect on a run that is over. Errors: `not_found` (no such run).
   [[nodiscard]] Result<void> stop(const std::string& id);
-  /// Session folder; empty until it exists.
+  /// Returns the session folder; empty until it exists.
   [[nodiscard]] std::optional<std::filesystem::path> folder(const std::string& id) const;
-  /// Curve and picture of a run; null before the first.
+  /// Returns curve and picture of a run; null before the first.
   [[nodiscard]] std::shared_ptr<const LivePages> pages(const std::string& id) const;
-  /// Whether a run uses the devices now.
+  /// Returns whether a run is using the devices.
   [[nodiscard]] bool is_running() const;
   [[nodiscard]] const std::filesystem::path& sessions() const { return sessions_; }
 

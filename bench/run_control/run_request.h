@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run that a client asks for: a plan, and whether to measure or to simulate it.
+// Run that a client requests: a plan, and whether to measure or to simulate it.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 
 namespace todbench {
 
+/// Kind of a run.
 enum class RunMode {
   measure,   ///< as `todbench measure`
   simulate,  ///< as `todbench simulate`
@@ -20,6 +21,7 @@ enum class RunMode {
 /// Returns "measure" or "simulate".
 [[nodiscard]] std::string_view to_string(RunMode mode);
 
+/// Request for a run.
 struct RunRequest {
   std::string plan{};             ///< name or file of this computer; empty if `plan_toml` is given
   std::string plan_toml{};        ///< text of a plan
@@ -36,13 +38,14 @@ enum class PlanPrograms {
   modules,  ///< those of [[module]] in the plan or its sensor, and of a target of kind display
 };
 
+/// Run with its loaded plan.
 struct RequestedRun {
   LoadedPlan plan;
   RunMode mode = RunMode::measure;
 };
 
-/// Reads the plan as the command line does. File names in the text of a plan are relative to `folder`. Errors:
-/// `invalid_input` about the plan, also for a plan that starts programs with PlanPrograms::none.
+/// Reads the plan in the same way as the command line. File names in the text of a plan are relative to `folder`.
+/// Errors: `invalid_input` about the plan, also for a plan that starts programs with PlanPrograms::none.
 [[nodiscard]] Result<RequestedRun> requested_run(const RunRequest& request, const std::filesystem::path& folder,
                                                  PlanPrograms programs);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests whether a camera's response to the triangles depends on the rest of its field: a hot bar, out and in.
+// Test whether the response of a camera to the triangles depends on the rest of its field: a hot bar outside and inside
+// the field.
 #pragma once
 
 #include <cstdint>
@@ -20,14 +21,16 @@
 
 namespace todbench {
 
+/// Result of the test.
 enum class SceneDependenceVerdict {
   independent,   ///< all intervals lie within the tolerance
   depends,       ///< an interval lies outside it
   inconclusive,  ///< neither
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(SceneDependenceVerdict verdict);
 
-/// Triangles of one size.
+/// Result for triangles of one size.
 struct SizeDependence {
   double size_mm = 0, size_px = 0;
   int triangles = 0;
@@ -35,6 +38,7 @@ struct SizeDependence {
   Interval ci95;     ///< simultaneous for all sizes: each at 1 - 0.05 / number of sizes
 };
 
+/// Result of the measurement.
 struct SceneDependence {
   std::string camera, package;  ///< an empty package: none
   std::string plate;
@@ -46,42 +50,45 @@ struct SceneDependence {
   std::vector<std::string> notes;
   SetUpRecord set_up;           ///< position of the plate
   cv::Mat1d out, in;            ///< the last averages without and with the bar
-  double temporal_noise_k = 0;  ///< of a pixel; 0: not measured, or no temperatures
+  double temporal_noise_k = 0;  ///< temporal noise of a pixel; 0: not measured, or no temperatures
   std::uint64_t frames_used = 0, frames_lost = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
 };
 
+/// Options of the measurement.
 struct SceneDependenceOptions {
   int cycles = 6;                ///< 3 or more; each is out, in, in, out, so that a linear drift cancels
   int frames = 16;               ///< averaged per position of the bar
   int settle_frames = 0;         ///< discarded after the bar has moved, in addition to those of the plan
   double tolerance_percent = 2;  ///< largest allowed change of the response
-  /// Called before the first frame, when all parts are ready; optional, an error ends the run.
+  /// Called before the first frame, when all parts are ready. An error ends the run. Optional.
   std::function<Result<void>(const SourceInfo& camera, const Target& target)> on_begin{};
 };
 
-/// Moves the bar into the field or out of it.
+/// Function that moves the bar into the field or out of it.
 using MoveBar = std::function<Result<void>(bool in, std::stop_token stop)>;
 
-/// Measures the dependence. The response of a size is the regression of its windows, bar out or in, on those of the
-/// picture in which the plate is located, which is common to both. Errors: those of measure() until the first frame,
-/// `calibration` if the plate has moved, `invalid_input` for options out of range.
+/// Measures the dependence. The response of a size is the regression of its windows, with the bar outside or inside, on
+/// the windows of the picture in which the plate is located; this picture is common to both cases. Errors: those of
+/// measure() until the first frame, `calibration` if the plate has moved, `invalid_input` for options out of range.
 [[nodiscard]] Result<SceneDependence> measure_scene_dependence(FrameSource& camera, Target& target,
                                                                const MoveBar& move_bar, const TargetState& state,
                                                                Observer& observer, const MeasurementOptions& measuring,
                                                                const SceneDependenceOptions& options,
                                                                RunController& host, std::stop_token stop);
 
-/// Adds `kelvin` to a bar next to the plate while `*in` is set: counts of a linear scale, clipped at full scale.
+/// Returns `camera` with `kelvin` added to a bar next to the plate while `*in` is true. The counts have a linear scale
+/// and are clipped at full scale.
 [[nodiscard]] std::unique_ptr<FrameSource> with_hot_bar(std::unique_ptr<FrameSource> camera, cv::Rect bar,
                                                         double kelvin, std::shared_ptr<const bool> in);
 /// Returns the place of the bar: left of a plate in the centre of the picture, 1/20 of its width and 3/5 of its height.
 /// Empty: too little room.
 [[nodiscard]] std::optional<cv::Rect> place_of_bar(cv::Size picture, const TargetPlate& plate, double px_per_mm);
 
-/// Measures the first plate of the plan in its first mounting at its largest contrast: with its camera, whose operator
-/// moves the bar (`host`), or with its simulated sensor, a bar of `bar_k` and the stages of a package (null: none).
-/// Errors: as above, those of open_bench(); `invalid_input` for a package behind a camera.
+/// Measures the first plate of the plan in its first mounting at its largest contrast. With the camera of the plan, the
+/// operator moves the bar (`host`). With the simulated sensor, the bar has a contrast of `bar_k`, and the stages of a
+/// package follow (null: none). Errors: those of measure_scene_dependence(), those of open_bench(); `invalid_input` for
+/// a package behind a camera.
 [[nodiscard]] Result<SceneDependence> plan_scene_dependence(const LoadedPlan& loaded, const EnhancementPackage* package,
                                                             double bar_k, const SceneDependenceOptions& options,
                                                             const ExperimentHost& host, std::stop_token stop);

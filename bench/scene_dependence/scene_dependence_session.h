@@ -14,27 +14,28 @@ namespace todbench {
 /// Parameters of the test.
 struct SceneDependenceTask {
   std::optional<EnhancementPackage> package{};  ///< behind the simulated sensor; stored in the session
-  double bar_k = 40;                            ///< of the simulated bar
+  double bar_k = 40;                            ///< contrast of the simulated bar
   SceneDependenceOptions options{};
 };
 
+/// Result with its session.
 struct SceneDependenceSession {
   SceneDependence found;
   std::filesystem::path folder;
   Verdict verdict;
-  std::optional<Error> ended_by;  ///< an error of the disk
+  std::optional<Error> ended_by;  ///< error of the disk
 };
 
-/// scene-dependence.json of a session, also the output of the command.
+/// Returns the content of scene-dependence.json, which is also the output of the command.
 [[nodiscard]] Json scene_dependence_json(const SceneDependence& found, const SceneDependenceTask& task);
 
 /// Judges the tolerance as the only demand, by simultaneous 95 % intervals, for the size with the largest deviation.
-/// The limits of the plan apply to a curve; the reason states that they are not judged.
+/// The limits of the plan apply to a curve and are not judged, as the reason of the verdict states.
 [[nodiscard]] Verdict verdict_on(const SceneDependence& found, const LimitsPlan& limits);
 
 /// Runs plan_scene_dependence() into a session folder: scene-dependence.json, measures.json with the ratios and both
-/// pictures, verdict, report. Errors: those of plan_scene_dependence(). They leave no folder before the first frame,
-/// later one marked interrupted.
+/// pictures, verdict, report. Errors: those of plan_scene_dependence(). An error before the first frame leaves no
+/// folder; a later one leaves a folder that is marked interrupted.
 [[nodiscard]] Result<SceneDependenceSession> measure_scene_dependence_session(const LoadedPlan& loaded,
                                                                               const SceneDependenceTask& task,
                                                                               const ExperimentOptions& options,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Self-test of an installed program: numbers of this machine against known answers (ISO/IEC 17025:2017, 7.11.2).
+// Self-test of an installed program: results on this computer compared with known answers (ISO/IEC 17025:2017, 7.11.2).
 #pragma once
 
 #include <stop_token>
@@ -11,17 +11,17 @@
 
 namespace todbench {
 
-/// Number of this machine with its known answer.
+/// Result on this computer with its known answer.
 struct SelftestCase {
   std::string_view group;  ///< origin of the answer, see selftest_groups()
   std::string name;
   double value = 0, expected = 0;
   double tolerance = 0;  ///< permitted difference
-  /// False for a NaN on either side.
+  /// Returns whether the difference is within the tolerance; false if one of the values is NaN.
   [[nodiscard]] bool ok() const;
 };
 
-/// Origin of the answers of a group, in words.
+/// Group of cases, and the origin of its answers in words.
 struct SelftestGroup {
   std::string_view name, answers;
 };

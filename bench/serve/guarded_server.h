@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HTTP server that protects the run's file descriptors and time from its clients. For bench/serve and
+// HTTP server that limits the file descriptors and the time that clients can take from a run. For bench/serve and
 // bench/run_control.
 #pragma once
 
@@ -20,7 +20,8 @@
 
 namespace todbench {
 
-/// Queue that serves a few connections at a time and keeps a few waiting. The accepting thread closes any further one.
+/// Queue that serves a few connections at a time and lets a few wait. The accepting thread closes any further
+/// connection.
 class BoundedQueue : public httplib::TaskQueue {
  public:
   static constexpr std::size_t threads = 4, most_waiting = 16;
@@ -44,14 +45,14 @@ class BoundedQueue : public httplib::TaskQueue {
 class GuardedServer : public httplib::Server {
  public:
   GuardedServer();
-  /// For handlers: `take` gets the socket of this request, and owns it, once the answer is sent. Otherwise it is
-  /// closed.
+  /// For handlers: passes the socket of this request to `take`, which then owns it, after the response is sent. Without
+  /// this call the socket is closed.
   static void hand_over(std::function<void(int socket)> take);
-  /// For handlers: time to send the answer beyond the three seconds, for large files.
+  /// For handlers: extends the three seconds for sending the response, for large files.
   static void allow_more_time(std::chrono::milliseconds more);
-  /// Listens in a thread of its own, after bind_to(). Returns when it can be stopped.
+  /// Listens on its own thread, after bind_to(). Returns as soon as stop_listening() can be called.
   void start_listening();
-  /// Ends that thread; without one it has no effect. The owner calls it before anything that handlers use is destroyed.
+  /// Ends that thread, if there is one. The owner calls it before objects that handlers use are destroyed.
   void stop_listening();
 
  private:
@@ -62,10 +63,10 @@ class GuardedServer : public httplib::Server {
 
 /// Sets headers that forbid external resources, embedding in frames, and a referrer with the token.
 void guard(httplib::Response& response);
-/// The same for a file of a session: a report has its style and pictures in itself, and runs no script.
+/// Sets the headers for a file of a session, which contains its style and pictures and runs no script.
 void guard_report(httplib::Response& response);
-/// Returns 128 random bits as text from the system's random source, not from the seed of the experiment: they must not
-/// be predictable.
+/// Returns 128 random bits as text. They come from the random source of the system and not from the seed of the
+/// experiment, because they must not be predictable.
 [[nodiscard]] std::string random_token();
 /// Binds to the address, port 0: any free one. Returns the port. Errors: `io` (port in use, or not an address of this
 /// computer).

@@ -6,7 +6,8 @@
 
 namespace todbench {
 
-/// Returns the page; it refers to live.css, live.js, curve.svg, picture.png and state.json in the same folder.
+/// Return the page, its style and its script. The page refers to live.css, live.js, curve.svg, picture.png and
+/// state.json in the same folder.
 [[nodiscard]] std::string_view live_html();
 [[nodiscard]] std::string_view live_css();
 [[nodiscard]] std::string_view live_js();

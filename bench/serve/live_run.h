@@ -20,7 +20,7 @@
 
 namespace todbench {
 
-/// Activity of a run, for an occasional observer.
+/// Activity of a run, for an occasional viewer.
 enum class LiveStatus {
   running,
   settling,         ///< plate, mounting and position are set, the contrast is not stable yet
@@ -44,19 +44,20 @@ struct LiveState {
   std::uint64_t curve = 0, picture = 0;  ///< change with curve.svg and picture.png; 0: absent
   bool over = false;
 };
+/// Returns the content of state.json.
 [[nodiscard]] std::string to_json(const LiveState& state);
 
 /// Returns a frame as a grey PNG from its 0.05 % to its 99.95 % quantile; empty if the frame has no pixels.
 [[nodiscard]] std::string picture_of(const Frame& frame);
 
-/// Draws and encodes on its own thread, about twice a second. The functions of the run only store values.
+/// Renderer of curve and picture on its own thread, about twice a second. Calls from the run only store values.
 class LiveRun {
  public:
-  /// Receives new content, on the thread of the drawing or of end().
+  /// Receives new content, on the drawing thread or on the thread of end().
   using Show = std::function<void(std::shared_ptr<const LivePages>)>;
-  /// `curve` must outlive this object.
+  /// Shows the content with a function. `curve` must outlive this object.
   LiveRun(Show show, const LiveCurve& curve, const Plan& plan);
-  /// Shows on a server, which must outlive this object.
+  /// Shows the content on a server, which must outlive this object.
   LiveRun(LiveServer& server, const LiveCurve& curve, const Plan& plan);
 
   /// Returns a listener that calls `listener` and updates the page.

@@ -18,8 +18,8 @@ struct LivePages {
   std::string picture_png;  ///< empty: not available yet
 };
 
-/// Serves on its own threads. New content replaces the old one, and show() waits for no connection, so a slow or
-/// stalled browser does not delay the run.
+/// Server on its own threads. New content replaces the old content, and show() does not wait for a connection, so a
+/// slow or stalled browser does not delay the run.
 class LiveServer {
  public:
   /// Starts the server. Errors: `io` (cannot listen on the address).
@@ -29,12 +29,13 @@ class LiveServer {
   LiveServer(const LiveServer&) = delete;
   LiveServer& operator=(const LiveServer&) = delete;
 
-  /// Returns "http://127.0.0.1:8080/TOKEN/", the only address that is answered. The token has 128 random bits.
+  /// Returns "http://127.0.0.1:8080/TOKEN/", the only address to which the server responds. The token has 128 random
+  /// bits.
   [[nodiscard]] const std::string& url() const { return url_; }
   /// Replaces the content. Any thread.
   void show(std::shared_ptr<const LivePages> pages);
-  /// Waits until a client has requested the latest content. Returns at once if there was no request in the last five
-  /// seconds, and after `patience` at the latest.
+  /// Waits until a client has requested the latest content. Returns immediately if there was no request in the last
+  /// five seconds; otherwise after at most `patience`.
   void wait_until_seen(std::chrono::milliseconds patience);
 
  private:

@@ -30,7 +30,7 @@ struct BarsAnswer {
 /// Answers of a person at one sitting.
 struct BarsSitting {
   PersonFacts person{};
-  std::uint64_t seed = 1;  ///< of the order of the decisions
+  std::uint64_t seed = 1;  ///< seed of the order of the decisions
   int magnification = 1;   ///< screen pixels per pixel of the camera; bicubic
   std::vector<BarsAnswer> answers{};
 };
@@ -45,20 +45,22 @@ struct BarsThreshold {
 /// Returns one threshold for each place of the answers: x before y, low frequencies first, spots last.
 [[nodiscard]] std::vector<BarsThreshold> bars_thresholds(const BarsSitting& sitting);
 
-/// Mean of one place over people. All of them judged the same frames, so that the interval joins the scatter between
-/// people with the part of the set-ups that is common to them: (n V - v) / (n - 1) for n people, V the jackknife
-/// variance of the mean over the set-ups and v the mean of those of the people.
+/// Mean of one place over people. All people judged the same frames. The interval therefore combines the scatter
+/// between people with the contribution of the set-ups that is common to them: (n V - v) / (n - 1) for n people, V the
+/// jackknife variance of the mean over the set-ups and v the mean of those of the people.
 struct BarsMean {
   BarsThreshold of{};  ///< the place; without a threshold
   MeanOverPeople over{};
-  int without = 0;  ///< sittings without a threshold: then there is no mean, because it would be that of the best
-  int answers = 0;  ///< of all sittings
+  int without = 0;  ///< sittings without a threshold; if any, there is no mean, because it would represent only the
+                    ///< best observers
+  int answers = 0;  ///< number of answers in all sittings
 };
 /// A person and the thresholds of one sitting.
 struct JudgedBars {
   std::string person;
   std::vector<BarsThreshold> thresholds;
 };
+/// Returns each person with the thresholds of bars_thresholds().
 [[nodiscard]] std::vector<JudgedBars> judged_bars(const std::vector<BarsSitting>& sittings);
 /// Returns the mean at every place of the sittings, in the order of bars_thresholds().
 [[nodiscard]] std::vector<BarsMean> bars_means(const std::vector<JudgedBars>& sittings);

@@ -22,6 +22,7 @@ namespace todbench {
 /// Returns "presentation,plate,..." with a line end.
 [[nodiscard]] std::string header_line(std::span<const std::string_view> columns);
 
+/// Parses a whole number; empty if the text is anything else.
 template <typename Whole>
 [[nodiscard]] std::optional<Whole> parse_whole(std::string_view text) {
   Whole value{};
@@ -38,19 +39,20 @@ class FieldReader {
 
   [[nodiscard]] std::string text() { return fields_[position_++]; }
   [[nodiscard]] double number();
-  /// Returns empty for an empty field.
+  /// Returns a number; empty for an empty field.
   [[nodiscard]] std::optional<double> optional_number();
-  /// Returns empty for an empty field.
+  /// Returns a probability; empty for an empty field.
   [[nodiscard]] std::optional<double> optional_probability();
   template <typename Whole>
   [[nodiscard]] Whole whole() {
     return taken(parse_whole<Whole>(fields_[position_]), "a whole number");
   }
-  /// A whole number of 0 or more.
+  /// Returns a whole number of 0 or more.
   [[nodiscard]] int count() {
     const auto value = parse_whole<int>(fields_[position_]);
     return taken(value && *value >= 0 ? value : std::nullopt, "a whole number of 0 or more");
   }
+  /// Returns a whole number; empty for an empty field.
   template <typename Whole>
   [[nodiscard]] std::optional<Whole> optional_whole() {
     if (skip_empty()) return std::nullopt;
@@ -58,6 +60,7 @@ class FieldReader {
   }
   [[nodiscard]] Apex apex() { return taken(apex_from(fields_[position_]), "up, right, down or left"); }
   [[nodiscard]] Mounting mounting() { return taken(mounting_from(fields_[position_]), "a mounting"); }
+  /// Returns the first error; empty if there was none.
   [[nodiscard]] const std::optional<std::string>& wrong() const { return wrong_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What limits the acuity, and the thresholds as an operator at the display of the plan would see them.
+// Factors that limit the acuity, and thresholds of an operator at the display of the plan.
 #pragma once
 
 #include <array>
@@ -15,18 +15,19 @@ namespace todbench {
 
 class JsonFields;
 
-/// Something that costs acuity.
+/// Factor that reduces the acuity.
 enum class LimitingFactor {
   sampling,      ///< distance of the sensor's samples
   sensor_noise,  ///< all noise of the sensor
   display,       ///< spot, interpolation, veil, black level and gain of the display
   eye,           ///< noise and uncertainty of the person
   light,         ///< luminance of the display
-  observer,      ///< blur and internal noise of an observer without an eye, which has none of the three before
+  observer,      ///< blur and internal noise of an observer without an eye, in place of display, eye and light
 };
 inline constexpr std::array all_limiting_factors{LimitingFactor::sampling, LimitingFactor::sensor_noise,
                                                  LimitingFactor::display,  LimitingFactor::eye,
                                                  LimitingFactor::light,    LimitingFactor::observer};
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(LimitingFactor factor);
 
 /// Cost of one factor: 100 (S75 / S75 without it - 1), in percent.
@@ -36,6 +37,7 @@ struct FactorCost {
   bool operator==(const FactorCost&) const = default;
 };
 
+/// Threshold at one contrast, and the cost of each factor.
 struct AcuityLimits {
   double delta_t_k = 0;
   double s75_mrad = 0;
@@ -43,27 +45,29 @@ struct AcuityLimits {
   bool operator==(const AcuityLimits&) const = default;
 };
 
-/// "at 0.23 K the sensor noise limits the acuity: ...", with every cost.
+/// Returns "at 0.23 K the sensor noise limits the acuity: ...", with every cost.
 [[nodiscard]] std::string in_words(const AcuityLimits& limits);
-/// "acuity_limits" of the commands.
+/// Returns the value of the key "acuity_limits" in the JSON of commands.
 [[nodiscard]] Json acuity_limits_json(const std::vector<AcuityLimits>& limits);
 
 /// Threshold of an observer with an eye behind the simulated sensor, by the direct estimate.
 struct DisplayedPoint {
   double delta_t_k = 0;
   double s75_mrad = 0;
-  /// Over the observer's open parameters (hvs/observer/open_parameters.h); no confidence interval.
+  /// Range of S75 over the open parameters of the observer (hvs/observer/open_parameters.h); not a confidence interval.
   std::optional<std::pair<double, double>> spread_mrad{};
   bool operator==(const DisplayedPoint&) const = default;
 };
 
-/// Beside the results of a session, never in its verdict.
+/// Record that is stored with the results of a session. It does not affect the verdict.
 struct DisplayRecord {
-  std::string observer;                ///< with an eye
-  std::vector<DisplayedPoint> points;  ///< empty: the observer decides itself, and the curve has its thresholds
+  std::string observer;  ///< name of an observer with an eye
+  /// Empty if this observer gave the answers of the session, so that its curve has these thresholds.
+  std::vector<DisplayedPoint> points;
   std::vector<AcuityLimits> limits;
   bool operator==(const DisplayRecord&) const = default;
 };
+/// Describes the fields of the record.
 void display_fields(JsonFields& json, DisplayRecord& record);
 
 }  // namespace todbench

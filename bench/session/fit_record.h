@@ -36,7 +36,9 @@ struct StoredCurves {
   std::optional<TodCurve> main;
   std::optional<TodCurve> twin;
 };
+/// Returns the content of fits.json. Errors: json_of().
 [[nodiscard]] Result<Json> curves_record(const StoredCurves& curves);
+/// Parses a record. Errors: from_json().
 [[nodiscard]] Result<StoredCurves> curves_from(const Json& record);
 
 /// Returns every field of a comparison; the keys include those of comparison_json(). Errors: json_of().

@@ -21,7 +21,7 @@ class JsonFields;
 /// Presentation of a patch; the picture that the person saw can be reproduced from it.
 struct ShownPatch {
   cv::Mat1f kelvin;                 ///< samples that the model observer judged
-  double black_k = 0, white_k = 0;  ///< ends of the grey scale
+  double black_k = 0, white_k = 0;  ///< levels shown black and white
   int magnification = 1;            ///< screen pixels per sample; bicubic without a display in the plan
   std::optional<int> limit_ms;      ///< maximum display time; empty: until answered
   double response_s = 0;            ///< time from display to answer
@@ -40,7 +40,7 @@ struct HumanRecord {
 struct PersonFacts {
   std::string code;  ///< a name, or a code in its place; empty in records of earlier versions
   std::optional<double> age_years, acuity_decimal;
-  std::optional<double> distance_m, luminance_cd_m2;  ///< from the eye to the screen; of its white
+  std::optional<double> distance_m, luminance_cd_m2;  ///< from the eye to the screen; of white on the screen
   std::string screen;                                 ///< in free text
   std::string judged_utc;                             ///< end of the answers
   int training_answers = 0;                           ///< with feedback, before the first answer
@@ -55,8 +55,8 @@ struct PersonRecord {
   HumanRecord record;
 };
 
-/// Mean threshold of several people at one contrast: the geometric mean, every person once. The interval contains the
-/// scatter between people (Student's t of ln S75).
+/// Mean threshold of several people at one contrast: the geometric mean, with each person counted once. The interval
+/// includes the scatter between people (Student's t of ln S75).
 struct PeopleMean {
   double set_delta_t_k = 0;
   int people = 0;  ///< with an identified threshold
@@ -64,14 +64,16 @@ struct PeopleMean {
   std::optional<std::pair<double, double>> ci95_mrad{};  ///< empty: fewer than two people
 };
 
-/// Geometric mean of a threshold over people, every person once: sittings with one code count as their geometric mean,
-/// a sitting without a code is a person. `codes` and `thresholds` have one element for each sitting; thresholds above
-/// 0. The interval contains the scatter between people (Student's t of the logarithms); empty: fewer than two people.
+/// Geometric mean of a threshold over people. Sittings with the same code count once, with their geometric mean; a
+/// sitting without a code counts as one person. `codes` and `thresholds` have one element for each sitting; thresholds
+/// above 0. The interval includes the scatter between people (Student's t of the logarithms); empty: fewer than two
+/// people.
 struct MeanOverPeople {
   int people = 0;
   double mean = 0;
   std::optional<std::pair<double, double>> ci95{};
 };
+/// Returns the mean over people of these sittings.
 [[nodiscard]] MeanOverPeople mean_over_people(const std::vector<std::string>& codes,
                                               const std::vector<double>& thresholds);
 
@@ -88,7 +90,7 @@ struct MeanOverPeople {
 [[nodiscard]] Result<std::optional<HumanRecord>> read_human(const std::filesystem::path& session);
 /// Reads the records of all people, in the order of their answers. Errors: as read_human().
 [[nodiscard]] Result<std::vector<PersonRecord>> read_people(const std::filesystem::path& session);
-/// File with the pictures of the N-th person, from 1, relative to the session.
+/// Returns the file with the pictures of the N-th person, counted from 1, relative to the session.
 [[nodiscard]] std::string shown_file_of_person(std::size_t number);
 /// Returns the mean at every contrast of the people. Several sittings of a person (the same code) count as their
 /// geometric mean; people without a code count one by one.

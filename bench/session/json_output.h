@@ -27,8 +27,8 @@ struct RunFigures {
 struct PlanFigures {
   std::uint64_t trials = 0;
   std::optional<double> predicted_uncertainty_percent;
-  std::optional<double> predicted_s;                ///< of the simulation on one core
-  std::optional<double> predicted_measurement_s{};  ///< of the camera; omitted in the JSON if empty
+  std::optional<double> predicted_s;                ///< predicted time of the simulation on one core
+  std::optional<double> predicted_measurement_s{};  ///< predicted time of the camera; omitted in the JSON if empty
 };
 /// Returns the output of `plan PLAN --json`.
 [[nodiscard]] Json plan_json(const SensorPlan& plan, const PlanFigures& figures);

@@ -10,12 +10,12 @@
 
 namespace todbench {
 
-/// mrtd-bars.f32 of a session.
+/// Returns the path of mrtd-bars.f32 in a session.
 [[nodiscard]] std::filesystem::path kept_bars_file(const std::filesystem::path& session);
 /// Writes the places and pictures to mrtd-bars.json, and their samples in the same order, both windows of a picture row
 /// by row, to mrtd-bars.f32 (32-bit floating point, little-endian). Errors: `io` with the path.
 [[nodiscard]] Result<void> write_kept_bars(const std::filesystem::path& session, const KeptBars& kept);
-/// Reads them from a session that open_session() accepted; empty if the session keeps none. Errors: `io`;
+/// Reads the kept bars of a session that open_session() accepted; empty if the session keeps none. Errors: `io`;
 /// `invalid_input` with the file (missing key, wrong length, a sample or contrast that is not finite).
 [[nodiscard]] Result<std::optional<KeptBars>> read_kept_bars(const std::filesystem::path& session);
 

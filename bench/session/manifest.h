@@ -34,6 +34,7 @@ struct ManifestCheck {
   /// Digest of the manifest, as printed in reports: SHA-256 of the lines "SHA256  PATH" of all files except the report
   /// pages, in the order of the manifest. Empty without a manifest.
   std::string manifest_sha256;
+  /// Returns whether the folder equals its manifest.
   [[nodiscard]] bool intact() const { return changed.empty() && missing.empty() && foreign.empty(); }
 };
 
@@ -45,6 +46,7 @@ struct ManifestCheck {
 /// Returns the digest of the existing manifest. Errors: as refresh_manifest().
 [[nodiscard]] Result<std::string> manifest_digest(const std::filesystem::path& folder);
 
+/// Entry of one file.
 struct ManifestEntry {
   std::uint64_t bytes = 0;
   std::string sha256;

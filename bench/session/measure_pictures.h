@@ -12,9 +12,10 @@
 
 namespace todbench {
 
-/// Relative to the session folder.
+/// Folder of the pictures, relative to the session folder.
 inline constexpr std::string_view pictures_folder = "pictures";
 
+/// Picture of measures.json.
 struct MeasurePicture {
   std::string file;  ///< relative to the session folder: "pictures/main-temporal_noise.png"
   std::string png;   ///< bytes

@@ -16,17 +16,18 @@ namespace todbench {
 
 /// A measure in measures.json.
 struct MeasureRow {
-  std::string_view key;  ///< of its part of the record
-  /// Adds its quantities, and the measure itself if a figure or a table shows it; no effect if it was not taken.
+  std::string_view key;  ///< key of its part of the record
+  /// Adds the quantities of the measure, and the measure itself if a figure or a table shows it; no effect if it was
+  /// not taken.
   void (*add)(MeasureLines& out, const CameraMeasures& measures);
   Json (*to_json)(const CameraMeasures& measures);  ///< null if it was not taken
   /// Reads the numbers that figures and tables show; mistakes are recorded in the reader. Null: none are shown.
   void (*read)(MeasureLines& out, const JsonReader& part) = nullptr;
-  bool (*valid)(const MeasureLines& lines) = nullptr;  ///< of the numbers read; null: always
+  bool (*valid)(const MeasureLines& lines) = nullptr;  ///< checks the numbers read; null: always valid
   std::string_view mistake{};                          ///< sentence if they are not valid
 };
 
-// Each in the file of its measure.
+/// Return the row of a measure; each function is defined in the file of its measure.
 [[nodiscard]] MeasureRow transfer_row();
 [[nodiscard]] MeasureRow geometry_row();
 [[nodiscard]] MeasureRow noise_row();
@@ -52,7 +53,7 @@ struct MeasureRow {
 
 /// Returns {"value", "ci95"}.
 [[nodiscard]] Json estimate_json(const Estimate& found);
-/// Reads the same; a missing end of the interval is the value.
+/// Reads the value of estimate_json(); a missing limit of the interval is replaced by the value.
 [[nodiscard]] Estimate estimate_from(const JsonReader& found);
 
 }  // namespace todbench

@@ -33,17 +33,19 @@ struct MeasureLine {
 /// Observed plate, plate according to the sensor model, and their difference: grey PNG files in base64, all of the same
 /// part of the picture.
 struct PlatePanels {
-  int width = 0, height = 0;  ///< of each picture, in pixels
+  int width = 0, height = 0;  ///< size of each picture in pixels
   std::string seen, expected, difference;
   double black_k = 0, white_k = 0;  ///< grey scale of the first two
   double difference_k = 0;          ///< grey scale of the third: black at minus this, white at plus this
-  std::vector<Polygon> outlines;    ///< of the detected shapes, in pixels of the panels (pixel centres at integers)
+  /// Outlines of the detected shapes, in pixels of the panels (pixel centres at integers).
+  std::vector<Polygon> outlines;
 };
 
 /// All measures of one camera, and the reasons for missing ones.
 struct MeasureLines {
   std::vector<MeasureLine> lines;
-  // For figures and tables. Of a record, the numbers that they show.
+  // Results for figures and tables. After measure_lines() they are complete; after measures_from() they contain only
+  // the numbers that figures and tables show.
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
   std::optional<SourceSizeMeasure> source{};
@@ -59,9 +61,10 @@ struct MeasureLines {
   std::vector<PixelMap> maps{};
   std::vector<std::string> reasons;
 };
+/// Returns the lines of all measures that were taken, their complete results, and the reasons for missing ones.
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
 
-/// Returns the quantities as input of judge().
+/// Returns the quantities of the lines as input of judge().
 [[nodiscard]] std::vector<MeasuredQuantity> quantities_of(const MeasureLines& lines);
 
 /// Measures of a session: of the camera (or of the simulated sensor alone) and of the twin.
@@ -75,7 +78,7 @@ struct SessionMeasures {
 /// {...}, "latency": {...}, "mrtd": {...}, "gain_control": {...}, "maps": [...], "picture": {...}, "reasons": [...]},
 /// "twin": the same or null}.
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
-/// Returns the same with numbers, maps and reasons only.
+/// Returns the record of one camera as "main", with quantities, maps and reasons only.
 [[nodiscard]] Json measures_json(const MeasureLines& main);
 /// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);

@@ -12,13 +12,16 @@
 
 namespace todbench {
 
+/// State of the files of a session.
 enum class SessionCondition {
   intact,   ///< all files are as the run wrote them, and there are no others
   changed,  ///< files were changed, removed or added after the end of the session
   cut_off,  ///< no manifest and state running: the run is in progress or was cut off
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(SessionCondition condition);
 
+/// Result of a check of a session against its manifest.
 struct SessionCheck {
   SessionCondition condition = SessionCondition::intact;
   ManifestCheck files;

@@ -15,7 +15,7 @@ namespace todbench {
 struct PixelMap {
   std::string name;  ///< "temporal_noise", "fixed_pattern", "triangles", "defects"
   int width = 0, height = 0;
-  double black_k = 0, white_k = 0;  ///< ends of the grey scale; both 0: a colour picture
+  double black_k = 0, white_k = 0;  ///< levels shown black and white; both 0: a colour picture
   std::string png;
   std::string note{};  ///< additional remark, a clause
 };
@@ -26,11 +26,13 @@ struct DefectColour {
   std::string_view words;
   unsigned char red, green, blue;
 };
+/// Returns the colour of every kind of defect.
 [[nodiscard]] const std::array<DefectColour, pixel_defect_kinds.size()>& defect_colours();
 
 /// Returns the available maps: noise and pattern if noise was measured, triangles of every contrast, defects if pixels
 /// were checked.
 [[nodiscard]] std::vector<PixelMap> pixel_maps(const CameraMeasures& measures);
+/// Returns the maps as JSON.
 [[nodiscard]] Json pixel_maps_json(const std::vector<PixelMap>& maps);
 /// Parses the maps; empty if the reader has a mistake.
 [[nodiscard]] std::vector<PixelMap> pixel_maps_from(const JsonReader& maps);

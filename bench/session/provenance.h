@@ -17,11 +17,13 @@
 
 namespace todbench {
 
+/// State of a session.
 enum class SessionState {
   running,  ///< in progress, or cut off by a crash
   complete,
   interrupted,  ///< stopped on request or by an error; the trials so far are valid
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(SessionState state);
 
 /// Camera properties as read back.
@@ -29,11 +31,12 @@ struct CameraRecord {
   std::string id, vendor, model, serial, firmware, transport, pixel_format;
   int width = 0, height = 0, significant_bits = 0;
   double frame_rate_hz = 0;                     ///< 0: unknown
-  std::string calibration;                      ///< of counts to kelvin, in words
+  std::string calibration;                      ///< conversion of counts to kelvin, in words
   std::map<std::string, std::string> settings;  ///< feature -> value
   std::vector<std::string> warnings;
   bool operator==(const CameraRecord&) const = default;
 };
+/// Returns the properties that the camera reported.
 [[nodiscard]] CameraRecord camera_record(const SourceInfo& info);
 
 /// Result of a run except its trials.
@@ -49,7 +52,9 @@ struct RunRecord {
   std::string ended_by;                     ///< reason of an early end; empty: complete
   double measures_s = 0;                    ///< part of wall_s: physical measures with their changes of the target
 };
+/// Returns the record of a measurement.
 [[nodiscard]] RunRecord run_record(const MeasurementResult& result, double wall_s);
+/// Returns the figures of a run.
 [[nodiscard]] RunFigures figures_of(const RunRecord& run);
 
 /// Optics and noise of the camera as estimated from its own frames (bench/twin/camera_surrogate.h).
@@ -66,12 +71,12 @@ struct CameraOpticsRecord {
   bool operator==(const CameraOpticsRecord&) const = default;
 };
 
-/// Who judged the frames of a session, and through which enhancement package.
+/// Observer that judged the frames of a session, and the enhancement package applied to them before.
 struct JudgedBy {
   std::string observer;         ///< name
-  std::string observer_sha256;  ///< of its description
+  std::string observer_sha256;  ///< SHA-256 of the description of the observer
   std::string package;          ///< name; empty: none
-  std::string package_sha256;   ///< of its file
+  std::string package_sha256;   ///< SHA-256 of the file of the package
   bool operator==(const JudgedBy&) const = default;
 };
 
@@ -122,7 +127,7 @@ struct Provenance {
 /// Returns the number of parts between camera losses; 1: the camera was never lost.
 [[nodiscard]] std::size_t segments(const Provenance& provenance);
 /// Returns whether the run ended early or the camera was lost and came back, so that it is not one continuous run.
-/// `state` states whether it has all its trials.
+/// Whether all trials were made is stated by `state`.
 [[nodiscard]] bool was_interrupted(const Provenance& provenance);
 
 /// Returns the provenance with program, host, start time, seed and instruments of the plan; state running.

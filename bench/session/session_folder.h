@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Session folder of a run: valid on disk at every moment, and readable into values.
+// Session folder of a run: a writer that keeps the folder valid at every moment, and a reader of its content.
 #pragma once
 
 #include <filesystem>
@@ -39,7 +39,7 @@ enum class ExistingFolder {
 /// Curve of a session: main curve or simulated twin.
 enum class SessionCurve { main, twin };
 
-/// Writes a session. All files except trials, targets and log are written atomically. One thread at a time. Other
+/// Writer of a session. All files except trials, targets and log are written atomically. One thread at a time. Other
 /// programs cannot start a session in the folder until the last copy of this object is destroyed. Errors of every
 /// function: `io` with the path.
 class SessionFolder {
@@ -50,7 +50,9 @@ class SessionFolder {
   [[nodiscard]] static Result<SessionFolder> create(const std::filesystem::path& folder, ExistingFolder existing,
                                                     const HostClocks& clocks = host_clocks());
 
+  /// Returns the path of the folder.
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+  /// Returns the clock of the session.
   [[nodiscard]] const SessionClock& clock() const { return clock_; }
   /// Writes session.toml. Copies the plates, sensor, observer and letterhead to inputs/ and redirects file references
   /// to the copies. References to built-in descriptions remain names.
@@ -71,7 +73,7 @@ class SessionFolder {
   /// Writes measures.json and its pictures in pictures/.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);
-  /// The same for a record of measures_json().
+  /// Writes a record of measures_json() in the same way.
   [[nodiscard]] Result<void> write_measures(Json record);
   /// Writes verdict.json.
   [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);
@@ -93,20 +95,20 @@ class SessionFolder {
   std::shared_ptr<const FolderClaim> claim_;
 };
 
-/// Session as values.
+/// Content of a session folder.
 struct Session {
   Plan plan;
   PlanParts parts;  ///< descriptions that the plan names
   Provenance provenance;
-  std::vector<Trial> trials;  ///< of the main curve
+  std::vector<Trial> trials;  ///< trials of the main curve
   std::vector<Trial> twin_trials;
-  std::vector<Presentation> presentations;  ///< of `trials`; empty in a session without targets.csv
+  std::vector<Presentation> presentations;  ///< presentations of `trials`; empty in a session without targets.csv
   std::vector<Presentation> twin_presentations;
   std::optional<TodCurve> curve;  ///< as fitted; empty if the run ended before the fit
   std::optional<TodCurve> twin;
   std::optional<Comparison> comparison;
   std::optional<SessionMeasures> measures;      ///< physical measures; empty if not requested
-  std::optional<CurveUncertainty> uncertainty;  ///< of `curve`; empty if the plan has no budget
+  std::optional<CurveUncertainty> uncertainty;  ///< uncertainty of `curve`; empty if the plan has no budget
   std::optional<Verdict> verdict;               ///< as stored; empty if old or cut off
   std::optional<CostFrontier> cost;             ///< accuracy against cost, if measured for this session
   /// Digest of the manifest that confirms these values (ManifestCheck); empty if none does.

@@ -14,8 +14,10 @@
 
 namespace todbench {
 
+/// Program that signs and verifies.
 enum class SigningProgram { minisign, openssl };
 inline constexpr std::array signing_programs{SigningProgram::minisign, SigningProgram::openssl};
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(SigningProgram program);
 
 /// Content of signature.json. The signatures of manifest.json and of signature.json stand beside them (.sig or
@@ -29,6 +31,7 @@ struct SessionSignature {
   [[nodiscard]] std::string key_sha256() const;
 };
 
+/// Returns whether the session has a signature. Does not verify it.
 [[nodiscard]] bool is_signed(const std::filesystem::path& folder);
 /// Fails if the session is signed, because a signed session is never modified. Errors: `invalid_input` with the action
 /// to take.
@@ -47,6 +50,7 @@ struct ReportRevision {
   std::string utc, reason;
 };
 
+/// Result of a verification.
 struct SignatureCheck {
   SessionSignature signature;
   bool valid = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time against accuracy for a plan: the frontier of its simulated sensor, with planner's choices and trials.
+// Time against accuracy for a plan: the frontier of its simulated sensor, with choices of the planner and trials.
 #pragma once
 
 #include <stop_token>

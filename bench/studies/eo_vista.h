@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reproduces the experiment of the EO-VISTA paper (Bijl, Hogervorst and Vos), sections 4.1 and 4.2, with this program's
-// sensor and observers.
+// Reproduction of the experiment of the EO-VISTA paper (Bijl, Hogervorst and Vos), sections 4.1 and 4.2, with the
+// sensor and observers of this program.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 
 namespace todbench {
 
+/// Options of the reproduction.
 struct EoVistaOptions {
   Accuracy accuracy;
   int presentations = 24;  ///< pictures of the emulated camera at each contrast; 40 answers each
@@ -19,8 +20,8 @@ struct EoVistaOptions {
   std::stop_token stop{};
 };
 
-/// Runs on as many threads as there are processors, at most eight; the result does not depend on their number. Errors:
-/// `interrupted`, and those of its parts.
+/// Computes the reproduction on as many threads as there are processors, at most eight; the result does not depend on
+/// their number. Errors: `interrupted`, and those of its parts.
 [[nodiscard]] Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of the EO-VISTA paper compared with thresholds of this program.
+// Results of the EO-VISTA paper, compared with thresholds of this program.
 #pragma once
 
 #include <array>
@@ -33,11 +33,12 @@ inline constexpr const char* human = "human-like-1";
 /// Returns the thresholds with graded answers instead of binary ones if available.
 [[nodiscard]] std::vector<ReproducedThreshold> by_graded_answers(std::vector<ReproducedThreshold> thresholds);
 
-/// Ratio a / b of two acuities with its 95 % interval; independent errors, on the logarithmic scale.
+/// Ratio a / b of two acuities with its 95 % interval, for independent errors on the logarithmic scale.
 struct AcuityRatio {
   std::optional<double> value;
   Interval ci95;
 };
+/// Returns the ratio of the acuities of two thresholds; empty if one is missing.
 [[nodiscard]] AcuityRatio acuity_ratio(const ReproducedThreshold& a, const ReproducedThreshold& b);
 
 }  // namespace todbench

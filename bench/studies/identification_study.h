@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simulates an identification experiment with a set of targets, and compares it with the prediction of the TOD curve.
+// Simulated identification experiment with a set of targets, compared with the prediction of the TOD curve.
 #pragma once
 
 #include <functional>
@@ -17,59 +17,80 @@
 
 namespace todbench {
 
+/// Experiment to simulate.
 struct IdentificationStudyTask {
+  /// Targets that the observer discriminates.
   TargetSet set;
+  /// Sensor that shows the targets.
   SensorSpec sensor;
+  /// Observer of the experiment and of the TOD curve.
   TemplateObserverSpec observer{};
+  /// Air between targets and sensor.
   Atmosphere air{};
+  /// Numerical accuracy of the simulation.
   Accuracy accuracy{};
-  std::vector<double> ranges_m;  ///< at least two, increasing
+  /// Ranges of the experiment, at least two, increasing. They should enclose 75 % correct.
+  std::vector<double> ranges_m;
+  /// Pictures that the observer uses as templates.
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
+  /// Differences between the targets that the experiment shows.
   TargetCues cues = TargetCues::all;
-  int decisions = 2000;  ///< per target and range
-  double m75 = 5.1;      ///< for the predicted range
-  SceneMotion motion{};  ///< of the targets in the picture
+  /// Decisions per target and range. More decisions narrow the intervals.
+  int decisions = 2000;
+  /// M75 with which the TOD curve predicts the range.
+  double m75 = 5.1;
+  /// Motion of the targets in the picture.
+  SceneMotion motion{};
+  /// Use of the frames of a pass.
   SequenceObserver sequence = SequenceObserver::single_frame;
-  int frames = 8;  ///< of a pass
+  /// Frames of a pass.
+  int frames = 8;
   /// Stages behind the camera, as in IdentificationTask.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
+  /// Largest distance over which the stages spread a picture, as in IdentificationTask.
   std::optional<int> stage_reach_px{};
-  double cn2_m_minus_2_3 = 0;  ///< of turbulence along the path of each range; 0: that of the sensor
+  /// Structure parameter Cn2 of the turbulence along the path of each range; 0: that of the sensor.
+  double cn2_m_minus_2_3 = 0;
+  /// Seed of all random numbers.
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
 
+/// Reason for a missing range with 75 % correct.
 inline constexpr std::string_view no_r75 = "the ranges do not enclose 75 % correct";
 /// A value with its interval; empty if the ranges of the experiment do not enclose 75 %.
 struct SetCriterion {
   std::optional<double> value;
   Interval ci95;
-  /// Smallest and largest of three values: that of an observer with an eye and those at both ends of its open
-  /// parameters (open_parameters.h). Empty if one has no value. No confidence interval.
+  /// Smallest and largest of three values of an observer with an eye: with its parameters as stated, and at both limits
+  /// of its open parameters (open_parameters.h). Empty if one of the three is missing. Not a confidence interval.
   std::optional<std::pair<double, double>> spread{};
 };
 
-/// Position at which rising proportions cross 75 %, made monotone (pool adjacent violators), linear in the logarithm of
-/// the position; empty beyond either end.
+/// Position at which rising proportions cross 75 %. The proportions are made monotone (pool adjacent violators) and
+/// interpolated linearly in the logarithm of the position. Empty if the crossing is outside the positions.
 struct Crossing75 {
   std::optional<double> at;
   bool beyond_last = false;  ///< at least 75 % everywhere
 };
+/// Returns the crossing of these proportions.
 [[nodiscard]] Crossing75 crossing_of_75_percent(const std::vector<double>& at, const std::vector<double>& proportions);
 
+/// Result of the study.
 struct IdentificationStudy {
   std::vector<IdentificationPoint> points;
   double chance = 0;              ///< 1 / number of targets
   double size_m = 0;              ///< mean over targets and aspects
   double dt_rss_k = 0;            ///< mean over targets and aspects, before the air
-  SetCriterion r75_m;             ///< range with 75 % right; the interval by resampling the draws of noise
-  SetCriterion m75, v50;          ///< of the set: M at r75_m on the TOD curve; M75 / 0.6
+  SetCriterion r75_m;             ///< range with 75 % correct; the interval comes from resampling the draws of noise
+  SetCriterion m75, v50;          ///< criteria of the set: M75 is M at r75_m on the TOD curve, and V50 is M75 / 0.6
   std::string no_m75_because;     ///< empty with an M75
-  std::vector<TodThreshold> tod;  ///< of the same sensor and observer
-  /// S75 of each point of `tod` over the open parameters of an observer with an eye; empty where an end has none.
+  std::vector<TodThreshold> tod;  ///< TOD curve of the same sensor and observer
+  /// S75 of each point of `tod` over the open parameters of an observer with an eye; empty if a limit of the parameters
+  /// gives no S75.
   std::vector<std::optional<std::pair<double, double>>> tod_spread_mrad;
   std::optional<RangePrediction> predicted;  ///< by the TOD curve with the m75 of the task; empty: no curve
-  /// Of the predicted range, as SetCriterion::spread.
+  /// Spread of the predicted range, as SetCriterion::spread.
   std::optional<std::pair<double, double>> predicted_spread_m;
   std::vector<std::string> notes;
 };
@@ -77,14 +98,15 @@ struct IdentificationStudy {
 /// Returns the experiment of a study: views, ranges with their air. Errors: those of study_identification().
 [[nodiscard]] Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task);
 
-/// Criteria of the set for a range with 75 % right that others found, for example people: M75 and V50 on the TOD curve
-/// of the observer of the task, and the predicted range. `points` is empty. Errors: those of study_identification().
+/// Returns the criteria of the set for a range with 75 % correct that was found otherwise, for example with people: M75
+/// and V50 on the TOD curve of the observer of the task, and the predicted range. `points` is empty. Errors: those of
+/// study_identification().
 [[nodiscard]] Result<IdentificationStudy> rate_found_range(const IdentificationStudyTask& task,
                                                            const SetCriterion& r75_m);
 
 /// Runs the study. The proportion over range is made monotone (pool adjacent violators) and interpolated linearly in ln
 /// range. The TOD curve is that of a single frame in the same motion. With stages, with sums of frames, and with motion
-/// through turbulent paths there is no curve, and a note says so. Errors: `invalid_input` (ranges that do not increase
+/// through turbulent paths there is no curve; a note states this. Errors: `invalid_input` (ranges that do not increase
 /// or exceed the air's table; those of identify()), `interrupted`.
 [[nodiscard]] Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task);
 

@@ -14,6 +14,7 @@
 
 namespace todbench {
 
+/// MRTD to simulate.
 struct MrtdStudyTask {
   VirtualMrtdTask trial;      ///< the axis is one of `axes`
   std::vector<BarAxis> axes;  ///< at least one
@@ -25,20 +26,22 @@ struct MrtdStudyTask {
 /// Result at one frequency of one axis.
 struct MrtdStudyPoint {
   VirtualMrtdPoint found;
-  Interval threshold_ci95_k;  ///< of the threshold, from the draws
-  /// The MRTD: the threshold if it qualifies as one.
+  Interval threshold_ci95_k;  ///< 95 % interval of the threshold, from the draws
+  /// The threshold, if it is an MRTD (see study_mrtd()).
   std::optional<double> mrtd_k;
   std::string reason;               ///< reason of a missing MRTD; empty if there is one
   std::optional<double> formula_k;  ///< MRTD after the structure of FLIR92; empty beyond Nyquist
 };
 
+/// Results of one axis.
 struct MrtdAxisCurve {
   BarAxis axis = BarAxis::horizontal;
   std::vector<MrtdStudyPoint> points;
 };
 
+/// Result of the study.
 struct MrtdStudy {
-  double transmittance = 1;  ///< of the air between camera and bars
+  double transmittance = 1;  ///< transmittance of the air between camera and bars
   double nyquist_per_mrad = 0;
   std::vector<MrtdAxisCurve> curves;
 };
@@ -46,12 +49,14 @@ struct MrtdStudy {
 /// Runs the study. Contrasts are those of the bars: the contrast that the camera needs, divided by the transmittance.
 /// Errors: `invalid_input` (a range beyond the air's table, or with no transmittance), those of virtual_mrtd().
 ///
-/// A threshold is not an MRTD beyond Nyquist, where no phase shows four bars, nor by the criterion `detection`: a
-/// machine still distinguishes alias patterns when no person sees four bars.
+/// A threshold beyond Nyquist is not an MRTD, because no phase shows four bars there. A threshold by the criterion
+/// `detection` is not an MRTD either, because an algorithm still discriminates alias patterns in which people see no
+/// four bars.
 [[nodiscard]] Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task);
 
-/// Plots kelvin over cycles/mrad: the threshold with its interval, best phase, formula, ideal observer.
+/// Returns the plot of kelvin over cycles/mrad: the threshold with its interval, best phase, formula, ideal observer.
 [[nodiscard]] Plot mrtd_plot(const MrtdStudyTask& task, const MrtdStudy& study);
+/// Returns the page for render_html().
 [[nodiscard]] Document mrtd_page(const MrtdStudyTask& task, const MrtdStudy& study);
 
 }  // namespace todbench

@@ -11,9 +11,9 @@ struct Grating {
   double sensitivity;  ///< 1 over luminance contrast
 };
 
-/// Static achromatic gratings at the fovea, from 0.1 to 3000 cd/m2: every third of the figures that were in the fit,
-/// in the order of the collection. castleCSF data, MIT licence, (c) 2023 University of Cambridge, converted from cone
-/// contrast to luminance contrast.
+/// Static achromatic gratings at the fovea, from 0.1 to 3000 cd/m2: every third of the figures used in the fit, in the
+/// order of the collection. castleCSF data, MIT licence, (c) 2023 University of Cambridge, converted from cone contrast
+/// to luminance contrast.
 inline constexpr Grating gratings[] = {
     {"ColorFest 2002", 40, 1.2, 0.5, 71.81},  {"ColorFest 2002", 40, 2, 0.5, 128.4},
     {"ColorFest 2002", 40, 2.8, 0.5, 155.2},  {"Wuerger 2020", 0.2, 2, 0.25, 13.73},
@@ -38,8 +38,8 @@ inline constexpr Grating gratings[] = {
     {"Rovamo 1993", 50, 32, 0.06814, 3.892},  {"Virsu 1979", 10, 0.5, 2.5, 177.2},
 };
 
-/// Laboratories that were not in the fit; the same collection. At the lowest temporal frequency that was measured,
-/// below 1.1 Hz.
+/// Gratings of laboratories that were not used in the fit, from the same collection, at the lowest measured temporal
+/// frequency, below 1.1 Hz.
 inline constexpr Grating other_laboratories[] = {
     {"Snowden 1995", 0.11, 0.1, 1.599, 12.34}, {"Snowden 1995", 0.11, 1, 1.599, 64.17},
     {"Snowden 1995", 2.89, 0.1, 1.599, 19.95}, {"Snowden 1995", 2.89, 1, 1.599, 156.9},
@@ -55,10 +55,11 @@ inline constexpr Grating other_laboratories[] = {
     {"Wright 1983", 100, 6, 0.864, 147.5},     {"Wright 1983", 100, 9, 0.49, 93.17},
 };
 
+/// Threshold of a disc.
 struct DiscOfLight {
   double luminance_cd_m2, radius_deg, sensitivity;
 };
-/// Discs (Wuerger 2020), the same collection, from 0.1 to 3000 cd/m2.
+/// Discs (Wuerger 2020) from the same collection, from 0.1 to 3000 cd/m2.
 inline constexpr DiscOfLight discs[] = {
     {0.2, 0.08333, 24.03}, {20, 0.08333, 100}, {200, 0.08333, 134.2}, {0.2, 0.25, 28.75}, {2, 0.25, 80.62},
     {20, 0.25, 124.5},     {0.2, 1, 39.93},    {20, 1, 131.3},        {200, 1, 172.4},
@@ -74,6 +75,7 @@ inline constexpr ModelFestGabor modelfest_gabors[] = {
     {8, 0.5, 1.844},    {11.3, 0.5, 1.621}, {16, 0.5, 1.298},   {22.6, 0.5, 0.960}, {30, 0.5, 0.567},
     {2, 0.28, 1.769},   {4, 0.14, 1.619},   {8, 0.07, 1.193},   {16, 0.035, 0.514}};
 
+/// Threshold of a Gaussian blob of ModelFest.
 struct ModelFestBlob {
   double sigma_arcmin, log10_sensitivity;
 };
@@ -81,7 +83,8 @@ inline constexpr ModelFestBlob modelfest_blobs[] = {{30, 1.636}, {8.43, 1.526}, 
 /// Stripes of 0.5 arcmin in a Gaussian window of 0.5 degrees, and a disc of 0.25 degrees diameter.
 inline constexpr double modelfest_line = 0.934, modelfest_dipole = 0.626, modelfest_disc = 1.626;
 
-/// Reading of Japanese text, 14 people (abstract, CiNii 1522262179753702912): logMAR above that at full contrast.
+/// Loss of acuity when reading Japanese text at reduced contrast, 14 people (abstract, CiNii 1522262179753702912):
+/// logMAR above that at full contrast.
 struct ReadingLoss {
   double contrast, log_mar;
 };

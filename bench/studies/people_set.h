@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pictures of an identification experiment for people: a folder of pictures in random order with the truth apart,
-// and their answers.
+// Pictures of an identification experiment for people: a folder of pictures in random order, their truth in a separate
+// folder, and the answers.
 #pragma once
 
 #include <filesystem>
@@ -13,15 +13,15 @@
 
 namespace todbench {
 
-/// Number of an experiment: 12 hexadecimal digits of a hash. The hash covers description, alternatives and trials. It
-/// also covers the contrast of one picture at every range, so that another sensor, air, motion or package has another
-/// number. Errors: those of PersonExperiment::picture_k().
+/// Returns the number of an experiment: 12 hexadecimal digits of a hash. The hash covers description, alternatives,
+/// trials, and the contrast of one picture at every range. A different sensor, air, motion or package therefore gives a
+/// different number. Errors: those of PersonExperiment::picture_k().
 [[nodiscard]] Result<std::string> people_set_number(const PersonExperiment& experiment);
 
 /// Encodes a grey picture as PNG.
 using PngEncoder = std::function<Result<std::string>(const cv::Mat1b& picture)>;
-/// Writes show/NUMBER.png, show/targets/NAME.png and show/answers.csv (an empty column `answer`), and for the
-/// experimenter truth/truth.csv and truth/experiment.json, into a new folder. Every picture of a range has the same
+/// Writes into a new folder: show/NUMBER.png, show/targets/NAME.png and show/answers.csv (with an empty column
+/// `answer`), and for the experimenter truth/truth.csv and truth/experiment.json. All pictures of a range have the same
 /// grey scale. Errors: `invalid_input` if the folder exists; `io` with the path.
 [[nodiscard]] Result<void> write_people_set(const std::filesystem::path& folder, const PersonExperiment& experiment,
                                             const PngEncoder& png);
@@ -31,33 +31,35 @@ using PngEncoder = std::function<Result<std::string>(const cv::Mat1b& picture)>;
 [[nodiscard]] Result<std::vector<ExperimentAnswer>> read_people_answers(const std::filesystem::path& file,
                                                                         const PersonExperiment& experiment);
 
-/// Answers of all people at one range. The interval is Wilson's for the number of independent answers that gives the
-/// scatter between people; for one person, or if people scatter less than chance, for the number of answers.
+/// Answers of all people at one range. The interval is Wilson's for the effective number of independent answers that
+/// explains the scatter between people. For one person, or if the scatter is smaller than by chance, it is Wilson's for
+/// the number of answers.
 struct PeopleShare {
   int shown = 0, right = 0;
   Interval ci95;
 };
+/// Evaluation of the answers of all people.
 struct PeopleResult {
   std::vector<PersonResult> persons;
   std::vector<PeopleShare> ranges;
-  /// Range with 75 % right. One person: as PersonResult. Several: mean over people by logarithms, with Hartung and
-  /// Knapp's interval (people.h); empty if fewer than two have a range with an interval.
+  /// Range with 75 % correct. One person: as PersonResult. Several people: mean of the logarithms, with Hartung and
+  /// Knapp's interval (people.h); empty if fewer than two people have a range with an interval.
   SetCriterion r75_m;
-  std::optional<double> between_sd;  ///< of ln R75 between people, beyond their own errors
+  std::optional<double> between_sd;  ///< standard deviation of ln R75 between people, in addition to their own errors
 };
-/// Precondition: at least one person; every person answered every trial.
+/// Evaluates the answers. Precondition: at least one person; every person answered every trial.
 [[nodiscard]] PeopleResult people_result(const PersonExperiment& experiment,
                                          const std::vector<std::vector<ExperimentAnswer>>& persons);
 
-/// M75 of a set in a file: whose answers, on whose TOD curve.
+/// M75 of a set in a file, with the observer of the answers and the observer of the TOD curve.
 struct StatedM75 {
   std::string set, answers_of, curve_of;
   double m75 = 0;
   Interval ci95;
 };
-/// Errors: `io`.
+/// Writes the file. Errors: `io`.
 [[nodiscard]] Result<void> write_m75_file(const std::filesystem::path& file, const StatedM75& m75);
-/// Errors: `invalid_input` with the file (no such file, another schema, values beyond 1e-6 to 1e6).
+/// Reads the file. Errors: `invalid_input` with the file (no such file, another schema, values beyond 1e-6 to 1e6).
 [[nodiscard]] Result<StatedM75> read_m75_file(const std::filesystem::path& file);
 
 }  // namespace todbench

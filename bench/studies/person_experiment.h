@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A person in place of the observer of `identify` or `mrtd`: the same frames in sequence, each with its alternatives.
+// Experiment with a person in place of the observer of `identify` or `mrtd`: the same frames in sequence, each with its
+// alternatives.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +17,20 @@
 
 namespace todbench {
 
+/// Task of the person.
 enum class PersonTask {
   identify,  ///< one picture: which target of the set is it?
   bars  ///< by BarCriterion: which of two pictures has the four bars, or: are the bars of one picture resolved (yes or
         ///< no)?
 };
+/// Returns the name of the task, "identify" or "mrtd".
 [[nodiscard]] std::string_view to_string(PersonTask task);
 
 /// Properties that several trials share.
 struct PersonCondition {
   double range_m = 0, transmittance = 1;  ///< identify
   double frequency_per_mrad = 0;          ///< bars
-  double contrast_k = 0;                  ///< of the bars, or the mean dT_RSS of the set behind the air
+  double contrast_k = 0;                  ///< contrast of the bars, or the mean dT_RSS of the set behind the air
   std::size_t place = 0;                  ///< index of range or frequency in the task
 };
 
@@ -37,38 +40,40 @@ struct PersonTrial {
   std::size_t truth = 0;   ///< index of the alternative; for `bars_resolved` 1 if no bars are shown
   std::size_t aspect = 0;  ///< identify
   std::size_t phase = 0;   ///< bars; for identify it follows from the draw
-  std::uint64_t draw = 0;  ///< of noise; bars: of the left interval, the right one has the next number
+  /// Number of the noise draw; for bars that of the left interval, and the next number for the right one.
+  std::uint64_t draw = 0;
 };
 
-/// Ends of the grey scale, kelvin above the background.
+/// Levels shown black and white, in kelvin above the background.
 struct GreyScale {
   double black_k = -1, white_k = 1;
 };
 
+/// Trials of an experiment, with their pictures.
 class PersonExperiment {
  public:
   /// Shows every target `per_target` times at every range, each time from one of its aspects and with its own noise, in
   /// random order. Errors: those of experiment_of() and IdentificationFrames::of().
   [[nodiscard]] static Result<PersonExperiment> of_set(const IdentificationStudyTask& task, int per_target);
-  /// Uses the criterion of the task. Six contrasts, `per_contrast` times each, from twice the threshold of an ideal
-  /// observer in steps of 1.6. For `bars_resolved` in steps of 2, and for every three frames of a contrast one without
-  /// bars, on the same grey scale. Errors: those of BarFrames::of().
+  /// Shows bars by the criterion of the task: six contrasts, `per_contrast` times each, starting at twice the threshold
+  /// of an ideal observer, in steps of a factor of 1.6. For `bars_resolved` the factor is 2, and for every three frames
+  /// of a contrast there is one frame without bars on the same grey scale. Errors: those of BarFrames::of().
   [[nodiscard]] static Result<PersonExperiment> of_bars(const VirtualMrtdTask& task, int per_contrast);
 
   [[nodiscard]] PersonTask task() const { return task_; }
-  /// For bars only.
+  /// Returns the criterion; for bars only.
   [[nodiscard]] BarCriterion criterion() const { return criterion_; }
   [[nodiscard]] const std::vector<std::string>& alternatives() const { return alternatives_; }
-  /// A small picture of every alternative, 0 black to 1 white.
+  /// Returns a small picture of every alternative, 0 black to 1 white.
   [[nodiscard]] const std::vector<cv::Mat1d>& icons() const { return icons_; }
   [[nodiscard]] const std::vector<PersonCondition>& conditions() const { return conditions_; }
   [[nodiscard]] const std::vector<PersonTrial>& trials() const { return trials_; }
-  /// The shown picture, kelvin above the background; for two intervals both, separated by a strip of background.
-  /// Errors: those of stages behind the camera.
+  /// Returns the shown picture in kelvin above the background; for two intervals both pictures, separated by a strip of
+  /// background. Errors: those of stages behind the camera.
   [[nodiscard]] Result<cv::Mat1f> picture_k(const PersonTrial& trial) const;
-  /// The same for all trials of a condition: it does not depend on the answer.
+  /// Returns the grey scale, which is the same for all trials of a condition, so that it does not depend on the answer.
   [[nodiscard]] GreyScale grey(const PersonTrial& trial) const { return grey_[trial.condition]; }
-  /// Sensor, set or axis, seed, for the record.
+  /// Returns sensor, set or axis, and seed, for the record.
   [[nodiscard]] const Json& description() const { return description_; }
 
  private:
@@ -87,9 +92,10 @@ class PersonExperiment {
   Json description_;
 };
 
+/// Answer of a person to one trial.
 struct ExperimentAnswer {
   std::size_t answer = 0;
-  double response_s = 0;  ///< from display to answer
+  double response_s = 0;  ///< time from display to answer
   std::optional<int> limit_ms{};
 };
 
@@ -99,14 +105,14 @@ struct PersonShare {
   Interval ci95;
 };
 
-/// Evaluation of the answers. 75 % is the crossing of the proportions, made monotone, linear in the logarithm; the
-/// interval by resampling the answers of every condition.
+/// Evaluation of the answers. The 75 % values are crossings as in Crossing75; their intervals come from resampling the
+/// answers of every condition.
 struct PersonResult {
   std::vector<PersonShare> conditions;                   ///< in their order
   std::vector<std::vector<std::vector<int>>> confusion;  ///< [condition][shown][answered]
   SetCriterion r75_m;                                    ///< identify
-  /// Bars: of every frequency. For `bars_resolved` empty if bars were reported in more than a quarter of the frames
-  /// without bars: a person who always says yes has no threshold.
+  /// Bars: threshold of every frequency. For `bars_resolved` empty if the person reported bars in more than a quarter
+  /// of the frames without bars, because the threshold of a person who always answers yes is meaningless.
   std::vector<SetCriterion> thresholds_k;
   /// `bars_resolved`: for every frequency, the frames without bars and how many of them were answered with yes.
   std::vector<PersonShare> false_alarms;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The observer's acuity under the noise of a recording, compared with that under white noise of the same strength.
+// Acuity of the observer under the noise of a recording, compared with that under white noise of the same strength.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,12 @@ struct RecordedNoise {
   std::vector<cv::Mat1f> frames;
   std::vector<int> block_of_frame;
   int blocks = 0;
-  cv::Mat1b usable;           ///< as given, or 0 if the scene moved: temporal noise above twice the median pixel's
-  double usable_share = 0;    ///< of the pixels
+  cv::Mat1b usable;         ///< as given, or 0 if the scene moved: temporal noise above twice that of the median pixel
+  double usable_share = 0;  ///< share of usable pixels
   double temporal_noise = 0;  ///< standard deviation over usable pixels, within a block
-  double correlation_x = 0, correlation_y = 0;  ///< of neighbours in a row and in a column, without whole-frame changes
-  /// Of usable pixels, mean of the blocks' variances; the fixed components contain the scene.
+  /// Correlations of neighbours in a row and in a column, without changes of the whole frame.
+  double correlation_x = 0, correlation_y = 0;
+  /// 3-D noise of the usable pixels, as means of the variances of the blocks; the fixed components include the scene.
   ThreeDNoise components;
 };
 
@@ -39,6 +40,7 @@ struct RecordedNoise {
 /// Returns white noise in the same frames and blocks, with the same standard deviation in every pixel.
 [[nodiscard]] RecordedNoise white_like(const RecordedNoise& noise, std::uint64_t seed);
 
+/// Options of the study.
 struct RealNoiseOptions {
   std::vector<double> contrast_over_noise{1.6, 3.3, 8, 28};  ///< 3.3: 0.23 K at a NETD of 0.07 K
   /// Noise of a whole frame over that of successive frames (TemporalNoise::whole_to_successive): the effect of noise
@@ -49,6 +51,7 @@ struct RealNoiseOptions {
   std::stop_token stop{};
 };
 
+/// 75 % size with its standard error.
 struct SizeEstimate {
   double s75_pitch = 0;
   double se_ln = 0;  ///< jackknife over the blocks
@@ -61,20 +64,22 @@ struct NoiseAcuity {
   double acuity_ratio = 0;  ///< under real noise / under white noise of the same standard deviation
   Interval ratio_ci95;      ///< Student's t with blocks - 1 degrees of freedom
   /// Standard deviation of the noise in the differences of the templates, relative to white noise of the same strength:
-  /// the part that affects the observer's decisions. Below 1 the noise disturbs less than its NETD suggests.
+  /// the part that affects the observer's decisions. Below 1 the noise has less effect than white noise of the same
+  /// NETD.
   double template_noise_ratio = 1;
-  double predicted_ratio = 1;  ///< of acuities, from white noise of template_noise_ratio times the strength
-  /// Acuity under white noise of the strength of a whole frame / of the strength shown by successive frames; the latter
-  /// is the unit of the contrast. Empty: the stronger noise leaves no threshold.
+  /// Ratio of acuities predicted for white noise of template_noise_ratio times the strength.
+  double predicted_ratio = 1;
+  /// Acuity under white noise of the strength of a whole frame, over that under white noise of the strength of
+  /// successive frames; the latter is the unit of the contrast. Empty: the stronger noise leaves no threshold.
   std::optional<double> memory_acuity_ratio;
   /// Shares of template_noise_ratio^2: pixel noise, rows and columns from the 3D components, and the remainder: noise
   /// correlated over neighbouring pixels (positive: low frequencies).
   double pixel_share = 1, row_share = 0, column_share = 0, correlated_share = 0;
 };
 
-/// Adds degraded triangles of `sensor` (pitches of the recording's pixels) to noise windows of the recording; the
-/// observer answers. With fewer than 4 blocks, the intervals come from 16 parts of the picture instead. Errors:
-/// `invalid_input` if a contrast has no threshold or every window contains a moving scene.
+/// Adds images of triangles through `sensor` (whose pitch is that of the pixels of the recording) to noise windows of
+/// the recording, and lets the observer answer. With fewer than 4 blocks, the intervals come from 16 parts of the
+/// picture instead. Errors: `invalid_input` if a contrast has no threshold or every window contains a moving scene.
 [[nodiscard]] Result<std::vector<NoiseAcuity>> real_noise_study(const RecordedNoise& noise, const SensorSpec& sensor,
                                                                 TemplateObserver& observer,
                                                                 const RealNoiseOptions& options);

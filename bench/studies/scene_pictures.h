@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene on its way through air, camera and eye: the picture after every stage.
+// Picture of a scene after every stage of air, camera and eye.
 #pragma once
 
 #include <functional>
@@ -20,24 +20,25 @@
 
 namespace todbench {
 
+/// Scene and camera.
 struct ScenePicturesTask {
   FieldScene scene;
   SensorSpec sensor;
   TemplateObserverSpec observer{};
   Atmosphere air{};
-  SceneView view{};
-  SceneMotion motion{};  ///< of the picture across the detectors: the target moves, or the camera turns
+  SceneView view{};      ///< range and position of the scene
+  SceneMotion motion{};  ///< motion of the picture across the detectors: the target moves, or the camera turns
   Accuracy accuracy{};
-  /// Stages behind the camera; they receive as many frames of the same motion as they remember. Empty: none.
+  /// Stages behind the camera; they receive as many frames of the same motion as they store. Empty: none.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
-  EffectPlannerOptions effects{};
+  EffectPlannerOptions effects{};  ///< options of the effect planner
   std::uint64_t seed = 1;
   int field_pitch = 0;  ///< side of the displayed square, in pitches; 0: the target with a margin
 };
 
 /// One stage. All stages of a task show the same field.
 struct SceneStage {
-  std::string name;         ///< of its files: "1-scene"
+  std::string name;         ///< name of its files: "1-scene"
   std::string title, note;  ///< for people
   cv::Mat1f kelvin;         ///< above the background, equivalent kelvin
   double pixels_per_pitch = 1;
@@ -50,12 +51,12 @@ struct AirDecision {
   std::string reason;
 };
 
-/// Effects of the air: their decisions are listed with those of the air.
+/// Returns whether an effect is one of the air. Its decision is then listed with those of the air.
 [[nodiscard]] constexpr bool is_of_air(Effect effect) {
   return effect == Effect::turbulence || effect == Effect::image_dance;
 }
 
-/// Effect of turbulence on this camera.
+/// Effect of the turbulence on this camera.
 struct TurbulenceSeen {
   TurbulentPath path{};
   double r0_m = 0;                             ///< coherence diameter, spherical wave (Fried 1966)
@@ -63,11 +64,12 @@ struct TurbulenceSeen {
   double tilt_sd_mrad = 0, tilt_sd_pitch = 0;  ///< image motion of short frames, per axis; part of the long exposure
 };
 
+/// Pictures and numbers of all stages.
 struct ScenePictures {
   /// At the sensor, optics, detector, sampled, noise, display, with stages behind them, observer.
   std::vector<SceneStage> stages;
   cv::Mat1f frame;                         ///< the camera's whole frame, as displayed, behind the stages
-  std::optional<double> judged_gain;       ///< of the stages; their picture is divided by it
+  std::optional<double> judged_gain;       ///< gain of the stages; their picture is divided by it
   double grey_low_k = 0, grey_high_k = 1;  ///< black and white of every picture, above the background
   double background_k = 300;               ///< camera reading of the background: scene, air and one conversion
   double transmittance = 1;
@@ -75,16 +77,17 @@ struct ScenePictures {
   double apparent_dt_k = 0;                  ///< contrast behind the air, the input of the effect planner
   EffectPlan effects;
   std::vector<AirDecision> air;
-  std::optional<TurbulenceSeen> turbulence;  ///< empty if there is none
+  std::optional<TurbulenceSeen> turbulence;  ///< empty if there is no turbulence
 };
 
 /// Renders the stages. Stages 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, 6 and 7 eight per
-/// sample. The effects that matter at the target's contrast are simulated, or all of them if no size has a threshold at
-/// it. Errors: `invalid_input` (a range beyond the air's table), `not_identifiable` (no contrast
-/// behind the stages), those of scene_signal_k() and of the stages.
+/// sample. The effects that are needed at the contrast of the target are simulated, or all effects if no size has a
+/// threshold at this contrast. Errors: `invalid_input` (a range beyond the air's table), `not_identifiable` (no
+/// contrast behind the stages), those of scene_signal_k() and of the stages.
 [[nodiscard]] Result<ScenePictures> scene_pictures(const ScenePicturesTask& task);
 
-/// Returns 8 bits, black at low and white at high, enlarged by an integer factor until the longer side has `least_px`.
+/// Returns a picture of 8 bits, black at low and white at high, enlarged by an integer factor until the longer side has
+/// `least_px`.
 [[nodiscard]] cv::Mat1b grey_picture(const cv::Mat1f& kelvin, double low_k, double high_k, int least_px);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The frame of a scene behind processing stages, in units of its contrast in front of them.
+// Frame of a scene behind processing stages, in units of its contrast in front of them.
 #pragma once
 
 #include <functional>
@@ -13,15 +13,16 @@
 
 namespace todbench {
 
+/// Frame behind the stages.
 struct StagedFrame {
   cv::Mat1f kelvin;  ///< above the mean of the frame without a scene, divided by the gain
-  double gain = 1;   ///< of the scene at rest, by least squares over a field
+  double gain = 1;   ///< gain of the scene at rest, by least squares over a field
 };
 
-/// Passes the counts of successive frames through new stages and returns the last. `signals`: kelvin above the
-/// background, of the frames in front of it and its own; it has random number 0. The gain comes from the last frame
-/// with and without the scene in the same noise. Errors: those of the stages; `not_identifiable` (no contrast behind
-/// the stages).
+/// Passes the counts of successive frames through new stages and returns the last. `signals`: signal in kelvin above
+/// the background of the frames before the returned one, and of the returned one, whose noise has index 0. The gain is
+/// computed from the last frame with and without the scene in the same noise. Errors: those of the stages;
+/// `not_identifiable` (no contrast behind the stages).
 [[nodiscard]] Result<StagedFrame> behind_stages(const SensorModel& model,
                                                 const std::function<std::vector<std::unique_ptr<ChainStage>>()>& stages,
                                                 const std::vector<cv::Mat1f>& signals, double background_k,

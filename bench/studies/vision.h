@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An observer with an eye against every quoted figure of people: detection, acuity, reading, microscan.
+// Comparison of an observer with an eye with every quoted figure of people: detection, acuity, reading, microscan.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,21 @@
 
 namespace todbench {
 
+/// Options of the comparison.
 struct VisionOptions {
-  Accuracy accuracy;  ///< of the thresholds behind a simulated sensor
+  Accuracy accuracy;  ///< accuracy of the thresholds behind a simulated sensor
   std::uint64_t seed = 1;
   std::filesystem::path figures{};  ///< further figures of people, see figures_of_people(); empty: none
   std::stop_token stop{};
 };
 
-/// Precondition: the observer has an eye. Errors: `interrupted`, those of figures_of_people(), and those of its parts.
+/// Computes the comparison. Precondition: the observer has an eye. Errors: `interrupted`, those of figures_of_people(),
+/// and those of its parts.
 [[nodiscard]] Result<VisionComparison> vision_comparison(const TemplateObserverSpec& observer,
                                                          const VisionOptions& options);
 
-/// Acuity of people for a Landolt ring in 1/arcmin of the gap (Ikeda, Noda and Yamaguchi, quoted by saecanet.com);
-/// people, criterion and range are not stated there.
+/// Returns the acuity of people for a Landolt ring in 1/arcmin of the gap (Ikeda, Noda and Yamaguchi, quoted by
+/// saecanet.com); people, criterion and range are not stated there.
 [[nodiscard]] double landolt_acuity_of_people(double luminance_cd_m2, double contrast_percent);
 
 }  // namespace todbench

@@ -13,16 +13,17 @@
 
 namespace todbench {
 
-/// A condition with numbers, names, + - * / and parentheses, compared by < <= > >= == !=, joined by `and` and `or`
+/// Condition with numbers, names, + - * / and parentheses, compared by < <= > >= == !=, joined by `and` and `or`
 /// (`and` binds closer). Immutable, thread-safe.
 class Constraint {
  public:
-  /// Errors: `invalid_input` in one sentence with the place in the text.
+  /// Parses a condition. Errors: `invalid_input` in one sentence with the position in the text.
   [[nodiscard]] static Result<Constraint> parse(std::string_view text);
+  /// Returns the text of the condition.
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// The names in the condition.
+  /// Returns the names in the condition.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  /// False also if a name has no number.
+  /// Returns whether the condition is true for these values; false also if a name has no value.
   [[nodiscard]] bool holds(const std::function<std::optional<double>(std::string_view name)>& value) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tasks of a sweep that let an observer identify the targets of a set, with parameters for set, air and ranges.
+// Tasks of a sweep in which an observer identifies the targets of a set, with parameters for set, air and ranges.
 #pragma once
 
 #include <stop_token>
@@ -18,13 +18,13 @@ namespace todbench {
 /// cn2_m_minus_2_3, decisions, cues, m75. All other keys are those of plan and sensor.
 [[nodiscard]] bool is_identification_key(std::string_view key);
 
-/// Returns the study of a task with the sensor, observer, display, accuracy and motion of a plan. Of two parameters
-/// with one key the later one counts. Errors: `invalid_input` with the key; those of the loaders.
+/// Returns the study of a task with the sensor, observer, display, accuracy and motion of a plan. If two parameters
+/// have the same key, the later one is used. Errors: `invalid_input` with the key; those of the loaders.
 [[nodiscard]] Result<IdentificationStudyTask> identification_task(const std::vector<SweepParameter>& parameters,
                                                                   const std::filesystem::path& folder,
                                                                   const LoadedPlan& plan, std::stop_token stop);
 
-/// Text that changes with everything that sets and airs of these parameters have in their files.
+/// Returns a text that changes if a file of a set or of an air path in these parameters changes.
 [[nodiscard]] Result<std::string> identification_fingerprint(const std::vector<SweepParameter>& parameters,
                                                              const std::filesystem::path& folder);
 

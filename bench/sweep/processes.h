@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs tasks in parallel processes: a crashed or killed task does not affect the others.
+// Execution of tasks in parallel processes, so that a crashed or killed task does not affect the others.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,7 @@
 
 namespace todbench {
 
+/// Tasks and their processes.
 struct ProcessPool {
   std::size_t tasks = 0, jobs = 1;
   std::size_t chunk = 1;  ///< tasks per process
@@ -19,7 +20,7 @@ struct ProcessPool {
   std::function<std::vector<std::string>(std::size_t first, std::size_t last)> command{};  ///< any thread
   std::function<void(std::size_t done)> on_progress{};  ///< any thread, one call at a time
 };
-/// Runs all tasks in `jobs` parallel processes, each awaited by a sleeping thread. Returns the worst exit code. On a
+/// Runs all tasks in `jobs` parallel processes, with one waiting thread for each. Returns the worst exit code. On a
 /// stop request it ends its children with SIGTERM, waits for them and returns 130.
 [[nodiscard]] Result<int> run_pool(const ProcessPool& pool, std::stop_token stop);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of tasks on disk: one file each, complete or absent; tasks share no files.
+// Results of tasks on disk: one file each, complete or absent. Tasks share no files.
 #pragma once
 
 #include <chrono>
@@ -25,15 +25,17 @@ enum class TaskState {
   stale,    ///< a lock whose process has ended
   foreign,  ///< a result of the same index with another hash: of another sweep file
 };
+/// States of all tasks.
 struct SweepStatus {
   std::vector<TaskState> states;  ///< by index
+  /// Returns the number of tasks in a state.
   [[nodiscard]] std::size_t count(TaskState state) const;
-  /// "3,17-20": indices that are not done.
+  /// Returns the indices that are not done, as "3,17-20".
   [[nodiscard]] std::string open_list() const;
 };
-/// Reads folders, and no files except locks.
+/// Returns the states. Reads folders and locks, and no other files.
 [[nodiscard]] SweepStatus sweep_status(const Sweep& sweep);
-/// Returns why a task failed.
+/// Returns the reason why a task failed.
 [[nodiscard]] std::string failure_of(const Sweep& sweep, std::size_t index);
 
 /// Outcome of one task.
@@ -41,8 +43,9 @@ struct TaskOutcome {
   enum class Kind { done, already_done, failed, locked } kind = Kind::done;
   std::optional<Error> error{};
 };
-/// Runs a task unless its result exists: idempotent, and atomic (written to a temporary file and renamed). A failure is
-/// stored as a file. Errors: `invalid_input` (same index, another hash); `interrupted`, which leaves no file.
+/// Runs a task unless its result exists. A result is written to a temporary file and renamed, so repeated calls are
+/// safe. A failure is stored as a file. Errors: `invalid_input` (same index, another hash); `interrupted`, which leaves
+/// no file.
 [[nodiscard]] TaskOutcome run_and_store(const RunnableSweep& runnable, std::size_t index, std::stop_token stop);
 
 }  // namespace todbench

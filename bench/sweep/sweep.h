@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An expanded sweep: a task is a pure function of (file, index).
+// Expanded sweep: a task is a pure function of (file, index).
 #pragma once
 
 #include <cstdint>
@@ -19,33 +19,35 @@ struct SweepTask {
   std::size_t index = 0;
   std::vector<SweepParameter> parameters;
   std::size_t repeat = 0;
-  std::uint64_t seed = 1;  ///< of all randomness of the task
+  std::uint64_t seed = 1;  ///< seed of all randomness of the task
   std::string name;        ///< "i000123-HASH": index and hash of all inputs that affect the result
 };
 
 /// Returns the number of a name that a task does not set: that of the sensor.
 using NumberOfName = std::function<std::optional<double>(std::string_view name)>;
 
-/// All tasks of a sweep. Seeds depend on content (the sweep's seed, the parameters, the repeat), not on the index:
-/// adding or moving a value keeps the numbers of all other tasks. With `paired` they depend on the repeat alone.
-/// Immutable, thread-safe.
+/// All tasks of a sweep. Seeds depend on content (seed of the sweep, parameters, repeat) and not on the index, so that
+/// adding or moving a value does not change the results of other tasks. With `paired` the seeds depend on the repeat
+/// alone. Immutable, thread-safe.
 class Sweep {
  public:
-  /// `fingerprint`: other inputs that affect results (contents of named files), part of the hash of a task. Errors:
-  /// `invalid_input` (no tasks, more than 10 million combinations, an unknown name in a condition).
+  /// Expands a sweep file. `fingerprint`: other inputs that affect results (contents of named files), part of the hash
+  /// of a task. Errors: `invalid_input` (no tasks, more than 10 million combinations, an unknown name in a condition).
   [[nodiscard]] static Result<Sweep> expand(SweepFile file, std::string fingerprint, const NumberOfName& number_of);
 
   [[nodiscard]] const SweepFile& file() const { return file_; }
+  /// Returns the number of tasks.
   [[nodiscard]] std::size_t count() const { return combinations_.size() * file_.repeats; }
-  /// Precondition: index < count().
+  /// Returns a task. Precondition: index < count().
   [[nodiscard]] SweepTask task(std::size_t index) const;
-  /// Combinations rejected by a condition.
+  /// Returns the number of combinations rejected by a condition.
   [[nodiscard]] std::size_t refused() const { return refused_; }
-  /// Hash of all inputs that affect any result of this sweep.
+  /// Returns the hash of all inputs that affect any result of this sweep.
   [[nodiscard]] const std::string& hash() const { return hash_; }
-  /// Combinations per draw: 1, or with sample_total A, B and A with each parameter of B, in this order.
+  /// Returns the number of combinations per draw: 1; with sample_total: A, B, and A with each parameter of B, in this
+  /// order.
   [[nodiscard]] std::size_t members() const { return file_.sample_total ? file_.sample.size() + 2 : 1; }
-  /// The keys that vary, in the order of the file.
+  /// Returns the keys that vary, in the order of the file.
   [[nodiscard]] std::vector<std::string> keys() const;
 
  private:
@@ -60,9 +62,9 @@ class Sweep {
   std::size_t refused_ = 0;
 };
 
-/// Draws in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) from its origin,
-/// with a digital shift by the seed: of 2^m draws, each of 2^m equal parts of every axis contains one. Returns `n` rows
-/// of `dimensions` numbers in (0, 1).
+/// Draws points in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) from its
+/// origin with a digital shift by the seed. Of 2^m Sobol draws, each of 2^m equal parts of every axis contains one.
+/// Returns `n` rows of `dimensions` numbers in (0, 1).
 [[nodiscard]] std::vector<std::vector<double>> unit_sample(SampleKind kind, std::size_t n, std::size_t dimensions,
                                                            std::uint64_t seed);
 

@@ -9,25 +9,26 @@
 
 namespace todbench {
 
-/// Mean response at one value of a parameter (for a drawn one at the mean of a class) over all others, with the 95 %
-/// interval of the mean over the repeats.
+/// Mean response at one value of a parameter (for a drawn parameter at the mean of a class) over all other parameters,
+/// with the 95 % interval of the mean over the repeats.
 struct EffectLevel {
   std::string value;
   double mean = 0;
   Interval ci95;  ///< open with one repeat
   std::size_t rows = 0;
 };
+/// Effect of one parameter.
 struct ParameterEffect {
   std::string key;
   std::vector<EffectLevel> levels{};
-  /// For a drawn parameter: the response at the two ends of its range with all others at their means, on the plane
-  /// fitted to all rows of a repeat, averaged over the repeats. Least squares over all parameters together keeps the
-  /// others' linear parts out of the noise.
+  /// For a drawn parameter: response at both limits of its range with all other parameters at their means. It is
+  /// computed on the plane fitted to all rows of a repeat, and averaged over the repeats. The joint least-squares fit
+  /// removes the linear effects of the other parameters from the noise.
   std::vector<EffectLevel> ends{};
-  /// Shares of the variance of the response explained by the parameter alone, and with all its interactions: of each
-  /// repeat, averaged, with the interval of that mean. Full factorial: exact sums of squares. Drawn sample: the
-  /// correlation ratio over classes of equal count, corrected for chance (no total). Draws with total = true: the
-  /// estimators of Saltelli et al. 2010 and Jansen 1999, with intervals over the draws.
+  /// Shares of the variance of the response that are explained by the parameter alone, and by the parameter with all
+  /// its interactions. They are means over the repeats, with the interval of that mean. Full factorial: exact sums of
+  /// squares. Drawn sample: the correlation ratio over classes of equal count, corrected for chance (no total). Draws
+  /// with total = true: the estimators of Saltelli et al. 2010 and Jansen 1999, with intervals over the draws.
   std::optional<double> first_order{}, total{};
   Interval first_order_ci95{}, total_ci95{};
 };
@@ -36,11 +37,12 @@ struct ResponseEffects {
   std::string response;
   double delta_t_k = 0;
   std::vector<ParameterEffect> parameters;
-  std::size_t draws = 0;  ///< complete draws with total indices; 0: not drawn for them
+  std::size_t draws = 0;  ///< number of complete draws with total indices; 0: none
 };
-/// Returns an empty list if the response has no numbers.
+/// Returns the effects on a response; empty if the response has no numbers.
 [[nodiscard]] std::vector<ResponseEffects> sweep_effects(const Sweep& sweep, const SweepTable& table,
                                                          const std::string& response);
+/// Returns the effects as JSON.
 [[nodiscard]] Json to_json(const std::vector<ResponseEffects>& effects);
 
 }  // namespace todbench

@@ -8,8 +8,9 @@
 
 namespace todbench {
 
-/// Draws one bar per parameter from its lowest to its highest mean response (for a drawn one between the ends of its
-/// range), the longest first, with the values at its ends. Errors: `not_identifiable` if no parameter has two values.
+/// Draws one bar per parameter from its lowest to its highest mean response (for a drawn parameter at the limits of its
+/// range), the longest first, with the values at both ends of the bar. Errors: `not_identifiable` if no parameter has
+/// two values.
 [[nodiscard]] Result<Drawing> tornado(const ResponseEffects& effects, const std::string& id);
 
 /// Draws the mean response at each value with its interval. Errors: `invalid_input` for values that are not numbers.
@@ -21,12 +22,14 @@ struct ResponseGrid {
   std::string x_key, y_key;
   std::vector<double> x, y;  ///< increasing
   std::vector<std::vector<double>> mean;
-  std::size_t points = 0, least = 0;  ///< of drawn parameters: draws in all squares and in the emptiest
+  /// Of drawn parameters: number of draws in all squares, and in the square with the fewest.
+  std::size_t points = 0, least = 0;
 };
-/// Computes the grid of the two parameters of [grid] that explain most, each with two numbers or more. Without [grid],
-/// of two drawn parameters: means over equal squares, as many (8 x 8 to 3 x 3) as leave at least eight draws in each
-/// and a range of means of at least eight times their largest standard error. Errors: `not_identifiable` (no such
-/// parameters, cells without a task, or too few draws).
+/// Computes the grid of the two parameters of [grid] with the largest shares of the variance, each with two numbers or
+/// more. Without [grid], two drawn parameters are used, with means over equal squares. The number of squares (8 x 8 to
+/// 3 x 3) is the largest with at least eight draws in each square and a range of the means of at least eight times
+/// their largest standard error. Errors: `not_identifiable` (no such parameters, cells without a task, or too few
+/// draws).
 [[nodiscard]] Result<ResponseGrid> response_grid(const Sweep& sweep, const SweepTable& table,
                                                  const ResponseEffects& effects);
 /// Contour line of a bilinear surface through the grid at one height: straight segments from edge to edge of a cell
@@ -34,7 +37,9 @@ struct ResponseGrid {
 struct ContourStretch {
   Place from, to;
 };
+/// Returns the contour line at a height.
 [[nodiscard]] std::vector<ContourStretch> contour(const ResponseGrid& grid, double height);
+/// Draws the contour lines of the grid.
 [[nodiscard]] Result<Drawing> contour_plot(const ResponseGrid& grid, const ResponseEffects& effects,
                                            const std::string& id);
 

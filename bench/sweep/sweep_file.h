@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// A value of a parameter, as text of a form or the command line: "0.05", "draft", "16.9, 1.93".
+/// Value of a parameter, as text of a form or of the command line: "0.05", "draft", "16.9, 1.93".
 struct SweepParameter {
   std::string key;
   std::string value;
@@ -25,11 +25,12 @@ struct SweepAxis {
   std::string key;
   std::vector<std::string> values;
 };
-/// A parameter drawn between two ends.
+/// Parameter drawn between two limits.
 struct SweepRange {
   std::string key;
   double low = 0, high = 1;
 };
+/// Kind of sample.
 enum class SampleKind { latin_hypercube, sobol };
 
 /// Computation of a task.
@@ -39,10 +40,11 @@ enum class TaskKind {
   identify,  ///< an observer identifies the targets of a set, as `todbench identify`
 };
 
+/// Content of a sweep file.
 struct SweepFile {
   std::string name;
   std::uint64_t seed = 1;
-  /// Seeds depend on the repeat alone: for paired comparisons.
+  /// If true, seeds depend on the repeat alone, for paired comparisons.
   bool paired = false;
   TaskKind kind = TaskKind::simulate;
   std::vector<SweepParameter> base;
@@ -52,18 +54,20 @@ struct SweepFile {
   std::vector<SweepRange> sample;
   std::size_t sample_count = 0;
   std::uint64_t sample_seed = 1;
-  /// For a Sobol sample: every draw is a pair A, B of independent ones and, for each parameter, A with that of B, which
-  /// gives total indices (Saltelli et al. 2010): sample_count (ranges + 2) combinations.
+  /// For a Sobol sample. If true, every draw consists of two independent points A and B and, for each parameter, of A
+  /// with the value of B for this parameter. This gives total indices (Saltelli et al. 2010) with sample_count (ranges
+  /// + 2) combinations.
   bool sample_total = false;
   std::size_t repeats = 1;
   std::vector<Constraint> where;
-  std::filesystem::path folder;   ///< of the file: its paths are relative to it
+  std::filesystem::path folder;   ///< folder of the file, to which its paths are relative
   std::filesystem::path results;  ///< folder of the results
 };
 
 /// Reads [base], [grid], [zip], [sample], [repeat], name, seed, paired, kind, where. Keys of [grid] keep the order of
 /// the file; { from, to, steps } is a list. Errors: `invalid_input` "FILE:LINE: ..." in one sentence.
 [[nodiscard]] Result<SweepFile> read_sweep(const std::filesystem::path& file);
+/// Parses text already read; `file` is its name in messages.
 [[nodiscard]] Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The results of a sweep as a page.
+// Results of a sweep as a page.
 #pragma once
 
 #include "bench/report/document.h"
@@ -8,7 +8,8 @@
 namespace todbench {
 
 /// Returns, for every contrast of `effects`, response tables and curves, main effects as a tornado, shares of variance
-/// with their intervals, and contours of the two most important parameters. A pure function: no times, no hosts.
+/// with their intervals, and contours of the two most important parameters. A pure function. The page contains no times
+/// and no host names.
 [[nodiscard]] Document sweep_page(const Sweep& sweep, const SweepTable& table,
                                   const std::vector<ResponseEffects>& effects);
 

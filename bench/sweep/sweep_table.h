@@ -12,21 +12,24 @@
 
 namespace todbench {
 
-/// One row for each task and contrast, in the order of the indices. Without times and hosts, so that the bytes are the
-/// same for every way to run it.
+/// One row for each task and contrast, in the order of the indices. It contains no times and no host names, so that the
+/// bytes do not depend on how the sweep was run.
 struct SweepTable {
   std::vector<std::string> columns;  ///< index, task, the parameters, repeat, seed, then the numbers of a point
   std::vector<Json> rows;            ///< each a list as long as the columns; numbers, texts or null
   std::string version, commit;
   std::size_t tasks = 0, missing = 0;
 };
-/// Errors of collected(): `invalid_input` (results of another sweep, results of several versions of the program, of
-/// which two are named, an unreadable result), `not_identifiable` (tasks are missing, and not allowed to).
+/// Treatment of tasks without a result.
 enum class MissingTasks { refused, left_out };
+/// Collects all results. Errors: `invalid_input` (results of another sweep; results of several versions of the program,
+/// of which the message names two; an unreadable result), `not_identifiable` (tasks are missing and
+/// MissingTasks::refused).
 [[nodiscard]] Result<SweepTable> collected(const Sweep& sweep, MissingTasks missing);
 
+/// Returns the table as CSV.
 [[nodiscard]] std::string to_csv(const SweepTable& table);
-/// {"columns", "rows", "tasks", "missing"}.
+/// Returns {"columns", "rows", "tasks", "missing"}.
 [[nodiscard]] Json to_json(const SweepTable& table);
 /// Writes table `results` to a new SQLite file, via a temporary file and renaming. Errors: `io` with the path.
 [[nodiscard]] Result<void> write_sqlite(const SweepTable& table, const std::filesystem::path& file);

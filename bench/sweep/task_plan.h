@@ -14,16 +14,16 @@
 
 namespace todbench {
 
-/// A runnable sweep: its file is read, its parameters are known, its base plan is loaded.
+/// Sweep that is ready to run: its file is read, its parameters are checked, and its base plan is loaded.
 struct RunnableSweep {
   Sweep sweep;
-  LoadedPlan initial;                ///< without parameters
+  LoadedPlan initial;                ///< base plan without parameters
   std::vector<SweepParameter> base;  ///< those of [base], except the plan
 };
 /// Loads a sweep. Keys are those of a plan by path ("simulation.accuracy"), by the option of `todbench simulate`
 /// ("delta_t_k", "observer", "sensor"), those of a sensor ("netd_k"), and "plan" in [base], a name or a file. Without a
-/// plan there is no unit under test, and the plates stand at a distance that suits each sensor. All values of all keys
-/// are checked here, once. Errors: `invalid_input` in one sentence.
+/// plan there is no unit under test, and the distance of the plates is chosen for each sensor. All values of all keys
+/// are checked by this function. Errors: `invalid_input` in one sentence.
 [[nodiscard]] Result<RunnableSweep> load_sweep(const std::filesystem::path& file);
 
 /// Returns the plan of a task, including its seed. Errors: `invalid_input` for values that do not fit together.
@@ -33,7 +33,7 @@ struct RunnableSweep {
 [[nodiscard]] Result<Json> run_task(const RunnableSweep& runnable, const SweepTask& task,
                                     const std::filesystem::path& scratch, std::stop_token stop);
 
-/// Predicts the time of one task on this machine at present, in seconds.
+/// Predicts the time of one task on this computer under its present load, in seconds.
 [[nodiscard]] Result<double> predicted_task_s(const RunnableSweep& runnable, const SweepTask& task,
                                               std::stop_token stop);
 

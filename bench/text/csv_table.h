@@ -12,17 +12,19 @@
 
 namespace todbench {
 
+/// One row.
 struct CsvRow {
   int line = 0;  ///< from 1, including the header
   std::vector<std::string> fields;
 };
 
+/// Rows of a file, with their header.
 struct CsvTable {
   std::string name;  ///< name in messages
   std::vector<std::string> header;
   std::vector<CsvRow> rows;
 
-  /// Position of the first column of this name.
+  /// Returns the position of the first column of this name; empty if there is none.
   [[nodiscard]] std::optional<std::size_t> column(std::string_view of) const;
   /// Returns the error `invalid_input` "NAME:LINE: SENTENCE".
   [[nodiscard]] tl::unexpected<Error> wrong(int line, const std::string& sentence) const;

@@ -23,10 +23,11 @@ namespace todbench {
 /// Returns the SHA-256 of a file in lower-case hexadecimal; reads it in pieces. Errors: `io` (unreadable).
 [[nodiscard]] Result<std::string> sha256_of_file(const std::filesystem::path& file);
 
-/// Append-only file. Every write is checked and passed to the operating system at once, so that a crash of the program
-/// loses no appended data. Move-only; one thread at a time.
+/// Append-only file. Every write is checked and passed to the operating system immediately, so that a crash of the
+/// program loses no appended data. Move-only; one thread at a time.
 class AppendFile {
  public:
+  /// Content of the file at the beginning: emptied, or continued.
   enum class Start { empty, at_end };
   /// Creates the file, or continues it with Start::at_end. Errors: `io` with path and reason.
   [[nodiscard]] static Result<AppendFile> open(const std::filesystem::path& file, Start start);

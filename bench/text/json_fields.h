@@ -25,13 +25,14 @@
 
 namespace todbench {
 
-/// One object that a description writes or reads. A value is a number, whole number, flag, text, interval, or a list,
+/// JSON object that a description writes or reads. A value is a number, whole number, flag, text, interval, or a list,
 /// map or optional of values; an empty optional is null. Further argument `how`: the list of the values that are
 /// written as words, or the description of a nested record. Keeps the first mistake. Lives during one description.
 class JsonFields {
  public:
-  /// A key that every record has. Mistakes in reading: missing key, other type. Mistake in writing: a number that is
-  /// not finite, because it would be read as a missing one; an optional number that is not finite becomes null.
+  /// Describes a key that every record has. Mistakes in reading: missing key, other type. Mistake in writing: a number
+  /// that is not finite, because it would be read as a missing number. An optional number that is not finite becomes
+  /// null.
   template <typename Value, typename... How>
   void value(const std::string& key, Value& value, const How&... how) {
     if (reader_)
@@ -39,7 +40,7 @@ class JsonFields {
     else
       put(key, written(path_of(key), value, how...));
   }
-  /// The same for a key that older records do not have: if it is absent or null, the member keeps its value.
+  /// Describes a key that older records do not have. If the key is absent or null, the member keeps its value.
   template <typename Value, typename... How>
   void later(const std::string& key, Value& value, const How&... how) {
     if (!reader_)
@@ -47,22 +48,22 @@ class JsonFields {
     else if (has(key))
       read(reader_->at(key), value, how...);
   }
-  /// An optional value whose key is omitted if the value is empty.
+  /// Describes an optional value whose key is omitted if the value is empty.
   template <typename Value, typename... How>
   void if_any(const std::string& key, std::optional<Value>& value, const How&... how) {
     if (reader_ || value) later(key, value, how...);
   }
-  /// A nested object that is omitted if `given` is false; read if it is there.
+  /// Describes a nested object that is omitted if `given` is false, and read if it is present.
   template <typename Record, typename Describe>
   void part_if(bool given, const std::string& key, Record& record, const Describe& describe) {
     if (reader_ || given) later(key, record, describe);
   }
-  /// A number that is null if it is not finite; null is read as `otherwise`.
+  /// Describes a number that is null if it is not finite; null is read as `otherwise`.
   void number_or(const std::string& key, double& value, double otherwise);
-  /// A text that is null if it is empty.
+  /// Describes a text that is null if it is empty.
   void text_or_null(const std::string& key, std::string& value);
-  /// A member of an optional record whose keys stand in this object. They are null if the record is empty. Describe
-  /// begin() of the record first.
+  /// Describes a member of an optional record whose keys are in this object. The keys are null if the record is empty.
+  /// Call begin() for the record first.
   template <typename Record, typename Value, typename... How>
   void member(const std::string& key, std::optional<Record>& record, Value Record::*member, const How&... how) {
     if (record)
@@ -70,21 +71,21 @@ class JsonFields {
     else if (!reader_)
       put(key, nullptr);
   }
-  /// Reading: fills or empties the record, as `key` has a value or not.
+  /// Reading: creates the record if `key` has a value; otherwise empties it.
   template <typename Record>
   void begin(const std::string& key, std::optional<Record>& record) {
     if (reader_) record = has(key) ? std::optional<Record>(std::in_place) : std::nullopt;
   }
-  /// A text that is always the same, for example the name of a format. Another one is a mistake.
+  /// Describes a constant text, for example the name of a format. Any other text is a mistake.
   void constant(const std::string& key, std::string_view text);
-  /// A derived value that is written for other programs and not read.
+  /// Describes a derived value that is written for other programs and not read.
   void derived(const std::string& key, Json value) {
     if (!reader_) put(key, std::move(value));
   }
 
   /// Returns whether the description reads. It may then set members that older records do not state.
   [[nodiscard]] bool reading() const { return reader_ != nullptr; }
-  /// Reading: returns whether the key is there and not null. A missing key is no mistake.
+  /// Reading: returns whether the key is present and not null. A missing key is not a mistake.
   [[nodiscard]] bool has(const std::string& key) const { return !reader_->at_if_there(key).is_null(); }
 
  private:
@@ -144,7 +145,7 @@ template <typename Record, typename Describe>
   return record;
 }
 
-/// Writes a record to a file. Errors: that of the record with the file in front, `io`.
+/// Writes a record to a file. Errors: the error of the record, with the file in front of its message; `io`.
 [[nodiscard]] Result<void> write_json_file(const std::filesystem::path& file, const Result<Json>& record);
 
 namespace json_fields_detail {

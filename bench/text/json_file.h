@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON and records from files; write_json_file() of json_fields.h writes them.
+// JSON and records from files. write_json_file() of json_fields.h writes them.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strict JSON reader, like the TOML reader: a missing key or a wrong type is a mistake that names the key.
+// Strict JSON reader: a missing key or a wrong type is a mistake, and its message names the key.
 #pragma once
 
 #include <cmath>
@@ -41,6 +41,7 @@ class JsonReader {
       return {&nothing(), path_.empty() ? key : path_ + "." + key, mistake_};
     return at(key);
   }
+  /// Returns the elements of a list.
   [[nodiscard]] std::vector<JsonReader> elements() const {
     std::vector<JsonReader> readers;
     if (!json_->is_array()) (void)wrong("a list");
@@ -59,6 +60,7 @@ class JsonReader {
     return pairs;
   }
   [[nodiscard]] bool is_null() const { return json_->is_null(); }
+  /// Return a value of this type; any other type is a mistake.
   [[nodiscard]] double number() const {
     return json_->is_number() ? json_->get<double>() : ((void)wrong("a number"), 0.0);
   }
@@ -101,7 +103,7 @@ class JsonReader {
     (void)wrong("a known word");
     return *std::begin(values);
   }
-  /// Returns an interval from a list of two numbers; null is an open end.
+  /// Returns an interval from a list of two numbers; null is an open limit.
   [[nodiscard]] Interval interval() const {
     const std::vector<JsonReader> sides = elements();
     if (sides.size() == 2) return {sides[0].optional_number(), sides[1].optional_number()};

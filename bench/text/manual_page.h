@@ -13,6 +13,7 @@ struct ManualTerm {
   std::string term, meaning;
 };
 
+/// Section of a page.
 struct ManualSection {
   std::string title;
   std::string text;  ///< paragraph before the terms; may be empty
@@ -23,7 +24,7 @@ struct ManualSection {
 struct ManualPage {
   std::string name;      ///< "todbench-fit"
   std::string sentence;  ///< purpose, without a full stop
-  std::string date;      ///< of the release, "2026-11-22"; the only text that is not escaped
+  std::string date;      ///< date of the release, "2026-11-22"; the only text that is not escaped
   std::string version;   ///< "todbench 0.1.0"
   std::vector<std::string> synopsis;
   std::vector<ManualSection> sections;

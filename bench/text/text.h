@@ -22,8 +22,8 @@ namespace todbench {
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
 /// Returns the name in `known` with the smallest edit distance to `name` (swapped neighbours count one), if it can be a
-/// typing error (at most a third of its letters, at least one; ties: the first). Without one, the first name that has
-/// `name` as its first or last word.
+/// typing error (at most a third of its letters, at least one; ties: the first). Otherwise returns the first name whose
+/// first or last word is `name`; empty if there is none.
 [[nodiscard]] std::optional<std::string> nearest_name(std::string_view name, std::span<const std::string> known);
 /// Returns ", did you mean 'X'?" or an empty text.
 [[nodiscard]] std::string nearest_name_hint(std::string_view name, std::span<const std::string> known);

@@ -7,14 +7,14 @@
 
 namespace todbench {
 
-/// Extrapolates the elapsed time of a phase. The clock is an argument.
+/// Extrapolation of the elapsed time of a phase. The clock is an argument.
 class TimeLeft {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   /// Starts a phase.
   void begin(Time now);
-  /// The work stops, for example because the camera is lost, until the next progress().
+  /// Excludes the time until the next progress(), because the work stops, for example after the loss of the camera.
   void stand_still(Time now);
   /// Returns the remaining time in seconds; `share` of the work is done, 0 to 1. Empty if `share` is not above 0.
   [[nodiscard]] std::optional<double> progress(Time now, double share);

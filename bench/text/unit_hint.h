@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hint at another unit of a number that is out of range.
+// Hint at another unit for a number that is out of range.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small XML document as a tree: elements, attributes and text of foreign files. Document type declarations are
+// Small XML document as a tree: elements, attributes and text of foreign files. Document type declarations are
 // rejected, so a file can neither define entities nor name other files.
 #pragma once
 
@@ -13,6 +13,7 @@
 
 namespace todbench {
 
+/// Element with its children.
 struct XmlElement {
   std::string name;  ///< without the prefix of its namespace
   std::string text;  ///< own text without that of children, trimmed
@@ -25,14 +26,15 @@ struct XmlElement {
   [[nodiscard]] std::string text_of(std::string_view wanted) const;
 };
 
+/// Limits of a document.
 struct XmlLimits {
   std::size_t bytes = 8u << 20;
   std::size_t elements = 100'000;
   int depth = 64;
 };
 
-/// Parses a document in UTF-8. Memory stays below some 100 bytes per element and the size of the text. Errors:
-/// `invalid_input` with the line: larger than the limits, a document type declaration, not well-formed.
+/// Parses a document in UTF-8. The memory used is at most about 100 bytes per element, plus the size of the text.
+/// Errors: `invalid_input` with the line: larger than the limits, a document type declaration, not well-formed.
 [[nodiscard]] Result<XmlElement> parse_xml(std::string_view text, const XmlLimits& limits = {});
 
 }  // namespace todbench

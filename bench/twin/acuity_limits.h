@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What limits the acuity of a simulated sensor with its display and observer: sampling, noise, display, eye or light.
+// Factors that limit the acuity of a simulated sensor with its display and observer: sampling, noise, display, eye or
+// light.
 #pragma once
 
 #include <optional>
@@ -12,17 +13,19 @@
 
 namespace todbench {
 
-/// Leaves out one factor after the other, by direct estimates of draft accuracy (error about 1 %): sampling: twice as
-/// many samples at the same size on the display; noise: none; display: no spot, veil or interpolation, black of 0 and
-/// the largest contrast; eye: no noise of its own; light: a hundred times the luminance. Contrasts without a threshold
-/// are left out. Errors: `interrupted`; `invalid_input` if the plan or its sensor has modules.
+/// Computes the cost of each factor by leaving it out, with direct estimates of draft accuracy (error about 1 %). Left
+/// out are: for sampling, half of the sample distance, at the same size on the display; for noise, all noise of the
+/// sensor; for the display, spot, veil and interpolation, with black at 0 and the largest contrast; for the eye, its
+/// own noise; for light, the luminance is a hundred times as high. Contrasts without a threshold are left out. Errors:
+/// `interrupted`; `invalid_input` if the plan or its sensor has modules.
 [[nodiscard]] Result<std::vector<AcuityLimits>> acuity_limits(const Plan& plan, const ExperimentInputs& inputs,
                                                               const std::vector<double>& delta_t_k,
                                                               std::stop_token stop);
 
-/// What stands beside the results of a curve: for an observer with an eye what limits its acuity; for another, if the
-/// plan asks for it, also the thresholds of hvs-2 at the display of the plan. Behind the simulated sensor. Empty:
-/// neither, or the plan has modules. Errors: `interrupted`, and those of the observer's file.
+/// Returns the factors that limit the acuity of an observer with an eye behind the simulated sensor. If the observer of
+/// the plan has no eye but the plan sets `display_as_operator`, the observer is hvs-2 at the display of the plan, and
+/// its thresholds are added. Empty if neither applies, or if the plan has modules. Errors: `interrupted`, and those of
+/// the observer's file.
 [[nodiscard]] Result<std::optional<DisplayRecord>> at_display(const TodCurve& curve, const ExperimentInputs& inputs,
                                                               const Plan& plan, std::stop_token stop);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A value that is computed on a thread of its own.
+// Value that is computed on its own thread.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,8 @@
 
 namespace todbench {
 
-/// The destructor stops the computation and waits for its end, so that borrowed objects may be destroyed afterwards.
+/// Computation on its own thread. The destructor stops the computation and waits for its end, so that borrowed objects
+/// may be destroyed afterwards.
 template <typename T>
 class BackgroundTask {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes the functions of the twin while the camera measures.
+// Computation of the functions of the twin while the camera measures.
 #pragma once
 
 #include <map>
@@ -15,15 +15,15 @@ namespace todbench {
 /// effective contrast is within 2 % of the set one.
 [[nodiscard]] TodCurve known_functions(const std::map<double, ProportionTable>& tables, const TodCurve& curve);
 
-/// Computes 4000 draws per size and contrast: the camera waits for its target and frames and leaves the processor idle.
-/// The fit only stretches the function, so that the function at the set contrast serves for the slightly different
-/// effective contrast.
+/// Computation of the functions with 4000 draws per size and contrast, on the processor time that is free while the
+/// camera waits for its target and frames. The fit only stretches a function, so the function at the set contrast also
+/// serves for a slightly different effective contrast.
 class BackgroundTwinFunctions {
  public:
   /// Starts on its own thread; `plan` and `inputs` outlive it.
   BackgroundTwinFunctions(const Plan& plan, const ExperimentInputs& inputs);
 
-  /// Waits for the functions or a stop. Returns known_functions() of them.
+  /// Waits for the functions or a stop, and returns known_functions().
   [[nodiscard]] TodCurve known_for(const TodCurve& curve, std::stop_token stop);
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A simulated sensor that replaces the twin if the camera's frames differ from it: provides the psychometric function
-// for the camera's fit and the response for its contrast. The twin stays as stated.
+// Simulated sensor that replaces the twin if the frames of the camera differ from it. It provides the psychometric
+// function for the fit of the camera and the response for its contrast. The twin itself does not change.
 #pragma once
 
 #include <map>
@@ -17,7 +17,8 @@
 
 namespace todbench {
 
-/// Learns from the set-ups of the highest contrast. One thread at a time; the inputs it lends outlive it.
+/// Estimate of the camera from its set-ups at the highest contrast. One thread at a time; `loaded` and `inputs` outlive
+/// this object.
 class CameraSurrogate {
  public:
   /// `responses`: those of simulated_responses() for the twin.
@@ -28,28 +29,31 @@ class CameraSurrogate {
   /// plan, a camera identical to its twin fails it with a probability of 1 %.
   [[nodiscard]] std::map<std::string, double> learn(const SetUpPicture& found);
 
-  /// The responses by which contrasts are divided.
+  /// Returns the responses by which contrasts are divided.
   [[nodiscard]] const std::map<std::string, double>& responses() const { return responses_; }
-  /// The inputs with the surrogate in place of the twin; empty if the camera's frames agree with the twin, whose
-  /// function then stays. Noise differs if a t test at 1 % says so and it would move a threshold by more than 0.05 %:
-  /// NETD by 5 %, rows, columns and fixed pattern by 3 % of the variance of a pixel.
+  /// Returns the inputs with the surrogate in place of the twin. Empty if the frames of the camera agree with the twin,
+  /// whose function then remains in use. Noise differs if it is significant in a t test at 1 % and would change a
+  /// threshold by more than 0.05 %: NETD by 5 %, rows, columns and fixed pattern by 3 % of the variance of a pixel.
   [[nodiscard]] std::optional<ExperimentInputs> lent() const;
-  /// Whether the camera's pictures contradict all optics of the twin's kind, or no valid sensor has what they show.
+  /// Returns whether the pictures of the camera contradict all optics of the kind of the twin, or whether their optics
+  /// do not give a valid sensor.
   [[nodiscard]] bool refused() const;
-  /// Whether the frames could not be compared with the twin's optics: contrasts in grey levels, a program in the twin,
-  /// or no triangle large enough.
+  /// Returns whether the frames could not be compared with the twin's optics: contrasts in grey levels, a program in
+  /// the twin, or no triangle large enough.
   [[nodiscard]] bool unseen() const { return !possible_ || !fit_.result(); }
-  /// Light that the camera spreads round the triangles and its twin does not; empty if the frames show none.
+  /// Returns the light that the camera spreads round the triangles in addition to its twin; empty if the frames show
+  /// none.
   [[nodiscard]] std::optional<CameraHalo> halo() const;
-  /// Whether the frames do not confirm the function and the response: refused(), unseen() or a halo().
+  /// Returns whether the frames do not confirm the function and the response: refused(), unseen() or a halo().
   [[nodiscard]] bool unconfirmed() const { return refused() || unseen() || halo(); }
-  /// ln of the learnt response over that of the twin, the largest by magnitude; at least the share of halo().
+  /// Returns the logarithm of the estimated response over that of the twin, for the plate with the largest magnitude;
+  /// at least the share of halo().
   [[nodiscard]] double response_shift() const;
-  /// Empty if no set-up could be evaluated.
+  /// Returns the record of the estimate; empty if no set-up could be evaluated.
   [[nodiscard]] std::optional<CameraOpticsRecord> record() const;
-  /// For report and log.
+  /// Returns a sentence for report and log.
   [[nodiscard]] std::optional<std::string> sentence() const;
-  /// The finding of a surrogate that is unconfirmed().
+  /// Returns the finding for a surrogate that is unconfirmed().
   [[nodiscard]] AdequacyFinding finding() const;
 
  private:
@@ -88,10 +92,10 @@ class CameraSurrogate {
 /// Student's t with these degrees of freedom.
 void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom);
 
-/// Adds the scatter of the effective contrast as an uncertainty of S75. The answers were scored by the effective
-/// contrast, and the size is stated at it. With w the share of the observer's own noise and d ln S75 / d ln SNR = -k:
-/// the score moves ln S75 by k w, the stated contrast by k (1 - w), together by k for every w. k is 1.14 by
-/// measurement, or the slope of the curve if that is larger.
+/// Adds the scatter of the effective contrast as an uncertainty of S75. The answers were scored with the effective
+/// contrast, and the size is stated at that contrast. Let w be the share of the observer's own noise, and d ln S75 / d
+/// ln SNR = -k. An error of the contrast changes ln S75 by k w through the score, and by k (1 - w) through the stated
+/// contrast: together by k for every w. k is 1.14 by measurement, or the slope of the curve if that is larger.
 void join_contrast_errors(TodCurve& curve);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sizes at 75 % of a simulated curve, estimated without trials.
+// 75 % sizes of a simulated curve, estimated without trials.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace todbench {
 
-/// S75 without trials for the contrasts of a curve; contrasts without an estimate have a note.
+/// S75 without trials for the contrasts of a curve. A contrast without an estimate has a note.
 struct DirectResults {
   std::map<double, DirectPoint> points;  ///< by contrast
   /// S75 in pitches over the range of the observer's open parameters (open_parameters.h), by contrast.
@@ -25,7 +25,7 @@ struct DirectResults {
   std::optional<Error> ended_by;
 };
 
-/// `shown_delta_t_k`: contrast that the scene shows for a set contrast, if different.
+/// Computes the estimates. `shown_delta_t_k`: contrast that the scene shows for a set contrast, if different.
 [[nodiscard]] DirectResults direct_results(const TodCurve& curve, const ExperimentInputs& inputs,
                                            const std::map<double, double>& shown_delta_t_k, std::uint64_t seed,
                                            std::stop_token stop);
@@ -33,9 +33,9 @@ struct DirectResults {
 /// Writes estimates and spreads into the points of the curve.
 void keep_direct(const DirectResults& direct, double pitch_mrad, TodCurve& curve);
 
-/// Replaces the thresholds of the planner's first tier, which are up to 6 % low where noise decides, by direct
-/// estimates with a standard error of 0.4 % or, if that needs too many draws, of the usual ones. A contrast without an
-/// estimate keeps its own. Errors: `interrupted`.
+/// Replaces the thresholds of the planner's first tier, which are up to 6 % too low if noise limits the acuity, by
+/// direct estimates with a standard error of 0.4 %, or with the usual number of draws if 0.4 % needs too many.  A
+/// contrast without an estimate keeps its threshold. Errors: `interrupted`.
 [[nodiscard]] Result<void> refine_thresholds(ExperimentInputs& inputs, std::uint64_t seed, std::stop_token stop);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loads the parts that a plan names and checks that they fit together.
+// Parts that a plan names, loaded and checked against each other.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -17,7 +17,7 @@ namespace todbench {
 
 /// Inputs of a run: the parts of a plan, and the planner's decisions about them.
 struct ExperimentInputs {
-  std::vector<TargetPlate> plates;            ///< of the trials
+  std::vector<TargetPlate> plates;            ///< plates of the trials
   std::optional<TargetPlate> mtf_plate{};     ///< if an MTF is requested
   std::optional<TargetPlate> ctf_plate{};     ///< if a CTF is requested
   std::optional<TargetPlate> source_plate{};  ///< if the size-of-source effect is requested
@@ -26,10 +26,10 @@ struct ExperimentInputs {
   TemplateObserverSpec observer;
   SensorSpec sensor;                      ///< as planned: parameters of skipped effects have their neutral values
   double stated_noise_counts = 0;         ///< temporal noise of the sensor with all effects, in counts
-  SensorPlan effects;                     ///< effects that the scene calls for within the tolerance, with reasons
+  SensorPlan effects;                     ///< effects that the scene needs within the tolerance, with reasons
   std::vector<ContrastOutlook> outlooks;  ///< for each contrast with a threshold
   SceneMotion motion{};
-  std::vector<std::string> warnings;  ///< of the planner, one sentence each
+  std::vector<std::string> warnings;  ///< warnings of the planner, one sentence each
   bool identifiable = true;           ///< at least one contrast has a threshold
   Accuracy accuracy;
 };
@@ -43,8 +43,8 @@ struct ExperimentInputs {
 /// value is off by a thousand.
 [[nodiscard]] Result<std::string> check_ifov(const Plan& plan, const SensorSpec& sensor);
 
-/// Loads the inputs and asks the planner once. If no contrast has a threshold, every effect is simulated and a warning
-/// says so. With modules, every effect is simulated without asking the planner.
+/// Loads the inputs and runs the planner once. If no contrast has a threshold, every effect is simulated, with a
+/// warning. With modules, every effect is simulated without the planner.
 [[nodiscard]] Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlanner& planner);
 
 /// Returns the transmittance of the stated air in the band of the sensor; empty if the plan states none, and for a
@@ -57,9 +57,10 @@ void take_answers(MeasurementOptions& options, const Plan& plan, const Experimen
 /// Returns the options for the simulated sensor: those of the camera, without settling and corrections.
 [[nodiscard]] MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs);
 
-/// Checks that all sizes fit into the picture and keep their distance from neighbours. `invalid_input` names up to
-/// three that do not. Call it before anything is computed or moved.
+/// Checks that all sizes fit into the picture and keep their distance from neighbours. Errors: `invalid_input` with up
+/// to three sizes that do not. Call it before the first calculation or movement.
 [[nodiscard]] Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& inputs, cv::Size picture);
+/// Checks the same for the picture of the simulated sensor.
 [[nodiscard]] Result<void> check_simulated_geometry(const Plan& plan, const ExperimentInputs& inputs);
 
 }  // namespace todbench

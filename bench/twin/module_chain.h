@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The modules of a plan and of its sensor in a run: behind the camera, in place of the observer, in the record.
+// Modules of a plan and of its sensor in a run: behind the camera, in place of the observer, in the record.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,10 @@
 
 namespace todbench {
 
+/// Receives lines of the standard error of modules.
 using ModuleLine = std::function<void(std::string_view line)>;
 
+/// Returns whether the plan or its sensor has modules.
 [[nodiscard]] bool has_modules(const Plan& plan, const SensorSpec& sensor);
 /// Succeeds if there are no modules; otherwise `invalid_input`, because the calculation uses sensor and observer alone.
 [[nodiscard]] Result<void> refuse_modules(const Plan& plan, const SensorSpec& sensor);
@@ -30,14 +32,15 @@ using ModuleLine = std::function<void(std::string_view line)>;
 /// Returns the modules that map a picture to a picture, ready for the first one; their errors occur during the run.
 [[nodiscard]] std::vector<std::unique_ptr<ChainStage>> module_stages(const std::vector<ModulePlan>& modules,
                                                                      const ModuleLine& on_error_line);
-/// Returns the number of frames to discard after a change of the target. Memories of successive modules add up.
+/// Returns the number of frames to discard after a change of the target. The numbers of frames that successive modules
+/// store add up.
 [[nodiscard]] int settle_frames(const std::vector<ModulePlan>& modules);
 /// Passes every frame of the bench through the stages; their output is judged (ProcessedAs::judged). Without stages the
-/// bench stays as it is.
+/// bench is unchanged.
 void put_stages_behind(OpenedBench& bench, std::vector<std::unique_ptr<ChainStage>> stages);
 
-/// Stores the noise of the run in counts and its correlation in every point. With stages behind the camera, it is the
-/// lower noise of the camera's and the judged pictures at that contrast.
+/// Stores the noise of the run in counts and its correlation in every point. With stages behind the camera, the stored
+/// value is the lower of the noise of the camera's pictures and that of the judged pictures at this contrast.
 void keep_noise(const MeasurementResult& result, TodCurve& curve);
 
 /// Returns the module that replaces the templates of the observer; null without one.

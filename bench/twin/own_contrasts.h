@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves from presentations that have the contrast of their own frames: within a settling band, or in a ramp.
+// Curves from presentations whose contrasts are measured from their own frames: within a settling band, or in a ramp.
 #pragma once
 
 #include <optional>
@@ -20,19 +20,20 @@ namespace todbench {
 [[nodiscard]] Result<ContrastSurface> contrast_surface(const Plan& plan, const ExperimentInputs& inputs,
                                                        std::stop_token stop);
 
-/// Returns the same answers at their set contrasts: contrast c in place of c', size S exp(g(c) - g(c')), g the ln S75
-/// of the surface. A set contrast counts as the camera observes it, behind the stated air.
+/// Returns the answers converted to their set contrasts: contrast c in place of c', size S exp(g(c) - g(c')), g the ln
+/// S75 of the surface. The set contrast is that which the camera observes behind the stated air.
 [[nodiscard]] std::vector<Trial> at_set_contrasts(std::span<const Trial> trials, const ContrastSurface& surface,
                                                   double air_transmittance);
 
-/// What a ramp says beside its curve.
+/// Notes and finding of a ramp, in addition to its curve.
 struct RampOutcome {
   std::vector<std::string> notes{};
   std::vector<AdequacyFinding> findings{};  ///< `ramp_direction`, `contrast_lag`
 };
 
-/// Gives the points of a curve threshold and interval of the fit over all contrasts of a ramp, and adds the continuous
-/// curve. `run`: with the observed contrasts. `curve`: of at_set_contrasts(). Errors: those of RampFit::of().
+/// Sets threshold and interval of the points of a curve to those of the fit over all contrasts of a ramp, and adds the
+/// continuous curve. `run`: with the observed contrasts. `curve`: from the answers of at_set_contrasts(). Errors: those
+/// of RampFit::of().
 [[nodiscard]] Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run,
                                             const ContrastSurface& surface, const Plan& plan);
 
@@ -40,7 +41,7 @@ struct RampOutcome {
 /// the internal noise that the observer draws: the slope of the curve, at least 0.2.
 [[nodiscard]] double sensitivity_to_lag(const ContrastSurface& surface, double delta_t_k);
 
-/// Contrasts of a ramp that no presentation showed, because a correction or another wait took its time.
+/// Numbers of contrasts of a ramp that were shown, and that were skipped because of a correction or another wait.
 struct LostContrasts {
   int shown = 0, lost = 0;
 };

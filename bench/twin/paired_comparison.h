@@ -20,7 +20,7 @@
 
 namespace todbench {
 
-/// Whether a plan requests paired comparison and its answers allow it.
+/// Returns whether a plan requests paired comparison and its answers allow it.
 [[nodiscard]] bool pairs_asked(const Plan& plan, const SensorSpec& sensor);
 
 /// Answers of a camera.
@@ -28,27 +28,29 @@ struct PairedCamera {
   const TodCurve& curve;  ///< fitted with the functions of the twin
   std::span<const Trial> trials;
   std::span<const SetUpRecord> set_ups;  ///< positions of its plates
-  /// Fit with the functions of the twin, if `curve` has those of the camera's surrogate; null: `curve` is that fit.
+  /// Fit with the functions of the twin, if `curve` is fitted with those of the surrogate of the camera; null: `curve`
+  /// is that fit.
   const TodCurve* by_twin = nullptr;
   /// By set contrast: standard uncertainty of ln S75 of a camera whose pictures contradict its model; null: none.
   const std::map<double, double>* model_u = nullptr;
-  /// The same trials as they were fitted, if not as they were shown: at the set contrasts. Empty: as shown.
+  /// Trials as they were fitted, at the set contrasts, if these differ from the shown contrasts. Empty: `trials`.
   std::span<const Trial> fitted{};
 };
 
+/// Notes and error of a paired comparison.
 struct PairedOutcome {
   std::vector<std::string> notes;  ///< one sentence for each contrast without a paired ratio
   std::optional<Error> ended_by;   ///< `interrupted`
 };
 
-/// Options that show the twin the presentations of a camera.
+/// Returns the options with which the twin is shown the presentations of a camera.
 [[nodiscard]] PairedTwinOptions paired_options(const ExperimentInputs& inputs, std::span<const SetUpRecord> set_ups,
                                                std::uint64_t seed, std::stop_token stop);
 
 /// Shows the twin every presentation of the camera (twin_answers()) and adds the paired ratios (paired_ratio()) to the
-/// points of a comparison whose A is the camera's curve. A point keeps the unpaired ratio if it has no function of the
-/// twin, no graded answers, or is not in the comparison. If a threshold is not fit for a decision, the paired verdict
-/// is inconclusive too.
+/// points of a comparison whose A is the camera's curve. A point keeps the unpaired ratio if it lacks a function of the
+/// twin or graded answers, or if the comparison does not contain it. If a threshold is not fit for a decision, the
+/// paired verdict is inconclusive too.
 [[nodiscard]] PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& camera,
                                               const ExperimentInputs& inputs, const PairedTwinOptions& options);
 
@@ -58,8 +60,8 @@ struct Pairs {
   PairedOutcome said;
 };
 /// Computes the pairs on its own thread while the camera's physical measures are taken and the twin makes its own
-/// trials; null if the plan requests none. `camera_of` is called there and may wait for its curve; the objects it
-/// refers to, plan and inputs outlive it.
+/// trials; null if the plan requests none. `camera_of` is called on that thread and may wait for its curve. The plan,
+/// the inputs and the objects that `camera_of` refers to outlive the task.
 [[nodiscard]] std::unique_ptr<BackgroundTask<Pairs>> pairs_in_background(
     std::function<PairedCamera(std::stop_token)> camera_of, const Plan& plan, const ExperimentInputs& inputs);
 

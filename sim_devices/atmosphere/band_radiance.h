@@ -13,17 +13,18 @@ struct SpectralBand {
   double low_um = 7.5, high_um = 13;
   bool operator==(const SpectralBand&) const = default;
 };
-/// `invalid_input` with one sentence.
+/// Checks the limits. Errors: `invalid_input` with one sentence.
 [[nodiscard]] Result<void> validate(const SpectralBand& band);
 
-/// Planck's law integrated over the band, in W/(m2 sr), from the series of the integral; accurate to 1e-14 below 2000
-/// K. Precondition: temperature above 0 K.
+/// Returns Planck's law integrated over the band, in W/(m2 sr), from the series of the integral; accurate to 1e-14
+/// below 2000 K. Precondition: temperature above 0 K.
 [[nodiscard]] double band_radiance(const SpectralBand& band, double temperature_k);
-/// Its derivative by temperature, in W/(m2 sr K).
+/// Returns the derivative of band_radiance() by temperature, in W/(m2 sr K).
 [[nodiscard]] double band_radiance_derivative(const SpectralBand& band, double temperature_k);
-/// Temperature of the black body with this radiance; empty for a radiance of 0 or less, or above that of 1e6 K.
+/// Returns the temperature of the black body with this radiance; empty for a radiance of 0 or less, or above that of
+/// 1e6 K.
 [[nodiscard]] std::optional<double> radiation_temperature_k(const SpectralBand& band, double radiance_w_m2_sr);
-/// Weight dL/dT of a wavelength (power), up to a constant factor.
+/// Returns the weight dL/dT of a wavelength (power), up to a constant factor.
 [[nodiscard]] double thermal_weight(double wavelength_um, double temperature_k);
 
 }  // namespace todbench

@@ -12,12 +12,13 @@
 
 namespace todbench {
 
+/// Extinction at one wavelength.
 struct SpectralExtinction {
   double wavelength_um = 0;      ///< > 0, increasing
   double extinction_per_km = 0;  ///< >= 0
 };
-/// Band transmittance at every range, weighted with dL/dT (power) of a black body, by the trapezoid rule over the
-/// listed wavelengths. `invalid_input` in one sentence.
+/// Returns the band transmittance at every range, weighted with dL/dT (power) of a black body, by the trapezoid rule
+/// over the listed wavelengths. Errors: `invalid_input` in one sentence.
 [[nodiscard]] Result<Transmittance> air_of_spectrum(std::span<const SpectralExtinction> spectrum, double temperature_k);
 
 /// One run of a tape7 file.
@@ -27,14 +28,15 @@ struct Tape7Run {
 };
 /// Reads the runs of a file of MODTRAN 4 or 5, or of LOWTRAN 7. Card 3 follows the line with the name of the model
 /// atmosphere and has the range in columns 31 to 40. Below the header FREQ the first column is the wavenumber (cm-1),
-/// the second the total transmittance. -9999 ends a run. `invalid_input` "line N: ...".
+/// the second the total transmittance. -9999 ends a run. Errors: `invalid_input` "line N: ...".
 [[nodiscard]] Result<std::vector<Tape7Run>> parse_tape7(std::string_view text);
 
-/// Mean over the band, weighted with dL/dT (trapezoid rule in wavenumber). `invalid_input` if the run does not cover
-/// the band.
+/// Returns the mean over the band, weighted with dL/dT (trapezoid rule in wavenumber). Errors: `invalid_input` if the
+/// run does not cover the band.
 [[nodiscard]] Result<double> band_transmittance(const Tape7Run& run, const SpectralBand& band, double temperature_k);
-/// Several runs give a table over their ranges. One run is scaled by Beer and Lambert at each wavenumber and tabulated
-/// from 1/1000 of its range to its range, which treats lines narrower than the resolution as grey. Errors as above.
+/// Returns the air of several runs as a table over their ranges. A single run is scaled by the law of Beer and Lambert
+/// at each wavenumber and tabulated from 1/1000 of its range to its range; this treats lines narrower than the
+/// resolution as grey. Errors: those of band_transmittance().
 [[nodiscard]] Result<Transmittance> air_of_tape7(std::span<const Tape7Run> runs, const SpectralBand& band,
                                                  double temperature_k);
 

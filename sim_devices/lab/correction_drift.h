@@ -11,24 +11,25 @@ namespace todbench {
 
 /// Drift as a function of time t: rate t, or rate T (1 - exp(-t / T)). Rates apply just after a correction.
 struct CorrectionDrift {
-  double level_k_per_min = 0;    ///< of the whole picture
-  double pattern_k_per_min = 0;  ///< standard deviation over the pixels, normally distributed
+  double level_k_per_min = 0;    ///< drift of the level of the whole picture
+  double pattern_k_per_min = 0;  ///< drift of the standard deviation over the pixels, which are normally distributed
   double time_constant_s = 0;    ///< T of both drifts; 0: linear
 
   [[nodiscard]] bool any() const { return level_k_per_min != 0 || pattern_k_per_min != 0; }
-  /// Equivalent duration in minutes at the initial rate for the drift after `since_s`.
+  /// Returns the equivalent duration in minutes at the initial rate for the drift after `since_s`.
   [[nodiscard]] double minutes(double since_s) const;
 };
 
 /// Pattern of the drift, one random draw per pixel. Depends only on the seed.
 struct DriftPattern {
   cv::Mat1d draw;   ///< mean 0 and standard deviation 1 over the picture; empty: no pattern
-  cv::Mat1d phase;  ///< of the rounding, 0 to 1
+  cv::Mat1d phase;  ///< phase of the rounding, 0 to 1
 };
+/// Returns the pattern of a seed.
 [[nodiscard]] DriftPattern drift_pattern(cv::Size size, std::uint64_t seed);
 
-/// Adds `pattern_k` times the pattern to whole counts. Successive exposures are rounded up or down so that their mean
-/// also contains fractions of a count.
+/// Returns whole counts plus `pattern_k` times the pattern. Successive exposures are rounded up or down so that their
+/// mean also contains fractions of a count.
 [[nodiscard]] cv::Mat1w with_pattern(const cv::Mat1w& counts, const DriftPattern& pattern, double pattern_k,
                                      std::uint64_t exposure, const SensorSpec& sensor);
 

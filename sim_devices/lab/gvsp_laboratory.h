@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emulated laboratory with a GigE Vision camera on plain sockets.
+// Emulated laboratory with a GigE Vision camera on plain sockets.
 #pragma once
 
 #include "sim_devices/lab/gige/gvsp_camera.h"
@@ -8,11 +8,11 @@
 
 namespace todbench {
 
-/// The sensor with the counts that this model sends when set up for measuring: 0.04 K in 14 bits, or 0.01 K in 16. For
-/// a model that sends raw counts the sensor is unchanged.
+/// Returns the sensor with the counts that this model sends when it is set up for measuring: 0.04 K in 14 bits, or 0.01
+/// K in 16. The sensor is unchanged for a model that sends raw counts.
 [[nodiscard]] SensorSpec with_counts_of(CameraModel model, SensorSpec sensor);
 
-/// Connects the camera. The sensor sets geometry, rate and scale of the configuration.
+/// Returns a function that connects the camera. The sensor sets geometry, rate and scale of the configuration.
 [[nodiscard]] ConnectCamera connect_gvsp(GvspCameraConfig config);
 
 }  // namespace todbench

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emulated laboratory: a camera, a black body and a plate stage around one simulated sensor, each on its real protocol.
-// The camera observes the state of the instruments, also while they settle. Runs of the stage use the camera's clock,
-// which advances by one frame per exposure: a busy host makes them slower, but not wrong.
-// wrong.
+// Emulated laboratory: a camera, a black body and a plate stage around one simulated sensor, each with its real
+// protocol. The camera observes the state of the instruments, also while they settle. Runs of the stage use the clock
+// of the camera, which advances by one frame per exposure. A busy host therefore slows the runs down without making
+// them wrong.
 #pragma once
 
 #include <cstdint>
@@ -24,36 +24,39 @@
 
 namespace todbench {
 
+/// Options of the laboratory.
 struct LaboratoryOptions {
   SensorSpec sensor;
-  SensorPlan plan;  ///< effects of the camera; those of motion act while the stage runs
+  SensorPlan plan;  ///< effects of the camera; effects of motion apply while the stage runs
   Accuracy accuracy;
   std::vector<TargetPlate> plates;  ///< in the slots of the stage, in identity mounting
   double distance_m = 2;
   cv::Point2d centre_px{0.3, -0.2};  ///< middle of the plate in the picture, from the middle of the picture
-  double rotation_deg = 0.4;         ///< of the plate about the line of sight
+  double rotation_deg = 0.4;         ///< rotation of the plate about the line of sight
   /// Connects a camera other than the GigE Vision one. Its counts must be those of `sensor`.
   ConnectCamera connect;
   EmulatedGigeCameraConfig camera;  ///< the sensor sets geometry, rate and scale
-  /// Error of the stated scale: stated over true kelvin, from `scene_temperature_k` of the sensor; > 0. Affects only
-  /// cameras that state their scale. A scale that the kind of camera fixes is not changed.
+  /// Error of the stated scale: stated over true kelvin, measured from `scene_temperature_k` of the sensor; > 0.
+  /// Affects only cameras that state their scale. A scale that the kind of camera fixes is not changed.
   double stated_scale = 1;
   /// Mirrors between target and camera; a transmission of 1: none.
   double mirror_transmission = 1, mirror_temperature_k = 295;
-  double latency_s = 0;  ///< time from the exposure of a frame to its time stamp, beyond that of the camera
+  double latency_s = 0;  ///< time from the exposure of a frame to its time stamp, in addition to that of the camera
   BlackBodyOptions black_body;
   PlateStageOptions stage;  ///< its plates are set from `plates`
   /// Upright monitor in front of the camera instead of black body and plate. The instruments run without effect.
   std::optional<Monitor> monitor{};
-  /// Counts that a camera with an error sends for an exposure of `scene`. Called on the camera's thread in the order of
-  /// the exposures. Empty: the counts as exposed. Not called with a monitor.
+  /// Returns the counts that a faulty camera sends for an exposure of `scene`. Called on the camera's thread in the
+  /// order of the exposures. Empty: the counts as exposed. Not called with a monitor.
   std::function<cv::Mat1w(cv::Mat1w counts, const PlateScene& scene)> sent_counts{};
-  /// Drift in the time of the camera: from the last correction for the GigE Vision camera, from power-up for others.
+  /// Drift over the time of the camera: since the last correction for the GigE Vision camera, since power-up for other
+  /// cameras.
   CorrectionDrift drift;
   std::uint64_t seed = 1;
 };
 
-/// Runs from creation to destruction. Thread-safe, except for switching the camera: one thread at a time.
+/// Laboratory that runs from creation to destruction. Thread-safe, except that only one thread at a time may switch the
+/// camera.
 class Laboratory {
  public:
   /// Precondition: validate(sensor) succeeds. Errors: `not_found` (address or port in use), `invalid_input` (options).
@@ -62,25 +65,25 @@ class Laboratory {
   Laboratory(const Laboratory&) = delete;
   Laboratory& operator=(const Laboratory&) = delete;
 
-  /// "gige:VENDOR-SERIAL".
+  /// Returns "gige:VENDOR-SERIAL".
   [[nodiscard]] std::string camera_id() const;
-  /// IPv4 address of the camera, or its device node.
+  /// Returns the IPv4 address of the camera, or its device node.
   [[nodiscard]] std::string camera_address() const;
-  /// Settings that the plan must state for the camera: [camera.settings].
+  /// Returns the settings that the plan must state for the camera: [camera.settings].
   [[nodiscard]] std::map<std::string, std::string> camera_settings() const;
-  /// Environment variables for a client in another process.
+  /// Returns the environment variables for a client in another process.
   [[nodiscard]] std::map<std::string, std::string> client_environment() const;
-  /// "address:port".
+  /// Return "address:port".
   [[nodiscard]] std::string black_body_endpoint() const;
   [[nodiscard]] std::string stage_endpoint() const;
-  /// Present scene in front of the camera.
+  /// Returns the present scene in front of the camera.
   [[nodiscard]] PlateScene scene() const;
   [[nodiscard]] const SensorModel& model() const;
 
   /// Switches the camera off without notice to its client, as a pulled cable does.
   void switch_camera_off();
   /// Switches the same camera on again, with the same serial number and the settings at power-up. No effect if it is
-  /// on. Its exposures continue the count. Errors: those of start().
+  /// on. The count of exposures continues. Errors: those of start().
   [[nodiscard]] Result<void> switch_camera_on();
 
  private:

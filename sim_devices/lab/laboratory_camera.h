@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// An emulated camera that serves during its lifetime. Destruction acts like a pulled cable, without notice to a
+/// Emulated camera that serves during its lifetime. Its destruction acts like a pulled cable, without notice to a
 /// client.
 class LaboratoryCamera {
  public:
@@ -23,20 +23,20 @@ class LaboratoryCamera {
   LaboratoryCamera(const LaboratoryCamera&) = delete;
   LaboratoryCamera& operator=(const LaboratoryCamera&) = delete;
 
-  /// Identifier for the plan: "gige:VENDOR-SERIAL".
+  /// Returns the identifier for the plan: "gige:VENDOR-SERIAL".
   [[nodiscard]] virtual std::string id() const = 0;
-  /// IPv4 address or device node.
+  /// Returns the IPv4 address or device node.
   [[nodiscard]] virtual std::string address() const = 0;
-  /// Settings that a plan must state because the camera does not report them.
+  /// Returns the settings that a plan must state because the camera does not report them.
   [[nodiscard]] virtual std::map<std::string, std::string> settings() const { return {}; }
-  /// Environment variables for a client in another process; empty: none.
+  /// Returns the environment variables for a client in another process; empty: none.
   [[nodiscard]] virtual std::map<std::string, std::string> client_environment() const { return {}; }
 };
 
-/// Picture number `index` since power-up, with the geometry of the sensor.
+/// Returns picture number `index` since power-up, with the geometry of the sensor.
 using LaboratoryExposure = std::function<cv::Mat1w(std::uint64_t index)>;
 
-/// Configuration of an emulated camera with the geometry, rate and scale of a sensor.
+/// Returns the configuration of an emulated camera with the geometry, rate and scale of a sensor.
 template <typename Config>
 [[nodiscard]] Config as_sensor(Config config, const SensorSpec& sensor) {
   config.width = sensor.width * sensor.microscan;
@@ -48,7 +48,7 @@ template <typename Config>
   return config;
 }
 
-/// Switches on a camera that sends the exposures of a sensor.
+/// Function that switches on a camera that sends the exposures of a sensor.
 using ConnectCamera =
     std::function<Result<std::unique_ptr<LaboratoryCamera>>(const SensorSpec& sensor, LaboratoryExposure exposure)>;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A monitor in front of an emulated camera, which observes its pixels.
+// Monitor in front of an emulated camera, which observes the pixels of the monitor.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,10 @@
 
 namespace todbench {
 
+/// Monitor with its present picture.
 struct Monitor {
-  /// Distance between the centres of pixels. Each pixel is a lit square of that size, at most a sample of the camera.
+  /// Distance between the centres of pixels. Each pixel is a lit square of this size, which must not exceed a sample of
+  /// the camera.
   double pixel_mm = 0.25;
   double span_k = 20;  ///< contrast between white and black for the camera; > 0
   double gamma = 1;    ///< the light of a level from 0 to 1 is level^gamma; > 0
@@ -27,12 +29,14 @@ struct Monitor {
 /// View of the monitor by a camera aimed at its middle. One thread at a time.
 class MonitorView {
  public:
-  /// `model` outlives the object. `centre_px`: middle of the monitor, from the middle of the picture. `invalid_input`:
-  /// a pixel of the monitor is larger than a sample of the camera, or a number is not above 0.
+  /// Creates the view. `model` outlives the object. `centre_px`: middle of the monitor, from the middle of the picture.
+  /// Errors: `invalid_input` (a pixel of the monitor is larger than a sample of the camera, or a number is not above
+  /// 0).
   [[nodiscard]] static Result<MonitorView> make(Monitor monitor, const SensorModel& model, Accuracy accuracy,
                                                 double distance_m, cv::Point2d centre_px);
 
-  /// Frame `index` of the present monitor. Half of its light corresponds to `scene_temperature_k` of the sensor.
+  /// Returns frame `index` of the present monitor. Half of its light corresponds to `scene_temperature_k` of the
+  /// sensor.
   [[nodiscard]] cv::Mat1w expose(std::uint64_t index);
 
  private:

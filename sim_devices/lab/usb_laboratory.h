@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emulated laboratory with a USB camera: USB3 Vision, or a Seek.
+// Emulated laboratory with a USB camera: USB3 Vision, or a Seek.
 #pragma once
 
 #include <memory>
@@ -11,11 +11,11 @@
 
 namespace todbench {
 
-/// Plugs a USB3 Vision camera into `system`. The sensor sets geometry, rate and scale.
+/// Returns a function that plugs a USB3 Vision camera into `system`. The sensor sets geometry, rate and scale.
 [[nodiscard]] ConnectCamera connect_u3v(std::shared_ptr<MockSystem> system, U3vCameraConfig config);
 
-/// Plugs a Seek camera into `system`. The sensor sets the rate. Errors: `invalid_input` (a sensor without the model's
-/// geometry, or with more than 14 bits).
+/// Returns a function that plugs a Seek camera into `system`. The sensor sets the rate. Errors of the function:
+/// `invalid_input` (a sensor without the model's geometry, or with more than 14 bits).
 [[nodiscard]] ConnectCamera connect_seek(std::shared_ptr<MockSystem> system, SeekCameraConfig config);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emulated laboratory with a V4L2 camera.
+// Emulated laboratory with a V4L2 camera.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,11 @@
 
 namespace todbench {
 
-/// The sensor with the counts that a camera of this kind sends: 0.01 or 1/64 K per count from 0 K, 16 bits. Kinds that
-/// do not report temperature keep the sensor's scale.
+/// Returns the sensor with the counts that a camera of this kind sends: 0.01 or 1/64 K per count from 0 K, 16 bits.
+/// Kinds that do not report temperature keep the scale of the sensor.
 [[nodiscard]] SensorSpec with_counts_of(VideoCameraKind kind, SensorSpec sensor);
 
-/// Plugs a camera into `system`. The sensor sets geometry and rate.
+/// Returns a function that plugs a camera into `system`. The sensor sets geometry and rate.
 [[nodiscard]] ConnectCamera connect_v4l2(std::shared_ptr<MockSystem> system, VideoCameraConfig config);
 
 }  // namespace todbench

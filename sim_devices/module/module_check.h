@@ -10,20 +10,20 @@
 
 namespace todbench {
 
-/// Properties of a module that keeps the contract. None of them is a fault.
+/// Properties of a module that fulfils the contract. None of them is a fault.
 struct ModuleReport {
-  std::vector<cv::Size> shapes;  ///< of pictures that it answered
-  bool network_cut = false;      ///< it could not reach any other computer
+  std::vector<cv::Size> shapes;  ///< sizes of the pictures that it processed
+  bool network_cut = false;      ///< the module could not reach any other computer
   double latency_ms = 0;         ///< median of an exchange of 320 x 240 numbers
   bool linear = false;           ///< linearity_deviation below 1e-4
-  /// Deviation of f(2 a - b / 2) from 2 f(a) - f(b) / 2, less the part of f(0), over the largest answer.
+  /// Deviation of f(2 a - b / 2) from 2 f(a) - f(b) / 2, without the part of f(0), over the largest output.
   double linearity_deviation = 0;
-  cv::Mat1f impulse_response;  ///< answer to a 1 in the middle of zeros minus that to zeros: the central 9 x 9
-  double impulse_sum = 0;      ///< of the whole response
+  cv::Mat1f impulse_response;  ///< output for a 1 in the middle of zeros minus that for zeros: the central 9 x 9
+  double impulse_sum = 0;      ///< sum of the whole response
 };
 
 /// Starts the module three times and sends it pictures of several shapes. Errors: those of ModuleProcess, and
-/// `integrity` if two processes answer the same pictures differently.
+/// `integrity` if two processes return different outputs for the same pictures.
 [[nodiscard]] Result<ModuleReport> check_module(const ModuleOptions& options);
 
 }  // namespace todbench

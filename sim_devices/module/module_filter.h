@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Filter for the system calls of a module in its own network. Private to the modules.
+// Filter for the system calls of a module in its own network. Private to this folder.
 #pragma once
 
 namespace todbench {

@@ -11,12 +11,12 @@
 
 namespace todbench {
 
-/// The observer `spec` with its window, search range and internal noise; a module replaces its templates. For every
-/// patch the module receives two arrays: one <f8 of six numbers (size in displayed samples, displayed samples per
-/// pitch, contrast in kelvin, phase in x and y in samples, noise of the sensor in kelvin), and one <f4 with the patch
-/// as the templates would receive it (seen_patch()). It answers one score for each alternative; the highest wins. There
-/// is no judge(): graded answers are those of choose(), 1 or 0. After a failure() every choice is made without scores.
-/// One thread at a time.
+/// Returns the observer `spec` with its window, search range and internal noise, and with a module in place of its
+/// templates. For every patch the module receives two arrays: one <f8 of six numbers (size in displayed samples,
+/// displayed samples per pitch, contrast in kelvin, phase in x and y in samples, noise of the sensor in kelvin), and
+/// one <f4 with the patch as the templates would receive it (seen_patch()). The module returns one score for each
+/// alternative, and the highest score determines the answer. There is no judge(): graded answers are those of choose(),
+/// 1 or 0. After a failure() every choice is made without scores. One thread at a time.
 [[nodiscard]] std::unique_ptr<Observer> module_observer(const TemplateObserverSpec& spec, Alternatives alternatives,
                                                         const ModulePlan& module,
                                                         std::function<void(std::string_view line)> on_error_line);

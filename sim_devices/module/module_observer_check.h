@@ -12,16 +12,17 @@ namespace todbench {
 struct JudgedSize {
   double size_samples = 0;  ///< square root of area
   int samples_per_pitch = 1;
-  int window_samples = 0;  ///< side of the patch
-  int asked = 0, right = 0;
+  int window_samples = 0;    ///< side of the patch
+  int asked = 0, right = 0;  ///< decisions, and correct ones
 };
 
-/// Properties of an observer program that keeps the contract. None of them is a fault.
+/// Properties of an observer program that fulfils the contract. None of them is a fault.
 struct ObserverModuleReport {
   std::vector<JudgedSize> sizes;
-  bool network_cut = false;    ///< it could not reach any other computer
-  double latency_ms = 0;       ///< median of twenty patches of a target of 5 samples
-  bool order_matters = false;  ///< another process that received the patches in the opposite order gave other scores
+  bool network_cut = false;  ///< the program could not reach any other computer
+  double latency_ms = 0;     ///< median of twenty patches of a target of 5 samples
+  /// Another process that received the patches in the opposite order returned other scores.
+  bool order_matters = false;
 };
 
 /// Starts the program several times and sends it patches of targets without sensor noise: every alternative at nine

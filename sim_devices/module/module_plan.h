@@ -22,8 +22,9 @@ enum class ModulePlace {
   observer,  ///< patch to scores, in place of the templates of the observer
   sensor,    ///< scene to frame: the sensor itself, in a sensor file only
 };
-/// Places that a plan may state.
+/// Places that are allowed in a plan.
 inline constexpr std::array all_module_places{ModulePlace::picture, ModulePlace::observer};
+/// Returns the name of the place.
 [[nodiscard]] std::string_view to_string(ModulePlace place);
 
 /// [[module]] of plans and sensor files. Ranges are those of `module_ranges`.
@@ -32,28 +33,28 @@ struct ModulePlan {
   std::string command;                            ///< for a shell, run in the folder of the caller
   std::string version;                            ///< command whose first line of output is recorded; empty: none
   std::map<std::string, std::string> parameters;  ///< sent in the header
-  int limit_ms = 5000;                            ///< for one answer
-  int memory_mib = 0;                             ///< of address space; 0: no limit
+  int limit_ms = 5000;                            ///< time limit for one output, in ms
+  int memory_mib = 0;                             ///< limit of address space; 0: no limit
   bool network = false;                           ///< keeps the network of the host
-  int restart_frames = 0;                         ///< answers after which a new process is started; 0: never
-  int settle_frames = 0;                          ///< frames after which earlier scenes no longer affect the answer
+  int restart_frames = 0;                         ///< outputs after which a new process is started; 0: never
+  int settle_frames = 0;                          ///< frames after which earlier scenes no longer affect the output
   bool operator==(const ModulePlan&) const = default;
 };
-/// Largest values. The smallest are 1 ms and otherwise 0.
+/// Largest values. The smallest value of limit_ms is 1, and of the others 0.
 struct ModuleRanges {
   int limit_ms = 600000, memory_mib = 1 << 20, restart_frames = 1000000000, settle_frames = 10000;
 };
 inline constexpr ModuleRanges module_ranges{};
 
-/// A number of the sensor for the header.
+/// Number of the sensor for the header.
 struct SensorFact {
   std::string name;
   std::variant<double, std::int64_t, std::uint64_t> value;
 };
-/// Options of the process. The header states place, parameters and, if given, facts of the sensor.
+/// Returns the options of the process. The header states place, parameters and, if given, facts of the sensor.
 [[nodiscard]] ModuleStageOptions stage_options(const ModulePlan& plan, std::span<const SensorFact> sensor = {});
 
-/// Error of a module as an error of the run, different from the loss of the camera.
+/// Returns the error of a module as an error of the run that differs from the loss of the camera.
 [[nodiscard]] Error module_error(const ModulePlan& plan, const Error& error);
 
 /// Facts about a module at the start of a run, for the record.

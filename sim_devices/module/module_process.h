@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A process of the user, in any language, as a stage of the chain.
+// Process of the user, in any language, as a stage of the chain.
 #pragma once
 
 #include <sys/types.h>
@@ -23,41 +23,44 @@ enum class ModuleNetwork {
   cut,  ///< own network and queues, no other sockets, by bubblewrap; as `ours` if that cannot run
   ours,
 };
-/// True if a network can be cut here: bubblewrap is installed and works. Tested once.
+/// Returns whether a network can be cut here: bubblewrap is installed and works. Tested once.
 [[nodiscard]] bool can_cut_network();
 
 /// Command and limits of a module.
 struct ModuleOptions {
-  std::string command{};                  ///< for a shell
-  std::string header = "{}";              ///< JSON that is sent first, as a byte array
-  std::chrono::milliseconds limit{5000};  ///< for one answer; the first includes the start of the process
-  std::size_t memory_limit_mib = 0;       ///< of address space, for each process that it starts; 0: no limit
+  std::string command{};      ///< for a shell
+  std::string header = "{}";  ///< JSON that is sent first, as a byte array
+  /// For one output; for the first output this includes the start of the process.
+  std::chrono::milliseconds limit{5000};
+  std::size_t memory_limit_mib = 0;  ///< limit of address space for each process that the module starts; 0: no limit
   ModuleNetwork network = ModuleNetwork::cut;
   std::function<void(std::string_view line)> on_error_line{};  ///< receives every line of its standard error
 };
 
-/// First line (at most 256 bytes) that the command writes to its standard output or error within `limit`. It runs with
-/// empty standard input under the limits of a module. Empty if there is none.
+/// Returns the first line (at most 256 bytes) that the command writes to its standard output or error within `limit`.
+/// It runs with empty standard input under the limits of a module. Empty if there is none.
 [[nodiscard]] std::string first_line_of_module(const ModuleOptions& options);
 
-/// Runs a module: writes one .npy array to its standard input and reads one of the same shape from its standard output.
-/// The module has its own process group, which ends with the object. Error messages contain the last line of its
-/// standard error. After an error the module is dead. The calling program must ignore SIGPIPE. Move-only; one thread at
-/// a time.
+/// Running module: one .npy array is written to its standard input, and one array of the same shape is read from its
+/// standard output. The module has its own process group, which ends with the object. Error messages contain the last
+/// line of its standard error. After an error the module cannot be used any more. The calling program must ignore
+/// SIGPIPE. Move-only; one thread at a time.
 class ModuleProcess {
  public:
-  /// `internal` if no process can be created. A command that does not exist fails in the first exchange.
+  /// Starts the process. Errors: `internal` if no process can be created. A command that does not exist fails in the
+  /// first exchange.
   [[nodiscard]] static Result<ModuleProcess> start(const ModuleOptions& options);
   ModuleProcess(ModuleProcess&& other) noexcept;
   ModuleProcess& operator=(ModuleProcess&& other) = delete;
   ~ModuleProcess();
 
-  /// Errors: `disconnected` (the module died), `timeout` (no answer in time), `integrity` (no array, another shape, an
-  /// unknown type, a number that is not finite, bytes after the answer).
+  /// Sends a picture and returns the output of the module. Errors: `disconnected` (the module ended), `timeout` (no
+  /// output in time), `integrity` (no array, another shape, an unknown type, a number that is not finite, bytes after
+  /// the output).
   [[nodiscard]] Result<cv::Mat1f> exchange(const cv::Mat1f& picture);
   /// Sends messages and returns the numbers of an array of this shape, last index fastest. Errors as exchange().
   [[nodiscard]] Result<std::vector<double>> ask(const std::string& messages, const std::vector<std::size_t>& shape);
-  /// Exit code after an error. Empty if the process was still running or a signal ended it.
+  /// Returns the exit code after an error. Empty if the process was still running or a signal ended it.
   [[nodiscard]] std::optional<int> exit_code() const { return exit_code_; }
 
  private:

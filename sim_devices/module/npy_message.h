@@ -13,38 +13,38 @@
 
 namespace todbench {
 
-/// A received array; numbers of every accepted type are converted to double.
+/// Received array; numbers of every accepted type are converted to double.
 struct NpyMessage {
   std::vector<std::size_t> shape;
   std::vector<double> values;  ///< last index fastest
 };
 
-/// A picture as <f4, two dimensions, rows first.
+/// Returns a picture as <f4, two dimensions, rows first.
 [[nodiscard]] std::string to_message(const cv::Mat1f& picture);
-/// Numbers as <f8, one dimension.
+/// Returns numbers as <f8, one dimension.
 [[nodiscard]] std::string to_message(const std::vector<double>& numbers);
-/// Text as |u1, one dimension: the header, which is sent first.
+/// Returns a text as |u1, one dimension: the header, which is sent first.
 [[nodiscard]] std::string to_message(std::string_view text);
 
 /// Location of an array in a stream.
 struct NpyPlace {
   std::vector<std::size_t> shape;
   std::size_t type = 0;                ///< index in the table of types in npy_message.cpp
-  std::size_t numbers = 0, count = 0;  ///< first byte of the numbers, and how many numbers there are
-  std::size_t bytes = 0;               ///< of the whole message
+  std::size_t numbers = 0, count = 0;  ///< offset of the first byte of the numbers, and number of values
+  std::size_t bytes = 0;               ///< size of the whole message
 };
 /// Locates the array at the beginning of a stream. Empty if bytes are still missing. Errors as read_message().
 [[nodiscard]] Result<std::optional<NpyPlace>> find_message(std::string_view stream, std::size_t most_values);
-/// The numbers of the array as a picture. Precondition: two dimensions, neither of them empty.
+/// Returns the numbers of the array as a picture. Precondition: two dimensions, neither of them empty.
 [[nodiscard]] cv::Mat1f picture_at(std::string_view stream, const NpyPlace& place);
 
 /// First message of a stream.
 struct MessageRead {
   std::optional<NpyMessage> message;  ///< empty: more bytes are needed
-  std::size_t bytes = 0;              ///< of the message
+  std::size_t bytes = 0;              ///< size of the message
 };
-/// Errors: `integrity` in one sentence (no .npy array, a type other than <f4, <f8, |u1, |i1, <u2, <i2, <u4, <i4, |b1,
-/// column order, more than `most_values`).
+/// Reads the first message of a stream. Errors: `integrity` in one sentence (no .npy array, a type other than <f4, <f8,
+/// |u1, |i1, <u2, <i2, <u4, <i4, |b1, column order, more than `most_values`).
 [[nodiscard]] Result<MessageRead> read_message(std::string_view stream, std::size_t most_values);
 
 }  // namespace todbench

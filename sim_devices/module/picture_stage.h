@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stages of the chain behind the sensor, from picture to picture: the usual enhancements, and programs of the user.
+// Stages of the chain behind the sensor, from picture to picture: common enhancements, and programs of the user.
 #pragma once
 
 #include <array>
@@ -14,46 +14,49 @@
 
 namespace todbench {
 
-/// Processes pictures in the order of their exposure; may have memory. One thread at a time.
+/// Stage that processes pictures in the order of their exposure. Its output may depend on earlier pictures. One thread
+/// at a time.
 class ChainStage {
  public:
   virtual ~ChainStage() = default;
   ChainStage() = default;
   ChainStage(const ChainStage&) = delete;
   ChainStage& operator=(const ChainStage&) = delete;
-  /// The result has samples_per_pixel() times the size of the picture and finite numbers. Errors: those of
-  /// ModuleProcess; built-in stages have none.
+  /// Returns the processed picture, with samples_per_pixel() times the size of `picture` and finite numbers. Errors:
+  /// those of ModuleProcess; built-in stages have none.
   [[nodiscard]] virtual Result<cv::Mat1f> process(const cv::Mat1f& picture) = 0;
-  /// Number of pictures after which less than 0.1 % of an earlier scene is left.
+  /// Returns the number of pictures after which less than 0.1 % of an earlier scene is left.
   [[nodiscard]] virtual int memory_frames() const { return 0; }
-  /// Samples of the result per sample of the picture and axis.
+  /// Returns the number of samples of the result per sample of the picture and axis.
   [[nodiscard]] virtual int samples_per_pixel() const { return 1; }
-  /// Place of sample (0, 0) of the last result, in samples of the picture.
+  /// Returns the position of sample (0, 0) of the last result, in samples of the picture.
   [[nodiscard]] virtual cv::Point2d first_px() const { return {0, 0}; }
-  /// Displacement of the last picture that the stage assumes, in its samples; empty if it assumes none.
+  /// Returns the displacement that the stage assumes for the last picture, in its samples; empty if it assumes none.
   [[nodiscard]] virtual std::optional<cv::Point2d> believed_px() const { return {}; }
 };
 
-/// y_n = share x_n + (1 - share) y_(n-1); the first picture is unchanged. The variance of white noise is reduced to
-/// share / (2 - share). Precondition: 0 < share <= 1.
+/// Returns the recursive filter y_n = share x_n + (1 - share) y_(n-1), which leaves the first picture unchanged. The
+/// variance of white noise is reduced to share / (2 - share). Precondition: 0 < share <= 1.
 [[nodiscard]] std::unique_ptr<ChainStage> recursive_filter(double share);
-/// x + amount (x - mean of the 3 x 3 neighbourhood), edges repeated. 0 leaves the picture unchanged.
+/// Returns the filter x + amount (x - mean of the 3 x 3 neighbourhood), with edges repeated. An amount of 0 leaves the
+/// picture unchanged.
 [[nodiscard]] std::unique_ptr<ChainStage> sharpening(double amount);
-/// Sum over the 3 x 3 neighbourhood, weighted by the kernel (rows first), edges repeated.
+/// Returns the sum over the 3 x 3 neighbourhood, weighted by the kernel (rows first), with edges repeated.
 [[nodiscard]] std::unique_ptr<ChainStage> kernel_filter(const std::array<double, 9>& kernel);
-/// Gain control to 8 bits: equalisation by the whole histogram with one class per count. A class counts at most
-/// `plateau_counts` pixels (0: no limit). The result is the grey level floor(255 c + 1/2), 0 to 255, where c is the
-/// share of the clipped histogram up to and including the count.
+/// Returns a gain control to 8 bits: equalisation by the whole histogram with one class per count. At most
+/// `plateau_counts` pixels of a class are counted (0: no limit). The result is the grey level floor(255 c + 1/2), 0 to
+/// 255, where c is the share of the clipped histogram up to and including the count.
 [[nodiscard]] std::unique_ptr<ChainStage> gain_control(int plateau_counts);
-/// Median over 3 x 3 or 5 x 5. Precondition: size is 3 or 5.
+/// Returns the median over 3 x 3 or 5 x 5. Precondition: size is 3 or 5.
 [[nodiscard]] std::unique_ptr<ChainStage> median_filter(int size);
-/// Contrast limited adaptive equalisation (Zuiderveld 1994, implementation of OpenCV) in tiles x tiles fields. The
-/// result spans the range of the picture.
+/// Returns a contrast limited adaptive equalisation (Zuiderveld 1994, implementation of OpenCV) in tiles x tiles
+/// fields. The result spans the range of the picture.
 [[nodiscard]] std::unique_ptr<ChainStage> clahe(double clip_limit, int tiles);
-/// Equalisation by the whole histogram, with 1024 classes over the range of the picture. A class counts at most
-/// `plateau_percent` of the pixels (Vickers 1996). The result spans the range of the picture.
+/// Returns an equalisation by the whole histogram, with 1024 classes over the range of the picture. At most
+/// `plateau_percent` of the pixels are counted in a class (Vickers 1996). The result spans the range of the picture.
 [[nodiscard]] std::unique_ptr<ChainStage> plateau_equalisation(double plateau_percent);
 
+/// Options of a module as a stage.
 struct ModuleStageOptions {
   ModuleOptions process{};
   int restart_frames = 0;  ///< pictures after which a new process is started; 0: never
@@ -61,7 +64,7 @@ struct ModuleStageOptions {
   /// Receives every line that the program writes to standard error.
   std::function<void(std::string_view line)> on_error_line{};
 };
-/// A program of the user, started with the first picture.
+/// Returns a program of the user as a stage. It is started with the first picture.
 [[nodiscard]] std::unique_ptr<ChainStage> module_stage(ModuleStageOptions options);
 
 }  // namespace todbench

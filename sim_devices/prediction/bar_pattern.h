@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Four bars of an MRTD target and their alternatives: edges, and the performance of an ideal observer.
+// Four bars of an MRTD target and their alternatives: edges, and performance of an ideal observer.
 #pragma once
 
 #include <vector>
@@ -17,21 +17,21 @@ enum class BarPattern {
   uniform     ///< the square at 4/7 of the contrast, which gives the same mean
 };
 
-/// Edges in pitches at contrast 1; the middle of the square is the origin. Horizontal axis: bars along y, which the
-/// horizontal axis resolves. Precondition: frequency > 0.
+/// Returns the edges in pitches at contrast 1; the middle of the square is the origin. Horizontal axis: bars along y,
+/// which the horizontal axis resolves. Precondition: frequency > 0.
 [[nodiscard]] std::vector<StepEdge> bar_edges(BarPattern pattern, double frequency_per_pitch, BarAxis axis);
 
-/// Sums over all samples of the squared difference between four bars and the alternative, behind `transfer` (cycles per
-/// pitch), at contrast 1 and one sample per pitch. One sum for each of phases x phases lattices at (i + 1/2) / phases -
-/// 1/2. Exact except for the cut at `band_per_pitch`.
+/// Returns sums over all samples of the squared difference between four bars and the alternative, behind `transfer`
+/// (cycles per pitch), at contrast 1 and one sample per pitch. One sum for each of phases x phases lattices at (i +
+/// 1/2) / phases - 1/2. Exact except for the cut at `band_per_pitch`.
 [[nodiscard]] std::vector<double> bar_energies(double frequency_per_pitch, BarPattern alternative,
                                                const TransferFunction& transfer, double band_per_pitch, int phases);
 
-/// Contrast over noise (sd 1 per sample) at which an ideal observer that knows the phase is correct in `proportion` of
-/// two-interval decisions, Phi(c sqrt(E / 2)) averaged over the phases. Precondition: energies > 0, proportion between
-/// 0.5 and 1.
+/// Returns the contrast over noise (sd 1 per sample) at which an ideal observer that knows the phase is correct in
+/// `proportion` of two-interval decisions, Phi(c sqrt(E / 2)) averaged over the phases. Precondition: energies > 0,
+/// proportion between 0.5 and 1.
 [[nodiscard]] double ideal_two_interval_contrast(const std::vector<double>& energies, double proportion);
-/// Proportion correct of that observer at this contrast over noise.
+/// Returns the proportion correct of the same observer at a contrast over noise.
 [[nodiscard]] double ideal_two_interval_proportion(const std::vector<double>& energies, double contrast);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Profile across four bars: tests if every gap is lower than the bars next to it.
+// Profile across four bars, and the test whether every gap is lower than the bars next to it.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -10,13 +10,13 @@
 
 namespace todbench {
 
-/// Mean along the bars, over the rows (horizontal) or columns within their length, at least one. The pattern is in the
-/// middle of the window.
+/// Returns the mean along the bars, over the rows (horizontal) or columns within their length, at least one. The
+/// pattern is in the middle of the window.
 [[nodiscard]] std::vector<float> bar_profile(const cv::Mat1f& window, double frequency_per_sample, BarAxis axis);
 
-/// Smallest depth of a gap below the lower of its two bars; above 0 four bars are resolved. A bar counts with its
-/// largest sample within max(w / 2, 1 / 2) of its centre, a gap with its smallest (as tod/range/bars_sampled.h).
-/// `offset`: middle of the pattern minus middle of the profile, in samples.
+/// Returns the smallest depth of a gap below the lower of its two bars. If it is above 0, four bars are resolved. A bar
+/// counts with its largest sample within max(w / 2, 1 / 2) of its centre, a gap with its smallest (as
+/// tod/range/bars_sampled.h). `offset`: middle of the pattern minus middle of the profile, in samples.
 [[nodiscard]] double shallowest_gap(std::span<const double> profile, double frequency_per_sample, double offset);
 
 }  // namespace todbench

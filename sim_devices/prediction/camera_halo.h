@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light of the triangles that a camera spreads over the plate between them.
+// Halo of a camera: light of the triangles that the camera spreads over the plate between them.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -11,39 +11,40 @@
 
 namespace todbench {
 
-/// A halo that the pictures show.
+/// Halo found in the pictures.
 struct CameraHalo {
-  double share = 0;     ///< of the light of a triangle, beyond the halo of the twin; negative: less
-  double share_se = 0;  ///< for a normal halo of this width
-  double sigma_px = 0;  ///< the width that describes the pictures best
+  double share = 0;     ///< share of the light of a triangle, in addition to the halo of the twin; negative: less
+  double share_se = 0;  ///< standard error of `share` for a normal halo of this width
+  double sigma_px = 0;  ///< width that fits the pictures best
 };
 
 /// Estimates a halo from several set-ups: the brightness of the plate between the triangles, minus the tail of
-/// diffraction, is compared with that of pictures spread by normal halos of 3 to 22 pixels. What the set-ups have in
-/// common (fixed pattern, uneven lens or background) and a plane of every picture are taken out, so that only light
-/// that moves with the triangles counts. A plate that is warm beside its openings looks the same.
+/// diffraction, is compared with that of pictures spread by normal halos of 3 to 22 pixels. The common part of all
+/// set-ups (fixed pattern, uneven lens or background) and a plane of every picture are subtracted, so that only light
+/// that moves with the triangles has an effect. A plate that is warm beside its openings cannot be distinguished from a
+/// halo.
 ///
-/// Pixels nearer to a triangle than 4 pitches of the detector are the concern of CameraOpticsFit. The standard error is
+/// Pixels within 4 detector pitches of a triangle are not used; CameraOpticsFit evaluates them. The standard error is
 /// the largest of three: from blocks of 16 x 16 pixels over all pictures, and from their rows and columns.
 class CameraHaloFit {
  public:
   /// `samples_per_pitch`: of the camera.
   CameraHaloFit(const SensorSpec& twin, int samples_per_pitch);
 
-  /// Adds a picture of this contrast. Pictures of another size are left out.
+  /// Adds a picture of this contrast. Pictures of another size are ignored.
   void add(const OpticsPicture& picture, double delta_t_k);
 
-  /// `f_number_ratio`: of the camera to the twin (CameraOptics), for the tail of diffraction. Empty without a halo of
-  /// at least half a per cent at five standard errors: by chance in one of a million sessions with white noise. Empty,
-  /// too, for fewer than two different set-ups.
+  /// Returns the halo. `f_number_ratio`: f-number of the camera over that of the twin (CameraOptics), for the tail of
+  /// diffraction. Empty if the halo is below half a per cent or below five standard errors (white noise exceeds these
+  /// limits by chance in one of a million sessions), or with fewer than two different set-ups.
   [[nodiscard]] std::optional<CameraHalo> result(double f_number_ratio) const;
 
  private:
   /// Means over cells of 4 x 4 pixels; zero weight where triangles are near.
   struct Look {
     cv::Mat1f level;                ///< K per K of contrast
-    cv::Mat1f tail;                 ///< of diffraction, by the twin's optics
-    std::vector<cv::Mat1f> haloes;  ///< of contrast 1, by width
+    cv::Mat1f tail;                 ///< tail of diffraction, by the twin's optics
+    std::vector<cv::Mat1f> haloes;  ///< haloes of contrast 1, by width
     cv::Mat1f weight;
   };
   struct Estimate {

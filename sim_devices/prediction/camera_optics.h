@@ -28,19 +28,20 @@ struct CameraOptics {
   double aberration_sigma_pitch = 0;
   double f_number_ratio = 1;  ///< relative to the sensor file
   double aberration_se_pitch = 0, f_number_ratio_se = 0;
-  /// Chi-square at the optics of the sensor file minus its minimum; by chance it has two degrees of freedom.
+  /// Chi-square at the optics of the sensor file minus its minimum. For a camera equal to the sensor file it has two
+  /// degrees of freedom.
   double twin_statistic = 0;
   double chi2 = 0;  ///< residuals over the noise of the plate around them, per degree of freedom
   double chi2_limit = 1;
   double degrees_of_freedom = 0;
-  double noise_k = 0;          ///< of a pixel of the average, measured on the plate between the triangles
+  double noise_k = 0;          ///< noise of a pixel of the average, measured on the plate between the triangles
   double fixed_pattern_k = 0;  ///< part of noise_k that averaging does not explain
   double fixed_pattern_variance_se_k2 = 0;
   int pictures = 0;
 
-  /// True if the model describes the pictures.
+  /// Returns whether the model describes the pictures.
   [[nodiscard]] bool fits() const { return chi2 <= chi2_limit; }
-  /// True if the optics differ from the sensor file at the significance level `probability`.
+  /// Returns whether the optics differ from the sensor file at the significance level `probability`.
   [[nodiscard]] bool differs(double probability) const;
 };
 
@@ -53,22 +54,21 @@ struct CameraOptics {
 /// plus four standard deviations, from the scatter of that noise over blocks of the plate. Errors of the renderer count
 /// as noise: 1e-4 of the contrast, twice the residual of pictures without noise.
 ///
-/// Every picture is reduced to a parabola in the two common parameters. A session takes a tenth of a second per
-/// picture. Not thread-safe.
+/// Every picture is reduced to a parabola in the two common parameters. This takes a tenth of a second per picture. Not
+/// thread-safe.
 class CameraOpticsFit {
  public:
   /// `samples_per_pitch`: of the camera. `wavelengths`: as in Accuracy, 16 for a real camera. Precondition:
   /// validate(twin) succeeds.
   CameraOpticsFit(const SensorSpec& twin, int samples_per_pitch, int wavelengths = 16);
 
-  /// True if the model contains everything that shapes a picture of this sensor: no display, distortion,
-  /// super-resolution or module.
+  /// Returns whether the model covers this sensor, which must have no display, distortion, super-resolution or module.
   [[nodiscard]] static bool models(const SensorSpec& twin);
 
   /// Adds a picture. Returns false if it has no large triangle with free surround, or if its fit does not converge.
   bool add(const OpticsPicture& picture);
 
-  /// Empty before the first picture.
+  /// Returns the estimate; empty before the first picture.
   [[nodiscard]] std::optional<CameraOptics> result() const;
 
  private:
@@ -76,7 +76,7 @@ class CameraOpticsFit {
   using Theta = cv::Vec2d;
   struct Parabola {
     Theta at;
-    cv::Matx22d curvature;  ///< of chi-square / 2
+    cv::Matx22d curvature;  ///< curvature of chi-square / 2
     cv::Vec2d slope;
     double chi2 = 0, freedom = 0;
     int windows = 0;

@@ -14,12 +14,14 @@ namespace todbench {
 
 /// Displacements between the frames of a super-resolved picture.
 enum class FrameDisplacements {
-  anywhere,      ///< evenly over half a pitch each way, as by hand or platform; samples lie off the fine grid
+  anywhere,  ///< distributed evenly over half a pitch in each direction, as by hand or platform; samples lie off the
+             ///< fine grid
   half_pitches,  ///< exact multiples of half a pitch; every sample lies on the fine grid
 };
 
+/// Options of the trials.
 struct CameraTrialOptions {
-  double delta_t_k = 0;             ///< of every triangle; not 0
+  double delta_t_k = 0;             ///< contrast of every triangle; not 0
   std::vector<double> sizes_pitch;  ///< each is shown four times per picture, once in each orientation
   int presentations = 24;           ///< pictures, each with its own sampling phase; at least 2
   int frames = 16;                  ///< per super-resolved picture, displaced against each other by up to half a pitch
@@ -51,8 +53,8 @@ struct CameraTrialRecord {
   double placement_rms_px = 0;     ///< distance of averaged samples from the grid, per axis
 };
 
-/// Frames are byte for byte the counts that the simulated camera sends over its emulated link. All observers judge the
-/// same pictures. Errors: `invalid_input` (options that cannot be met), `interrupted`.
+/// Runs the trials. Frames are byte for byte the counts that the simulated camera sends over its emulated link. All
+/// observers judge the same pictures. Errors: `invalid_input` (options that cannot be met), `interrupted`.
 [[nodiscard]] Result<CameraTrialRecord> camera_trials(const SensorSpec& sensor,
                                                       const std::vector<TemplateObserver*>& observers,
                                                       const CameraTrialOptions& options);

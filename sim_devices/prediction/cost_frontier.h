@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computing time against accuracy, measured on the machine that runs it.
+// Computing time against accuracy, measured on the computer that runs it.
 #pragma once
 
 #include <chrono>
@@ -40,19 +40,21 @@ struct CostPoint {
   bool best = false;
 
   [[nodiscard]] bool measured() const { return wall_s.has_value(); }
-  /// Possible deviation of a result: root of the sum of squares of error and standard error; if paired, the error.
+  /// Returns the possible deviation of a result: root of the sum of squares of error and standard error; if paired, the
+  /// error.
   [[nodiscard]] double total_percent() const {
     const double error = error_percent.value_or(0);
     return paired ? error : std::hypot(error, standard_error_percent.value_or(0));
   }
 };
 
+/// Measured ways of computing, with their reference.
 struct CostFrontier {
   std::vector<CostPoint> points;
   std::vector<ThresholdEstimate> reference;  ///< empty, like `points`, if no contrast has a threshold
   double reference_s = 0;                    ///< computing time of the reference
   int reference_draws = 0;
-  int paired_draws = 0;  ///< of the paired points and of their reference
+  int paired_draws = 0;  ///< draws of the paired points and of their reference
   double reference_standard_error_percent = 0;
   double budget_s = 0, spent_s = 0;
   std::vector<std::string> notes;  ///< sentences: contrasts without threshold, a reference reduced to fit the budget
@@ -79,7 +81,7 @@ struct CostTask {
   SensorPlan full;  ///< every effect; used for the reference and the knobs
   TemplateObserverSpec observer;
   SceneMotion motion{};
-  std::vector<double> delta_t_k;
+  std::vector<double> delta_t_k;    ///< contrasts whose thresholds are estimated
   std::vector<CostChoice> choices;  ///< knob "planner"
   std::vector<CostTrials> trials;   ///< knob "trials"; cheap ones first
   std::uint64_t seed = 1;
@@ -102,8 +104,8 @@ struct CostListener {
 /// relative to the whole reference. It contains the variation of their random numbers, so their standard error is
 /// stated, too. Computing times are the shorter of two runs if there is time.
 ///
-/// The budget is kept. The reference uses at most a third of it, if necessary with fewer draws and a note. A point that
-/// does not fit is left unmeasured with a reason. The planner's chosen point comes first.
+/// The budget of time is not exceeded. The reference uses at most a third of it, if necessary with fewer draws and a
+/// note. A point that does not fit is left unmeasured with a reason. The planner's chosen point comes first.
 ///
 /// Errors: `invalid_input` (the budget is too short for the reference), `interrupted`.
 [[nodiscard]] Result<CostFrontier> cost_frontier(const CostTask& task, const CostListener& listener,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The 75 % size of an observer that knows the position of the target: analytic, without noise draws. It brackets sizes
-// and feeds the planner of effects. Reported numbers are those of the searching observer.
+// 75 % size for an observer that knows the position of the target: analytic, without noise draws. It brackets sizes and
+// feeds the planner of effects. Reported numbers are those of the searching observer.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@
 
 namespace todbench {
 
-/// S75 over the noise-to-contrast ratio of one sensor and observer. Uses the sizes and the template banks of
-/// direct_estimate(). One thread at a time.
+/// S75 as a function of the noise-to-contrast ratio of one sensor and observer. Uses the sizes and the template banks
+/// of direct_estimate(). One thread at a time.
 ///
 /// Validity (section "Two tiers" of docs/method/effect-planning.md): within 4 % of the searching observer for q up to
 /// 0.1, within 8 % up to 0.35.
@@ -24,16 +24,17 @@ class CuedEstimate {
   CuedEstimate(const SensorSpec& sensor, const SensorPlan& plan, TemplateObserver& observer, SceneMotion motion = {});
 
   /// Sets the contrast at which an observer with an eye sees the target: its noise, which depends on the size, is added
-  /// to that of `q` in all results from then on. Without effect for others.
+  /// to that of `q` in all later results. No effect for observers without an eye.
   void show(double contrast_k) { contrast_k_ = contrast_k; }
-  /// 75 % size in pitches. `q` is the noise per sample over the contrast, internal noise included. `invalid_input` if
-  /// no size from 0.2 to 40 pitches is judged 75 % correct, or if even the smallest is judged better.
+  /// Returns the 75 % size in pitches. `q` is the noise per sample over the contrast, internal noise included. Errors:
+  /// `invalid_input` if no size from 0.2 to 40 pitches reaches 75 % correct, or if even the smallest exceeds it.
   [[nodiscard]] Result<double> s75_pitch(double q);
-  /// d ln S75 / d ln q at q; with an eye by all noise together.
+  /// Returns d ln S75 / d ln q at q. For an observer with an eye, the derivative is by all noise together.
   [[nodiscard]] Result<double> sensitivity(double q);
-  /// Slope b of the Weibull function that rises like the proportion correct at its 75 % size: dP/dlnS = (b/4) ln 3.
+  /// Returns the slope b of the Weibull function with the same slope as the proportion correct at the 75 % size:
+  /// dP/dlnS = (b/4) ln 3.
   [[nodiscard]] Result<double> weibull_slope(double q);
-  /// The size trial next to `size_pitch`.
+  /// Returns the size trial nearest to `size_pitch`.
   [[nodiscard]] Result<const SizeTrial*> trial(double size_pitch);
 
  private:
@@ -49,8 +50,8 @@ class CuedEstimate {
   std::map<int, std::unique_ptr<SizeTrial>> trials_;
 };
 
-/// Discriminability of the orientations behind a sensor, without noise: D^2 = integral of (|F_up - F_down|^2 + |F_up -
-/// F_right|^2) |H|^2 over the frequencies. F is the spectrum of a triangle of `size_pitch`.
+/// Returns the discriminability of the orientations behind a sensor, without noise: D^2 = integral of (|F_up -
+/// F_down|^2 + |F_up - F_right|^2) |H|^2 over the frequencies. F is the spectrum of a triangle of `size_pitch`.
 [[nodiscard]] double discriminability(const SensorSpec& sensor, const SensorPlan& plan, double size_pitch,
                                       int wavelengths, SceneMotion motion = {});
 

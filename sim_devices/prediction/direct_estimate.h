@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The 75 % size of a simulated sensor without trials and without a psychometric form: interpolated proportion correct
-// of the searching observer, averaged over the phases.
+// 75 % size of a simulated sensor without trials and without a psychometric form: interpolated proportion correct of
+// the searching observer, averaged over the phases.
 #pragma once
 
 #include <map>
@@ -16,6 +16,7 @@
 
 namespace todbench {
 
+/// Estimate at one contrast.
 struct DirectPoint {
   double delta_t_k = 0;
   /// Contrast that the observer divides by: the set contrast, or the reading of the camera if its counts are too coarse
@@ -28,27 +29,29 @@ struct DirectPoint {
   int noise_draws = 0;  ///< per size
 };
 
+/// Options of the estimate.
 struct DirectEstimateOptions {
   int samples_per_pitch = 0;  ///< 2: 2x2 microscan; 0: as in the sensor
-  SceneMotion motion{};
+  SceneMotion motion{};       ///< motion of the target
   Accuracy accuracy;
   std::uint64_t seed = 1;
-  ShownOrientations orientations = ShownOrientations::as_needed;
-  /// Temperature of the surround. It determines its place within a count and between the ends of the counts. Empty:
-  /// scene_temperature_k of the sensor.
+  ShownOrientations orientations = ShownOrientations::as_needed;  ///< orientations of the triangles
+  /// Temperature of the surround. It determines the position of the surround within a count and within the range of
+  /// counts. Empty: scene_temperature_k of the sensor.
   std::optional<double> background_k{};
-  /// True contrast of the scene, by the contrast that the camera read. Used only if counts are too coarse or too few. A
-  /// contrast without entry is the true one, and its reading is the expected one.
+  /// True contrast of the scene for each contrast that the camera reported. Used only if counts are too coarse or too
+  /// few. A contrast without an entry is the true contrast; its reading is then the expected reading.
   std::map<double, double> scene_delta_t_k{};
   std::stop_token stop{};  ///< ends with `interrupted` within a few hundredths of a second
 };
 
-/// One point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts. If a count
-/// exceeds the noise (rounds_coarsely()), or if the contrast reaches an end of the counts, the counts of every pixel
-/// are simulated with one projection for each draw and phase, which takes up to sixteen times as long. If the accuracy
-/// demands a standard error, draws are added until it is met. `invalid_input`: the camera's reading of a contrast is 0;
-/// no size between 0.2 and 40 pitches brackets 75 %, so the contrast has no threshold; the demanded standard error
-/// needs more draws than Accuracy::max_noise_draws (the message states the reachable one).
+/// Returns one point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts. If a
+/// count exceeds the noise (rounds_coarsely()), or if the contrast reaches the lowest or highest count, the counts of
+/// every pixel are simulated with one projection for each draw and phase, which takes up to sixteen times as long. If
+/// the accuracy requires a standard error, draws are added until it is met. Errors: `invalid_input` (the camera's
+/// reading of a contrast is 0; no size between 0.2 and 40 pitches brackets 75 %, so the contrast has no threshold; the
+/// required standard error needs more draws than Accuracy::max_noise_draws, in which case the message states the
+/// reachable one).
 [[nodiscard]] Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan,
                                                                TemplateObserver& observer,
                                                                const std::vector<double>& delta_t_k,
@@ -59,17 +62,19 @@ struct ProportionCurve {
   double delta_t_k = 0;
   std::vector<double> sizes_pitch;         ///< increasing, in steps of 8 %
   std::vector<double> proportion_correct;  ///< averaged over phases and noise
-  std::vector<double> standard_error;      ///< of each
+  std::vector<double> standard_error;      ///< standard error of each proportion
 };
 
-/// The function behind direct_estimate(), one curve per contrast, from nearly chance to nearly certain within 0.2 to 40
-/// pitches. Uses the draws of the accuracy and ignores a demanded standard error. Other errors as direct_estimate().
+/// Returns the psychometric functions that direct_estimate() interpolates, one per contrast, from nearly chance to
+/// nearly certain within 0.2 to 40 pitches. Uses the draws of the accuracy and ignores a required standard error. Other
+/// errors as direct_estimate().
 [[nodiscard]] Result<std::vector<ProportionCurve>> proportion_curves(const SensorSpec& spec, const SensorPlan& plan,
                                                                      TemplateObserver& observer,
                                                                      const std::vector<double>& delta_t_k,
                                                                      const DirectEstimateOptions& options);
 
-/// Predicted time for one contrast near `s75_pitch`, on one core with about 2 x 10^10 template samples a second.
+/// Returns the predicted time for one contrast near `s75_pitch`, on one core with about 2 x 10^10 template samples a
+/// second.
 [[nodiscard]] double predicted_direct_seconds(const TemplateObserverSpec& observer, const SensorSpec& sensor,
                                               double s75_pitch, int noise_draws, int phases_per_axis);
 

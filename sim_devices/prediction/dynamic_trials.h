@@ -17,8 +17,9 @@
 
 namespace todbench {
 
+/// Options of the trials.
 struct DynamicTrialOptions {
-  double delta_t_k = 0;               ///< of every triangle; not 0
+  double delta_t_k = 0;               ///< contrast of every triangle; not 0
   std::vector<double> sizes_pitch;    ///< each is shown four times per picture, once in each orientation
   std::vector<double> speeds_mrad_s;  ///< along x, at least 0; passes alternate between right and left
   int passes = 24;                    ///< each with its own sampling phase; at least 2
@@ -26,7 +27,7 @@ struct DynamicTrialOptions {
   Accuracy accuracy;
   std::uint64_t seed = 1;
   /// Stages behind the camera, made anew for every pass; empty: none. Before the first frame of a pass they receive as
-  /// many frames of the same motion as they remember. Their lag is not removed. Contrast and noise are measured behind
+  /// many frames of the same motion as they store. Their lag is not removed. Contrast and noise are measured behind
   /// them, with the plate at rest.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   std::stop_token stop{};
@@ -38,12 +39,12 @@ struct DynamicTrials {
   std::array<std::vector<Level>, all_sequence_observers.size()> levels;  ///< by SequenceObserver
 };
 
-/// Frames are the counts of the simulated camera. Frame k of a pass has the same random numbers at every speed, and
-/// each pass starts in the same sampling phase, so ratios between speeds are paired. The picture has no lag, because
-/// the transfer functions of time constant and exposure have their mean lag removed. A triangle is judged at its place
-/// when its rows are read. Internal noise is drawn once per decision for any number of frames. Errors: `invalid_input`
-/// (options that cannot be met; a sensor with modules, microscan or super-resolution), `interrupted`, errors of the
-/// stages.
+/// Runs the trials. Frames are the counts of the simulated camera. Frame k of a pass has the same random numbers at
+/// every speed, and each pass starts in the same sampling phase, so ratios between speeds are paired. The picture has
+/// no lag, because the transfer functions of time constant and exposure have their mean lag removed. A triangle is
+/// judged at its place when its rows are read. Internal noise is drawn once per decision for any number of frames.
+/// Errors: `invalid_input` (options that cannot be met; a sensor with modules, microscan or super-resolution),
+/// `interrupted`, errors of the stages.
 [[nodiscard]] Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, TemplateObserver& observer,
                                                                 const DynamicTrialOptions& options);
 

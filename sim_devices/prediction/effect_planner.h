@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides before a simulation which effects a scene needs.
+// Planner that decides before a simulation which effects a scene needs.
 #pragma once
 
 #include <deque>
@@ -22,6 +22,7 @@ struct EffectScene {
   bool operator==(const EffectScene&) const = default;
 };
 
+/// Options of the planner.
 struct EffectPlannerOptions {
   double tolerance_percent = 1;     ///< allowed change of the 75 % acuity by all skipped effects together
   std::vector<Effect> skip, force;  ///< override the prediction; the reasons state it
@@ -31,13 +32,14 @@ struct EffectPlannerOptions {
 struct ContrastOutlook {
   double delta_t_k = 0;
   double q_eff = 0;              ///< white noise per sample over the contrast, internal noise included
-  double s75_pitch = 0;          ///< of the observer that knows the position
+  double s75_pitch = 0;          ///< S75 of the observer that knows the position
   double noise_exponent = 0;     ///< d ln S75 / d ln q_eff
   double blur_exponent = 0;      ///< d ln D / d ln S
   double observer_variance = 0;  ///< share of the observer's own noise (internal, or of the eye) in q_eff squared
-  double weibull_slope = 0;      ///< of the psychometric function of that observer, at 75 %
+  double weibull_slope = 0;      ///< slope of the psychometric function of that observer, at 75 %
 };
 
+/// Decisions of the planner, with the predictions behind them.
 struct EffectPlan {
   SensorPlan plan;                        ///< one decision per effect, in chain order
   double skipped_change_percent = 0;      ///< bound for all effects together that the criteria skip
@@ -61,12 +63,12 @@ struct SceneSurvey {
 
 /// Decides which effects are skipped, by the criteria of docs/method/effect-planning.md. The change by skipping an
 /// effect is bounded at every contrast, and the largest bound counts. The effects with the smallest bounds are skipped
-/// as long as their sum is within four fifths of the tolerance; the rest is for numerical errors. Detector footprint,
-/// microscan, super-resolution and motion by half a pitch or more per time constant have no criterion and are always
-/// simulated. All effects are simulated if a contrast of the scene has no threshold, or if counts are too coarse or too
-/// few. Takes microseconds. `invalid_input`: no contrast has a threshold.
+/// as long as their sum is within four fifths of the tolerance; the rest is reserved for numerical errors. Detector
+/// footprint, microscan, super-resolution and motion by half a pitch or more per time constant have no criterion and
+/// are always simulated. All effects are simulated if a contrast of the scene has no threshold, or if counts are too
+/// coarse or too few. Takes microseconds. Errors: `invalid_input` (no contrast has a threshold).
 [[nodiscard]] Result<EffectPlan> plan_effects(const SceneSurvey& survey, const EffectPlannerOptions& options);
-/// Survey and decisions together.
+/// Runs survey_scene() and plan_effects() on its result.
 [[nodiscard]] Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer,
                                               const EffectScene& scene, const EffectPlannerOptions& options);
 
@@ -74,7 +76,7 @@ struct SceneSurvey {
 /// a request that arrives during a survey waits for it.
 class EffectPlanner {
  public:
-  /// As plan_effects() with a new observer.
+  /// Plans the effects as plan_effects() does, with a new observer.
   [[nodiscard]] Result<EffectPlan> plan(const SensorSpec& sensor, const TemplateObserverSpec& observer,
                                         const EffectScene& scene, const EffectPlannerOptions& options);
 

@@ -20,22 +20,23 @@ struct FormulaConditions {
   double alpha_root_hz = 169.6;   ///< calibration of noise in the TTP model of 2004
 };
 
-/// Input of the MRTD formula for a sensor: samples with microscan, averaged frames, fixed pattern as vh, row noise as
-/// tv and column noise as th. `invalid_input` for a sensor without temporal noise.
+/// Returns the input of the MRTD formula for a sensor: samples with microscan, averaged frames, fixed pattern as vh,
+/// row noise as tv and column noise as th. Errors: `invalid_input` for a sensor without temporal noise.
 [[nodiscard]] Result<MrtdFormula> mrtd_formula_of(const SensorSpec& spec, const FormulaConditions& conditions);
 
+/// Curves of both axes.
 struct AxisCurves {
   LogLinearCurve horizontal, vertical;
 };
-/// MRTD in kelvin over cycles/mrad, from 1 % of the Nyquist frequency of the sampling to the Nyquist frequency, at
-/// which it is cut by definition. Contains the MTF of optics and detector, but not display and eye.
+/// Returns the MRTD in kelvin over cycles/mrad, from 1 % of the Nyquist frequency of the sampling to the Nyquist
+/// frequency, at which it is cut by definition. Contains the MTF of optics and detector, but not display and eye.
 [[nodiscard]] Result<AxisCurves> mrtd_curves(const SensorSpec& spec, const FormulaConditions& conditions);
-/// MTDP-like curve: continues beyond Nyquist as long as at least two bars are resolved at the best phase and the
-/// modulation is above 1 %.
+/// Returns the MTDP-like curve: continues beyond Nyquist as long as at least two bars are resolved at the best phase
+/// and the modulation is above 1 %.
 [[nodiscard]] Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions);
-/// Contrast threshold of the system over cycles/mrad, up to Nyquist: eye / (display x sensor MTF) x sqrt(1 + alpha^2
-/// sigma^2 / S^2), as in the TTP model of 2004. sigma is the noise behind the eye's channel exp(-2.2 ln^2). Geometric
-/// mean of the axes.
+/// Returns the contrast threshold of the system over cycles/mrad, up to Nyquist: eye / (display x sensor MTF) x sqrt(1
+/// + alpha^2 sigma^2 / S^2), as in the TTP model of 2004. sigma is the noise behind the eye's channel exp(-2.2 ln^2).
+/// Geometric mean of the axes.
 [[nodiscard]] Result<LogLinearCurve> system_ctf(const SensorSpec& spec, const FormulaConditions& conditions);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Identification experiment: an observer distinguishes the targets of a set behind a simulated camera.
+// Identification experiment: an observer discriminates the targets of a set behind a simulated camera.
 #pragma once
 
 #include <array>
@@ -23,71 +23,74 @@
 
 namespace todbench {
 
+/// Range with the transmittance of its air.
 struct IdentificationRange {
   double range_m = 100;
   double transmittance = 1;
 };
 
-/// The observer's knowledge of its targets.
+/// Pictures of the targets that the observer uses as templates.
 enum class TemplateKnowledge {
-  behind_camera,          ///< pictures behind this camera in this motion, as people have who learned from them
+  behind_camera,          ///< pictures behind this camera in this motion, as for people who learned from them
   behind_camera_at_rest,  ///< pictures behind this camera without motion
-  ideal                   ///< ideal pictures only: blur then makes targets look like others
+  ideal                   ///< ideal pictures only: blur then makes targets similar to others
 };
 /// Differences between the targets.
 enum class TargetCues {
   all,   ///< shape, size and temperature pattern
-  shape  ///< every view has its dT_RSS uniformly, and the mean size of the set
+  shape  ///< every view has its dT_RSS uniformly over its shape, and the mean size of the set
 };
 
-/// Uses of the frames of a pass that identify() has.
+/// Uses of the frames of a pass that identify() supports.
 inline constexpr std::array identification_sequences{SequenceObserver::single_frame, SequenceObserver::tracking_sum,
                                                      SequenceObserver::static_sum};
 
+/// Experiment to simulate.
 struct IdentificationTask {
   SensorSpec sensor;
-  SensorPlan plan;  ///< of effects
+  SensorPlan plan;  ///< planned effects
   TemplateObserverSpec observer{};
   Accuracy accuracy{};
-  std::vector<IdentificationTarget> targets;
-  std::vector<IdentificationRange> ranges;
-  TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
-  TargetCues cues = TargetCues::all;
-  int decisions = 2000;  ///< per target and range, all aspects together
-  /// Of the targets in the picture: they move, or the camera turns. The plan must be made for it.
+  std::vector<IdentificationTarget> targets;                       ///< targets that the observer discriminates
+  std::vector<IdentificationRange> ranges;                         ///< ranges with their air
+  TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;  ///< pictures that the observer uses as templates
+  TargetCues cues = TargetCues::all;                               ///< differences between the targets
+  int decisions = 2000;                                            ///< per target and range, all aspects together
+  /// Motion of the targets in the picture: they move, or the camera turns. The effects must be planned for it.
   SceneMotion motion{};
   /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
   SequenceObserver sequence = SequenceObserver::single_frame;  ///< one of `identification_sequences`
-  int frames = 8;                                              ///< of a pass; a single frame ignores them
+  int frames = 8;                                              ///< frames of a pass; not used for a single frame
   /// Stages behind the camera, made anew for every pass if they have a memory; empty: none. Before the first frame of a
-  /// pass they receive as many frames of the same motion as they remember. Their lag is not removed.
+  /// pass they receive as many frames of the same motion as they store. Their lag is not removed.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   /// Largest distance, in samples, over which a picture influences a sample behind the stages; empty: the whole picture
   /// does.
   std::optional<int> stage_reach_px{};
-  /// Turbulence along the path of each range, instead of that of the sensor; 0: as in the sensor. The plan must
-  /// simulate it. An observer with knowledge behind the camera also knows the targets behind this air.
+  /// Cn2 of the turbulence along the path of each range, instead of that of the sensor; 0: as in the sensor. The plan
+  /// must simulate turbulence. The templates of an observer with knowledge behind the camera include this air.
   double cn2_m_minus_2_3 = 0;
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
 
-/// Sensor of the task at a range, as planned.
+/// Returns the sensor of the task at a range, as planned.
 [[nodiscard]] SensorSpec sensor_at(const IdentificationTask& task, double range_m);
 
 /// Contrast and noise of the pictures behind the stages, measured in pictures at rest.
 struct JudgedPictures {
-  double gain = 1;  ///< of the contrast of all views together; judged pictures are divided by it
-  double least_gain = 1, largest_gain = 1;  ///< of single views
+  double gain = 1;  ///< gain of the contrast of all views together; judged pictures are divided by it
+  double least_gain = 1, largest_gain = 1;  ///< smallest and largest gain of a single view
   double noise_k = 0;                       ///< temporal noise of a sample, divided by the gain: mean over the views
 };
 
+/// Result at one range.
 struct IdentificationPoint {
   double range_m = 0, transmittance = 1;
   std::vector<std::vector<int>> answers;  ///< [shown][answered]
   /// Share of correct answers for each draw of noise. Draws are independent; targets and aspects share them.
   std::vector<double> by_draw;
-  /// Proportion correct of an observer with an eye at the worst and the best end of the range of its open parameters.
+  /// Proportion correct of an observer with an eye, for the worst and the best values of its open parameters.
   std::optional<std::pair<double, double>> spread{};
   std::optional<JudgedPictures> judged{};  ///< with stages
   [[nodiscard]] double proportion() const;
@@ -103,33 +106,33 @@ struct IdentificationEffort {
 /// Predicts the effort without computing. Errors: those of identify() about the targets.
 [[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);
 
-/// One point per range, in the same order. Every target in every aspect meets each draw of sensor and internal noise,
-/// in one of 16 sampling phases that the draws take in turn. Internal noise and the enlargement of the sensor's noise
-/// are those of the template observer; the contrast is dT_RSS behind the air, and an observer with an eye sees it at
-/// the luminance contrast of its display. A target in motion is judged at its true place, without the mean lag of time
-/// constant and exposure, and each row at its time, as in dynamic_trials().
+/// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor and
+/// internal noise, in one of 16 sampling phases that change from draw to draw. Internal noise and the enlargement of
+/// the sensor's noise are those of the template observer; the contrast is dT_RSS behind the air, and for an observer
+/// with an eye it is converted to the luminance contrast of its display. A target in motion is judged at its true
+/// place, without the mean lag of time constant and exposure, and each row at its time, as in dynamic_trials().
 ///
 /// Stages receive rounded and clipped counts: of the window and its surround, or of the whole picture if a stage needs
 /// it. The contrast of a view, to which internal noise is relative, and the noise that the observer enlarges are those
-/// of the judged pictures; so a gain changes nothing. The observer knows its targets without the stages. Ranges run in
-/// parallel on all processors, and the result does not depend on their number. Dead detectors are left out. Counts are
-/// rounded with the noise, not with the signal. Errors: `invalid_input` (fewer than two targets, targets that look
-/// alike from every side, a target without contrast, counts too coarse for the noise, targets too large for the
+/// of the judged pictures, so a gain has no effect. The templates of the observer do not include the stages. Ranges run
+/// in parallel on all processors, and the result does not depend on their number. Dead detectors are left out. Counts
+/// are rounded with the noise, not with the signal. Errors: `invalid_input` (fewer than two targets, targets that are
+/// equal from every side, a target without contrast, counts too coarse for the noise, targets too large for the
 /// observer, more than 5 pixels per frame, motion in front of microscan or super-resolution, several frames with image
-/// dance, targets that do not fit into the picture of a stage, contrasts that reach an end of the counts),
+/// dance, targets that do not fit into the picture of a stage, contrasts that reach the lowest or highest count),
 /// `not_identifiable` (no contrast behind the stages), `interrupted`, errors of the stages.
 [[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
 
 /// Pictures of identify() for another observer. Immutable, thread-safe.
 class IdentificationFrames {
  public:
-  /// Errors: those of identify() about the targets.
+  /// Prepares the pictures of a task. Errors: those of identify() about the targets.
   [[nodiscard]] static Result<IdentificationFrames> of(const IdentificationTask& task);
-  /// Displayed kelvin above the background, with the noise of this draw and its sampling phase for this view, as in
-  /// identify() of the same task. All frames of a range have one size. Errors: those of the stages.
+  /// Returns displayed kelvin above the background, with the noise of this draw and its sampling phase for this view,
+  /// as in identify() of the same task. All frames of a range have one size. Errors: those of the stages.
   [[nodiscard]] Result<cv::Mat1f> frame_k(std::size_t range, std::size_t target, std::size_t aspect,
                                           std::uint64_t draw) const;
-  /// Contrast dT_RSS behind the air.
+  /// Returns the contrast dT_RSS behind the air.
   [[nodiscard]] double contrast_k(std::size_t range, std::size_t target, std::size_t aspect) const;
 
  private:

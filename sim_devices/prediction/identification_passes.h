@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passes of the targets of an identification experiment: successive frames round a target that moves, behind the
-// stages.
+// Passes of the targets of an identification experiment: successive frames round a moving target, behind the stages.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +18,13 @@
 
 namespace todbench {
 
-/// The picture without its mean.
+/// Returns the picture without its mean.
 [[nodiscard]] cv::Mat1d without_mean(const cv::Mat& picture);
 
-/// Displacement of the target from frame to frame, in displayed samples.
+/// Returns the displacement of the target from frame to frame, in displayed samples.
 [[nodiscard]] cv::Point2d step_of_pass(const SensorSpec& spec, SceneMotion motion);
-/// Error: `invalid_input` in one sentence for a motion or a sequence of frames that the experiment does not simulate.
+/// Fails with `invalid_input` and one sentence for a motion or a sequence of frames that the experiment does not
+/// simulate.
 [[nodiscard]] Result<void> check_passes(const IdentificationTask& task);
 
 /// Window round the target in one frame. `phase`: place of the target from the middle of the window, in samples.
@@ -33,7 +33,8 @@ struct PassWindow {
   cv::Point2d phase;
 };
 
-/// Contrast of a view and noise behind the stages, relative to those in front of them, after division by the gain.
+/// Contrast of a view and noise behind the stages, after division by the gain, relative to the values before the
+/// stages.
 struct ViewScale {
   double contrast = 1, noise = 1;
 };
@@ -41,25 +42,28 @@ struct ViewScale {
 /// Passes at one range. Thread-safe.
 class IdentificationPasses {
  public:
-  /// `spec` is the sensor of the range as planned; `shown` are the targets in displayed samples. `window` outlives the
-  /// object, as does the task. Errors: those of identify() about stages.
+  /// Prepares the passes. `spec` is the sensor of the range as planned; `shown` are the targets in displayed samples.
+  /// `window` outlives the object, as does the task. Errors: those of identify() about stages.
   [[nodiscard]] static Result<std::unique_ptr<const IdentificationPasses>> of(
       const IdentificationTask& task, const SensorSpec& spec, const SeenWindow& window, double transmittance,
       std::vector<AlternativeAspects> shown, int side);
 
   /// The target of a view in every frame of a pass, without noise.
   struct Signals {
-    std::vector<cv::Mat1f> frames;    ///< also those in front of the pass that the stages remember
-    std::vector<cv::Point> corners;   ///< of each in the picture
-    std::vector<cv::Point2d> places;  ///< of the target from the middle of the picture, in samples
+    std::vector<cv::Mat1f> frames;    ///< including the frames before the pass that the stages store
+    std::vector<cv::Point> corners;   ///< corner of each frame in the picture
+    std::vector<cv::Point2d> places;  ///< place of the target from the middle of the picture, in samples
   };
+  /// Returns the frames of a pass of this view and sampling phase.
   [[nodiscard]] Signals signals(std::size_t target, std::size_t aspect, std::size_t phase) const;
-  /// Windows that the observer of the task judges, with the noise of a draw: the first frame, all frames, or their mean
-  /// at the place in the middle of the pass. In kelvin of the judged contrast. Errors: those of the stages.
+  /// Returns the windows that the observer of the task judges, with the noise of a draw: the first frame, all frames,
+  /// or their mean at the place in the middle of the pass. In kelvin of the judged contrast. Errors: those of the
+  /// stages.
   [[nodiscard]] Result<std::vector<PassWindow>> windows(const Signals& signals, std::uint64_t draw) const;
 
+  /// Returns the scale of a view.
   [[nodiscard]] ViewScale scale(std::size_t target, std::size_t aspect) const { return scales_[target][aspect]; }
-  /// Empty without stages.
+  /// Returns contrast and noise behind the stages; empty without stages.
   [[nodiscard]] const std::optional<JudgedPictures>& judged() const { return judged_; }
 
  private:
@@ -70,7 +74,7 @@ class IdentificationPasses {
   /// A view behind the stages against the same in front of them, by least squares over the window.
   struct ViewGain {
     double product = 0, energy = 0;  ///< the gain is their ratio
-    double variance = 0;             ///< of the product
+    double variance = 0;             ///< variance of the product
     double noise_ratio = 1;
     [[nodiscard]] double gain() const { return product / energy; }
   };
@@ -79,7 +83,7 @@ class IdentificationPasses {
                                          const std::vector<cv::Mat1f>& empty) const;
   /// Middle of a window as place of the nearest sample to `place`.
   [[nodiscard]] cv::Rect window_at(cv::Point2d place) const;
-  /// Adds the targets to the noise and passes the frames through the stages; without the frames in front of the pass.
+  /// Adds the targets to the noise, passes the frames through the stages, and returns those of the pass.
   [[nodiscard]] Result<std::vector<cv::Mat1f>> shown_frames(std::vector<cv::Mat1f> noise, const Signals& signals) const;
   [[nodiscard]] Result<void> through_stages(std::vector<cv::Mat1f>& frames) const;
 
@@ -99,12 +103,14 @@ class IdentificationPasses {
   mutable std::vector<std::unique_ptr<ChainStage>> without_memory_;  ///< kept from pass to pass
 };
 
-/// Search that can be centred on any true place between two samples: half a sample further than that of the observer.
+/// Returns the observer with a search that is half a sample wider, so that it can be centred on any true place between
+/// two samples.
 [[nodiscard]] TemplateObserverSpec searching_at_true_places(TemplateObserverSpec spec);
-/// Adds `share` times the scores of such a search, centred on `phase`, to those of the observer's own search.
+/// Adds `share` times the scores `wide` of searching_at_true_places(), centred on `phase`, to the scores `own` of the
+/// observer's own search.
 void add_centred(const TemplateObserverSpec& spec, std::span<const float> wide, cv::Point2d phase, float share,
                  std::span<float> own);
-/// Number of templates of a view that the observer's own search compares.
+/// Returns the number of templates of a view that the observer's own search compares.
 [[nodiscard]] std::size_t places_of_search(const TemplateObserverSpec& spec);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views of the targets of an identification experiment: edges, contrasts, sampling phases.
+// Views of the targets of an identification experiment: edges, contrasts and sampling phases.
 #pragma once
 
 #include <cstddef>
@@ -23,20 +23,20 @@ struct SeenAspect {
 };
 using SeenTargets = std::vector<std::vector<SeenAspect>>;
 
-/// Views of a task by target and aspect. Errors: those of identify() about the targets.
+/// Returns the views of a task by target and aspect. Errors: those of identify() about the targets.
 [[nodiscard]] Result<SeenTargets> seen_targets(const IdentificationTask& task);
 
-/// First of the draws that show a view in a phase; every identification_phases-th draw follows. Views begin with
+/// Returns the first draw that shows a view in a phase; every identification_phases-th draw follows. Views begin with
 /// different phases.
 [[nodiscard]] std::size_t first_draw_of(std::size_t phase, std::size_t target, std::size_t aspect);
-/// Offset of a target's origin from the middle of the window, in samples.
+/// Returns the offset of a target's origin from the middle of the window, in samples.
 [[nodiscard]] cv::Point2d view_offset(std::size_t phase);
-/// Number of a picture without noise, unique for the image dance.
+/// Returns the number of a picture without noise, unique for the image dance.
 [[nodiscard]] std::uint64_t presentation_of(std::size_t phase, std::size_t target, std::size_t aspect);
 
-/// Displayed samples to the metre.
+/// Returns the number of displayed samples per metre.
 [[nodiscard]] double samples_per_metre(const SensorSpec& spec, const IdentificationRange& range);
-/// Edges in displayed samples near the origin, sheared and stretched by sequential readout in this motion.
+/// Returns the edges in displayed samples near the origin, sheared and stretched by sequential readout in this motion.
 [[nodiscard]] std::vector<AlternativeAspects> in_samples(const SeenTargets& targets, double samples_per_metre,
                                                          const SensorSpec& spec, SceneMotion motion);
 

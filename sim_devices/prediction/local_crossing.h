@@ -9,15 +9,16 @@
 
 namespace todbench {
 
-/// Point at which the local quadratic in ln((P - 0.25) / (1 - P)), which is nearly straight in ln size, equals ln 2.
+/// Point in ln size at which the local quadratic in ln((P - 0.25) / (1 - P)) equals ln 2. This transform of the
+/// proportion correct P is nearly straight in ln size.
 struct Crossing {
   double x = 0, standard_error = 0;  ///< in ln size, like `xs`
 };
 
-/// `xs`: ln size, increasing in equal steps; at least four, about the crossing. Sizes have the weight 1 - (d / 3)^2, d
-/// steps from the crossing, which is found by iteration: the choice of sizes does not move it. The standard error
-/// propagates the variances between draws through the fit and its weights. Empty if the proportion does not rise
-/// through 75 % there.
+/// Finds the crossing. `xs`: ln size, increasing in equal steps, at least four, around the crossing. A size at a
+/// distance of d steps from the crossing has the weight max(0.001, 1 - (d / 3)^2). Crossing and weights are found
+/// together by iteration, so that the result hardly depends on the choice of sizes. The standard error propagates the
+/// variances between draws through the fit and its weights. Empty if the proportion does not rise through 75 % there.
 [[nodiscard]] std::optional<Crossing> local_crossing(const std::vector<double>& xs, const std::vector<Proportion>& ps);
 
 }  // namespace todbench

@@ -12,23 +12,25 @@
 
 namespace todbench {
 
+/// Conditions of the test pictures.
 struct ModuleResponseOptions {
-  double delta_t_k = 0;  ///< contrast of the test pictures
-  double distance_m = 0;
-  double min_reference_px = 0;
-  RegistrationOptions registration{};
-  LevelEstimate level = LevelEstimate::median;
+  double delta_t_k = 0;                         ///< contrast of the test pictures
+  double distance_m = 0;                        ///< distance from camera to plate
+  double min_reference_px = 0;                  ///< smallest triangle that measures the contrast
+  RegistrationOptions registration{};           ///< options of the registration of the plate
+  LevelEstimate level = LevelEstimate::median;  ///< estimate of the level of a triangle
 };
 
-/// As contrast_response(): pictures of a separate process minus its answers to an empty scene in the same frames, over
-/// the contrast. Noise that is a function of the frame cancels. Errors: those of ModuleSensor, register_plate() and
-/// effective_contrast(); `interrupted`. Precondition: sensor_module(spec).
+/// Returns the response as contrast_response() does. The pictures come from a separate process; its output for an empty
+/// scene in the same frames is subtracted, and the difference is divided by the contrast. Noise that depends only on
+/// the frame cancels. Errors: those of ModuleSensor, register_plate() and effective_contrast(); `interrupted`.
+/// Precondition: sensor_module(spec).
 [[nodiscard]] Result<double> module_response(const SensorSpec& spec, std::uint64_t seed, const TargetPlate& plate,
                                              const ModuleResponseOptions& options, std::stop_token stop = {});
 
-/// Modulus of the transfer function of the whole image formation along x, at frequencies in cycles per pitch. It is the
-/// Fourier transform of the difference between pictures of a 1 K edge at places one scene sample apart, for four places
-/// within a pitch, averaged over all rows. Errors: those of ModuleSensor.
+/// Returns the modulus of the transfer function of the whole image formation along x, at frequencies in cycles per
+/// pitch. It is the Fourier transform of the difference between pictures of a 1 K edge at places one scene sample
+/// apart, for four places within a pitch, averaged over all rows. Errors: those of ModuleSensor.
 [[nodiscard]] Result<std::vector<double>> module_transfer(ModuleSensor& sensor, const SensorSpec& spec,
                                                           const std::vector<double>& cycles_per_pitch);
 

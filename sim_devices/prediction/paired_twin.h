@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The twin in front of the same presentations that a camera answered: the other half of a paired comparison.
+// Answers of the twin to the presentations that a camera showed: the second half of a paired comparison.
 #pragma once
 
 #include <cstdint>
@@ -22,15 +22,16 @@ namespace todbench {
 /// Rotations by plate and mounting, clockwise in the picture, as registered; a missing entry is 0.
 using PlateRotations = std::map<std::pair<std::string, Mounting>, double>;
 
+/// Options of twin_answers().
 struct PairedTwinOptions {
   static constexpr int default_draws = 24;
-  int draws = default_draws;  ///< pictures of each presentation with independent noise; at least 2
-  int graded_draws = 32;      ///< draws of the observer's internal noise for each picture
-  PlateRotations rotations_deg{};
-  SceneMotion motion{};
+  int draws = default_draws;       ///< pictures of each presentation with independent noise; at least 2
+  int graded_draws = 32;           ///< draws of the observer's internal noise for each picture
+  PlateRotations rotations_deg{};  ///< rotations of the plates in the pictures of the camera
+  SceneMotion motion{};            ///< motion of the target
   Accuracy accuracy{};
-  /// May equal the seed of the camera's own simulation: temporal noise, fixed pattern and the observer's noise use
-  /// streams of their own.
+  /// Seed. It may equal the seed of the camera's own simulation, because temporal noise, fixed pattern and the
+  /// observer's noise use separate streams.
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
@@ -38,7 +39,7 @@ struct PairedTwinOptions {
 /// Answer of the twin to the presentation of a trial.
 struct TwinAnswer {
   double probability_correct = 0;  ///< mean over the pictures
-  double variance = 0;             ///< of that mean, from the scatter over the pictures
+  double variance = 0;             ///< variance of that mean, from the scatter over the pictures
 };
 
 /// Shows every trial to the simulated sensor as the camera had it: sub-pixel phase of the triangle, rotation of the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ways of using one draw of white noise: turned and mirrored pictures of noise are equally probable.
+// Repeated use of one draw of white noise: turned and mirrored pictures of noise are equally probable.
 #pragma once
 
 #include <array>
@@ -11,19 +11,19 @@
 
 namespace todbench {
 
-/// Turns and mirrors noise after its projection: turned noise has the same scores, exchanged between the templates.
-/// The four triangles at a square of places allow eight ways; a bank without this symmetry allows one, the noise as it
-/// is. One thread at a time.
+/// Turns and mirrors noise after its projection. Turned noise has the same scores, exchanged between the templates. The
+/// four triangles at a square of places allow eight turns; a bank without this symmetry allows only the unchanged
+/// noise. One thread at a time.
 class ScoreTurns {
  public:
   /// Tests the symmetry on templates of the bank.
   explicit ScoreTurns(const TemplateBank& bank);
 
-  /// Number of ways, 8 or 1. The first four turn by 0 to 3 quarters; the others do so and mirror.
+  /// Returns the number of turns, 8 or 1. The first four rotate by 0 to 3 quarters; the other four also mirror.
   [[nodiscard]] std::size_t size() const { return turns_.size(); }
-  /// Takes the scores of a draw. They must outlive the calls of turned().
+  /// Sets the scores of a draw, which must outlive the calls of turned().
   void begin(std::span<const float> scores);
-  /// Writes the scores in way `turn` to `out`, which has as many elements.
+  /// Writes the scores after turn number `turn` to `out`, which has as many elements.
   void turned(std::size_t turn, std::span<float> out) const;
 
  private:

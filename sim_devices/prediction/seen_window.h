@@ -12,20 +12,20 @@
 
 namespace todbench {
 
-/// Renders the displayed picture of a target for one camera. Immutable, thread-safe.
+/// Renderer of the displayed picture of a target for one camera. Immutable, thread-safe.
 class SeenWindow {
  public:
   /// Precondition: `spec` is as_planned(). `imager` outlives the object.
   SeenWindow(const SensorSpec& spec, const SceneImager& imager);
-  /// Picture of edges in samples round the origin, which lies `offset` from the middle of the window. Steps are
-  /// multiplied by `factor`. With image dance, the target is displaced as in presentation `number`.
+  /// Returns the picture of edges in samples round the origin, which lies `offset` from the middle of the window. Steps
+  /// are multiplied by `factor`. With image dance, the target is displaced as in presentation `number`.
   [[nodiscard]] cv::Mat1f picture(const std::vector<StepEdge>& edges, int window_samples, cv::Point2d offset,
                                   double factor, std::uint64_t number) const;
 
  private:
   SensorSpec spec_;
   const SceneImager* imager_;
-  std::vector<double> taps_;  ///< of the display
+  std::vector<double> taps_;  ///< taps of the display
 };
 
 }  // namespace todbench

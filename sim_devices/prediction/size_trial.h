@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One target size with a simulated sensor and a searching observer: proportion correct without frames.
+// Proportion correct for one target size with a simulated sensor and a searching observer, without frames.
 #pragma once
 
 #include <array>
@@ -27,10 +27,10 @@ struct Proportion {
 /// Orientations that are shown.
 enum class ShownOrientations {
   as_needed,  ///< one represents all four if no effect depends on direction
-  all,        ///< for comparisons draw by draw between conditions that need one and conditions that need all
+  all,        ///< for comparisons draw by draw between conditions of which only some need all four
 };
 
-/// Error: `invalid_input` if the samples of the observer do not have the shape of the sensor's pixels.
+/// Fails with `invalid_input` if the samples of the observer do not have the shape of the pixels of the sensor.
 [[nodiscard]] Result<void> check_sample_shape(const SensorSpec& sensor, const TemplateObserverSpec& observer);
 
 /// Conditions that all sizes and contrasts share.
@@ -41,10 +41,10 @@ struct TrialConditions {
   int phases_per_axis = 8;  ///< per pitch
   double search_step_samples = 0.125;
   ShownOrientations orientations = ShownOrientations::as_needed;
-  bool by_pixels = false;  ///< pixel_proportion() will be called
+  bool by_pixels = false;  ///< required for pixel_proportion()
 };
 
-/// One contrast of a camera with counts that are too coarse or too few for it.
+/// One contrast of a camera whose counts are too coarse or too few for this contrast.
 struct PixelContrast {
   double scene_k = 0;     ///< true contrast, triangle minus surround
   double seen_k = 0;      ///< reading of the camera, which the observer divides by
@@ -56,38 +56,40 @@ struct PixelContrast {
 /// White noise per sample, relative to the contrast.
 struct WhiteNoise {
   double sensor = 0;    ///< temporal, averaged, plus quantisation; filtered by the display
-  double internal = 0;  ///< of the observer
+  double internal = 0;  ///< noise of the observer
 };
 
 /// Responses to the signal for every sampling phase, and projected noise. Each is computed once and shared by the
 /// contrasts. Every kind of noise has its own random numbers, so leaving one out does not change another. White noise
-/// is equally probable turned, mirrored or negated, and its scores are then those with exchanged templates: each draw
-/// is used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
+/// that is turned, mirrored or negated is equally probable, and its scores are those of exchanged templates. Each draw
+/// is therefore used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
 class SizeTrial {
  public:
   SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
             const TrialConditions& conditions, RandomStream stream);
 
-  /// Proportion correct at a contrast of `contrast_k` > 0, to which `white` is relative.
+  /// Returns the proportion correct at a contrast of `contrast_k` > 0, to which `white` is relative.
   [[nodiscard]] Proportion proportion(const WhiteNoise& white, double contrast_k, int draws);
 
-  /// The same with the counts of the sensor: every pixel of every trial is rounded and clipped. Each draw is used in as
-  /// many sampling phases as an axis has, all phases in turn; there are twice as many phases as without rounding.
-  /// Precondition: conditions.by_pixels.
+  /// Returns the proportion correct with the counts of the sensor: every pixel of every trial is rounded and clipped.
+  /// Each draw is used in as many sampling phases as an axis has, all phases in turn; there are twice as many phases as
+  /// without rounding. Precondition: conditions.by_pixels.
   [[nodiscard]] Proportion pixel_proportion(const PixelContrast& contrast, int draws);
 
-  /// Proportion correct of an observer that knows the position (to half a search step) in white noise of sd `noise`
-  /// relative to the contrast, and noise of the eye of sd `eye_sd` in a score. Exact, without draws (known_position.h).
+  /// Returns the proportion correct of an observer that knows the position (to half a search step) in white noise of sd
+  /// `noise` relative to the contrast, and noise of the eye of sd `eye_sd` in a score. Exact, without draws
+  /// (known_position.h).
   [[nodiscard]] double known_position_proportion(double noise, int nodes, double eye_sd = 0) const;
 
-  /// Variance of the score difference between the true template and another, for numbers of sd 1 that samples share as
-  /// stated, over that for white noise of sd 1. The largest over the alternatives, at the middle of the search.
+  /// Returns the variance of the score difference between the true template and another, for numbers of sd 1 that
+  /// samples share as stated, over that for white noise of sd 1. Returns the largest value over the alternatives, at
+  /// the middle of the search.
   [[nodiscard]] double variance_ratio(SharedBy shared) const;
-  /// Standard deviation of the noise of the eye in a score, in units of the contrast. 0 without an eye.
+  /// Returns the standard deviation of the noise of the eye in a score, in units of the contrast. 0 without an eye.
   [[nodiscard]] double eye_sd(double contrast_k) const;
-  /// Variance per sample of the white noise that moves a score difference as much as the noise of the observer's eye,
-  /// in units of the contrast squared; the smallest over the pairs of alternatives, at the middle of the search. 0
-  /// without an eye.
+  /// Returns the variance per sample of the white noise that moves a score difference as much as the noise of the
+  /// observer's eye, in units of the contrast squared; the smallest over the pairs of alternatives, at the middle of
+  /// the search. 0 without an eye.
   [[nodiscard]] double eye_variance(double contrast_k) const;
 
  private:
@@ -97,7 +99,7 @@ class SizeTrial {
     int truth = 0;              ///< the alternative that is shown
     int place = 0;              ///< search place next to the true position
     std::vector<float> patch;   ///< samples; only with dead detectors or by_pixels
-    std::vector<float> scores;  ///< of all templates
+    std::vector<float> scores;  ///< scores of all templates
     cv::Mat1f before_display;   ///< samples with a margin for the display's taps; only with by_pixels
   };
   /// Result of one trial of pixel_proportion(): 1, 0, or the fair share of a tie.

@@ -9,15 +9,15 @@
 
 namespace todbench {
 
-/// At this distance a millimetre is a milliradian.
+/// Distance at which a millimetre is a milliradian.
 inline constexpr double trial_distance_m = 1;
 
-/// Four orientations of every size in turn, triangle t of size t / 4, two sizes in a row. Cells are wide enough that no
-/// window contains a neighbour. They are followed by four large triangles of the same contrast, above and below, which
-/// serve the registration like the edges of a plate. Precondition: at least one size.
+/// Returns a plate with four orientations of every size in turn (triangle t has size number t / 4), two sizes in a row.
+/// The cells are so wide that no window contains a neighbour. Four large triangles of the same contrast follow, above
+/// and below; the registration uses them like the edges of a plate. Precondition: at least one size.
 [[nodiscard]] TargetPlate trial_plate(const std::vector<double>& sizes_pitch, double ifov_mrad);
 
-/// The part of the camera that the plate fills, with `margin_px` on every side. Pixels outside all windows only take
+/// Returns the sensor cropped to the plate, with `margin_px` on every side. Pixels outside all windows would only cost
 /// time.
 [[nodiscard]] SensorSpec cropped_to(SensorSpec sensor, const TargetPlate& plate, int margin_px);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Zoom and viewing distance at which display and eye hardly cost acuity.
+// Zoom and viewing distance at which display and eye reduce the acuity only slightly.
 #pragma once
 
 #include <stop_token>
@@ -11,9 +11,10 @@
 
 namespace todbench {
 
-/// Most acuity that the size of the picture at the eye may cost, in percent.
+/// Largest loss of acuity by the size of the picture at the eye, in percent.
 inline constexpr double viewing_cost_percent = 1;
 
+/// Proposed zoom and distance.
 struct ViewingProposal {
   double stated_arcmin = 0;        ///< per displayed sample, of the stated display
   double stated_cost_percent = 0;  ///< S75 of the stated display over that of a large picture
@@ -30,7 +31,8 @@ struct ViewingProposal {
                                                       const TemplateObserverSpec& observer, double delta_t_k,
                                                       std::stop_token stop);
 
-/// "from 4.1 arcmin per displayed sample on, display and eye cost ...: zoom 5 at 0.6 m, or at most 0.3 m at zoom 2".
+/// Returns "from 4.1 arcmin per displayed sample on, display and eye cost ...: zoom 5 at 0.6 m, or at most 0.3 m at
+/// zoom 2".
 [[nodiscard]] std::string in_words(const ViewingProposal& proposal, const ViewedDisplay& stated);
 
 }  // namespace todbench

@@ -20,6 +20,7 @@
 
 namespace todbench {
 
+/// Task of the observer.
 enum class BarCriterion {
   four_or_five,  ///< two intervals with four and five bars: which had four? 75 %, free of bias
   /// Yes or no: every gap is lower than both its bars; 75 % yes, 5 % yes without bars. With an eye in the picture
@@ -27,55 +28,60 @@ enum class BarCriterion {
   bars_resolved,
   detection  ///< two intervals, one with four bars: which one? 75 %; not an MRTD
 };
+/// Returns the name with hyphens.
 [[nodiscard]] std::string_view to_string(BarCriterion criterion);
 
+/// MRTD to simulate.
 struct VirtualMrtdTask {
   SensorSpec sensor;
-  SensorPlan plan;
+  SensorPlan plan;  ///< planned effects
   TemplateObserverSpec observer{};
   Accuracy accuracy{};
-  BarCriterion criterion = BarCriterion::four_or_five;
-  BarAxis axis = BarAxis::horizontal;
-  std::vector<double> frequencies_per_mrad;
-  int draws = 2000;  ///< of noise, for each frequency
+  BarCriterion criterion = BarCriterion::four_or_five;  ///< task of the observer
+  BarAxis axis = BarAxis::horizontal;                   ///< axis that the bars test
+  std::vector<double> frequencies_per_mrad;             ///< frequencies of the bars, in cycles per mrad
+  int draws = 2000;                                     ///< draws of noise for each frequency
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
 
+/// Result at one frequency.
 struct VirtualMrtdPoint {
   double frequency_per_mrad = 0;
   double frequency_over_nyquist = 0;
   /// Contrast in kelvin for 75 % over all phases; empty if there is none up to highest_k.
   std::optional<double> threshold_k;
-  /// threshold_k of an observer with an eye at both ends of the range of its open parameters; empty if one has none.
+  /// threshold_k of an observer with an eye at both limits of its open parameters; empty if one of them gives no
+  /// threshold.
   std::optional<std::pair<double, double>> spread_k{};
   double relative_error = 0;  ///< standard error of threshold_k over threshold_k, from the draws
-  /// The same for the best and the worst of eight phases across the bars.
+  /// Threshold at the best and at the worst of eight phases across the bars.
   std::optional<double> best_phase_k, worst_phase_k;
   double highest_k = 0;           ///< highest contrast tried
   double proportion_at_most = 0;  ///< correct answers at highest_k, over all phases
   /// Threshold of an ideal observer that knows the phase, with the white noise of the sensor alone.
   double ideal_k = 0;
-  double share_of_four = 0;  ///< of phases across the bars with four bars resolved, without noise
-  double modulation_best = 0, modulation_worst = 0;  ///< of four sampled bars (tod/range/bars_sampled.h)
+  double share_of_four = 0;  ///< share of the phases across the bars in which four bars are resolved without noise
+  /// Modulation of four sampled bars at the best and worst phase (tod/range/bars_sampled.h).
+  double modulation_best = 0, modulation_worst = 0;
 };
 
-/// One point per frequency. Noise of camera and observer as in identify(). Both intervals have independent noise and
-/// fixed pattern. Patterns are in one of 8 x 2 phases (eight across the bars). The proportion is over all pairs of
-/// draws. Errors: `invalid_input` (no frequency above 0, a pattern with fewer than 4 or more than 400 samples on a
-/// side, no noise, counts coarser than the noise), `interrupted`.
+/// Returns one point per frequency. Noise of camera and observer as in identify(). Both intervals have independent
+/// noise and fixed pattern. Patterns are in one of 8 x 2 phases (eight across the bars). The proportion is over all
+/// pairs of draws. Errors: `invalid_input` (no frequency above 0, a pattern with fewer than 4 or more than 400 samples
+/// on a side, no noise, counts coarser than the noise), `interrupted`.
 [[nodiscard]] Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task);
 
 /// Pictures of virtual_mrtd() for another observer. Immutable, thread-safe.
 class BarFrames {
  public:
-  /// Errors: those of virtual_mrtd() about the task.
+  /// Prepares the pictures of a task. Errors: those of virtual_mrtd() about the task.
   [[nodiscard]] static Result<BarFrames> of(const VirtualMrtdTask& task);
-  /// Displayed kelvin above the surround, with the noise of this draw, in one of 8 x 2 phases. All frames of a
+  /// Returns displayed kelvin above the surround, with the noise of this draw, in one of 8 x 2 phases. All frames of a
   /// frequency have one size.
   [[nodiscard]] cv::Mat1f frame_k(std::size_t frequency, BarPattern pattern, double contrast_k, std::size_t phase,
                                   std::uint64_t draw) const;
-  /// As VirtualMrtdPoint::ideal_k.
+  /// Returns VirtualMrtdPoint::ideal_k of this frequency.
   [[nodiscard]] double ideal_k(std::size_t frequency) const;
 
  private:

@@ -18,15 +18,16 @@ class WindowNoise {
   /// Precondition: `spec` is as_planned().
   WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, cv::Size window_samples,
               std::uint64_t seed);
-  /// The same for a square window.
+  /// Creates the noise of a square window.
   WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, int window_samples,
               std::uint64_t seed)
       : WindowNoise(spec, plan, accuracy, cv::Size(window_samples, window_samples), seed) {}
-  /// Noise of the camera behind its display, in kelvin.
+  /// Returns the noise of the camera behind its display, in kelvin.
   [[nodiscard]] cv::Mat1f sensor_k(std::uint64_t draw) const { return sensor_frames_k(draw, 1).front(); }
-  /// The same for `count` successive frames, which share the fixed pattern of the draw; the first equals sensor_k().
+  /// Returns the noise of `count` successive frames, which share the fixed pattern of the draw; the first equals
+  /// sensor_k().
   [[nodiscard]] std::vector<cv::Mat1f> sensor_frames_k(std::uint64_t draw, int count) const;
-  /// White noise of sd 1.
+  /// Returns white noise of sd 1.
   [[nodiscard]] cv::Mat1f white(std::uint64_t draw) const;
 
  private:

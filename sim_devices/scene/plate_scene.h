@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plate in front of a simulated camera.
+// Plate in front of a simulated camera.
 #pragma once
 
 #include <opencv2/core/types.hpp>
@@ -9,26 +9,26 @@
 
 namespace todbench {
 
-/// A mounted plate at a distance, with its middle near the middle of the picture. A value.
+/// Mounted plate at a distance, with its middle near the middle of the picture. Copyable.
 struct PlateScene {
   TargetPlate plate;          ///< as mounted
-  double delta_t_k = 0;       ///< triangle minus surround
+  double delta_t_k = 0;       ///< temperature of the triangles minus that of the surround
   double background_k = 300;  ///< temperature of the surround
   double distance_m = 2;
-  cv::Point2d shift_mm{0, 0};        ///< of the plate in its own plane
+  cv::Point2d shift_mm{0, 0};        ///< shift of the plate in its own plane
   cv::Point2d centre_px{0.3, -0.2};  ///< middle of the plate at shift 0, from the middle of the picture
-  double rotation_deg = 0;           ///< of the plate about the line of sight, clockwise in the picture
-  SceneMotion motion{};              ///< of the whole plate; smears if the sensor has a time constant
+  double rotation_deg = 0;           ///< rotation of the plate about the line of sight, clockwise in the picture
+  SceneMotion motion{};              ///< motion of the whole plate; smears if the sensor has a time constant
 };
 
-/// Position in pixels (column, row; pixel centres are integers) of a place on the plate.
-/// `sample_mrad`: angle of a pixel along x and y.
+/// Returns the position in pixels (column, row; pixel centres are integers) of a place on the plate. `sample_mrad`:
+/// angle of a pixel along x and y.
 [[nodiscard]] cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, cv::Point2d sample_mrad,
                                       cv::Size sensor);
-/// The same for square pixels.
+/// Returns the position for square pixels.
 [[nodiscard]] cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, double ifov_mrad, cv::Size sensor);
 
-/// True if two scenes differ only in temperatures and names.
+/// Returns whether two scenes differ only in temperatures and names.
 [[nodiscard]] bool same_geometry(const PlateScene& a, const PlateScene& b);
 
 }  // namespace todbench

@@ -4,15 +4,15 @@
 
 namespace todbench {
 
-/// Angular velocity of the target in the picture, x right, y down. The target is tracked: the picture shows it at its
-/// place, smeared.
+/// Angular velocity of the target in the picture, x right, y down. The target is tracked: the picture shows it smeared,
+/// but at its place.
 struct SceneMotion {
   double x_mrad_s = 0, y_mrad_s = 0;
   bool operator==(const SceneMotion&) const = default;
   [[nodiscard]] bool moving() const { return x_mrad_s != 0 || y_mrad_s != 0; }
 };
 
-/// For effects of a sensor whose scene may start to move.
+/// Example of a motion, for the planning of effects for a scene that may start to move.
 inline constexpr SceneMotion any_motion{.x_mrad_s = 1, .y_mrad_s = 0};
 
 }  // namespace todbench

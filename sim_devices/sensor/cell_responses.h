@@ -13,7 +13,7 @@
 
 namespace todbench {
 
-inline constexpr int cell_reach = 6;  ///< samples beyond a cell up to which its coefficients count
+inline constexpr int cell_reach = 6;  ///< distance in samples beyond a cell up to which its coefficients have an effect
 inline constexpr int response_side = 2 * cell_reach + 1;
 inline constexpr int largest_degree = 24;
 
@@ -22,9 +22,9 @@ inline constexpr int largest_degree = 24;
 struct LegendreValues {
   std::array<double, largest_degree + 2> p{}, q{};
 };
-/// Polynomials up to `degree`, which is at most largest_degree.
+/// Returns the polynomials up to `degree`, which is at most largest_degree.
 [[nodiscard]] LegendreValues legendre(double x, int degree);
-/// Pairs (a, b) with 1 <= a + b <= degree, sorted by a. All tables use this order.
+/// Returns the pairs (a, b) with 1 <= a + b <= degree, sorted by a. All tables use this order.
 [[nodiscard]] std::vector<std::pair<int, int>> legendre_pairs(int degree);
 
 /// Image formation with frequencies in cycles per sample. Optics are a table over the radius, interpolated linearly.
@@ -33,16 +33,16 @@ class SampleTransfer {
   /// The band is the highest one that the planned effects pass, at most 16 cycles per pitch.
   SampleTransfer(const ChainScope& scope, const Accuracy& accuracy);
   [[nodiscard]] double band_per_sample() const { return band_ / per_pitch_; }
-  /// True if every effect in the chain is the same on both sides of either axis.
+  /// Returns whether every effect in the chain is symmetric about both axes.
   [[nodiscard]] bool symmetric() const { return others_.empty(); }
   [[nodiscard]] double footprint(double f_per_sample, PitchAxis axis) const {
     return footprint_(f_per_sample * per_pitch_, axis);
   }
-  /// Squared radial frequency in cycles per sample along x.
+  /// Returns the squared radial frequency in cycles per sample along x.
   [[nodiscard]] double radius_squared(double u, double w) const { return u * u + w * w * per_aspect_squared_; }
-  /// Optics at a squared radial frequency; 0 beyond the band.
+  /// Returns the optics at a squared radial frequency; 0 beyond the band.
   [[nodiscard]] double optics(double rho_squared) const;
-  /// Product of all transfer functions except optics and footprint.
+  /// Returns the product of all transfer functions except optics and footprint.
   [[nodiscard]] std::complex<double> rest(double u, double w) const;
 
  private:
@@ -51,13 +51,13 @@ class SampleTransfer {
   FootprintMtf footprint_;
   std::vector<TransferFunction> others_;
   std::vector<double> optics_;
-  int nodes_ = 0;  ///< of the table of optics
+  int nodes_ = 0;  ///< nodes of the table of optics
 };
 
-/// Responses of the samples round a cell to the polynomials of legendre_pairs() over that cell. One row for each
-/// polynomial: response_side squared values, row by row.
+/// Returns the responses of the samples round a cell to the polynomials of legendre_pairs() over that cell. One row for
+/// each polynomial: response_side squared values, row by row.
 [[nodiscard]] cv::Mat1f coefficient_responses(const SampleTransfer& transfer, int degree);
-/// Response to a unit cell, summed over all aliases, at the frequencies of a periodic grid of samples.
+/// Returns the response to a unit cell, summed over all aliases, at the frequencies of a periodic grid of samples.
 [[nodiscard]] cv::Mat2d unit_cell_response(const SampleTransfer& transfer, cv::Size size);
 
 }  // namespace todbench

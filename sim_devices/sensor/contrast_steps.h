@@ -17,13 +17,13 @@ class ContrastSteps {
 
   /// Adds a step to `delta_t_k`. Times must increase from call to call.
   void step(double time_s, double delta_t_k);
-  /// Reached contrast: the mean over the exposure that ends at `end_s`; the time constant T follows the contrast as
-  /// exp(-t / T). Returns the set contrast bit for bit if the detector has neither memory nor exposure, or long after
-  /// the last step. Steps later than `end_s` have no effect yet.
+  /// Returns the reached contrast: the mean over the exposure that ends at `end_s` of a contrast that approaches each
+  /// step with the time constant T, as exp(-t / T). Returns the set contrast bit for bit if the detector has neither
+  /// time constant nor exposure, or long after the last step. Steps later than `end_s` have no effect yet.
   [[nodiscard]] double seen_k(double end_s, const SensorSpec& spec) const;
-  /// The contrast after the last step.
+  /// Returns the contrast after the last step.
   [[nodiscard]] double last_k() const { return steps_.empty() ? settled_k_ : steps_.back().delta_t_k; }
-  /// True if no step affects a detector at `time_s` any more.
+  /// Returns whether no step affects a detector at `time_s` any more.
   [[nodiscard]] bool over(double time_s, const SensorSpec& spec) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// Mask of the dead detectors, one byte each, not 0 if dead. Every share uses the same random numbers.
+/// Returns the mask of the dead detectors, one byte each, not 0 if dead. All shares use the same random numbers.
 [[nodiscard]] cv::Mat1b dead_detectors(cv::Size detectors, double share, const RandomStream& stream);
 
 /// Replaces samples of dead detectors by the mean of up to four nearest live neighbours in the same sub-exposure.

@@ -8,16 +8,16 @@
 
 namespace todbench {
 
-/// Diffraction of a circular aperture at one wavelength: (2/pi)(acos X - X sqrt(1 - X^2)), X = rho lambda N / pitch
-/// (Goodman, 3rd ed., 6-31).
+/// Returns the transfer function of a circular aperture at one wavelength: (2/pi)(acos X - X sqrt(1 - X^2)), X = rho
+/// lambda N / pitch (Goodman, 3rd ed., 6-31).
 [[nodiscard]] double diffraction_mtf(double rho_per_pitch, double wavelength_um, double f_number, double pitch_um);
 
 /// A wavelength with its weight; weights sum to 1.
 struct WavelengthNode {
   double wavelength_um = 0, weight = 0;
 };
-/// Gauss-Legendre nodes over the band, weighted with dL/dT of a black body (Planck, power units). `count` 1..64; 1 is
-/// the weighted mean.
+/// Returns the Gauss-Legendre nodes over the band, weighted with dL/dT of a black body (Planck, power units).
+/// `count` 1..64; 1 is the weighted mean.
 [[nodiscard]] std::vector<WavelengthNode> wavelength_nodes(const SensorSpec& spec, int count);
 
 }  // namespace todbench

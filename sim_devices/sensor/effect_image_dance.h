@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image dance of short frames behind turbulent air: the difference between one exposure and the mean of many.
+// Image dance of short exposures behind turbulent air: the difference between one exposure and the mean of many.
 #pragma once
 
 #include <cstdint>
@@ -11,47 +11,51 @@
 
 namespace todbench {
 
-/// Share of the variance of the dance that remains between pictures, 0 to 1. Angles of arrival have the correlation
-/// exp(-t / tau_c), with tau_c = `turbulence_correlation_ms`, and are averaged over exposure and time constant. The
-/// rest of the variance is blur within the picture. 0 for the long exposure.
+/// Returns the share of the variance of the dance that remains between pictures, 0 to 1. Angles of arrival have the
+/// correlation exp(-t / tau_c), with tau_c = `turbulence_correlation_ms`, and are averaged over exposure and time
+/// constant. The rest of the variance is blur within the picture. Returns 0 for the long exposure.
 [[nodiscard]] double dance_share(const SensorSpec& spec);
-/// Weight of the tilt that is removed from the long exposure: 1 in the near field, D >= sqrt(lambda L), 1/2 beyond
-/// (Fried 1966).
+/// Returns the weight of the tilt that is removed from the long exposure: 1 in the near field, D >= sqrt(lambda L), 1/2
+/// beyond (Fried 1966).
 [[nodiscard]] double dance_weight(const SensorSpec& spec);
-/// Cut-off frequency of the lens in cycles per pitch, at the wavelength of the turbulent path.
+/// Returns the cut-off frequency of the lens in cycles per pitch, at the wavelength of the turbulent path.
 [[nodiscard]] double dance_cut_off(const SensorSpec& spec);
-/// Standard deviation of an exposure's displacement per axis, in pitches along x; 0 without turbulence. The variance is
-/// 6.88 (D / r0)^(5/3) (lambda / (2 pi D))^2 times weight and share (Tatarskii 1961: phase difference across the lens).
+/// Returns the standard deviation of an exposure's displacement per axis, in pitches along x; 0 without turbulence. The
+/// variance is 6.88 (D / r0)^(5/3) (lambda / (2 pi D))^2 times weight and share (Tatarskii 1961: phase difference
+/// across the lens).
 [[nodiscard]] double dance_sd_pitch(const SensorSpec& spec);
-/// Correlation of the displacements of successive exposures, 0 to 1.
+/// Returns the correlation of the displacements of successive exposures, 0 to 1.
 [[nodiscard]] double dance_correlation(const SensorSpec& spec);
 
-/// True if short frames dance with this sensor.
+/// Returns whether this sensor has image dance.
 [[nodiscard]] bool lets_dance(const SensorSpec& spec);
-/// Bound on the change of ln S75 by the detector's temporal average over the dance; `instant` is the same sensor
-/// without that average. 12 / S^2 times the variance that is blur in one and dance in the other.
+/// Returns the bound on the change of ln S75 by the detector's temporal average over the dance; `instant` is the same
+/// sensor without that average. The bound is 12 / S^2 times the variance that is blur in one sensor and dance in the
+/// other.
 [[nodiscard]] double averaged_dance_bound(const SensorSpec& spec, const SensorSpec& instant, double s75_pitch);
 
-/// Displacements of exposures in pitches of each axis, first-order autoregressive. Memory below 1 % is cut off, so that
-/// each exposure takes bounded work. Immutable.
+/// Displacements of exposures in pitches of each axis, first-order autoregressive. Correlations below 1 % are cut off,
+/// so that the work for each exposure is bounded. Immutable.
 class ImageDance {
  public:
   /// Precondition: `spec` is as_planned().
   explicit ImageDance(const SensorSpec& spec);
   [[nodiscard]] bool still() const { return sd_pitch_ == 0; }
-  /// Displacement of exposure `exposure` in the sequence that `stream` numbers.
+  /// Returns the displacement of exposure `exposure` in the sequence that `stream` numbers.
   [[nodiscard]] cv::Point2d displacement_pitch(const RandomStream& stream, std::uint64_t exposure) const;
 
  private:
   double sd_pitch_ = 0, aspect_ = 1;
-  std::vector<double> weights_;  ///< of the random numbers of this exposure and of earlier ones; squares sum to 1
+  /// Weights of the random numbers of this exposure and of earlier ones; squares sum to 1.
+  std::vector<double> weights_;
 };
 
-/// Evenly spread displacements in pitches of each axis for presentation `index`, for estimates without frames. One for
-/// each exposure that a sample averages.
+/// Returns evenly spread displacements in pitches of each axis for presentation `index`, for estimates without
+/// frames. There is one displacement for each exposure that a sample averages.
 [[nodiscard]] std::vector<cv::Point2d> spread_dance_pitch(const SensorSpec& spec, std::uint64_t index);
-/// Number of these displacements that an estimate uses at each sampling phase, if it has so many phases per pitch and
-/// axis. The error of the threshold is then some tenths of a per cent with 8 phases and 1 % with 4. 1 without dance.
+/// Returns the number of these displacements that an estimate uses at each sampling phase, for `phases_per_axis` phases
+/// per pitch and axis; 1 without dance. The error of the threshold is then some tenths of a per cent with 8 phases and
+/// 1 % with 4.
 [[nodiscard]] int dances_per_phase(const SensorSpec& spec, int phases_per_axis);
 
 }  // namespace todbench

@@ -33,8 +33,8 @@
 
 namespace todbench {
 
-/// A stage of the sensor chain, described by its row (effect_row.h). An effect at its neutral value equals the effect
-/// left out, bit for bit.
+/// A stage of the sensor chain, described by its row (effect_row.h). An effect at its neutral value gives the same
+/// result as an omitted effect, bit for bit.
 #define TODBENCH_EFFECT_NAME(name) name,
 enum class Effect { TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME) };
 #undef TODBENCH_EFFECT_NAME
@@ -43,8 +43,9 @@ enum class Effect { TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME) };
 inline constexpr std::array all_effects{TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME)};
 #undef TODBENCH_EFFECT_NAME
 
-/// The name in plans, options and files, equal to that of the enumerator.
+/// Returns the name in plans, options and files, equal to that of the enumerator.
 [[nodiscard]] std::string_view to_string(Effect effect);
+/// Returns the effect with this name; empty if there is none.
 [[nodiscard]] std::optional<Effect> effect_from(std::string_view name);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory of a bolometer that observes a moving target.
+// Smear by the time constant of a bolometer that observes a moving target.
 #pragma once
 
 #include <complex>
@@ -9,13 +9,13 @@
 
 namespace todbench {
 
-/// Transfer function of a bolometer with time constant tau and a target of velocity v; smear s = v tau in pitches. The
-/// detector weights the past with exp(-t / tau) / tau, so the tail lies behind the target: 1 / (1 - 2 pi i f.s). The
-/// factor exp(-2 pi i f.s) removes the mean lag, because the target is tracked.
+/// Returns the transfer function of a bolometer with time constant tau and a target of velocity v; smear s = v tau in
+/// pitches. The detector weights the past with exp(-t / tau) / tau, so the tail lies behind the target: 1 / (1 - 2 pi i
+/// f.s). The factor exp(-2 pi i f.s) removes the mean lag, because the target is tracked.
 [[nodiscard]] std::complex<double> motion_transfer(double u_per_pitch, double w_per_pitch, cv::Point2d smear_pitch);
-/// Motion of the target in this time, in pitches of each axis.
+/// Returns the motion of the target in `seconds`, in pitches of each axis.
 [[nodiscard]] cv::Point2d moved_pitch(const SensorSpec& spec, SceneMotion motion, double seconds);
-/// Smear v tau in pitches of each axis.
+/// Returns the smear v tau in pitches of each axis.
 [[nodiscard]] cv::Point2d smear_pitch(const SensorSpec& spec, SceneMotion motion);
 
 }  // namespace todbench

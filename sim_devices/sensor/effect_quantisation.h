@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rounding to whole counts: the only place that rounds a picture.
+// Rounding to whole counts. No other code rounds a picture.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 
 namespace todbench {
 
-/// Temporal noise of a displayed sample in counts, before rounding.
+/// Returns the temporal noise of a displayed sample in counts, before rounding.
 [[nodiscard]] double noise_in_counts(const SensorSpec& spec);
-/// True if a count is larger than one standard deviation of the noise. If not, rounding errors are noise of variance
-/// 1/12, to 3e-9 of a count; otherwise they depend on the signal.
+/// Returns whether a count is larger than one standard deviation of the noise. If not, rounding errors are noise of
+/// variance 1/12, to 3e-9 of a count; otherwise they depend on the signal.
 [[nodiscard]] bool rounds_coarsely(const SensorSpec& spec);
-/// True if the surround or targets of this contrast lie within six standard deviations of the noise of an end of the
-/// counts.
+/// Returns whether the surround or a target of this contrast lies within six standard deviations of the noise of the
+/// lowest or highest count.
 [[nodiscard]] bool reaches_an_end(const SensorSpec& spec, double delta_t_k, double background_k);
 
-/// Rounds kelvin above the surround to the counts of a sensor, halves upwards. The limits of a count are the same for
-/// every pixel, wherever the surround lies within its count. A value; any thread.
+/// Rounds kelvin above the surround to the counts of a sensor, halves upwards. The limits between counts do not depend
+/// on the position of the surround within its count. A value; any thread.
 class Quantiser {
  public:
   Quantiser(const SensorSpec& spec, double background_k)
@@ -30,15 +30,15 @@ class Quantiser {
         half_up_(background_ + 0.5),
         full_scale_(static_cast<double>((1u << spec.bits) - 1u) + 0.5) {}
 
-  /// Count, clipped to the significant bits.
+  /// Returns the count, clipped to the significant bits.
   [[nodiscard]] std::uint16_t count(float kelvin) const {
     return static_cast<std::uint16_t>(static_cast<int>(std::clamp(level(kelvin), 0.0, full_scale_)));
   }
-  /// Temperature of the unclipped count above the surround.
+  /// Returns the temperature of the unclipped count above the surround.
   [[nodiscard]] float rounded(float kelvin) const {
     return static_cast<float>((std::floor(level(kelvin)) - background_) * step_k_);
   }
-  /// Temperature of the clipped count, as a frame shows it.
+  /// Returns the temperature of the clipped count, as a frame shows it.
   [[nodiscard]] float shown(float kelvin) const {
     return static_cast<float>((std::floor(std::clamp(level(kelvin), 0.0, full_scale_)) - background_) * step_k_);
   }

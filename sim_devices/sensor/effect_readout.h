@@ -8,23 +8,25 @@
 
 namespace todbench {
 
-/// Motion of the target from one row to the next, v t, in pitches. The middle row samples at the time of the picture.
+/// Returns the motion of the target from one row to the next, v t, in pitches. The middle row samples at the time of
+/// the picture.
 [[nodiscard]] cv::Point2d readout_slope(const SensorSpec& spec, SceneMotion motion);
 
-/// Place with sequential readout of a point that lies at `place` if all rows sample with `middle_row`: a shear along
-/// the rows and a stretch across them. In pitches or samples. A slope of 0 returns the place bit for bit.
+/// Returns the place at which a point appears with sequential readout, if it appears at `place` when all rows sample
+/// with `middle_row`: a shear along the rows and a stretch across them. In pitches or samples. A slope of 0 returns the
+/// place bit for bit.
 [[nodiscard]] cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row);
 
-/// Motion of the target between the two fields of an interlaced frame, in pitches. The even rows of detectors are the
-/// first field. 0 if the frame is progressive or the target does not move.
+/// Returns the motion of the target between the two fields of an interlaced frame, in pitches. The even rows of
+/// detectors are the first field. 0 if the frame is progressive or the target does not move.
 [[nodiscard]] cv::Point2d way_between_fields(const SensorSpec& spec, SceneMotion motion);
 
 /// Copies the odd rows of detectors of `later` into `picture`. Row 0 of the samples belongs to an even row.
 void take_odd_rows(cv::Mat& picture, const cv::Mat& later, int samples_per_pitch);
 
-/// Draws an interlaced picture: the even rows half of the delay before the time of the picture, the odd rows half of it
-/// after. `draw` takes a displacement of the target, in pitches, and returns the picture of all rows at one time. If
-/// `between_fields` is 0, it is called once.
+/// Draws an interlaced picture. The even rows show the scene half of the delay before the time of the picture, and the
+/// odd rows half of the delay after it. `draw` takes a displacement of the target, in pitches, and returns the picture
+/// of all rows at one time. If `between_fields` is 0, `draw` is called once.
 template <typename Draw>
 [[nodiscard]] auto in_fields(cv::Point2d between_fields, int samples_per_pitch, Draw draw) {
   if (between_fields == cv::Point2d(0, 0)) return draw(cv::Point2d(0, 0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The row of one effect of the sensor chain: parameters, neutral value, stage, and bound for the planner. All other
-// parts of the program read the row.
+// Row of one effect of the sensor chain: parameters, neutral value, stage, and bound for the planner. All other parts
+// of the program read this row.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct ChainScope {
 };
 
 /// Random numbers by name, for one exposure of a camera or one draw of the estimate without frames. `ago` selects the
-/// numbers of an earlier exposure, for noise with memory. Numbers of different names are independent.
+/// numbers of an earlier exposure, for noise that is correlated in time. Numbers of different names are independent.
 using NoiseStreams = std::function<RandomStream(std::string_view name, std::uint64_t ago)>;
 /// Changes a picture of samples in place.
 using PictureStage = std::function<void(cv::Mat1f& picture)>;
@@ -63,10 +63,12 @@ struct Dance {};
 /// Has no action: sets wavelengths or numbers of exposures that other effects read.
 struct Parameter {};
 
+/// Dependence of the noise between samples.
 enum class Colour {
   white,    ///< independent from sample to sample; variance: `white_variance_k2` of the row
   coloured  ///< samples share random numbers
 };
+/// Dependence of the noise between frames.
 enum class Recurrence {
   every_exposure,  ///< new random numbers in each exposure
   fixed            ///< the same in every frame
@@ -92,10 +94,10 @@ using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfe
 /// Extent over which a stage of image formation spreads the picture of a point, in pitches.
 struct Spread {
   double period = 0;      ///< added to the period, so that tails do not wrap round
-  double window = 0;      ///< added round a window, within which shapes are computed exactly
-  double variance = 0;    ///< per axis, the larger of both, pitches squared
+  double window = 0;      ///< added round a window; shapes inside it are computed exactly
+  double variance = 0;    ///< in pitches squared, for the axis with the larger variance
   double far = 0;         ///< the parts of a plane more than r pitches away add far r^(-5/3)
-  double halo_share = 0;  ///< of the light, spread over `halo_reach`
+  double halo_share = 0;  ///< share of the light that is spread over `halo_reach`
   double halo_reach = 0;  ///< added to the period, and round a frame
 };
 
@@ -120,20 +122,20 @@ struct ExpectedScene {
   double noise_exponent = 0;                                ///< d ln S75 / d ln q, margin included
   std::array<double, all_effects.size()> noise_variance{};  ///< by effect, in units of the contrast squared
   double total_variance = 0;                                ///< noise of the observer included
-  /// Change of ln S75 without this effect, from the ratio of discriminabilities.
+  /// Returns the change of ln S75 without this effect, from the ratio of discriminabilities.
   std::function<double(Effect without)> discriminability_change;
 
   [[nodiscard]] double variance_of(Effect effect) const { return noise_variance[static_cast<std::size_t>(effect)]; }
-  /// Change of ln S75 for this change of the variance.
+  /// Returns the change of ln S75 for this change of the variance.
   [[nodiscard]] double noise_change(double variance_change) const;
 };
 
-/// Whether the planner may skip an effect that has a bound.
+/// Permission for the planner to skip an effect that has a bound.
 enum class WhenBounded { may_be_skipped, simulated };
-/// Whether the effect acts alike on a picture turned by a quarter.
+/// Response of the effect to a picture turned by a quarter: the same, or different.
 enum class AxisDirections { alike, different };
 
-/// A row of the table. A member at its default means that the effect does not have it.
+/// Row of the table. A member at its default means that the effect does not use it.
 struct EffectRow {
   std::string_view title;  ///< as in the report
   std::vector<SensorKey> keys;
@@ -141,7 +143,7 @@ struct EffectRow {
   std::string (*impossible)(const SensorSpec& spec) = nullptr;
 
   bool (*is_neutral)(const SensorSpec& spec, SceneMotion motion) = nullptr;
-  /// Sets the neutral value. Null if the effect has none; its stage then asks the plan.
+  /// Sets the neutral value. Null if the effect has none; its stage then reads the plan.
   void (*neutralise)(SensorSpec& spec) = nullptr;
   std::string_view neutral;  ///< the neutral value in words: "netd_k is 0"
 
@@ -163,10 +165,10 @@ struct EffectRow {
   WhenBounded when_bounded = WhenBounded::may_be_skipped;
 };
 
-/// The row of an effect. Immutable; lives as long as the program.
+/// Returns the row of an effect. Immutable; lives as long as the program.
 [[nodiscard]] const EffectRow& row_of(Effect effect);
 
-/// Variance per displayed sample of all white noise in the plan.
+/// Returns the variance per displayed sample of all white noise in the plan.
 [[nodiscard]] double white_variance_k2(const SensorSpec& spec, const SensorPlan& plan, double noise_factor);
 
 /// The rows. Each is defined in the file of its effect.

@@ -9,15 +9,15 @@
 
 namespace todbench {
 
-/// Turbulent path of this sensor, at the mean wavelength of its band. Over 7.5 to 13 um the exponent differs by 9 %
-/// either way, which is less than the uncertainty of Cn2. Empty without turbulence.
+/// Returns the turbulent path of this sensor, at the mean wavelength of its band. Over the band from 7.5 to 13 um the
+/// exponent varies by 9 % in each direction, which is less than the uncertainty of Cn2. Empty without turbulence.
 [[nodiscard]] std::optional<TurbulentPath> turbulent_path(const SensorSpec& spec);
 
-/// c of the transfer function exp(-c rho^(5/3)), rho in cycles per pitch; 0 without turbulence.
+/// Returns the coefficient c of the transfer function exp(-c rho^(5/3)), rho in cycles per pitch; 0 without turbulence.
 [[nodiscard]] double turbulence_strength(const SensorSpec& spec);
 
-/// Bound on the change of ln S75 without turbulence, at triangles of `s75_pitch`: that of a Gaussian blur with the same
-/// effect at half a cycle per triangle.
+/// Returns the bound on the change of ln S75 without turbulence, at triangles of `s75_pitch`: that of a Gaussian blur
+/// with the same effect at half a cycle per triangle.
 [[nodiscard]] double turbulence_bound(const SensorSpec& spec, double s75_pitch);
 
 }  // namespace todbench

@@ -6,12 +6,13 @@
 
 namespace todbench {
 
-/// The part of a shape within the square |x|, |y| <= half_width (Sutherland and Hodgman 1974). If the square separates
-/// parts of a concave shape, they stay joined along its edge without enclosed area.
+/// Returns the part of a shape within the square |x|, |y| <= half_width (Sutherland and Hodgman 1974). If the square
+/// separates parts of a concave shape, they stay joined along its edge without enclosed area.
 [[nodiscard]] Polygon clipped(const Polygon& shape, double half_width);
 
-/// Integral of |y - from|^-3 over the part of the shape outside that square, in 1/length; relative error 1e-5. `from`
-/// is in the square. Each ray from `from` adds 1/r at its entries into the shape and subtracts 1/r at its exits.
+/// Returns the integral of |y - from|^-3 over the part of the shape outside the square |x|, |y| <= half_width, in
+/// 1/length; relative error 1e-5. `from` lies in the square. Each ray from `from` adds 1/r where it enters the shape
+/// and subtracts 1/r where it leaves it.
 [[nodiscard]] double far_integral(const Polygon& shape, cv::Point2d from, double half_width);
 
 }  // namespace todbench

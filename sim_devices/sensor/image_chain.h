@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Degraded pictures of single shapes: image formation of one sensor at one accuracy.
+// Image of a single shape behind optics and detector of one sensor, at one accuracy.
 #pragma once
 
 #include <map>
@@ -14,42 +14,47 @@
 
 namespace todbench {
 
-/// Optics and detector of one sensor, for a scene of one motion. Shapes and places are in detector pitches of each axis
-/// (on_detectors()). Thread-safe. Filter tables are computed once per lattice.
+/// Optics and detector of one sensor, for a scene with one motion. Shapes and places are in detector pitches of each
+/// axis (on_detectors()). Thread-safe. Filter tables are computed once per lattice.
 class ImageChain {
  public:
   /// Precondition: validate(spec) succeeds.
   ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, SceneMotion motion = {});
 
-  /// Lattice that keeps wrapped signal and truncated band within the tolerances, for shapes of `size_pitch` (square
-  /// root of area).
+  /// Returns the lattice that keeps wrapped signal and truncated band within the tolerances, for shapes of `size_pitch`
+  /// (square root of area, in pitches).
   [[nodiscard]] FrequencyLattice lattice(double size_pitch) const;
-  /// Points per pitch at which the fine image contains the whole band: a multiple of 16, so that all 16 x 16 phases lie
-  /// on it.
+  /// Returns the number of points per pitch at which the fine image contains the whole band. It is a multiple of 16, so
+  /// that all 16 x 16 phases lie on these points.
   [[nodiscard]] int points_per_pitch() const { return points_per_pitch_; }
-  /// Degraded image of a shape of contrast 1 near the origin. The origin lies in the row that samples at the time of
-  /// the picture.
+  /// Returns the image of a shape of contrast 1 near the origin. With sequential readout, the row of the origin samples
+  /// at the time of the picture, and the times of the other rows count from it.
   [[nodiscard]] PolygonImage image(const Polygon& shape_pitch) const;
-  /// True if the image of the shape turned by a quarter is `image` turned by a quarter.
+  /// Returns whether the image of the shape turned by a quarter equals `image` turned by a quarter.
   [[nodiscard]] bool turns_alike(const PolygonImage& image) const {
     return readout_slope_ == cv::Point2d(0, 0) && spec_.pitch_aspect() == 1 && image.turns_alike();
   }
 
-  /// Samples for an infinite plane, by Richardson extrapolation from periods P and 2P (the wrapped signal falls as
-  /// P^-3). The bound on the remaining error is estimated from their difference. If a shape reaches far beyond the
-  /// window, only the part near the window is computed in this way. The rest adds the integrated tail of the
-  /// diffraction spot, c r^-3, so memory and time do not grow with the shape. Sequential readout refers to the origin.
+  /// Samples of a shape on an infinite plane, with a bound on their error.
   struct InfinitePlane {
+    /// Samples for a shape of contrast 1.
     cv::Mat1d values;
+    /// Estimated bound on the error of a sample, in units of the contrast.
     double max_error_estimate = 0;
   };
+  /// Computes samples of a shape on an infinite plane: `size` samples at distances of `step`, the first one at `first`,
+  /// both in detector pitches of each axis. Uses Richardson extrapolation from the periods P and 2P, because the
+  /// wrapped signal falls as P^-3; the difference between the two gives the error bound. If a shape reaches far beyond
+  /// the window, only its part near the window is computed in this way. The rest contributes the integrated tail of the
+  /// diffraction spot, c r^-3, so that memory and time do not grow with the shape. With sequential readout, the times
+  /// of the rows count from the row of the origin.
   [[nodiscard]] InfinitePlane infinite_plane(const Polygon& shape_pitch, cv::Point2d first, double step,
                                              cv::Size size) const;
 
  private:
   [[nodiscard]] InfinitePlane extrapolated(const Polygon& shape_pitch, cv::Point2d first, double step,
                                            cv::Size size) const;
-  /// `shape` and `half_width` are in pitches along x; `first` and `step` as above.
+  /// `shape` and `half_width` are in pitches along x; `first` and `step` are as for infinite_plane().
   void add_far_field(InfinitePlane& near, const Polygon& shape, cv::Point2d first, double step,
                      double half_width) const;
   [[nodiscard]] std::shared_ptr<const FilterTable> filter(const FrequencyLattice& lattice) const;

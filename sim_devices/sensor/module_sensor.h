@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A program of the user as the sensor: scene in, frame out.
+// Program of the user in place of the sensor: it receives a scene and returns a frame.
 #pragma once
 
 #include <cstdint>
@@ -20,17 +20,19 @@ namespace todbench {
 /// Samples of the scene per detector pitch and axis that the program receives.
 inline constexpr int scene_samples_per_pitch = 4;
 
-/// The program in place of the sensor; null if there is none.
+/// Returns the program in place of the sensor; null if there is none.
 [[nodiscard]] const ModulePlan* sensor_module(const SensorSpec& spec);
-/// Checks that the program can simulate this sensor and scene. `invalid_input` in one sentence for microscan,
+/// Checks that the program can simulate this sensor and scene. Errors: `invalid_input` in one sentence for microscan,
 /// super-resolution or a moving scene. Succeeds if there is no program.
 [[nodiscard]] Result<void> check_sensor_module(const SensorSpec& spec, SceneMotion motion = {});
 
-/// Facts for the header: the numbers of the sensor file by key, `ifov_mrad`, `scene_samples_per_pitch` and the seed.
+/// Returns the facts for the header: the numbers of the sensor file by key, `ifov_mrad`, `scene_samples_per_pitch` and
+/// the seed.
 [[nodiscard]] std::vector<SensorFact> sensor_facts(const SensorSpec& spec, std::uint64_t seed);
 
-/// Scene in kelvin above its surround: exact means over the squares of a grid scene_samples_per_pitch times as fine as
-/// the detectors. Size: (width, height) times that number; sample (0, 0) is in the corner of detector (0, 0).
+/// Returns the scene in kelvin above its surround: exact means over the squares of a grid that is
+/// scene_samples_per_pitch times as fine as the detectors. Size: (width, height) times scene_samples_per_pitch; sample
+/// (0, 0) is in the corner of detector (0, 0).
 [[nodiscard]] cv::Mat1f scene_picture_k(const PlateScene& scene, const SensorSpec& spec);
 
 /// The program of a sensor. It starts with the first picture. One thread at a time.
@@ -40,9 +42,9 @@ class ModuleSensor {
   /// Precondition: sensor_module(spec).
   ModuleSensor(SensorSpec spec, std::uint64_t seed, OnLine on_error_line);
 
-  /// Frame `index` of a scene_picture_k(), in kelvin above the surround. Errors: module_error().
+  /// Returns frame `index` of a scene_picture_k(), in kelvin above the surround. Errors: module_error().
   [[nodiscard]] Result<cv::Mat1f> picture(const cv::Mat1f& scene_k, std::uint64_t index);
-  /// Frame `index` of a scene, in whole counts. Errors: also `invalid_input` (the scene moves).
+  /// Returns frame `index` of a scene, in whole counts. Errors: also `invalid_input` (the scene moves).
   [[nodiscard]] Result<cv::Mat1w> expose(const PlateScene& scene, std::uint64_t index);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults of single detectors that a camera does not hide. A seed of the array determines place, kind and size.
+// Faults of single detectors that a camera does not hide. A seed determines their place, kind and size.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 
 namespace todbench {
 
+/// Kind of a fault.
 enum class PixelFaultKind {
   stuck,     ///< shows one level for every scene
   hot,       ///< a fixed offset
@@ -21,11 +22,13 @@ enum class PixelFaultKind {
 };
 inline constexpr std::array pixel_fault_kinds{PixelFaultKind::stuck, PixelFaultKind::hot, PixelFaultKind::noisy,
                                               PixelFaultKind::blinking};
+/// Returns the name of the kind.
 [[nodiscard]] std::string_view to_string(PixelFaultKind kind);
 
 /// Sizes of the faults in units of the sensor's NETD.
 inline constexpr double hot_offset_netd = 20, stuck_reach_netd = 10, noisy_added_netd = 6, blink_netd = 8;
 
+/// Fault of one detector.
 struct PixelFault {
   PixelFaultKind kind = PixelFaultKind::stuck;
   cv::Point detector;
@@ -34,12 +37,12 @@ struct PixelFault {
   int phase = 0;       ///< blinking: offset of the cycle in pictures
 };
 
-/// Faulty detectors: `defective_pixel_share` of all, a quarter of each kind on average. Places and sizes depend only on
-/// `defect_seed`.
+/// Returns the faulty detectors: `defective_pixel_share` of all, a quarter of each kind on average. Places and sizes
+/// depend only on `defect_seed`.
 [[nodiscard]] std::vector<PixelFault> pixel_faults(const SensorSpec& spec);
 
-/// Adds the faults to picture `index`, in kelvin above the surround. All samples of a detector change alike, except for
-/// noise. `noise`: random numbers of this picture.
+/// Adds the faults to picture `index`, in kelvin above the surround. All samples of a detector change by the same
+/// amount, except for noise. `noise`: random numbers of this picture.
 void show_faults(cv::Mat1f& picture, const std::vector<PixelFault>& faults, const SensorSpec& spec,
                  const RandomStream& noise, std::uint64_t index);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole frames of scenes with any number of polygons: the chain of single shapes, arranged for many edges.
+// Whole frames of scenes with any number of polygons: the calculation of ImageChain, arranged for many edges.
 #pragma once
 
 #include <map>
@@ -25,25 +25,25 @@ namespace todbench {
 /// Green). Each polynomial has its own response, which falls as r^-4 and is kept for 6 samples. The degree follows from
 /// the band: the result equals ImageChain to 3e-5 of a contrast (test SceneImager.EqualsTheImageOfThePolygonAlone).
 ///
-/// Of an interlaced sensor, each field shows a moving scene at its time (effect_readout.h).
+/// For an interlaced sensor, each field shows a moving scene at the time of the field (effect_readout.h).
 ///
-/// The plane outside the frame and a margin of 48 pitches, with a halo that and its reach, has level 0. The frame is
-/// periodic with that margin: a contrast that reaches the frame's edge has an error of up to 3e-4 of itself there.
+/// The plane has level 0 outside the frame and its margin. The margin is 48 pitches, plus the reach of a halo. Frame
+/// and margin are repeated periodically, so a contrast that reaches the edge of the frame has an error of up to 3e-4 of
+/// its value there.
 class SceneImager {
  public:
   /// Precondition: validate(spec) succeeds. The plan selects the effects of image formation; noise is not applied.
   SceneImager(SensorSpec spec, SensorPlan plan, Accuracy accuracy, SceneMotion motion = {});
   ~SceneImager();
 
-  /// Edges in samples, x right, y down; sample (i, j) is centred at (i, j).
+  /// Returns the edges in samples, x right, y down; sample (i, j) is centred at (i, j).
   [[nodiscard]] cv::Mat1d image(std::span<const StepEdge> edges, cv::Size size) const;
 
-  /// The scene itself: its mean over every cell of the grid. Parts left of the frame, right of it, above and below are
-  /// ignored.
+  /// Returns the scene itself: its mean over every cell of the grid. Parts outside the frame are ignored.
   [[nodiscard]] static cv::Mat1d means(std::span<const StepEdge> edges, cv::Size size);
 
-  /// Image of a picture instead of edges. Each element is a square with a side of `pixel_samples` (at most 1); element
-  /// (0, 0) is centred at `first`. Beyond the picture the level is 0.
+  /// Returns the image of a picture instead of edges. Each element is a square with a side of `pixel_samples` (at most
+  /// 1); element (0, 0) is centred at `first`. Beyond the picture the level is 0.
   [[nodiscard]] cv::Mat1d image(const cv::Mat1d& picture, double pixel_samples, cv::Point2d first, cv::Size size) const;
 
  private:

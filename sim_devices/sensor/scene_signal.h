@@ -11,6 +11,7 @@
 
 namespace todbench {
 
+/// Place and motion of a scene in the picture.
 struct SceneView {
   double range_m = 100;
   double rotation_deg = 0;         ///< about the line of sight, clockwise in the picture
@@ -20,13 +21,14 @@ struct SceneView {
   cv::Point2d readout_slope{0, 0};
 };
 
-/// Map from metres in the scene to samples of the camera; sample (i, j) is centred at (i, j).
+/// Returns the edges of a scene, converted from metres in the scene to samples of the camera; sample (i, j) is centred
+/// at (i, j).
 [[nodiscard]] std::vector<StepEdge> edges_in_samples(const FieldScene& scene, const RadianceScale& scale,
                                                      const SensorSpec& spec, const SceneView& view, cv::Size size);
 
-/// Signal of the samples without air, noise and display, in equivalent kelvin above the background. `size` in samples.
-/// `invalid_input` in one sentence: a range that is not positive, a scene smaller than a detector pitch, a picture with
-/// elements larger than a quarter of a pitch, or a rotated picture.
+/// Returns the signal of the samples without air, noise and display, in equivalent kelvin above the background. `size`
+/// in samples. Errors: `invalid_input` in one sentence: a range that is not positive, a scene smaller than a detector
+/// pitch, a picture with elements larger than a quarter of a pitch, or a rotated picture.
 [[nodiscard]] Result<cv::Mat1d> scene_signal_k(const SceneImager& imager, const SensorSpec& spec,
                                                const FieldScene& scene, const RadianceScale& scale,
                                                const SceneView& view, cv::Size size);

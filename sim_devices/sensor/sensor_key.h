@@ -14,9 +14,10 @@ namespace todbench {
 /// Parameter that a key sets: a number, a whole number, or the name of a display.
 using KeyMember = std::variant<double SensorSpec::*, int SensorSpec::*, DisplayReconstruction SensorSpec::*>;
 
-/// Whether a description must contain the key. An optional key has the default value of SensorSpec.
+/// Presence of the key in a description. An optional key has the default value of SensorSpec.
 enum class KeyPresence { required, optional };
 
+/// Key of a sensor description.
 struct SensorKey {
   std::string_view name;  ///< as in the file; the ending is the unit
   KeyMember member;
@@ -25,9 +26,9 @@ struct SensorKey {
   std::string_view meaning;  ///< a sentence without full stop
 };
 
-/// Keys of geometry and output of a camera, which belong to no effect.
+/// Returns the keys of geometry and output of a camera, which belong to no effect.
 [[nodiscard]] const std::vector<SensorKey>& camera_keys();
-/// All keys. Those of effects follow the order of the chain.
+/// Returns all keys. Those of effects follow the order of the chain.
 [[nodiscard]] std::vector<SensorKey> sensor_keys();
 
 }  // namespace todbench

@@ -26,29 +26,31 @@ class SensorModel {
   SensorModel(const SensorModel&) = delete;
   SensorModel& operator=(const SensorModel&) = delete;
 
-  /// The sensor as planned: parameters of skipped effects have their neutral values.
+  /// Returns the sensor as planned: parameters of skipped effects have their neutral values.
   [[nodiscard]] const SensorSpec& spec() const;
+  /// Returns the planned effects.
   [[nodiscard]] const SensorPlan& plan() const;
+  /// Returns the seed of the random numbers.
   [[nodiscard]] std::uint64_t seed() const;
 
-  /// Size of a picture in samples: detectors times samples per pitch.
+  /// Returns the size of a picture in samples: detectors times samples per pitch.
   [[nodiscard]] cv::Size size() const;
-  /// Picture before noise at a contrast of 1 K, above the surround, without the displacement by image dance. The last
-  /// few geometries are cached.
+  /// Returns the picture before noise at a contrast of 1 K, above the surround, without the displacement by image
+  /// dance. The last few geometries are cached.
   [[nodiscard]] std::shared_ptr<const cv::Mat1f> unit_signal(const PlateScene& scene) const;
-  /// Displacement by image dance of each exposure of picture `index`, in samples; the mean is 0.
+  /// Returns the displacement by image dance of each exposure of picture `index`, in samples; the mean is 0.
   [[nodiscard]] std::vector<cv::Point2d> displacements_px(std::uint64_t index) const;
-  /// Picture `index` in kelvin above the surround, with the planned effects: signal, temporal and line noise, fixed
-  /// pattern, dead pixels, display, quantisation.
+  /// Returns picture `index` in kelvin above the surround, with the planned effects: signal, temporal and line
+  /// noise, fixed pattern, dead pixels, display, quantisation.
   [[nodiscard]] cv::Mat1f picture(const PlateScene& scene, std::uint64_t index) const;
-  /// The same for an external signal of size() in kelvin per kelvin of contrast, with a surround of `background_k`. The
-  /// signal must already contain the image dance.
+  /// Returns the same picture for an external signal of size() in kelvin per kelvin of contrast, with a surround of
+  /// `background_k`. The signal must already contain the image dance.
   [[nodiscard]] cv::Mat1f picture(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
                                   std::uint64_t index) const;
-  /// Frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant bits. A
-  /// frame always holds whole counts, even if the plan skips quantisation.
+  /// Returns frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant
+  /// bits. A frame always holds whole counts, even if the plan skips quantisation.
   [[nodiscard]] cv::Mat1w expose(const PlateScene& scene, std::uint64_t index) const;
-  /// The same for an external signal, as for picture().
+  /// Returns the frame for an external signal, as for picture().
   [[nodiscard]] cv::Mat1w expose(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
                                  std::uint64_t index) const;
 
@@ -57,7 +59,7 @@ class SensorModel {
   std::unique_ptr<State> state_;
 };
 
-/// Angle of a sample along x and y.
+/// Returns the angle of a sample along x and y.
 [[nodiscard]] cv::Point2d sample_mrad(const SensorSpec& spec);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The effects that a simulated sensor shows, with reasons.
+// Effects that a simulated sensor shows, with reasons.
 #pragma once
 
 #include <optional>
@@ -13,6 +13,7 @@
 
 namespace todbench {
 
+/// Decision about an effect.
 enum class Decision { simulate, skip };
 
 /// Beginning of the reason of an effect that a list `skip` leaves out.
@@ -24,7 +25,7 @@ struct EffectDecision {
   std::string reason;  ///< a sentence
   /// Change of the 75 % acuity if the effect is skipped; empty if no criterion bounds it.
   std::optional<double> predicted_change_percent;
-  /// Skipped, and the sensor is the same with and without it.
+  /// Returns whether the effect is skipped and the sensor is the same with and without it.
   [[nodiscard]] bool changes_nothing() const { return decision == Decision::skip && predicted_change_percent == 0.0; }
   /// Skipped by a list `skip`, whatever it changes.
   [[nodiscard]] bool on_request() const { return decision == Decision::skip && reason.starts_with(skipped_on_request); }
@@ -33,19 +34,20 @@ struct EffectDecision {
 /// One decision per effect, in chain order. Part of the configuration, the session folder and the report.
 struct SensorPlan {
   std::vector<EffectDecision> decisions;
+  /// Returns whether the effect is simulated.
   [[nodiscard]] bool simulates(Effect effect) const;
 };
 
-/// Simulates every effect that is not neutral in this sensor. The lists `skip` and `force` override this, and the
-/// reasons state it.
+/// Returns the plan that simulates every effect that is not neutral in this sensor. The lists `skip` and `force`
+/// override this; the reasons then state it.
 [[nodiscard]] SensorPlan full_plan(const SensorSpec& spec, const std::vector<Effect>& skip,
                                    const std::vector<Effect>& force, SceneMotion motion = {});
 
-/// True if the parameters of the effect are neutral in this sensor with this motion.
+/// Returns whether the parameters of the effect are neutral in this sensor with this motion.
 [[nodiscard]] bool is_neutral(const SensorSpec& spec, Effect effect, SceneMotion motion = {});
 
-/// The simulated sensor: parameters of all skipped effects have their neutral values. Effects without a neutral value
-/// (diffraction, spectral band, detector, quantisation) ask the plan.
+/// Returns the simulated sensor: parameters of all skipped effects have their neutral values. The stages of effects
+/// without a neutral value (diffraction, spectral band, detector, quantisation) read the plan.
 [[nodiscard]] SensorSpec as_planned(SensorSpec spec, const SensorPlan& plan);
 
 }  // namespace todbench

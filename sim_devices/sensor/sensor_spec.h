@@ -17,13 +17,14 @@ enum class DisplayReconstruction {
   sample_and_hold,  ///< squares of one sample, as observers assume
   bilinear,         ///< linear interpolation: the squares averaged over one more sample
 };
+/// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(DisplayReconstruction reconstruction);
 
 /// Axis of the array: along rows or along columns.
 enum class PitchAxis { x, y };
 
-/// A staring thermal camera: rectangular detectors on a rectangular lattice. Names state the units. A length in pitches
-/// is in those along x, unless it is a place or a displacement in the picture, which is in pitches of each axis.
+/// A staring thermal camera: rectangular detectors on a rectangular lattice. Names state the units. Lengths in pitches
+/// are in pitches along x. Places and displacements in the picture are in pitches of each axis.
 struct SensorSpec {
   std::string name;
   std::string description;
@@ -37,26 +38,27 @@ struct SensorSpec {
   double wavelength_min_um = 7.5, wavelength_max_um = 13;
   double turbulence_cn2_m_minus_2_3 = 0;  ///< structure parameter Cn2 of the air; 0: no turbulence
   double turbulence_path_m = 1000;        ///< length of the turbulent path
-  double turbulence_correlation_ms = 0;   ///< of the image dance; 0: every frame is the long exposure
+  double turbulence_correlation_ms = 0;   ///< correlation time of the image dance; 0: every frame is the long exposure
   double optics_transmission = 0.8;       ///< normalised out of the signal: NETD is referred to the scene
   double aberration_sigma_pitch = 0;  ///< Gaussian blur of the lens beyond diffraction, per axis, in detector pitches
-  double halo_share = 0;              ///< of the light, spread into a wide Gaussian round every point; 0: no halo
-  double halo_sigma_pitch = 0;        ///< sigma of that Gaussian per axis
-  double distortion_percent = 0;      ///< radial, third power, at the corner of the picture; positive: pincushion
-  double distortion_r4_percent = 0;   ///< radial, fifth power, at the corner
-  double netd_k = 0.07;               ///< temporal noise per sample
-  double noise_correlation = 0;       ///< between successive exposures of a sample's temporal noise
-  double fixed_pattern_k = 0;         ///< sd of the fixed offset per detector
-  double time_constant_ms = 0;        ///< of the bolometer; 0: no memory
-  double exposure_ms = 0;             ///< of a detector that integrates and holds; 0: instantaneous
-  double row_time_us = 0;             ///< between successive rows of detectors; 0: all rows at once
-  double field_delay_ms = 0;          ///< from the even to the odd rows of an interlaced frame; 0: progressive
-  double row_noise_k = 0;             ///< sd of an offset per detector row, new in every exposure
-  double column_noise_k = 0;          ///< sd of an offset per detector column, new in every exposure
-  double dead_pixel_share = 0;        ///< of the detectors; the camera shows the mean of their live neighbours
-  double defective_pixel_share = 0;   ///< of the detectors: stuck, hot, noisy or blinking, not hidden (pixel_faults.h)
-  int defect_seed = 1;                ///< selects the defective detectors of the array; independent of the run
-  int frames_averaged = 1;            ///< exposures averaged into one frame
+  double halo_share = 0;  ///< share of the light that is spread into a wide Gaussian round every point; 0: no halo
+  double halo_sigma_pitch = 0;       ///< sigma of that Gaussian per axis
+  double distortion_percent = 0;     ///< radial, third power, at the corner of the picture; positive: pincushion
+  double distortion_r4_percent = 0;  ///< radial, fifth power, at the corner
+  double netd_k = 0.07;              ///< temporal noise per sample
+  double noise_correlation = 0;      ///< correlation of the temporal noise of a sample between successive exposures
+  double fixed_pattern_k = 0;        ///< sd of the fixed offset per detector
+  double time_constant_ms = 0;       ///< time constant of the bolometer; 0: none
+  double exposure_ms = 0;            ///< exposure of a detector that integrates and holds; 0: instantaneous
+  double row_time_us = 0;            ///< time between successive rows of detectors; 0: all rows sample at once
+  double field_delay_ms = 0;         ///< time from the even to the odd rows of an interlaced frame; 0: progressive
+  double row_noise_k = 0;            ///< sd of an offset per detector row, new in every exposure
+  double column_noise_k = 0;         ///< sd of an offset per detector column, new in every exposure
+  double dead_pixel_share = 0;       ///< share of the detectors; the camera shows the mean of their live neighbours
+  /// Share of the detectors that are stuck, hot, noisy or blinking, not hidden (pixel_faults.h).
+  double defective_pixel_share = 0;
+  int defect_seed = 1;      ///< selects the defective detectors of the array; independent of the run
+  int frames_averaged = 1;  ///< exposures averaged into one frame
   /// Exposures, displaced by half a pitch, that form a picture on a grid twice as fine; a multiple of 4; 0: none.
   int super_resolution_frames = 0;
   DisplayReconstruction display = DisplayReconstruction::sample_and_hold;
@@ -70,17 +72,17 @@ struct SensorSpec {
   double frame_rate_hz = 50;
   /// Programs of the user behind the sensor, from picture to picture. SensorModel and estimates do not run them.
   std::vector<ModulePlan> modules{};
-  double scene_temperature_k = 300;  ///< of the surround; sets the spectral weighting dL/dT
+  double scene_temperature_k = 300;  ///< temperature of the surround; sets the spectral weighting dL/dT
 
   [[nodiscard]] double pitch_along(PitchAxis axis) const {
     return axis == PitchAxis::y && pitch_y_um > 0 ? pitch_y_um : pitch_um;
   }
-  /// Pitch along y over that along x.
+  /// Returns the pitch along y over that along x.
   [[nodiscard]] double pitch_aspect() const { return pitch_along(PitchAxis::y) / pitch_um; }
   [[nodiscard]] double ifov_mrad(PitchAxis axis = PitchAxis::x) const { return pitch_along(axis) / focal_length_mm; }
-  /// Displayed samples per detector pitch and axis.
+  /// Returns the number of displayed samples per detector pitch and axis.
   [[nodiscard]] int samples_per_pitch() const { return microscan * (super_resolution_frames > 0 ? 2 : 1); }
-  /// Exposures averaged in each displayed sample.
+  /// Returns the number of exposures averaged in each displayed sample.
   [[nodiscard]] int exposures_per_sample() const {
     return frames_averaged * (super_resolution_frames > 0 ? super_resolution_frames / 4 : 1);
   }
@@ -90,18 +92,19 @@ struct SensorSpec {
   [[nodiscard]] double detector_pitch_ratio(PitchAxis axis = PitchAxis::x) const {
     return detector_along(axis) / pitch_along(axis);
   }
-  /// Whether lattice and sensitive area are the same along both axes.
+  /// Returns whether lattice and sensitive area are the same along both axes.
   [[nodiscard]] bool square_detector() const {
     return pitch_aspect() == 1 && (detector_y_um == 0 || detector_y_um == detector_um);
   }
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// `invalid_input` with one sentence for an impossible sensor (negative aperture, detector larger than pitch, zero
-/// focal length, ...).
+/// Fails with `invalid_input` and one sentence for an impossible sensor (negative aperture, detector larger than pitch,
+/// zero focal length, ...).
 [[nodiscard]] Result<void> validate(const SensorSpec& spec);
 
-/// `invalid_input` for a sensor with unlike pitches along x and y, which `task` ("identification") does not support.
+/// Fails with `invalid_input` for a sensor with different pitches along x and y, which `task` ("identification") does
+/// not support.
 [[nodiscard]] Result<void> require_square_pixels(const SensorSpec& spec, std::string_view task);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sensor model as a camera of the bench, and the scene in front of it as a target. Only the scene connects them.
+// Sensor model as a camera of the bench, and the scene in front of it as a target. Only the scene connects the two.
 #pragma once
 
 #include <memory>
@@ -23,8 +23,8 @@ class SceneHolder {
   void set(PlateScene scene);
   /// Steps the contrast between the last frame and the next, at moments spread evenly over the frame period.
   void step_to(double delta_t_k);
-  /// Scene at a time of the camera's clock, which becomes the present time. During a run the plate is in motion. After
-  /// a step the contrast is the one that the detector has reached.
+  /// Returns the scene at a time of the camera's clock, and makes this the present time. During a run the plate is in
+  /// motion. After a step the contrast is the one that the detector has reached.
   [[nodiscard]] PlateScene scene_at(double time_s, const SensorSpec& spec);
   /// Starts a run along x from the present place of the plate; the next set() ends it.
   PlateRun run_along_x(double to_mm, double speed_mm_s);
@@ -39,18 +39,19 @@ class SceneHolder {
   double time_s_ = 0;
 };
 
+/// Options of a simulated camera.
 struct SimulatedSourceOptions {
   ModuleSensor::OnLine on_error_line{};  ///< receives error output of the program in place of the sensor
   int dither = 1;                        ///< n: frame k shows the scene displaced by dither_px(n, k)
 };
 
-/// Camera without delay: frame k is expose(present scene, k) of the model or of the program in place of the sensor.
-/// `serial` distinguishes twins.
+/// Returns a camera without delay: frame k is expose(present scene, k) of the model or of the program in place of the
+/// sensor. `serial` distinguishes twins.
 [[nodiscard]] std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
                                                             std::shared_ptr<SceneHolder> scene, std::string serial,
                                                             const SimulatedSourceOptions& options = {});
 
-/// Target that sets states into the scene at once. Plates in identity mounting.
+/// Returns a target that sets each state of the scene without delay. Plates are in identity mounting.
 [[nodiscard]] std::unique_ptr<Target> scene_target(std::shared_ptr<SceneHolder> scene, std::vector<TargetPlate> plates);
 
 }  // namespace todbench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Super-resolution as a stage of the chain: combines the last frames, displaced against each other, into a finer
-// picture.
+// Super-resolution as a stage of the chain: combination of the last frames, which are displaced relative to each other,
+// into a finer picture.
 #pragma once
 
 #include <memory>
@@ -15,18 +15,20 @@ enum class FrameShifts {
   scan,      ///< known: dither_px() of the number of the picture, counted from 0
 };
 
+/// Options of super_resolution_stage().
 struct SuperResolutionStageOptions {
   int frames = 4;  ///< number of frames combined, the most recent ones; at least factor^2
   int factor = 2;  ///< samples per pixel and axis
   FrameShifts shifts = FrameShifts::measured;
 };
 
-/// Displacement of picture `index` of a camera that is dithered over n x n places of a pixel, along x first.
+/// Returns the displacement of picture `index` of a camera that is dithered over n x n places of a pixel, along x
+/// first.
 [[nodiscard]] cv::Point2d dither_px(int n, std::uint64_t index);
 
-/// super_resolve() of the last frames. Until there are enough frames, each pixel is repeated. Places in the picture are
-/// means over its frames. Errors of process(): `not_identifiable` with the message of super_resolve() or
-/// frame_shifts(); the next picture may succeed.
+/// Returns a stage that applies super_resolve() to the last frames. Until there are enough frames, it repeats each
+/// pixel. Positions in the picture are means over its frames. Errors of process(): `not_identifiable` with the message
+/// of super_resolve() or frame_shifts(); the next picture may succeed.
 [[nodiscard]] std::unique_ptr<ChainStage> super_resolution_stage(const SuperResolutionStageOptions& options);
 
 }  // namespace todbench

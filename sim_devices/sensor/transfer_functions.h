@@ -35,25 +35,28 @@ class FootprintMtf {
   std::vector<stage::Footprint> factors_;
 };
 
-/// Transfer functions of the planned rows of stage::Transfer that act in this scene.
+/// Returns the transfer functions of the planned rows of stage::Transfer that act in this scene.
 [[nodiscard]] std::vector<TransferFunction> other_transfers(const ChainScope& scope);
 
-/// Transfer function of all of image formation. Sequential readout is not included, because it moves samples.
+/// Returns the transfer function of all of image formation. Sequential readout is not included, because it moves
+/// samples.
 [[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths,
                                                SceneMotion motion = {});
-/// The same at the frequencies m / period, |m| <= band, bit for bit. Optics depend only on the radius and the footprint
-/// is a product over the axes, so only an eighth of the plane and both axes are computed. Unlike pitches: no table.
+/// Returns the same function from a table at the frequencies m / period, |m| <= band, bit for bit. Optics depend only
+/// on the radius and the footprint is a product over the axes, so only an eighth of the plane and both axes are
+/// computed. With different pitches along x and y no table is used.
 [[nodiscard]] TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope);
 
-/// Highest relevant frequency along either axis, in cycles per pitch: the cut-off of the optics, or the frequency at
-/// which they have reduced the signal to the tolerance. Without either the spectrum of a sharp shape is unlimited; a
-/// limit of 16 cycles per pitch leaves an error near 1/(pi^2 16) at edges.
+/// Returns the highest relevant frequency along either axis, in cycles per pitch: the cut-off of the optics, or the
+/// frequency at which they have reduced the signal to the tolerance. Without either the spectrum of a sharp shape is
+/// unlimited; a limit of 16 cycles per pitch leaves an error near 1/(pi^2 16) at edges.
 [[nodiscard]] double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy);
 
-/// Motion of the target from one row of samples to the next, in pitches: the sum over the rows of stage::Readout.
+/// Returns the motion of the target from one row of samples to the next, in pitches: the sum over the rows of
+/// stage::Readout.
 [[nodiscard]] cv::Point2d readout_slope_of(const ChainScope& scope);
 
-/// Sum of the spreads of the planned stages of image formation.
+/// Returns the sum of the spreads of the planned stages of image formation.
 [[nodiscard]] Spread spread_of(const ChainScope& scope);
 
 }  // namespace todbench

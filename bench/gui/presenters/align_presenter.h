@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alignment of the plate in front of the camera, look by look.
+// Alignment of the plate in front of the camera, by repeated looks.
 #pragma once
 
 #include <QObject>
@@ -12,21 +12,23 @@
 
 namespace todbench {
 
-/// Used in the window's thread.
+/// Presenter of the alignment. Used in the window's thread.
 class AlignPresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit AlignPresenter(Workbench& bench, QObject* parent = nullptr);
+  /// Starts looking at the plate.
   void start();
   void stop() { bench_.stop(); }
 
+  /// Returns the result of the last look; empty before the first.
   [[nodiscard]] const std::optional<Alignment>& alignment() const { return alignment_; }
-  /// Number of looks since start().
+  /// Returns the number of looks since start().
   [[nodiscard]] int looks() const { return looks_; }
-  /// Name and value with unit.
+  /// Returns name and value with unit of each quantity.
   [[nodiscard]] std::vector<std::pair<QString, QString>> figures() const;
-  /// Corrections that the user has to make, one sentence each; empty: ready to measure.
+  /// Returns the corrections that the user has to make, one sentence each; empty: ready to measure.
   [[nodiscard]] QStringList hints() const;
 
  signals:

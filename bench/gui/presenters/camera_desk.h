@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Controls of the camera of the live picture: the window asks, the thread of the camera carries out.
+// Controls of the camera of the live picture: requests come from the window, and the thread of the camera executes
+// them.
 #pragma once
 
 #include <array>
@@ -16,25 +17,26 @@
 
 namespace todbench {
 
-/// Settings that people expect beside a live picture.
+/// Settings that are shown beside a live picture.
 enum class CameraControl { frame_rate, gain, range, exposure };
 inline constexpr std::array all_camera_controls{CameraControl::frame_rate, CameraControl::gain, CameraControl::range,
                                                 CameraControl::exposure};
+/// Returns the label of the control.
 [[nodiscard]] std::string_view to_string(CameraControl control);
 
-/// The feature of a camera behind a control. Cameras name them differently: SFNC, older and vendor names of GenICam,
+/// Feature of a camera for a control. Its name differs between cameras: SFNC, older and vendor names of GenICam,
 /// controls of V4L2 drivers.
 struct ControlReading {
   CameraControl control = CameraControl::frame_rate;
-  std::string feature;  ///< empty: the camera has none with a known name
+  std::string feature;  ///< empty: the camera has no feature with a known name
   std::string value;    ///< read back
 };
 
-/// Returns a reading for each control. A feature that cannot be read counts as absent.
+/// Returns a reading for each control. A feature that cannot be read is treated as absent.
 [[nodiscard]] std::vector<ControlReading> read_controls(FrameSource& camera);
 
 /// Sets a feature and reads it back. Cameras that refuse while they stream are stopped, set and started again. Errors:
-/// those of FrameSource::set(), with the camera streaming again; `disconnected`.
+/// those of FrameSource::set(), after which the camera streams again; `disconnected`.
 [[nodiscard]] Result<std::string> change_feature(FrameSource& camera, const std::string& feature,
                                                  const std::string& value);
 
@@ -43,18 +45,20 @@ class CameraDesk {
  public:
   using Request = std::function<void(FrameSource&)>;
 
-  /// A camera was opened: requests to another one are discarded.
+  /// Call it after a camera was opened: requests to another camera are discarded.
   void open();
+  /// Adds a request.
   void ask(Request request);
-  /// Carries out the requests. Called by the thread of the camera.
+  /// Executes the requests. Called by the thread of the camera.
   void serve(FrameSource& camera);
 
   /// Starts a recording of the frames that follow. Errors: `io` with the path.
   [[nodiscard]] Result<void> record(const std::filesystem::path& file, const SourceInfo& info);
+  /// Returns whether frames are being recorded.
   [[nodiscard]] bool recording() const;
   /// Appends a frame to the recording, if there is one. An error ends the recording.
   [[nodiscard]] Result<void> append(const Frame& frame);
-  /// Ends the recording and reads it again. Returns its number of frames; empty without a recording. Errors: `io`.
+  /// Ends the recording and reads it back. Returns its number of frames; empty without a recording. Errors: `io`.
   [[nodiscard]] Result<std::optional<std::uint64_t>> end_recording();
 
  private:

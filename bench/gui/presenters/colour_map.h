@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts counts to a picture on a screen: colour maps, level and span, histogram.
+// Conversion of counts to a picture on a screen: colour maps, level and span, histogram.
 #pragma once
 
 #include <QImage>
@@ -11,15 +11,19 @@
 
 namespace todbench {
 
+/// Colours of a picture.
 enum class ColourMap { white_hot, black_hot, iron, viridis };
 inline constexpr std::array all_colour_maps{ColourMap::white_hot, ColourMap::black_hot, ColourMap::iron,
                                             ColourMap::viridis};
+/// Returns the label of the colour map.
 [[nodiscard]] QString name_of(ColourMap map);
 
 /// Range of values mapped to the whole colour map. high > low.
 struct LevelSpan {
   double low = 0, high = 1;
+  /// Returns the middle of the range.
   [[nodiscard]] double level() const { return (low + high) / 2; }
+  /// Returns the width of the range.
   [[nodiscard]] double span() const { return high - low; }
 };
 
@@ -32,18 +36,20 @@ struct PictureMarks {
   int saturated_from = -1;  ///< marks counts from here on, and counts of 0; < 0: no marks
 };
 
+/// Returns the counts as a picture in the colours of `map`, with marks.
 [[nodiscard]] QImage to_image(const cv::Mat1w& counts, const LevelSpan& level, ColourMap map, PictureMarks marks);
-/// The same for values of any unit, without marks.
+/// Returns values of any unit as a picture, without marks.
 [[nodiscard]] QImage to_image(const cv::Mat1d& values, const LevelSpan& level, ColourMap map);
 
 /// Returns grey levels as they are, one pixel for each.
 [[nodiscard]] QImage grey_image(const cv::Mat1b& levels);
 
-/// Pixels per bin between the ends of `level`; values outside fall into the first and last bin.
+/// Returns the number of pixels per bin between the limits of `level`; values outside are counted in the first and last
+/// bin.
 [[nodiscard]] std::vector<int> histogram(const cv::Mat1w& counts, const LevelSpan& level, int bins);
 
-/// Returns stuck pixels: those that differ by more than `limit_counts` from the median of their eight neighbours, if no
-/// neighbour differs by a twentieth of that.
+/// Returns stuck pixels: those that differ by more than `limit_counts` from the median of their eight neighbours,
+/// unless a neighbour differs by a twentieth of that.
 [[nodiscard]] std::vector<cv::Point> dead_pixels(const cv::Mat1w& counts, double limit_counts);
 
 }  // namespace todbench

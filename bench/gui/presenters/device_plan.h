@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plan that follows from the choice of a camera.
+// Plan after the choice of a camera.
 #pragma once
 
 #include <string>
@@ -8,13 +8,16 @@
 
 namespace todbench {
 
-/// Returns the plan for a connected camera. The statements of the plans of the emulated laboratory, `demo` and
-/// `acceptance` (words, operator, addresses, times of changes, limits, rows of the budget), their camera's IFOV and the
-/// statements about another camera (IFOV, unit, settings) are removed, so that none of them reaches the report of a
-/// real unit. A target that was simulated or emulated becomes an operator, kind 'prompt'. Statements of the user stay;
-/// a list of limits or rows that the user changed stays whole.
+/// Returns the plan for a connected camera, without values that belong to another camera, so that none of them reaches
+/// the report of a real unit. Removed are:
+/// - values of the plans `demo`, `acceptance` and of the emulated laboratory (texts, operator, addresses, times of
+/// changes, limits, rows of the budget) and the IFOV of their camera;
+/// - IFOV, unit and settings of another camera.
+/// A simulated or emulated target becomes an operator, kind 'prompt'. Values that the user entered stay; a list of
+/// limits or rows that the user changed stays complete.
 [[nodiscard]] Plan plan_for_camera(Plan plan, const std::string& id);
-/// Returns the plan for the emulated laboratory: what plan_for_camera() removed is as in the demonstration.
+/// Returns the plan for the emulated laboratory, with the values of the demonstration in place of those that
+/// plan_for_camera() removed.
 [[nodiscard]] Plan plan_for_laboratory(Plan plan);
 /// Returns the plan for a simulated sensor in front of its scene. Errors: those of load_sensor().
 [[nodiscard]] Result<Plan> plan_for_sensor(Plan plan, const std::string& name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts a document of the report to the text of QTextDocument.
+// Conversion of a document of the report to the text of QTextDocument.
 #pragma once
 
 #include <QTextDocument>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Paints a drawing of the report for pages of a PDF. Interactive plots are in views/plot_view.h.
+// Painter of a drawing of the report for pages of a PDF. Interactive plots are in views/plot_view.h.
 #pragma once
 
 #include <QPainter>

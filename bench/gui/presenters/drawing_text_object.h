@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Paints the added drawing with index property(index_property), at its own width.
+/// Text object that paints the added drawing with index property(index_property), at its own width.
 class DrawingTextObject final : public QObject, public QTextObjectInterface {
   Q_OBJECT
   Q_INTERFACES(QTextObjectInterface)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The history of units without widgets: the available series, and the chart of one.
+// History of units without widgets: the available series, and the chart of one of them.
 #pragma once
 
 #include <QObject>
@@ -16,19 +16,20 @@ namespace todbench {
 
 /// A chart as displayed in the window.
 struct HistoryChart {
-  Plot values;  ///< over days since the first, with 95 % intervals and the reference
-  /// In standard deviations; empty if there are too few values.
+  Plot values;  ///< values over days since the first, with 95 % intervals and the reference
+  /// Charts in standard deviations; empty if there are too few values.
   std::optional<Plot> ewma, cusum;
   QString remark;  ///< interpretation of the charts, one sentence
 };
 
 /// Returns the chart of a series.
 [[nodiscard]] HistoryChart history_chart(const HistorySeries& series);
-/// "acuity dT=2K", "A655sc, serial number 48000123".
+/// Returns "acuity dT=2K", "A655sc, serial number 48000123".
 [[nodiscard]] QString title_of(const HistorySeries& series);
+/// Returns the unit of the values of a series.
 [[nodiscard]] QString unit_of(const HistorySeries& series);
 
-/// Reads the index on request. Used in the window's thread.
+/// Presenter that reads the index on request. Used in the window's thread.
 class HistoryPresenter final : public QObject {
   Q_OBJECT
 
@@ -37,9 +38,11 @@ class HistoryPresenter final : public QObject {
 
   /// Adds the sessions with a camera in a folder and its subfolders, and reads the index again.
   void add_sessions(const std::filesystem::path& folder);
+  /// Reads the index again; changed() follows.
   void refresh();
+  /// Returns the series of the index.
   [[nodiscard]] const std::vector<HistorySeries>& series() const { return series_; }
-  /// Reason why there is no series; empty if there is one.
+  /// Returns the reason why there is no series; empty if there is one.
   [[nodiscard]] const QString& trouble() const { return trouble_; }
   [[nodiscard]] const std::filesystem::path& index() const { return index_; }
 

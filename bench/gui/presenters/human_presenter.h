@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows the same patches to a person: four alternatives, arrow keys, no feedback, blind to the model.
+// Presentation of the judged patches to a person: four alternatives, arrow keys, no feedback, without display of the
+// answers of the model.
 #pragma once
 
 #include <QImage>
@@ -18,10 +19,11 @@
 
 namespace todbench {
 
+/// Options of a sitting.
 struct HumanOptions {
   int per_size = 8;             ///< patches per contrast and size, or all if there are fewer
   std::optional<int> shown_ms;  ///< empty: until answered
-  int magnification = 24;       ///< screen pixels per displayed sample: far more than display and eye resolve
+  int magnification = 24;       ///< screen pixels per displayed sample: more than display and eye resolve
   std::uint64_t seed = 1;
   int training = 0;      ///< patches with feedback before the first one that counts
   PersonFacts person{};  ///< stored with the answers
@@ -36,15 +38,15 @@ struct HumanOptions {
                                                             const HumanOptions& options);
 /// Returns the temperatures of black and white.
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged);
-/// The same for a display of the plan, whose levels are those of operator_picture().
+/// Returns the temperatures for a display of the plan, whose levels are those of operator_picture().
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged, const ViewedDisplay& display);
 /// Returns the patch as an operator sees it at the display, in pixels of the screen.
 [[nodiscard]] QImage picture_at_display(const JudgedTrial& judged, const ViewedDisplay& display);
-/// Returns the patch enlarged by bicubic interpolation. Grey levels span three contrasts or more around the surround,
-/// the same for all answers, so that they do not reveal the direction of the triangle.
+/// Returns the patch enlarged by bicubic interpolation. The grey scale spans three contrasts or more around the
+/// surround. It is the same for all answers, so that it does not reveal the direction of the triangle.
 [[nodiscard]] QImage picture_for_a_person(const JudgedTrial& judged, int magnification);
 
-/// Used in the window's thread.
+/// Presenter of the patches. Used in the window's thread.
 class HumanPresenter final : public QObject {
   Q_OBJECT
 
@@ -55,37 +57,40 @@ class HumanPresenter final : public QObject {
   [[nodiscard]] QString begin(const std::vector<JudgedTrial>& trials, const Plan& plan,
                               const std::filesystem::path& session, const HumanOptions& options);
   /// Replays a recorded session, also through packages, and shows the patches of all sources in one mixed order. No
-  /// member tells the source of a patch. The answers go to `folder`. Returns an error sentence; empty: it prepares.
+  /// member reveals the source of a patch. The answers are written to `folder`. Returns an error sentence; empty: the
+  /// sources are being computed.
   [[nodiscard]] QString begin_blind(const std::filesystem::path& session, const std::vector<std::string>& packages,
                                     bool with_twin, const Plan& plan, const std::filesystem::path& folder,
                                     const HumanOptions& options);
-  /// The person's answer to the patch shown now or last.
+  /// Records the answer of the person to the patch shown now or last.
   void answer(Apex apex);
   void abort();
 
   [[nodiscard]] HumanState state() const { return screen_.state(); }
   [[nodiscard]] const QImage& picture() const { return screen_.picture(); }
-  /// Whether the sources of begin_blind() are computed.
+  /// Returns whether the sources of begin_blind() are being computed.
   [[nodiscard]] bool preparing() const { return preparing_; }
-  /// Level around the picture, 0 to 255: that of the background.
+  /// Returns the level around the picture, 0 to 255: that of the background.
   [[nodiscard]] int background_level() const;
-  /// Whether picture() is in pixels of the screen, for the display of the plan.
+  /// Returns whether picture() is in pixels of the screen, for the display of the plan.
   [[nodiscard]] bool at_display() const { return !blind_ && has_display(plan_); }
+  /// Returns the number of answers that count.
   [[nodiscard]] std::size_t done() const { return answers_.size(); }
+  /// Returns the number of patches whose answers count.
   [[nodiscard]] std::size_t planned() const { return patches_.size(); }
-  /// Patches of the training that are still to be answered; 0: the answers count.
+  /// Returns the number of patches of the training that are still to be answered; 0: the answers count.
   [[nodiscard]] std::size_t training_left() const { return training_.size() - trained_; }
-  /// Whether the last answer of the training was right, in words; empty outside the training.
+  /// Returns whether the last answer of the training was right, in words; empty outside the training.
   [[nodiscard]] const QString& feedback() const { return feedback_; }
-  /// When finished: the mean over all people of the session.
+  /// Returns, after the end, the mean over all people of the session.
   [[nodiscard]] const std::vector<PeopleMean>& means() const { return means_; }
-  /// When finished: the record written to the session.
+  /// Returns, after the end, the record written to the session.
   [[nodiscard]] const std::optional<HumanRecord>& record() const { return record_; }
-  /// When a blind judgement is finished: its sources and ratios.
+  /// Returns, after the end of a blind judgement, its sources and ratios.
   [[nodiscard]] const std::optional<BlindResult>& blind_result() const { return blind_result_; }
-  /// Folder of the blind judgement.
+  /// Returns the folder of the blind judgement.
   [[nodiscard]] const std::filesystem::path& folder() const { return session_; }
-  /// Reason why the answers could not be stored; otherwise empty.
+  /// Returns the reason why the answers could not be stored; otherwise empty.
   [[nodiscard]] QString problem() const { return problem_; }
 
  signals:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A thread that runs jobs one after the other.
+// Thread that runs jobs one after the other.
 #pragma once
 
 #include <QObject>
@@ -14,9 +14,9 @@
 
 namespace todbench {
 
-/// A started job stops the running one, drops the waiting ones and starts when the running one has ended. A queued job
-/// starts after all others. Methods are called from the thread that owns the object and return at once; jobs run on the
-/// runner's own thread.
+/// Thread for jobs. A started job stops the running one, discards the waiting ones, and starts when the running one has
+/// ended. A queued job starts after all others. Methods are called from the thread that owns the object and return
+/// immediately; jobs run on the thread of the runner.
 class JobRunner final : public QObject {
   Q_OBJECT
 
@@ -26,15 +26,17 @@ class JobRunner final : public QObject {
   /// Stops the running job and waits for its end.
   ~JobRunner() override;
 
+  /// Starts a job in place of the others.
   void start(Job job);
+  /// Adds a job after the others.
   void queue(Job job);
-  /// Whether stop() dropped jobs that had not started.
+  /// Result of stop(): jobs that had not started were discarded, or there were none.
   enum class Waiting { none, dropped };
-  /// Asks the running job to stop and drops the waiting ones.
+  /// Requests a stop of the running job and discards the waiting ones.
   Waiting stop();
   /// Stops and waits for the end of the running job; later jobs do not run.
   void shut_down();
-  /// Whether a job runs or waits.
+  /// Returns whether a job runs or waits.
   [[nodiscard]] bool busy() const;
 
  private:

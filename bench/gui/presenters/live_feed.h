@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passes frames from the acquiring thread to the live picture: the latest one and the counters of all.
+// Transfer of frames from the acquiring thread to the live picture: the latest frame, and counters of all frames.
 #pragma once
 
 #include <cstdint>
@@ -21,20 +21,22 @@ struct FrameCounters {
   double rate_hz = 0;                             ///< over the last second; 0: unknown yet
 };
 
+/// Latest frame with the counters.
 struct LiveFrame {
   Frame frame;
   FrameCounters counters;
 };
 
-/// Written by the acquiring thread, read by the window. Thread-safe.
+/// Feed that the acquiring thread writes and the window reads. Thread-safe.
 class LiveFeed {
  public:
-  /// Starts a camera: counters are reset to zero.
+  /// Starts a camera and resets the counters to zero.
   void open(const SourceInfo& info);
+  /// Adds a frame.
   void put(const Frame& frame);
-  /// Returns the latest frame if it was not taken yet; otherwise empty.
+  /// Returns the latest frame if it was not returned yet; otherwise empty.
   [[nodiscard]] std::optional<LiveFrame> take();
-  /// Of the last opened camera.
+  /// Returns the description of the last opened camera.
   [[nodiscard]] std::optional<SourceInfo> info() const;
 
  private:

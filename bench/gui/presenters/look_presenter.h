@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The live picture: choice of the camera, colours of its counts, value under the cursor.
+// Live picture: choice of the camera, colours of its counts, value under the cursor.
 #pragma once
 
 #include <QImage>
@@ -19,7 +19,7 @@
 
 namespace todbench {
 
-/// Level and span: from the picture, or fixed.
+/// Source of level and span: the picture, or fixed values.
 enum class LevelMode { automatic, fixed };
 
 /// Values of one pixel.
@@ -29,50 +29,57 @@ struct PixelReading {
   std::optional<double> kelvin;  ///< empty without a temperature scale
 };
 
-/// Takes the latest frame 25 times a second from the running camera. Used in the window's thread.
+/// Presenter that takes the latest frame of the running camera 25 times a second. Used in the window's thread.
 class LookPresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit LookPresenter(Workbench& bench, QObject* parent = nullptr);
 
-  /// Runs the selected camera. A target that the plan can drive is asked for the plan's highest contrast at the same
-  /// time; the picture does not wait for it, and its failure is a message.
+  /// Runs the selected camera. At the same time, a target that the plan can drive is set to the highest contrast of the
+  /// plan. The picture does not wait for the target, and a failure of the target is reported as a message.
   void start();
   void stop() { bench_.stop(); }
 
+  /// Returns the latest frame; empty before the first.
   [[nodiscard]] const std::optional<LiveFrame>& latest() const { return latest_; }
   [[nodiscard]] const QImage& image() const { return image_; }
+  /// Returns the number of pixels per bin of counts.
   [[nodiscard]] const std::vector<int>& histogram() const { return histogram_; }
+  /// Returns the stuck pixels of the picture.
   [[nodiscard]] const std::vector<cv::Point>& dead() const { return dead_; }
   [[nodiscard]] LevelSpan level() const { return level_; }
   [[nodiscard]] LevelMode level_mode() const { return mode_; }
   [[nodiscard]] ColourMap colour_map() const { return map_; }
+  /// Sets the colours of the picture.
   void set_colour_map(ColourMap map);
+  /// Sets whether level and span follow the picture.
   void set_level_mode(LevelMode mode);
   /// Fixes level and span, in counts; span is at least 1.
   void set_level(double level, double span);
+  /// Switches the marks of saturated and stuck pixels on or off.
   void set_marks(bool on);
 
-  /// Empty outside the picture and before the first frame.
+  /// Returns the values of a pixel; empty outside the picture and before the first frame.
   [[nodiscard]] std::optional<PixelReading> reading(int column, int row) const;
-  /// "12 good, 1 incomplete, 2 lost, 50.0 Hz, buffer 33554432 bytes".
+  /// Returns "12 good, 1 incomplete, 2 lost, 50.0 Hz, buffer 33554432 bytes".
   [[nodiscard]] QString counters() const;
-  /// Settings read from the camera, as text; empty before the first frame.
+  /// Returns the settings read from the camera, as text; empty before the first frame.
   [[nodiscard]] QString camera() const;
 
-  /// Settings of the running camera, in the order of all_camera_controls; empty before it runs.
+  /// Returns the settings of the running camera, in the order of all_camera_controls; empty before it runs.
   [[nodiscard]] const std::vector<ControlReading>& controls() const { return controls_; }
-  /// Sets a feature of the running camera. The plan states the new value in [camera] settings, so that a measurement
-  /// uses it. controls_changed() follows; a refusal is a trouble of the workbench.
+  /// Sets a feature of the running camera. The new value is also written to [camera] settings of the plan, so that a
+  /// measurement uses it. controls_changed() follows; if the camera rejects the value, the workbench emits trouble().
   void change(const std::string& feature, const std::string& value);
   /// Commands a non-uniformity correction.
   void correct();
   /// Writes the latest frame as a TIFF of 16 bits into the folder of the sessions, and returns the file. Errors: `io`;
   /// `invalid_input` without a frame.
   Result<std::filesystem::path> snapshot();
-  /// Records the frames that follow into the folder of the sessions, or ends the recording.
+  /// Starts to record the next frames into the folder of the sessions, or ends the recording.
   void toggle_recording();
+  /// Returns whether frames are being recorded.
   [[nodiscard]] bool recording() const { return desk_->recording(); }
 
  signals:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A running measurement: progress, answers, curves.
+// Running measurement: progress, answers, curves.
 #pragma once
 
 #include <QElapsedTimer>
@@ -24,9 +24,10 @@
 
 namespace todbench {
 
+/// State of the run.
 enum class RunState { idle, running, paused, stopping };
 
-/// Runs one measurement at a time through measure_plan(). Used in the window's thread.
+/// Presenter that runs one measurement at a time through measure_plan(). Used in the window's thread.
 class MeasurePresenter final : public QObject {
   Q_OBJECT
 
@@ -37,73 +38,84 @@ class MeasurePresenter final : public QObject {
   void start();
   /// Replays the recorded frames of a session with the plan `plan` into a new session folder.
   void replay(const std::filesystem::path& session, const Plan& plan);
-  /// Goes on with a run that ended early, into a new session folder (resume_session()). The plan of the session becomes
-  /// that of the bench.
+  /// Continues a run that ended early, in a new session folder (resume_session()). The plan of the session becomes that
+  /// of the bench.
   void resume_run(const std::filesystem::path& session, const Plan& plan);
   /// Repeats the last start(), replay() or resume_run().
   void again();
+  /// Pauses before the next presentation.
   void pause();
+  /// Ends the pause.
   void resume();
   /// Ends the run within a second; the results so far stay.
   void abort();
-  /// Answers the request of operator_request().
+  /// Reports that the request of operator_request() is fulfilled.
   void operator_done() { desk_->answer(OperatorAnswer::done); }
 
   [[nodiscard]] RunState state() const { return state_; }
+  /// Returns the present phase in words.
   [[nodiscard]] QString phase() const { return phase_; }
+  /// Returns the number of presentations so far in this phase.
   [[nodiscard]] std::size_t done() const { return done_; }
+  /// Returns the number of planned presentations of this phase.
   [[nodiscard]] std::size_t planned() const { return planned_; }
-  /// "1 min 12 s left", from the presentations of this phase; empty if unknown.
+  /// Returns "1 min 12 s left", from the presentations of this phase; empty if unknown.
   [[nodiscard]] QString time_left() const;
-  /// "A run of 3 h 10 min is under way"; empty: no run.
+  /// Returns "A run of 3 h 10 min is under way"; empty: no run.
   [[nodiscard]] QString under_way() const;
-  /// "Request 7 of 24" while the run waits for the operator; the total only with a constant schedule.
+  /// Returns "Request 7 of 24" while the run waits for the operator; the total is stated only for a constant schedule.
   [[nodiscard]] QString request_number() const;
-  /// Request to the operator that the run waits for; empty: it does not wait.
+  /// Returns the request to the operator that the run waits for; empty: it does not wait.
   [[nodiscard]] const std::optional<OperatorRequest>& operator_request() const { return request_; }
-  /// State of the target that the run waits for, with requested and reached values; empty: it does not wait.
+  /// Returns the state of the target that the run waits for, with requested and reached values; empty: it does not
+  /// wait.
   [[nodiscard]] const QString& waiting() const { return waiting_; }
-  /// Next step of the operator in a few words: the open request, or that no action is needed.
+  /// Returns the next step of the operator in a few words: the open request, or that no action is needed.
   [[nodiscard]] QString next_step() const;
-  /// While a lost camera is awaited: the event and the remaining time; otherwise empty.
+  /// Returns event and remaining time while the run waits for a lost camera; otherwise empty.
   [[nodiscard]] QString camera_away() const;
+  /// Returns the notes of the run, one sentence each.
   [[nodiscard]] const QStringList& notes() const { return notes_; }
+  /// Returns the session folder of the run.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
-  /// Session to which the answers of a person to trials() belong: that of the run, or the replayed one if all its
-  /// answers came out the same.
+  /// Returns the session to which the answers of a person to trials() belong: that of the run, or the replayed session
+  /// if all its answers were reproduced.
   [[nodiscard]] const std::filesystem::path& judged_session() const {
     return replayed_ && same_.value_or(false) ? *replayed_ : folder_;
   }
 
-  /// Plan of the session that was replayed last. Empty if the frames are those of a run.
+  /// Returns the plan of the session that was replayed last. Empty if the frames are those of a run.
   [[nodiscard]] std::optional<Plan> replayed_plan() const {
     return replayed_ && outcome_ ? std::optional(plan_) : std::nullopt;
   }
 
-  /// Curves of the camera and of its twin: fitted during the run, afterwards the results of the session.
+  /// Return the curves of the camera and of its twin: fitted during the run; afterwards the results of the session.
   [[nodiscard]] const std::optional<TodCurve>& measured() const { return measured_; }
   [[nodiscard]] const std::optional<TodCurve>& twin() const { return twin_; }
-  /// Curve predicted by the simulated sensor, shown until its own trials arrive.
+  /// Sets the curve predicted by the simulated sensor, which is shown until trials of the twin arrive.
   void set_predicted(std::optional<TodCurve> predicted) { predicted_ = std::move(predicted); }
+  /// Returns the result of the last run; empty before its end.
   [[nodiscard]] const std::optional<ExperimentOutcome>& outcome() const { return outcome_; }
-  /// After a replay: whether trials and fits equal those of the session, byte for byte.
+  /// Returns, after a replay, whether trials and fits equal those of the session, byte for byte.
   [[nodiscard]] std::optional<bool> same_as_recorded() const { return same_; }
-  /// Trials of the camera.
+  /// Returns the trials of the camera.
   [[nodiscard]] const std::vector<JudgedTrial>& trials() const { return trials_; }
-  /// The last answers for both curves, newest first.
+  /// Returns the last answers for both curves, newest first.
   [[nodiscard]] const std::deque<JudgedTrial>& recent() const { return recent_; }
 
-  /// Set contrasts of the plan, in its order.
+  /// Returns the set contrasts of the plan, in its order.
   [[nodiscard]] std::vector<double> contrasts() const { return plan_.target.delta_t_k; }
+  /// Returns the psychometric functions at a contrast.
   [[nodiscard]] Plot psychometric_plot(double set_delta_t_k) const;
+  /// Returns the TOD curves.
   [[nodiscard]] Plot tod_plot(AxisScale acuity_axis) const;
 
  signals:
   /// Displayed values have changed; at most ten times a second.
   void updated();
   void state_changed();
-  /// The run starts to wait for the operator.
+  /// The run begins to wait for the operator.
   void operator_needed();
   /// The session is complete and closed.
   void finished(const QString& folder);
@@ -136,13 +148,13 @@ class MeasurePresenter final : public QObject {
 
   Workbench& bench_;
   Plan plan_;
-  std::vector<double> sizes_mrad_;  ///< of the plates of the plan
+  std::vector<double> sizes_mrad_;  ///< sizes of the plates of the plan
   RunState state_ = RunState::idle;
   QString phase_, waiting_;
   std::optional<OperatorRequest> request_;
   QStringList notes_;
   std::size_t done_ = 0, planned_ = 0, done_at_start_ = 0;
-  std::size_t presented_ = 0;  ///< of the last part that counts its presentations
+  std::size_t presented_ = 0;  ///< presentations in the last part that counts them
   QElapsedTimer in_phase_, since_fit_, since_begin_;
   std::size_t requests_ = 0, planned_requests_ = 0;  ///< to the operator; 0 planned: unknown
   std::filesystem::path folder_;

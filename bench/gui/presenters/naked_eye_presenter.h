@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A person before the calibrated display, without camera and sensor: triangles, arrow keys, no feedback.
+// Experiment with a person in front of the calibrated display, without camera and sensor: triangles, arrow keys, no
+// feedback.
 #pragma once
 
 #include <QImage>
@@ -16,41 +17,48 @@
 
 namespace todbench {
 
-/// The question to a person, as entered on the page.
+/// Experiment as entered on the page.
 struct NakedEyeQuestion {
+  /// Luminance contrasts of the triangles.
   std::vector<double> contrasts{0.4, 0.15, 0.06};
+  /// Standard deviation of white noise per displayed sample, as a luminance contrast.
   double noise = 0;
+  /// Triangles per contrast and size.
   int per_size = 12;
+  /// Facts of the person.
   PersonFacts person{};
 };
 
-/// The picture with `zoom` screen pixels on a side of each sample.
+/// Returns the picture with `zoom` x `zoom` screen pixels for each sample.
 [[nodiscard]] QImage screen_picture(const NakedEyePicture& picture, int zoom);
 
-/// Used in the window's thread; the prediction runs on a thread of its own.
+/// Presenter of the experiment. Used in the window's thread; the prediction runs on its own thread.
 class NakedEyePresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit NakedEyePresenter(QObject* parent = nullptr);
 
-  /// Predicts for hvs-2 at the display of the plan, writes the prediction to a new folder in `sessions`, then shows the
-  /// first triangle. Returns an error sentence; empty: it has begun.
+  /// Computes the prediction for hvs-2 at the display of the plan, writes the prediction to a new folder in `sessions`,
+  /// then shows the first triangle. Returns an error sentence; empty: the experiment has begun.
   [[nodiscard]] QString begin(const Plan& plan, const NakedEyeQuestion& question, const std::filesystem::path& sessions,
                               std::optional<int> shown_ms);
-  /// The person's answer to the picture shown now or last.
+  /// Records the answer of the person to the picture shown now or last.
   void answer(Apex apex);
   /// Stops the prediction, or ends with the answers so far.
   void abort();
 
+  /// Returns whether the prediction is being computed.
   [[nodiscard]] bool predicting() const { return predicting_; }
   [[nodiscard]] HumanState state() const { return screen_.state(); }
   [[nodiscard]] const QImage& picture() const { return screen_.picture(); }
-  /// Level around the picture, 0 to 255.
+  /// Returns the level around the picture, 0 to 255.
   [[nodiscard]] int background_level() const;
+  /// Returns the session with the answers so far; empty before the prediction is complete.
   [[nodiscard]] const std::optional<NakedEyeSession>& session() const { return session_; }
+  /// Returns the folder of the experiment.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// Reason why nothing was shown or stored; otherwise empty.
+  /// Returns the reason why no picture was shown or stored; otherwise empty.
   [[nodiscard]] QString problem() const { return problem_; }
 
  signals:

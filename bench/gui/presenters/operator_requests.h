@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passes an operator request from the run to the window, and the answer back.
+// Transfer of an operator request from the run to the window, and of the answer back.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// The run asks, the window answers. Thread-safe.
+/// Exchange between the run, which waits, and the window, which answers. Thread-safe.
 class OperatorRequests {
  public:
   /// Waits for answer(). Errors: `interrupted` as soon as stop is requested.
@@ -29,6 +29,7 @@ class OperatorRequests {
     const std::lock_guard lock(mutex_);
     answer_.reset();
   }
+  /// Passes the answer to the run.
   void answer(OperatorAnswer answer) {
     {
       const std::lock_guard lock(mutex_);

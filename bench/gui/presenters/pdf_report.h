@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Documents as PDF: the same sections, tables and figures as the page, the figures as vector graphics.
+// Documents as PDF: the same sections, tables and figures as the page, with figures as vector graphics.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture in front of a person: shown until it is answered or for a limited time, with the time to the answer.
+// Picture in front of a person: shown until it is answered or for a limited time, with the response time.
 #pragma once
 
 #include <QElapsedTimer>
@@ -10,9 +10,10 @@
 
 namespace todbench {
 
+/// State of the picture.
 enum class HumanState { idle, showing, hidden, finished };
 
-/// Used in the window's thread.
+/// Display of one picture at a time. Used in the window's thread.
 class PictureTimer final : public QObject {
   Q_OBJECT
 
@@ -27,6 +28,7 @@ class PictureTimer final : public QObject {
   void end(HumanState state);
 
   [[nodiscard]] HumanState state() const { return state_; }
+  /// Returns whether a picture has no answer yet.
   [[nodiscard]] bool awaits_answer() const { return state_ == HumanState::showing || state_ == HumanState::hidden; }
   [[nodiscard]] const QImage& picture() const { return picture_; }
 

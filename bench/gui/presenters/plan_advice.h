@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Estimates about the display and the simulated sensor of a plan, as text: what limits the acuity, zoom and distance.
+// Estimates about the display and the simulated sensor of a plan, as text: factors that limit the acuity, zoom and
+// distance.
 #pragma once
 
 #include <QObject>
@@ -20,12 +21,12 @@ inline constexpr const char* no_display_sentence =
 /// `invalid_input` without a display or with modules, those of the loaders and of propose_viewing().
 [[nodiscard]] Result<QString> viewing_advice(const Plan& plan, const std::stop_token& stop);
 
-/// Table of the costs of acuity_limits() at each contrast of the plan, as HTML. At a display the observer is that of
-/// the plan if it has an eye, otherwise hvs-2. Without a display it is the observer of the plan. Errors:
-/// those of the loaders and of acuity_limits().
+/// Returns a table of the costs of acuity_limits() at each contrast of the plan, as HTML. The observer is that of the
+/// plan; if the plan has a display and its observer has no eye, it is hvs-2. Errors: those of the loaders and of
+/// acuity_limits().
 [[nodiscard]] Result<QString> limits_advice(const Plan& plan, const std::stop_token& stop);
 
-/// An estimate on a thread of its own. Used in the thread of the window.
+/// Estimate on its own thread. Used in the thread of the window.
 class PlanAdvice final : public QObject {
   Q_OBJECT
 
@@ -34,12 +35,13 @@ class PlanAdvice final : public QObject {
   /// `running` is shown while the estimate runs.
   PlanAdvice(Estimate estimate, QString running, QObject* parent = nullptr);
 
-  /// A later call replaces an earlier one.
+  /// Starts the estimate for this plan; a later call replaces an earlier one.
   void ask(const Plan& plan);
   /// Ends a running estimate.
   void stop();
+  /// Returns whether the estimate runs.
   [[nodiscard]] bool busy() const { return busy_; }
-  /// The result, the sentence of its error, or that it runs or was stopped; empty before the first one.
+  /// Returns the result, the sentence of its error, or that it runs or was stopped; empty before the first estimate.
   [[nodiscard]] const QString& words() const { return words_; }
 
  signals:

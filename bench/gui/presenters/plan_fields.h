@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines of the plan's form as values, from the table of the plan's keys: kind of input, reading from a plan, change of
-// a plan.
+// Lines of the form of a plan as values, from the table of plan keys: kind of input, reading from a plan, change of a
+// plan.
 #pragma once
 
 #include <QString>
@@ -23,14 +23,14 @@ enum class FieldKind {
   file,    ///< the name of a file
   boxes,   ///< any of `words`, with commas
   /// Rows with commas, their values with colons; unused columns have empty values. A value that contains one of these
-  /// is in double quotes, its own quotes doubled; not in rows of one column.
+  /// characters is in double quotes, with its own quotes doubled; values in rows of one column are never quoted.
   rows,
 };
 
 /// Tables with more columns are placed below their label instead of next to it.
 inline constexpr std::size_t most_columns_beside = 3;
 
-/// Converts rows of several columns to text, and back.
+/// Convert rows of several columns to text, and back.
 [[nodiscard]] QString text_of_rows(const std::vector<QStringList>& rows);
 [[nodiscard]] std::vector<QStringList> rows_of_text(const QString& text);
 
@@ -41,24 +41,26 @@ struct FieldColumn {
   QString longest{};  ///< text that has to be fully visible; empty: the title
 };
 
-/// A line of the form. It accepts every readable value in range; the plan itself judges conflicts with other values.
+/// A line of the form. It accepts every readable value in range. Conflicts with other values are found by the
+/// validation of the plan.
 struct PlanField {
   QString label;        ///< with the unit
   QString tool_tip;     ///< meaning, accepted values and default
-  QString object_name;  ///< of the widget
+  QString object_name;  ///< object name of the widget
   FieldKind kind = FieldKind::text;
   QStringList words{};
   QString when_empty{};  ///< meaning of an empty text, if it may be empty
   std::vector<FieldColumn> columns{};
   int low = 0, high = 0;
-  std::vector<std::string> paths{};  ///< of its keys: an Error::key equal to one of them belongs to this line
+  std::vector<std::string> paths{};  ///< paths of its keys: an Error::key equal to one of them belongs to this line
+  /// Returns the text of the line for a plan.
   std::function<QString(const Plan&)> shown{};
   /// Sets a text in the plan. On an error returns a sentence and leaves the plan as it is.
   std::function<QString(Plan&, const QString&)> entered{};
   QString section{};  ///< heading of the lines with the same section
 };
 
-/// Reason why a field has no effect in a plan; empty: it has one.
+/// Returns the reason why a field has no effect in a plan; empty: it has an effect.
 [[nodiscard]] QString idle_reason(const PlanField& field, const Plan& plan);
 
 /// Returns the keys that have a line, in the order of the table (bench/plan/plan_key_table.cpp).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plan as a form and as TOML, with its predicted cost.
+// Plan in the window: as a form and as TOML, with its predicted cost.
 #pragma once
 
 #include <QObject>
@@ -14,57 +14,73 @@
 
 namespace todbench {
 
-/// Decides whether an effect is simulated.
+/// Choice of the user whether an effect is simulated, or the planner decides.
 enum class EffectChoice { planner, simulate, skip };
 inline constexpr std::array all_effect_choices{EffectChoice::planner, EffectChoice::simulate, EffectChoice::skip};
 
-/// Validates every change like a file. Counts and bench time are updated in the call. The planner's decisions,
-/// uncertainties and the time of the simulation come from predict_plan() in the background, one after the other while a
-/// slider moves. Used in the window's thread.
+/// Presenter of the plan of the workbench. It validates every change as for a plan file. Counts and bench time are
+/// updated during the call. The decisions of the planner, the uncertainties and the time of the simulation come from
+/// predict_plan(), which runs in the background; while a slider moves, one prediction follows another. Used in the
+/// window's thread.
 class PlanPresenter final : public QObject {
   Q_OBJECT
 
  public:
   explicit PlanPresenter(Workbench& bench, QObject* parent = nullptr);
 
+  /// Returns the plan of the workbench.
   [[nodiscard]] const Plan& plan() const { return bench_.plan(); }
+  /// Returns the plan as TOML.
   [[nodiscard]] QString toml() const;
-  /// Accepts the plan, or returns an error sentence and keeps the old one.
+  /// Uses the plan, or returns an error sentence and keeps the old one.
   [[nodiscard]] QString apply(const Plan& plan);
-  /// The same, but the error also names the key.
+  /// Uses the plan as apply() does. The error also names the key.
   [[nodiscard]] Result<void> use(const Plan& plan);
+  /// Uses the plan of a TOML text, or returns an error sentence and keeps the old one.
   [[nodiscard]] QString apply_toml(const QString& text);
-  /// Loads a file or a shipped plan by name.
+  /// Loads a plan by file or shipped name. Returns an error sentence; empty: success.
   [[nodiscard]] QString load(const QString& reference);
+  /// Writes the plan to a file. Returns an error sentence; empty: success.
   [[nodiscard]] QString save(const QString& file) const;
-  /// Sets the number of phases for camera and twin that gives this uncertainty of S75; the outlook follows at once.
+  /// Sets the number of phases for camera and twin that gives this uncertainty of S75; outlook() is updated during the
+  /// call. Returns an error sentence; empty: success.
   [[nodiscard]] QString set_tolerance_percent(double tolerance_percent);
-  /// Adds an effect to [simulation] force or skip, or removes it from both.
+  /// Adds an effect to [simulation] force or skip, or removes it from both. Returns an error sentence; empty: success.
   [[nodiscard]] QString choose(Effect effect, EffectChoice choice);
+  /// Returns the choice for an effect in the present plan.
   [[nodiscard]] EffectChoice choice(Effect effect) const;
 
-  /// Changes of the plan from all sources since the device was chosen; one movement of the slider is one change.
+  /// Returns whether there is a change to undo: a change of the plan from any source since the device was chosen. One
+  /// movement of a slider is one change.
   [[nodiscard]] bool can_undo() const { return !undone_to_.empty(); }
+  /// Returns whether there is an undone change to repeat.
   [[nodiscard]] bool can_redo() const { return !redone_to_.empty(); }
+  /// Restores the plan before the last change.
   void undo();
+  /// Repeats the change that was undone last.
   void redo();
 
+  /// Returns counts, bench time and uncertainties of the present plan, updated with every change.
   [[nodiscard]] const PlanPreview& outlook() const { return outlook_; }
-  /// False until the thresholds of the direct estimate are known.
+  /// Returns whether the thresholds of the direct estimate are known.
   [[nodiscard]] bool expected_known() const { return !expected_.empty(); }
+  /// Returns the thresholds of the direct estimate; empty until they are known.
   [[nodiscard]] const std::vector<ExpectedThreshold>& expected() const { return expected_; }
-  /// Of this plan, or of the last one until the new forecast is complete; empty before the first.
+  /// Returns the prediction for this plan, or for the last plan until the new prediction is complete; empty before the
+  /// first, and after a change of anything but tolerance and phases.
   [[nodiscard]] const std::optional<PlanForecast>& forecast() const { return forecast_; }
+  /// Returns whether the prediction belongs to the present plan.
   [[nodiscard]] bool forecast_current() const { return forecast_ && forecast_->plan == bench_.plan(); }
-  /// Cost by accuracy, from the finest; empty until known.
+  /// Returns the cost of each accuracy, from the finest; empty until known.
   [[nodiscard]] const std::vector<AccuracyPrice>& prices() const { return prices_; }
-  /// Conflicts in a plan whose file is valid: sizes that cannot be measured at this distance, a tolerance that cannot
-  /// be met.
+  /// Returns a conflict in a plan whose file is valid: sizes that cannot be measured at this distance, or a tolerance
+  /// that cannot be met. Empty: none.
   [[nodiscard]] QString misfit() const;
-  /// Messages of the planner apart from its decisions.
+  /// Returns the messages of the planner other than its decisions.
   [[nodiscard]] QStringList warnings() const;
 
  signals:
+  /// The plan or a value derived from it changed.
   void updated();
 
  private:
@@ -82,7 +98,7 @@ class PlanPresenter final : public QObject {
   Workbench& bench_;
   QTimer delay_;
   std::vector<ExpectedThreshold> expected_;
-  std::optional<LoadedPlan> loaded_;  ///< of the plan; empty while a part of it cannot be read
+  std::optional<LoadedPlan> loaded_;  ///< the plan with its parts; empty while a part cannot be read
   PlanPreview outlook_;
   std::optional<PlanForecast> forecast_;
   std::vector<AccuracyPrice> prices_;

@@ -28,7 +28,7 @@ struct ExpectedThreshold {
 /// `interrupted`.
 [[nodiscard]] Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, ExperimentInputs inputs,
                                                                          std::stop_token stop);
-/// The same as a curve without intervals.
+/// Returns the thresholds as a curve without intervals.
 [[nodiscard]] TodCurve as_curve(const std::vector<ExpectedThreshold>& expected);
 
 /// Results of predict_plan() and predict_times(), which take some tenths of a second.
@@ -38,7 +38,7 @@ struct PlanForecast {
   SensorPlan effects;                      ///< the planner's decisions and reasons
   std::vector<std::string> warnings;       ///< one sentence each
   std::vector<ContrastPrediction> twin;    ///< with the phases of the simulation; empty: see `problem`
-  std::vector<ContrastPrediction> camera;  ///< the same with the phases of the target
+  std::vector<ContrastPrediction> camera;  ///< prediction with the phases of the target
   /// Largest half-width of the camera with 1, 2, 4 and 8 frames per presentation; empty for binary answers.
   std::vector<std::pair<int, double>> by_frames;
   std::optional<double> twin_s;        ///< to simulate, on one core
@@ -46,35 +46,38 @@ struct PlanForecast {
   std::string problem;                 ///< why the tolerance cannot be met; empty: it can
 };
 
-/// `known`: thresholds that replace the planner's own; may be empty. Errors: `interrupted`.
-/// `planner` caches decisions that changes of tolerance and trials do not affect.
+/// Computes the predictions. `known`: thresholds that replace those of the planner; may be empty. `planner` caches
+/// decisions that do not depend on tolerance and trials. Errors: `interrupted`.
 [[nodiscard]] Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<ExpectedThreshold>& known,
                                             EffectPlanner& planner, std::stop_token stop = {});
 
+/// Prediction at one contrast.
 struct PlannedContrast {
   double delta_t_k = 0;
-  std::optional<double> s75_mrad;  ///< of the planner's first tier, or expected_thresholds()
+  std::optional<double> s75_mrad;  ///< S75 by the first tier of the planner, or by expected_thresholds()
   std::optional<double> camera_uncertainty_percent, twin_uncertainty_percent;  ///< half the 95 % interval of S75
 };
 
+/// Counts, time and uncertainties of a plan.
 struct PlanPreview {
-  std::uint64_t presentations = 0, trials = 0;  ///< of the camera; expected numbers for an adaptive schedule
+  std::uint64_t presentations = 0, trials = 0;  ///< numbers for the camera; expected numbers for an adaptive schedule
   double bench_s = 0;                           ///< as bench_time() (bench/forecast/bench_time.h)
   std::optional<double> twin_s;
   std::vector<PlannedContrast> contrasts;
   std::vector<std::pair<double, double>> by_frames;  ///< bench time and uncertainty of PlanForecast::by_frames
-  /// Of the camera, the largest of the contrasts; empty if one has no threshold.
+  /// Returns the largest uncertainty of the camera over the contrasts; empty if one has no threshold.
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
 
 /// Computes the outlook, fast enough to follow a slider. If the number of phases differs from that of the forecast,
-/// ln(1 + uncertainty) is scaled with the root of their ratio and the time of the simulation with the ratio. `seen` may
-/// be null: only counts and bench time.
+/// ln(1 + uncertainty) is scaled with the root of their ratio and the time of the simulation with the ratio. If `seen`
+/// is null, only counts and bench time are computed.
 [[nodiscard]] PlanPreview outlook(const Plan& plan, const std::vector<TargetPlate>& plates, const PlanForecast* seen,
                                   double frame_rate_hz);
 
 /// Returns the plan with another tolerance: the fewest phases, 2 to 256, for camera and twin that reach it at every
-/// contrast with a threshold; for an adaptive schedule its requested half-width. `seen` may be null: phases stay.
+/// contrast with a threshold; for an adaptive schedule its requested half-width. If `seen` is null, the phases do not
+/// change.
 [[nodiscard]] Plan with_tolerance(Plan plan, const PlanForecast* seen, double tolerance_percent);
 
 /// One point of the frontier: the cost of an accuracy.
@@ -93,8 +96,8 @@ struct AccuracyPrice {
                                                          double frame_rate_hz, EffectPlanner& planner,
                                                          const std::stop_token& stop);
 
-/// Plots uncertainty against bench time and time of the simulation, also for the same presentations with 1, 2, 4 and 8
-/// frames; the square marks the plan itself.
+/// Returns the plot of uncertainty against bench time and time of the simulation, also for the same presentations with
+/// 1, 2, 4 and 8 frames; the square marks the plan itself.
 [[nodiscard]] Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanPreview& now);
 
 }  // namespace todbench

@@ -19,7 +19,7 @@ struct SessionEntry {
   std::filesystem::path folder;
   QString name, when, state;
   QString unit;     ///< as in the plan, otherwise the camera's model; "simulation" without a camera
-  QString serial;   ///< of the camera; empty: no camera
+  QString serial;   ///< serial number of the camera; empty: no camera
   QString verdict;  ///< "pass", "fail", "inconclusive"; empty: no verdict that the manifest confirms
 };
 
@@ -27,7 +27,7 @@ struct SessionEntry {
 /// ignoring case.
 [[nodiscard]] std::vector<SessionEntry> matching(const std::vector<SessionEntry>& sessions, const QString& filter);
 
-/// The data of a session.
+/// Displayed data of a session.
 struct OpenedSession {
   std::filesystem::path folder;
   QString name;
@@ -45,7 +45,7 @@ struct ComparedSessions {
   Comparison comparison;
 };
 
-/// Reads and writes in the background, in the order of the requests. Used in the window's thread.
+/// Presenter that reads and writes in the background, in the order of the requests. Used in the window's thread.
 class SessionPresenter final : public QObject {
   Q_OBJECT
 
@@ -57,8 +57,10 @@ class SessionPresenter final : public QObject {
   [[nodiscard]] const std::vector<SessionEntry>& sessions() const { return sessions_; }
   /// Reads a session; opened() or problem() follows.
   void open(const std::filesystem::path& folder);
-  /// The same, and writes its reports again: the session has new answers of a person. exported() follows opened().
+  /// Reads a session and writes its reports again, because the session has new answers of a person. exported() follows
+  /// opened().
   void open_and_export(const std::filesystem::path& folder);
+  /// Returns the open session; empty if there is none.
   [[nodiscard]] const std::optional<OpenedSession>& current() const { return current_; }
   /// Compares the open session (or the one being opened) with another, with the margin of its plan; compared() or
   /// problem() follows.
@@ -66,12 +68,12 @@ class SessionPresenter final : public QObject {
   [[nodiscard]] const std::optional<ComparedSessions>& compared_sessions() const { return compared_; }
   /// Writes report.html and report.pdf into the open session; exported() or problem() follows.
   void export_reports();
-  /// The same with an order, a file with a section [order], which the session keeps.
+  /// Writes the reports with an order, a file with a section [order], which the session stores.
   void export_with_order(const std::filesystem::path& order);
-  /// Puts the plan of the open session back on the bench, for another run.
+  /// Sets the plan of the open session as the plan of the bench, for another run.
   void use_plan_again();
 
-  /// Of the open session, or of the comparison if there is one.
+  /// Returns the figure of the open session, or of the comparison if there is one.
   [[nodiscard]] Plot tod_figure(AxisScale acuity_axis) const;
 
  signals:
@@ -97,12 +99,13 @@ class SessionPresenter final : public QObject {
 
 /// Reads a session with all displayed data. Errors: those of open_session(), report_data() and read_human().
 [[nodiscard]] Result<OpenedSession> read_opened_session(const std::filesystem::path& folder);
+/// Files of an export.
 struct Exported {
   QString html, pdf;
 };
-/// Writes report.html and report.pdf into the session's folder and their hashes into its manifest. Any thread. Errors:
-/// `io` with the path; `invalid_input` if files of the session were changed.
-/// An order (bench/plan/order.h) stands on the first page, and the session keeps it.
+/// Writes report.html and report.pdf into the folder of the session, and their hashes into its manifest. With an order
+/// (bench/plan/order.h), the first page shows the order, and the session stores it. Any thread. Errors: `io` with the
+/// path; `invalid_input` if files of the session were changed.
 [[nodiscard]] Result<Exported> export_reports(const OpenedSession& opened,
                                               const std::optional<std::filesystem::path>& order = std::nullopt);
 /// Returns the sessions directly in a folder, newest first; unreadable ones are left out.

@@ -20,13 +20,15 @@ namespace todbench {
 
 /// State of a device on its badge.
 enum class DeviceHealth { ready, in_use, lost };
+/// Returns the state in words.
 [[nodiscard]] QString name_of(DeviceHealth health);
 
+/// Device in the list.
 struct DeviceEntry {
-  QString id;     ///< of a camera, or `emulated_laboratory`
+  QString id;     ///< id of a camera, or `emulated_laboratory`
   QString group;  ///< "Emulated", "Simulated", "GigE Vision", ...
   QString label;
-  QString serial{};  ///< empty: has none
+  QString serial{};  ///< empty: unknown or none
   QString detail;
   DeviceHealth health = DeviceHealth::ready;
 };
@@ -34,16 +36,18 @@ inline constexpr const char* emulated_laboratory = "emulated";
 
 /// Present activity of the bench. One at a time.
 enum class Activity { idle, looking, aligning, measuring, replaying };
+/// Returns the activity in words.
 [[nodiscard]] QString name_of(Activity activity);
 
-/// What a user can do about a trouble.
+/// Possible action of the user after an error.
 enum class Remedy {
   try_again,  ///< the same action may succeed the next time: a device is absent, lost or late
   none,       ///< the same action fails again until a value, a file or a setting is changed
 };
+/// Returns the action that can help after an error.
 [[nodiscard]] Remedy remedy_of(const Error& error);
 
-/// Lives in the window's thread; members marked "any thread" may be called from jobs.
+/// State of the bench. Lives in the window's thread; members marked "any thread" may be called from jobs.
 class Workbench final : public QObject {
   Q_OBJECT
 
@@ -57,7 +61,9 @@ class Workbench final : public QObject {
   void set_plan(const Plan& plan);
   [[nodiscard]] const std::filesystem::path& sessions_folder() const { return sessions_; }
 
+  /// Returns the known devices.
   [[nodiscard]] const std::vector<DeviceEntry>& devices() const { return devices_; }
+  /// Returns the id of the selected device.
   [[nodiscard]] QString device() const { return device_; }
   /// Puts the device into the plan (bench/gui/presenters/device_plan.h). Errors: `invalid_input` for an unreadable
   /// simulated sensor.
@@ -70,8 +76,9 @@ class Workbench final : public QObject {
   /// devices are ready; the error that it returns becomes a trouble(), except `interrupted`.
   using DeviceJob = std::function<Result<void>(const Plan&, std::stop_token)>;
   void run(Activity activity, DeviceJob job);
-  /// The same for a job without devices: it gets the plan as it is.
+  /// Runs a job without devices in the same way; it is called with the plan as it is.
   void run_without_devices(Activity activity, DeviceJob job);
+  /// Stops the running job.
   void stop();
   /// Ends all jobs and waits for them. Call it before objects that a job uses are destroyed.
   void shut_down();
@@ -80,10 +87,10 @@ class Workbench final : public QObject {
   /// Cuts the power of the emulated camera, like a pulled cable, for demonstrations and tests. Any thread.
   void switch_emulated_camera_off();
 
-  /// State of the device as a job observes it. Window's thread.
+  /// Sets the state of the device that a job observed. Window's thread.
   void report_health(DeviceHealth health) { set_health(health); }
 
-  /// Calls `what` in the window's thread, unless the workbench no longer exists. Any thread.
+  /// Calls `what` in the window's thread, if the workbench still exists. Any thread.
   void post(std::function<void()> what);
   /// Shows a message to the user. Any thread.
   void note(const std::string& sentence);

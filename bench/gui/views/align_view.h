@@ -15,6 +15,7 @@ class LookPresenter;
 class PictureView;
 class Workbench;
 
+/// Page of the alignment.
 class AlignView final : public QWidget {
   Q_OBJECT
 

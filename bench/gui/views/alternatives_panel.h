@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alternatives of a question as icons, each a button with its key.
+// Alternatives of a question as icons; each is a button with its key.
 #pragma once
 
 #include <QWidget>
@@ -13,13 +13,15 @@ class QToolButton;
 
 namespace todbench {
 
+/// Panel of the alternatives.
 class AlternativesPanel final : public QWidget {
   Q_OBJECT
 
  public:
   explicit AlternativesPanel(QWidget* parent = nullptr);
+  /// Shows the alternatives of an experiment.
   void set_alternatives(const PersonExperiment& experiment);
-  /// Removes all alternatives: the panel is empty.
+  /// Removes all alternatives.
   void clear();
   /// Returns the alternative of a key: 1 to 9, then letters; arrow keys for two alternatives. -1: none.
   [[nodiscard]] int of_key(int key) const;

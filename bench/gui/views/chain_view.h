@@ -20,6 +20,7 @@ namespace todbench {
 class ChainPresenter;
 class PictureView;
 
+/// Page of the chain.
 class ChainView final : public QWidget {
   Q_OBJECT
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One line of the plan's form: the widget for its kind of value, with its error below.
+// Line of the form of a plan: the widget for its kind of value, with its error below.
 #pragma once
 
 #include <QWidget>
@@ -11,19 +11,22 @@ class QLabel;
 
 namespace todbench {
 
-/// Shows and edits the text of a field.
+/// Editor of the text of a field.
 class FieldEditor final : public QWidget {
   Q_OBJECT
 
  public:
-  /// The inner widget has the field's object name, the error label below it that name with "Problem".
+  /// The inner widget has the object name of the field; the error label below it has the same name followed by
+  /// "Problem".
   explicit FieldEditor(const PlanField& field, QWidget* parent = nullptr);
 
+  /// Returns the text of the widget.
   [[nodiscard]] QString text() const { return text_(); }
   /// Sets the text without emitting a signal. While the user is typing, the text stays.
   void show_text(const QString& text);
+  /// Shows an error below the widget; empty: none.
   void show_problem(const QString& sentence);
-  /// Greys the field and states why it has no effect; empty: it has one.
+  /// Greys the field and states the reason why it has no effect; empty: it has an effect.
   void show_idle(const QString& reason);
 
  signals:

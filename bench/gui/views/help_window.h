@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pages of the documentation inside the program, readable without a network.
+// Window with the pages of the documentation, readable without a network.
 #pragma once
 
 #include <QDialog>
@@ -8,6 +8,7 @@ class QTextBrowser;
 
 namespace todbench {
 
+/// Help window.
 class HelpWindow final : public QDialog {
   Q_OBJECT
 

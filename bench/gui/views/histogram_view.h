@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts per bin as bars.
+// Number of pixels per bin of counts, as bars.
 #pragma once
 
 #include <QWidget>
@@ -7,12 +7,13 @@
 
 namespace todbench {
 
+/// Histogram.
 class HistogramView final : public QWidget {
   Q_OBJECT
 
  public:
   explicit HistogramView(QWidget* parent = nullptr);
-  /// Shows bins between two ends, whose labels stand below.
+  /// Shows the bins, with labels for the lowest and highest count below.
   void show_bins(std::vector<int> bins, const QString& low, const QString& high);
   [[nodiscard]] QSize sizeHint() const override { return {200, 90}; }
   [[nodiscard]] QSize minimumSizeHint() const override { return {120, 70}; }

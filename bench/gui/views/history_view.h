@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// History view: the measures of every unit over the years, each with its control charts.
+// History view: the measures of every unit over the years, with their control charts.
 #pragma once
 
 #include <QWidget>
@@ -14,6 +14,7 @@ namespace todbench {
 
 class PlotView;
 
+/// Page of the history.
 class HistoryView final : public QWidget {
   Q_OBJECT
 

@@ -27,6 +27,7 @@ class Workbench;
 enum class BarCriterion;
 struct PersonFacts;
 
+/// Page of the human observer.
 class HumanView final : public QWidget {
   Q_OBJECT
 

@@ -9,19 +9,20 @@
 
 namespace todbench {
 
-/// A heading.
+/// Returns a heading.
 [[nodiscard]] QLabel* title_label(const QString& text);
-/// Small grey text that wraps.
+/// Returns small grey text that wraps.
 [[nodiscard]] QLabel* hint_label(const QString& text = {});
-/// The button of the main action of a view.
+/// Returns the button of the main action of a view.
 [[nodiscard]] QPushButton* primary_button(const QString& text, const QString& object_name);
+/// Returns a button of another action.
 [[nodiscard]] QPushButton* plain_button(const QString& text, const QString& object_name);
-/// A read-only table with a header row.
+/// Returns a read-only table with a header row.
 [[nodiscard]] QTableWidget* plain_table(const QStringList& header, const QString& object_name);
-/// Wraps texts that are too long for their cell; for tables of few rows.
+/// Wraps texts that are too long for their cell. Use it for tables of few rows.
 void wrap_words(QTableWidget& table);
-/// Sets column widths for their headings and these texts, one per column from the first; the last column takes the
-/// rest. Returns the table width that fits these columns exactly.
+/// Sets column widths for their headings and these texts, one per column from the first; the last column fills the
+/// remaining width. Returns the table width that fits these columns exactly.
 int column_widths(QTableWidget& table, const QStringList& longest);
 /// Fits the height to the rows, between one and `most_rows`.
 void fit_height(QTableWidget& table, int most_rows);

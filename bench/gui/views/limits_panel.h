@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What limits the acuity at the display of the plan, on the page Human observer before the first answer.
+// Factors that limit the acuity at the display of the plan, on the page Human observer before the first answer.
 #pragma once
 
 #include <QWidget>
@@ -15,14 +15,14 @@ namespace todbench {
 class PlanAdvice;
 class Workbench;
 
-/// Computes limits_advice() while it is visible, again after a change of the plan. Hiding it stops the calculation, so
-/// that it does not delay the pictures that a person judges.
+/// Panel that computes limits_advice() while it is visible, and again after a change of the plan. Hiding the panel
+/// stops the calculation, so that it does not delay the pictures that a person judges.
 class LimitsPanel final : public QWidget {
   Q_OBJECT
 
  public:
   explicit LimitsPanel(Workbench& bench, QWidget* parent = nullptr);
-  /// States the limits for this plan. Empty: for the plan of the workbench.
+  /// Sets the plan whose limits are shown. Empty: the plan of the workbench.
   void set_replayed_plan(std::optional<Plan> plan);
 
  protected:

@@ -20,6 +20,7 @@ class LookPresenter;
 class PictureView;
 class Workbench;
 
+/// Page of the live picture.
 class LookView final : public QWidget {
   Q_OBJECT
 

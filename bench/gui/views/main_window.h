@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The window: eight views and a start page, one message line, one state.
+// Main window: eight views and a start page, one message line, one state.
 #pragma once
 
 #include <QMainWindow>
@@ -31,15 +31,18 @@ namespace todbench {
 class HelpWindow;
 class PlanView;
 
+/// View of the window.
 enum class View { look, align, plan, measure, human, chain, report, history, start };
 /// The views in the list on the left; the start page is opened from the menu.
 inline constexpr std::array all_views{View::look,  View::align, View::plan,   View::measure,
                                       View::human, View::chain, View::report, View::history};
+/// Returns the label of the view.
 [[nodiscard]] QString name_of(View view);
 
-/// Whether the window restores its state at the next start.
+/// Whether the window stores its state and restores it at the next start.
 enum class Memory { remember, forget };
 
+/// Main window.
 class MainWindow final : public QMainWindow {
   Q_OBJECT
 
@@ -48,14 +51,17 @@ class MainWindow final : public QMainWindow {
   MainWindow(const std::filesystem::path& sessions, Memory memory, QWidget* parent = nullptr);
   ~MainWindow() override;
 
+  /// Shows a view.
   void show_view(View view);
   [[nodiscard]] View view() const;
+  /// Sets light or dark theme.
   void set_theme(Theme theme);
-  /// Asks the user before a run or the answers of a person are lost: `question`, and the words on the button that does
-  /// it. Returns whether to do it. Replaces the message box, for tests.
+  /// Asks the user before a run or the answers of a person are lost: `question`, and the text of the button that
+  /// confirms the action. Returns whether the user confirmed. Tests replace the message box with it.
   using Confirm = std::function<bool(const QString& question, const QString& action)>;
   void set_confirm(Confirm confirm) { confirm_ = std::move(confirm); }
-  /// Opens a session (its folder or session.toml) or a plan (another TOML file); shows an error if it cannot.
+  /// Opens a session (its folder or session.toml) or a plan (another TOML file); shows an error if the file cannot be
+  /// opened.
   void open_path(const std::filesystem::path& path);
 
   // Access to the presenters, for tests and pictures.
@@ -81,7 +87,7 @@ class MainWindow final : public QMainWindow {
   void make_menu();
   void connect_parts();
   void choose_session();
-  /// Whether the user wants to lose what is under way; true if nothing is.
+  /// Returns whether the user agrees to lose a run or answers that are under way; true if there are none.
   [[nodiscard]] bool may_end(const QString& action);
   void start_run();
   void abort_run();

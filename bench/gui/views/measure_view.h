@@ -21,6 +21,7 @@ class PictureView;
 class PlotView;
 class Workbench;
 
+/// Page of the measurement.
 class MeasureView final : public QWidget {
   Q_OBJECT
 

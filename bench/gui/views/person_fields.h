@@ -13,18 +13,19 @@ class QSpinBox;
 
 namespace todbench {
 
+/// Rows of the facts about a person.
 class PersonFields final : public QObject {
   Q_OBJECT
 
  public:
-  /// Adds the rows to the form, which must exist as long as this object.
+  /// Adds the rows to the form, which outlives this object.
   PersonFields(QFormLayout& form, QObject* parent);
 
-  /// Training is for questions about frames.
+  /// Shows or hides the row of the training, which only questions about frames use.
   void set_training_visible(bool visible);
-  /// Facts as entered. Errors: `invalid_input` for a value that is not a number above 0.
+  /// Returns the facts as entered. Errors: `invalid_input` for a value that is not a number above 0.
   [[nodiscard]] Result<PersonFacts> facts() const;
-  /// Patches with feedback before the answers count.
+  /// Returns the number of patches with feedback before the answers count.
   [[nodiscard]] int training() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture with countable pixels: zoom, marks and outlines over it, the pixel under the cursor.
+// Picture with visible pixels: zoom, marks and outlines over it, the pixel under the cursor.
 #pragma once
 
 #include <QImage>
@@ -17,26 +17,29 @@ struct PictureOutline {
   Qt::PenStyle pen = Qt::SolidLine;
 };
 
+/// View of a picture.
 class PictureView final : public QWidget {
   Q_OBJECT
 
  public:
   explicit PictureView(QWidget* parent = nullptr);
+  /// Shows a picture.
   void set_image(const QImage& image);
   [[nodiscard]] const QImage& image() const { return image_; }
+  /// Sets the lines over the picture.
   void set_outlines(std::vector<PictureOutline> outlines);
   [[nodiscard]] const std::vector<PictureOutline>& outlines() const { return outlines_; }
-  /// Pixels marked by a ring.
+  /// Sets the pixels that are marked by a ring.
   void set_rings(std::vector<QPoint> rings);
-  /// Colour around a picture; default: the base colour of the theme.
+  /// Sets the colour around a picture; default: the base colour of the theme.
   void set_surround(const QColor& colour);
-  /// Text shown without a picture.
+  /// Sets the text that is shown without a picture.
   void set_placeholder(const QString& text);
 
   /// Shows this part of the picture (in its pixels) as large as fits, for every size of the widget; empty: the whole
   /// picture.
   void set_region(const QRectF& region);
-  /// Screen pixels per picture pixel; 0: as large as fits.
+  /// Sets the screen pixels per picture pixel; 0: as large as fits.
   void set_zoom(double zoom);
   [[nodiscard]] double zoom() const { return zoom_; }
   /// Returns the picture pixel at a position of the widget, also outside the picture.
@@ -68,7 +71,7 @@ class PictureView final : public QWidget {
   std::optional<QColor> surround_;
   QRectF region_;  ///< until the user zooms or moves
   double zoom_ = 0;
-  QPointF shift_;  ///< of the centre, in screen pixels
+  QPointF shift_;  ///< shift of the centre, in screen pixels
   QPointF dragged_from_;
 };
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Number format of the window: that of plans, files and reports.
+// Number format of the window, which is that of plans, files and reports.
 #pragma once
 
 #include <QDoubleSpinBox>
 
 namespace todbench {
 
-/// Sets decimals with a point, without thousands separators, in every locale: with a decimal comma, "1.000" in a field
-/// would be a thousand, but one in plans, reports and the command line. Applies to the C library too, because strtod()
-/// on numbers of cameras and files would expect a comma. Call it after the application object exists, which sets the
-/// locale of the C library. Affects widgets created later. Window's thread.
+/// Sets decimals with a point, without thousands separators, in every locale. With a decimal comma, "1.000" in a field
+/// would mean a thousand, but one in plans, reports and the command line. Applies to the C library too, because
+/// strtod() would otherwise expect a comma in numbers of cameras and files. Call it after the application object is
+/// created, because that sets the locale of the C library. Affects widgets created later. Window's thread.
 void use_plain_numbers();
 
-/// A number field that rejects a comma: Qt reads "1,5" as fifteen, because it takes the comma as a thousands separator
-/// even if its locale rejects these.
+/// Number field that rejects a comma. Qt would read "1,5" as fifteen, because it treats the comma as a thousands
+/// separator even if the locale rejects separators.
 class PlainSpinBox final : public QDoubleSpinBox {
  public:
   using QDoubleSpinBox::QDoubleSpinBox;

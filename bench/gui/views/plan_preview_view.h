@@ -16,6 +16,7 @@ namespace todbench {
 class PlanPresenter;
 class PlotView;
 
+/// Panel of the prediction.
 class PlanPreviewView final : public QWidget {
   Q_OBJECT
 

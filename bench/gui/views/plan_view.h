@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plan view: the form, its TOML, and next to them the predicted cost.
+// Plan view: the form and its TOML, with the predicted cost beside them.
 #pragma once
 
 #include <QTimer>
@@ -22,6 +22,7 @@ namespace todbench {
 class FieldEditor;
 class PlanPresenter;
 
+/// Page of the plan.
 class PlanView final : public QWidget {
   Q_OBJECT
 
@@ -29,7 +30,7 @@ class PlanView final : public QWidget {
   explicit PlanView(PlanPresenter& presenter, QWidget* parent = nullptr);
   /// Opens a file or a shipped plan by name; shows an error below the form if it cannot be read.
   void open_plan(const QString& reference);
-  /// Reason why an entry of the form or an edit of the TOML text is not in use; empty: all are in use.
+  /// Returns the reason why an entry of the form or an edit of the TOML text is not in use; empty: all are in use.
   [[nodiscard]] QString unused_entry() const;
 
  private:

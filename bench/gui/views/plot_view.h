@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plot of the report in the window: the same values, with zoom and the theme's colours.
+// Plot of the report in the window: the same values, with zoom and the colours of the theme.
 #pragma once
 
 #include <qcustomplot.h>
@@ -8,13 +8,14 @@
 
 namespace todbench {
 
-/// Drag and wheel, or arrow keys, plus and minus, move and zoom; a double click or 0 shows the whole plot.
+/// View of a plot. Drag and wheel, or arrow keys, plus and minus, move and zoom; a double click or 0 shows the whole
+/// plot.
 class PlotView final : public QCustomPlot {
   Q_OBJECT
 
  public:
   explicit PlotView(QWidget* parent = nullptr);
-  /// Shows a plot; keeps the user's zoom if the scales of the axes stay.
+  /// Shows a plot; keeps the zoom of the user if the scales of the axes do not change.
   void show_plot(const Plot& plot);
   [[nodiscard]] const Plot& shown() const { return plot_; }
   /// Returns the drawn points of a series; empty for an unknown label.

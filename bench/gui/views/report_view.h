@@ -20,6 +20,7 @@ namespace todbench {
 
 class PlotView;
 
+/// Page of sessions and reports.
 class ReportView final : public QWidget {
   Q_OBJECT
 
@@ -27,11 +28,11 @@ class ReportView final : public QWidget {
   explicit ReportView(SessionPresenter& presenter, QWidget* parent = nullptr);
 
  signals:
-  /// The open session has to be replayed from its frames.
+  /// The user requests a replay of the open session from its frames.
   void replay();
-  /// The plan of the open session has to be measured again.
+  /// The user requests another measurement with the plan of the open session.
   void again();
-  /// The run of the open session, which ended early, has to go on.
+  /// The user requests to continue the run of the open session, which ended early.
   void go_on();
 
  protected:
@@ -52,7 +53,7 @@ class ReportView final : public QWidget {
   void show_ratios(const std::optional<Comparison>& comparison);
   void show_plot();
   void show_pdf();
-  /// Shows on the button that a report is being written, and disables it. Many frames make a report take seconds.
+  /// Shows on the button that a report is being written, and disables it. A report with many frames takes seconds.
   void show_writing(bool writing);
 
   SessionPresenter& presenter_;

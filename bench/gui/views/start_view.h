@@ -6,6 +6,7 @@
 
 namespace todbench {
 
+/// Start page.
 class StartView final : public QWidget {
   Q_OBJECT
 

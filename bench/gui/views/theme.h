@@ -10,9 +10,12 @@
 
 namespace todbench {
 
+/// Theme of the window.
 enum class Theme { light, dark };
+/// Returns the palette of a theme.
 [[nodiscard]] QPalette palette_of(Theme theme);
-/// Palette of check boxes: their frames, which the style derives from the window, would be invisible on a dark one.
+/// Returns the palette of check boxes. Their frames, which the style derives from the window colour, would be invisible
+/// on a dark window.
 [[nodiscard]] QPalette box_palette_of(Theme theme);
 /// Colours of plots in the window: the tones of the report on the background of the theme.
 struct PlotColours {
@@ -20,12 +23,13 @@ struct PlotColours {
   QColor first, second, third, muted;
   [[nodiscard]] QColor of(PlotTone tone) const;
 };
+/// Returns the colours of plots in a theme.
 [[nodiscard]] PlotColours plot_colours_of(Theme theme);
 /// Returns the theme of the desktop, from its palette.
 [[nodiscard]] Theme desktop_theme();
-/// The theme that a palette belongs to.
+/// Returns the theme to which a palette belongs.
 [[nodiscard]] Theme theme_of(const QPalette& palette);
-/// Style sheet for the parts that the palette does not reach.
+/// Returns the style sheet for the parts that the palette does not affect.
 [[nodiscard]] QString style_sheet(Theme theme);
 
 }  // namespace todbench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Own /dev, /sys and udev for programs under umockdev's preload library. For them emulated devices are real in open,
-// ioctl, mmap and udev.
+// Separate /dev, /sys and udev for programs under the preload library of umockdev. For these programs, emulated devices
+// behave like real ones in open, ioctl, mmap and udev.
 #pragma once
 
 #include <memory>
@@ -12,24 +12,25 @@ struct _UMockdevTestbed;
 
 namespace todbench {
 
-/// One per process: the environment variable UMOCKDEV_DIR states its folder. Devices attach to it and are destroyed
-/// before it. Methods may be called from any thread, one at a time.
+/// Emulated system, one per process: the environment variable UMOCKDEV_DIR states its folder. Devices are attached to
+/// the system and are destroyed before it. Methods may be called from any thread, one at a time.
 class MockSystem {
  public:
+  /// Creates the system.
   [[nodiscard]] static std::shared_ptr<MockSystem> create();
   ~MockSystem();
   MockSystem(const MockSystem&) = delete;
   MockSystem& operator=(const MockSystem&) = delete;
 
-  /// True if this process has the preload library loaded and uses emulated devices. Its children do so if the
-  /// environment names the library.
+  /// Returns whether this process has loaded the preload library and uses emulated devices. Its children do the same if
+  /// the environment names the library.
   [[nodiscard]] static bool is_preloaded();
   /// Restarts this program in this process with the preload library. Returns only if the library is already loaded or
-  /// cannot be. Open files and threads are lost: call it first.
+  /// cannot be. Call it first, because open files and threads are lost.
   static void enter();
-  /// Value of LD_PRELOAD for a client.
+  /// Returns the value of LD_PRELOAD for a client.
   [[nodiscard]] static std::string preload_library();
-  /// Value of UMOCKDEV_DIR for a client.
+  /// Returns the value of UMOCKDEV_DIR for a client.
   [[nodiscard]] std::string folder() const;
 
   /// Adds devices described in umockdev's format ("P:", "N:", "E:", "A:" lines) and announces them to udev monitors.
@@ -39,7 +40,7 @@ class MockSystem {
   /// Removes an announced device.
   void remove(const std::string& device_path);
 
-  /// For code that attaches ioctl handlers. Owned by this.
+  /// Returns the testbed, for code that attaches ioctl handlers. Owned by this object.
   [[nodiscard]] _UMockdevTestbed* testbed() const { return testbed_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table of the registers of an emulated camera, and the GenICam description derived from it.
+// Registers of an emulated camera as a table, and the GenICam description derived from the table.
 #pragma once
 
 #include <bit>
@@ -10,6 +10,7 @@
 
 namespace todbench {
 
+/// Kind of a feature.
 enum class FeatureKind {
   integer,
   enumeration,
@@ -23,12 +24,13 @@ enum class FeatureKind {
   /// A Boolean: bit `bit` of the register, counted from the highest as GenICam does for big-endian registers.
   bit,
   chunk_integer,  ///< in the chunk `chunk_id` after every frame, eight bytes
-  chunk_scaled,   ///< the same, four bytes, signed, times `per_raw`
+  chunk_scaled,   ///< a signed number of four bytes in a chunk, times `per_raw`
 };
 
+/// Access of a client.
 enum class FeatureAccess { read_only, read_write, write_only };
 
-/// Limits of `rate`.
+/// Limits of the kind `rate`, in Hz.
 inline constexpr double least_rate_hz = 0.1, most_rate_hz = 1000;
 
 /// One feature of a camera and its register, which has four bytes unless `kind` states otherwise.
@@ -38,9 +40,9 @@ struct CameraFeature {
   std::uint32_t address = 0;
   FeatureAccess access = FeatureAccess::read_write;
   std::uint32_t initial = 0;  ///< raw value at power-up; for a command: the value that executes it
-  std::vector<std::pair<std::string, std::uint32_t>> entries = {};  ///< of an enumeration
+  std::vector<std::pair<std::string, std::uint32_t>> entries = {};  ///< entries of an enumeration
   double per_raw = 1, offset = 0, real = 0;
-  std::int64_t least = 0, most = 0;  ///< of an integer; least == most: no bounds
+  std::int64_t least = 0, most = 0;  ///< limits of an integer; least == most: no limits
   std::uint32_t bytes = 4;
   unsigned bit = 0;
   std::uint32_t chunk_id = 0;
@@ -50,17 +52,18 @@ struct CameraFeature {
   std::string formula = {}, choice = {};
 };
 
-/// True if the feature has its own register. Chunks follow frames, and a bit is part of another register.
+/// Returns whether the feature has its own register. Chunks follow frames, and a bit is part of another register.
 [[nodiscard]] bool owns_register(const CameraFeature& feature);
-/// Bytes of its register.
+/// Returns the number of bytes of the register of the feature.
 [[nodiscard]] std::uint32_t register_bytes(const CameraFeature& feature);
 
+/// Description of a camera.
 struct CameraDescription {
   std::string vendor, model;  ///< in the description and in discovery
-  std::string file_name;      ///< of the description, in the camera's URL register
+  std::string file_name;      ///< file name of the description in the URL register of the camera
   std::vector<std::pair<std::string, std::vector<CameraFeature>>> categories;
   std::string name_space = "GEV";        ///< "U3V" on USB
-  std::endian order = std::endian::big;  ///< of the registers
+  std::endian order = std::endian::big;  ///< byte order of the registers
 };
 
 /// Content of a register at power-up, as in memory.
@@ -68,9 +71,11 @@ struct RegisterContent {
   std::uint32_t address = 0;
   std::vector<std::uint8_t> bytes;
 };
+/// Returns the content of all registers at power-up.
 [[nodiscard]] std::vector<RegisterContent> power_up_contents(const CameraDescription& description);
 
-/// GenICam description in GenApi 1.0. Names of features must be letters, digits and underscores; all texts are escaped.
+/// Returns the GenICam description in GenApi 1.0. Names of features must be letters, digits and underscores; all texts
+/// are escaped.
 [[nodiscard]] std::string genicam_xml(const CameraDescription& description);
 
 }  // namespace todbench

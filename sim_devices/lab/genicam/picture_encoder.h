@@ -15,8 +15,8 @@ namespace todbench {
 enum class SignalKind {
   linear,       ///< kelvin / `kelvin_per_signal`
   radiometric,  ///< by the Planck-like formula
-  as_exposed,   ///< the exposure's own counts
-  tenths,       ///< a tenth of the exposure's own counts
+  as_exposed,   ///< unchanged counts of the exposure
+  tenths,       ///< counts of the exposure divided by ten
 };
 
 /// Conversion of counts to eight bits.
@@ -29,29 +29,32 @@ enum class GainControl {
 struct CountRange {
   double low = 0, high = 0;
 };
+/// Returns the range of a picture.
 [[nodiscard]] CountRange range_of_means(const cv::Mat1w& counts);
-/// Grey levels of a linear gain control, clipped at 0 and 255.
+/// Returns the grey levels of a linear gain control, clipped at 0 and 255.
 [[nodiscard]] cv::Mat1w gain_controlled(const cv::Mat1w& counts);
 
+/// Settings of the conversion.
 struct EncoderSettings {
   SignalKind signal = SignalKind::as_exposed;
   double kelvin_per_signal = 0.04;
   unsigned significant_bits = 14;            ///< larger values are clipped, also to the range of the format
   PixelFormat format = PixelFormat::mono16;  ///< mono8: the highest eight of the significant bits
-  GainControl gain = GainControl::none;      ///< for mono8, applied to the exposure's own counts
+  GainControl gain = GainControl::none;      ///< for mono8, applied to the counts of the exposure
   bool test_ramp = false;  ///< pixel x of a row has the count x, modulo full scale, instead of the picture
-  bool averages = false;   ///< averages with the picture before, as noise reduction does
+  bool averages = false;   ///< averages with the previous picture, as noise reduction does
   bool big_endian = false;
   bool operator==(const EncoderSettings&) const = default;
 };
 
-/// Turns exposures into bytes. One thread at a time.
+/// Conversion of exposures to bytes. One thread at a time.
 class PictureEncoder {
  public:
   /// `kelvin_per_count`, `offset_k`: of the exposures.
   PictureEncoder(double kelvin_per_count, double offset_k, PlanckScale radiometric)
       : kelvin_per_count_(kelvin_per_count), offset_k_(offset_k), radiometric_(radiometric) {}
 
+  /// Returns the bytes of an exposure.
   [[nodiscard]] std::vector<std::uint8_t> encode(const cv::Mat1w& counts, const EncoderSettings& settings);
 
  private:

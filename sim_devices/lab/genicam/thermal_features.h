@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Features common to the emulated GenICam cameras, and a complete camera made of them for any interface.
+// Features that the emulated GenICam cameras share, and a complete camera with these features for any interface.
 #pragma once
 
 #include <cmath>
@@ -22,10 +22,10 @@ struct ThermalCameraOptions {
   int significant_bits = 14;
   double frame_rate_hz = 50;
   double kelvin_per_count = 0.01, offset_k = 0;
-  std::optional<PixelFormat> only_format{};  ///< in place of those of the model
+  std::optional<PixelFormat> only_format{};  ///< single pixel format in place of the formats of the model
 };
 
-/// Options from the configuration of a camera.
+/// Returns the options from the configuration of a camera.
 template <typename Config>
 [[nodiscard]] ThermalCameraOptions options_of(const Config& config) {
   return {.vendor = config.vendor,
@@ -45,20 +45,23 @@ namespace features {
 
 using Entries = std::vector<std::pair<std::string, std::uint32_t>>;
 
+/// Returns a text of `bytes` characters.
 [[nodiscard]] CameraFeature text(const char* name, std::uint32_t address, std::uint32_t bytes, std::string content);
+/// Returns an enumeration.
 [[nodiscard]] CameraFeature choice(const char* name, std::uint32_t address, std::uint32_t initial, Entries entries);
-/// `value` executes the command.
+/// Returns a command that is executed by writing `value`.
 [[nodiscard]] CameraFeature command(const char* name, std::uint32_t address, std::uint32_t value);
-/// Read-only.
+/// Returns a read-only number.
 [[nodiscard]] CameraFeature state(const char* name, std::uint32_t address, std::uint32_t initial);
-/// Read-only, in degrees Celsius.
+/// Returns a read-only temperature in degrees Celsius.
 [[nodiscard]] CameraFeature temperature(const char* name, std::uint32_t address, double per_raw, std::uint32_t raw);
-/// Read-only.
+/// Returns a read-only float.
 [[nodiscard]] CameraFeature real(const char* name, std::uint32_t address, double value);
-/// The first of `formats` is chosen at power-up.
+/// Returns PixelFormat with these formats; the first is chosen at power-up.
 [[nodiscard]] CameraFeature pixel_format(std::uint32_t address, const std::vector<PixelFormat>& formats);
-/// PixelDynamicRangeMax: the largest count that the camera produces.
+/// Returns PixelDynamicRangeMax, the largest count that the camera produces.
 [[nodiscard]] CameraFeature largest_count(std::uint32_t address, int significant_bits);
+/// Returns the feature with a lock while the camera streams.
 [[nodiscard]] CameraFeature locked_while_streaming(CameraFeature feature);
 
 }  // namespace features
@@ -79,14 +82,14 @@ inline constexpr std::uint32_t nuc_mode_manual = 0, nuc_mode_automatic = 1;
 /// Value of the register of AcquisitionMode.
 inline constexpr std::uint32_t acquisition_continuous = 1;
 
-/// A camera with counts linear in temperature: geometry, Mono14 and Mono16, a free frame rate, IRFormat with its two
-/// linear entries, and a correction on command. The categories are DeviceControl, ImageFormatControl,
+/// Returns a camera with counts linear in temperature: geometry, Mono14 and Mono16, a free frame rate, IRFormat with
+/// its two linear entries, and a correction on command. The categories are DeviceControl, ImageFormatControl,
 /// AcquisitionControl and ThermalControl. A camera with more features appends them with more_of().
 [[nodiscard]] CameraDescription thermal_camera(const ThermalRegisters& registers, const ThermalCameraOptions& options);
 
-/// Features of a category, to be extended. Adds the category if it does not exist.
+/// Returns the features of a category, to be extended. Adds the category if it does not exist.
 [[nodiscard]] std::vector<CameraFeature>& more_of(CameraDescription& camera, const std::string& category);
-/// A feature of the description. Precondition: it exists.
+/// Returns a feature of the description. Precondition: it exists.
 [[nodiscard]] CameraFeature& feature_named(CameraDescription& camera, const std::string& name);
 
 /// Checks the configuration of an emulated camera; `who` begins the message. Errors: `invalid_input`.

@@ -16,7 +16,7 @@ inline void append_big_endian(Bytes& out, std::uint64_t value, int bytes) {
   for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
-/// Number in `bytes` bytes at `offset`; 0 if the data are too short.
+/// Returns the number in `bytes` bytes at `offset`; 0 if the data are too short.
 [[nodiscard]] inline std::uint64_t big_endian_at(std::span<const std::uint8_t> data, std::size_t offset, int bytes) {
   if (offset > data.size() || data.size() - offset < static_cast<std::size_t>(bytes)) return 0;
   std::uint64_t value = 0;

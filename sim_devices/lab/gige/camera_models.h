@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models of the GigE Vision emulation: registers, features and their effect on the picture.
+// Models of the GigE Vision emulation: registers, features, and effect of the features on the picture.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,25 @@
 
 namespace todbench {
 
+/// Model of a camera.
 enum class CameraModel {
   ax5,       ///< FLIR A5 ... A65: TemperatureLinearMode, CMOSBitDepth, NUCMode, test ramp, rates by video standard
   a_series,  ///< FLIR A3xx ... A700: IRFormat, NoiseReduction, AcquisitionFrameRate
-  legacy_science,  ///< FLIR A305sc and A320G: Mono16 with the high byte first, not stated by any feature
-  unlisted,        ///< an unknown vendor: raw counts, and a feature of its own name for the shutter
+  legacy_science,  ///< FLIR A305sc and A320G: Mono16 with the high byte first, which no feature states
+  unlisted,        ///< an unknown vendor: raw counts, and a shutter feature with a non-standard name
 };
 
+/// Returns the name of the model.
 [[nodiscard]] std::string_view to_string(CameraModel model);
-/// "ax5", "a-series", "legacy-science", "unlisted".
+/// Returns the model of "ax5", "a-series", "legacy-science" or "unlisted"; empty for other names.
 [[nodiscard]] std::optional<CameraModel> camera_model(std::string_view name);
 
-/// Addresses of the registers that the emulation itself reads; 0: the model has none.
+/// Addresses of the registers that the emulation reads; 0 if the model does not have the register.
 struct ModelRegisters {
   std::uint32_t width = 0, height = 0, pixel_format = 0, payload_size = 0;
   std::uint32_t acquisition_start = 0, acquisition_stop = 0;
-  std::uint32_t temperature_linear_mode = 0, temperature_linear_resolution = 0;  ///< of the Ax5
-  std::uint32_t ir_format = 0;                                                   ///< of the A series
+  std::uint32_t temperature_linear_mode = 0, temperature_linear_resolution = 0;  ///< registers of the Ax5
+  std::uint32_t ir_format = 0;                                                   ///< register of the A series
   std::uint32_t video_standard = 0;                                              ///< Ax5 enumeration
   std::uint32_t image_adjust = 0;  ///< Ax5 enumeration ImageAdjustMethod: 1 is Linear
   std::uint32_t test_pattern = 0;
@@ -45,15 +47,16 @@ inline constexpr std::uint32_t chunk_exposure = 0xA0000001;            ///< Chun
 inline constexpr std::uint32_t chunk_sensor_temperature = 0xA0000002;  ///< ChunkSensorTemperature, raw/10
 inline constexpr std::uint32_t chunk_nuc_active = 0xA0000003;          ///< ChunkNUCActive
 
+/// Description of a model with its registers.
 struct ModelDescription {
   CameraDescription genicam;
   ModelRegisters registers;
 };
 
-/// Registers and features of a model. An empty vendor or model name is that of the family.
+/// Returns registers and features of a model. An empty vendor or model name is replaced by that of the family.
 [[nodiscard]] ModelDescription describe_camera(CameraModel model, const ThermalCameraOptions& options);
 
-/// Frames per second for a value of the Ax5's SensorVideoStandard; 0 for an unknown value.
+/// Returns the frames per second for a value of SensorVideoStandard of the Ax5; 0 for an unknown value.
 [[nodiscard]] double video_standard_hz(std::uint32_t value);
 
 }  // namespace todbench

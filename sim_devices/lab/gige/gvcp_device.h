@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Answers of a GigE Vision camera to control messages: privilege, heartbeat, registers. Without sockets and clock:
-// messages and times are arguments.
+// Responses of a GigE Vision camera to control messages: privilege, heartbeat, registers. The code uses neither sockets
+// nor a clock: messages and times are arguments.
 #pragma once
 
 #include <chrono>
@@ -26,29 +26,31 @@ struct GvcpEndpoint {
 struct GvcpHandlers {
   std::function<void(std::uint32_t address, std::uint32_t value)> on_write;  ///< after the value is stored
   std::function<void(const ResendRequest&)> on_resend;                       ///< from the controller's host only
-  std::function<void()> on_control_lost;  ///< the controller left, or was silent for the heartbeat timeout
+  std::function<void()> on_control_lost;  ///< the controller left, or sent no message for the heartbeat timeout
 };
 
-/// Thread-safe.
+/// Control part of a camera. Thread-safe.
 class GvcpDevice {
  public:
   using Clock = std::chrono::steady_clock;
 
   GvcpDevice(RegisterMap& registers, GvcpHandlers handlers) : registers_(registers), handlers_(std::move(handlers)) {}
 
-  /// Answer to a datagram; empty if there is none.
+  /// Returns the response to a datagram; empty if there is none.
   [[nodiscard]] std::optional<Bytes> answer(std::span<const std::uint8_t> datagram, const GvcpEndpoint& from,
                                             Clock::time_point now);
-  /// Ends the control of a client that was silent for the heartbeat timeout.
+  /// Ends the control of a client that sent no message for the heartbeat timeout.
   void check_heartbeat(Clock::time_point now);
-  /// Forgets the controller without a callback, as a reset does.
+  /// Removes the controller without a callback, as a reset does.
   void forget_controller();
-  /// From now on no client gets control, as if another program had it. The present controller keeps it.
+  /// Denies control to all clients, as if another program had it. The present controller keeps control.
   void deny_access();
+  /// Permits control again.
   void permit_access();
 
+  /// Returns whether a client controls the camera.
   [[nodiscard]] bool controlled() const;
-  /// Requests answered with an error since creation.
+  /// Returns the number of requests with an error response since creation.
   [[nodiscard]] std::uint64_t refused() const;
 
  private:

@@ -10,6 +10,7 @@
 
 namespace todbench {
 
+/// Command of a request.
 enum class GvcpCommand : std::uint16_t {
   discovery = 0x0002,
   force_ip = 0x0004,
@@ -20,6 +21,7 @@ enum class GvcpCommand : std::uint16_t {
   write_memory = 0x0086,
 };
 
+/// Status of an acknowledge.
 enum class GvcpStatus : std::uint16_t {
   success = 0x0000,
   not_implemented = 0x8001,
@@ -31,22 +33,22 @@ enum class GvcpStatus : std::uint16_t {
   busy = 0x8007,
 };
 
-/// A request as received; `command` may be a number outside GvcpCommand.
+/// Request as received; `command` may be a number outside GvcpCommand.
 struct GvcpRequest {
   std::uint16_t command = 0;
   std::uint16_t id = 0;
-  bool wants_acknowledge = false;
+  bool wants_acknowledge = false;         ///< the client requests an acknowledge
   std::span<const std::uint8_t> payload;  ///< borrowed from the datagram
 };
 
 /// Longest payload of a message: a READMEM of 536 bytes with its address.
 inline constexpr std::size_t gvcp_most_payload_bytes = 540;
 
-/// Parses a request. Empty, and to be left without an answer, if the datagram does not begin with the key 0x42, has the
-/// id 0, or differs from its stated length.
+/// Parses a request. Empty if the datagram does not begin with the key 0x42, has the id 0, or differs from its stated
+/// length; such datagrams get no response.
 [[nodiscard]] std::optional<GvcpRequest> parse_gvcp_request(std::span<const std::uint8_t> datagram);
 
-/// Acknowledge of a request. Its command is that of the request plus one.
+/// Returns the acknowledge of a request. Its command is that of the request plus one.
 [[nodiscard]] Bytes gvcp_acknowledge(const GvcpRequest& request, GvcpStatus status,
                                      std::span<const std::uint8_t> payload);
 
@@ -56,7 +58,7 @@ struct ResendRequest {
   std::uint32_t first_packet = 0, last_packet = 0;  ///< 24 bits each, inclusive
 };
 
-/// Empty if the payload is too short or the range of packets is reversed.
+/// Parses the payload of a PACKETRESEND. Empty if the payload is too short or the range of packets is reversed.
 [[nodiscard]] std::optional<ResendRequest> parse_resend_request(std::span<const std::uint8_t> payload);
 
 }  // namespace todbench

@@ -23,9 +23,10 @@ namespace todbench {
 /// Size of a stream packet in bytes below which no header fits.
 inline constexpr std::uint32_t gvsp_least_packet_bytes = 46;
 
-/// Frame period in whole microseconds, as exposure_index() assumes.
+/// Returns the frame period in whole microseconds, as exposure_index() assumes.
 [[nodiscard]] std::uint64_t gvsp_period_ns(double rate_hz);
 
+/// State that the control thread and the streaming thread of the camera share.
 struct GvspCamera::State {
   State(GvspCameraConfig c, Exposure e, ControlSockets control_sockets, StreamSocket stream_socket,
         const LocalInterface& where);

@@ -10,17 +10,17 @@
 
 namespace todbench {
 
-/// Faults at random, each a probability 0 ... 1 that is drawn independently.
+/// Random faults. Each number is a probability 0 ... 1 that is drawn independently.
 struct GvspFaults {
   double packet_loss = 0;    ///< per packet, including leaders, trailers and resent packets
   double duplicate = 0;      ///< per packet: sent twice
   double reorder = 0;        ///< per packet: exchanged with the next one
   double late_leader = 0;    ///< per frame: the leader is sent after the trailer
   double lost_frame = 0;     ///< per frame: exposed and numbered, but never sent
-  double frozen = 0;         ///< per frame: repeats the picture of the frame before
+  double frozen = 0;         ///< per frame: repeats the picture of the previous frame
   double swapped_bytes = 0;  ///< per frame: the two bytes of every pixel are exchanged
-  double wrong_size = 0;     ///< per frame: has half its rows, and states it
-  double too_long = 0;       ///< per frame: has undeclared bytes after the payload
+  double wrong_size = 0;     ///< per frame: contains half of its rows, and states this
+  double too_long = 0;       ///< per frame: contains undeclared bytes after the payload
   bool operator==(const GvspFaults&) const = default;
 };
 
@@ -38,16 +38,17 @@ struct FrameFaults {
   std::size_t surplus_bytes = 0;
 };
 
-/// Depends only on (random, exposure): the same for the same seed, regardless of earlier calls.
+/// Draws the faults of an exposure. They depend only on `random` and `exposure`, not on earlier calls.
 [[nodiscard]] FrameFaults draw_frame_faults(const GvspFaults& faults, const RandomStream& random,
                                             std::uint64_t exposure);
 
-/// Order in which the packets of a frame are sent: ids, some of them missing, repeated or exchanged, and how many.
-/// Depends only on the arguments.
+/// Order in which the packets of a frame are sent: ids, some of them missing, repeated or exchanged, and the numbers of
+/// these faults.
 struct PacketSchedule {
   std::vector<std::uint32_t> ids;
   std::uint64_t lost = 0, duplicated = 0, reordered = 0;
 };
+/// Returns the order of the packets. It depends only on the arguments.
 [[nodiscard]] PacketSchedule schedule_packets(std::uint32_t packets, const FrameFaults& planned,
                                               const GvspFaults& faults, const RandomStream& random,
                                               std::uint64_t exposure);

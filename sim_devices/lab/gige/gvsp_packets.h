@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Bytes of a packet of GevSCPSPacketSize besides its data: IPv4, UDP and GVSP headers.
+/// Bytes of a packet of GevSCPSPacketSize in addition to its data: IPv4, UDP and GVSP headers.
 inline constexpr std::size_t gvsp_overhead_bytes = 20 + 8 + 8;
 
 inline constexpr std::uint16_t gvsp_status_success = 0x0000;
@@ -25,12 +25,12 @@ struct GvspFrame {
   std::uint64_t timestamp_ns = 0;
   std::uint32_t pixel_format = 0;
   std::uint32_t width = 0, height = 0;         ///< as the leader states them
-  std::uint16_t x_padding = 0, y_padding = 0;  ///< the same, in bytes
+  std::uint16_t x_padding = 0, y_padding = 0;  ///< as the leader states them, in bytes
   std::uint16_t payload_type = 0x0001;         ///< 0x4001 with chunks after the image
-  std::size_t bytes_per_packet = 0;            ///< of data
+  std::size_t bytes_per_packet = 0;            ///< bytes of data in a packet
   Bytes data;                                  ///< image, then chunks
 
-  /// Leader, data packets and trailer: packet ids 0 ... packets() - 1.
+  /// Returns the number of packets: leader, data packets and trailer, with the ids 0 ... packets() - 1.
   [[nodiscard]] std::uint32_t packets() const;
 };
 
@@ -42,10 +42,10 @@ struct GvspPacket {
   std::span<const std::uint8_t> data;  ///< borrowed from the frame
 };
 
-/// Packet `id` of a frame. Precondition: id < frame.packets().
+/// Returns packet `id` of a frame. Precondition: id < frame.packets().
 [[nodiscard]] GvspPacket gvsp_packet(const GvspFrame& frame, std::uint32_t id, std::uint16_t status);
 
-/// Answer to a request for a packet that is not kept any more.
+/// Returns the response to a request for a packet that is no longer stored.
 [[nodiscard]] GvspPacket gvsp_unavailable(std::uint16_t block_id, std::uint32_t id);
 
 /// Appends one chunk: its data, then its id and length.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sockets of an emulated GigE Vision camera.
+// Sockets of an emulated GigE Vision camera.
 #pragma once
 
 #include <chrono>
@@ -15,15 +15,15 @@
 
 namespace todbench {
 
-/// An interface of this host.
+/// Interface of this host.
 struct LocalInterface {
   int index = 0;
   std::uint32_t address = 0, mask = 0;  ///< host byte order
 };
-/// Interface that is up and has this address; empty if there is none.
+/// Returns the interface that is up and has this address; empty if there is none.
 [[nodiscard]] std::optional<LocalInterface> find_interface(const std::string& ipv4);
 
-/// A message and its sender.
+/// Message and its sender.
 struct GvcpDatagram {
   Bytes content;
   GvcpEndpoint from;
@@ -32,9 +32,9 @@ struct GvcpDatagram {
 /// Control port of a camera: receives on its own address, and broadcasts on its interface.
 class ControlSockets {
  public:
-  /// Errors: `not_found` (port busy).
+  /// Opens the sockets. Errors: `not_found` (port busy).
   [[nodiscard]] static Result<ControlSockets> open(const LocalInterface& where);
-  /// Next message; empty if none arrives within `patience`, or after wake().
+  /// Returns the next message; empty if none arrives within `patience`, or after wake().
   [[nodiscard]] std::optional<GvcpDatagram> receive(std::chrono::milliseconds patience);
   void send(std::span<const std::uint8_t> datagram, const GvcpEndpoint& to);
   /// Ends a waiting receive(); any thread.
@@ -49,6 +49,7 @@ class ControlSockets {
 /// Socket that sends frames.
 class StreamSocket {
  public:
+  /// Opens a socket at this address.
   [[nodiscard]] static Result<StreamSocket> open(std::uint32_t address);
   /// Sends the packets in order with `pause` between them. Any thread, one at a time.
   void send(std::span<const GvspPacket> packets, const GvcpEndpoint& to, std::chrono::nanoseconds pause);

@@ -15,8 +15,8 @@
 
 namespace todbench {
 
-/// Memory with rules. The standard's own registers (0 ... 0xAFF and stream channel 0 at 0xD00 ... 0xD2F) can all be
-/// read, and written if the standard allows it. The camera's registers follow their table. Other addresses do not
+/// Memory with rules. The registers of the standard (0 ... 0xAFF and stream channel 0 at 0xD00 ... 0xD2F) can all be
+/// read, and written if the standard allows it. The registers of the camera follow their table. Other addresses do not
 /// exist. Thread-safe.
 class RegisterMap {
  public:
@@ -26,18 +26,18 @@ class RegisterMap {
   /// Address of the description.
   static constexpr std::uint32_t xml_address = 0x00100000;
 
-  /// Read by a client: whole words. Errors: bad_alignment, invalid_address.
+  /// Reads whole words for a client. Errors: bad_alignment, invalid_address.
   [[nodiscard]] tl::expected<Bytes, GvcpStatus> read(std::uint32_t address, std::size_t bytes) const;
-  /// Write of a word by a client. Errors: bad_alignment, invalid_address, write_protect, busy (locked while streaming).
+  /// Writes a word for a client. Errors: bad_alignment, invalid_address, write_protect, busy (locked while streaming).
   [[nodiscard]] GvcpStatus write(std::uint32_t address, std::uint32_t value);
-  /// Registers that are locked while streaming reject writes from lock_transport() to unlock_transport().
+  /// Lock and unlock the registers that reject writes while streaming.
   void lock_transport();
   void unlock_transport();
 
   /// Restores the power-up values of the features' registers.
   void power_up();
 
-  /// Access by the camera itself, without rules. Addresses below 64 KiB.
+  /// Return and set registers for the camera itself, without rules. Addresses below 64 KiB.
   [[nodiscard]] std::uint32_t get(std::uint32_t address) const;
   void set(std::uint32_t address, std::uint32_t value);
   void set_text(std::uint32_t address, std::string_view text, std::size_t bytes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An emulated differential black body: a plate of temperature T and a radiator behind it at T + difference, controlled
+// Emulated differential black body: a plate of temperature T and a radiator behind it at T + difference, controlled
 // over SCPI/TCP.
 //
 //   [SOURce:]TEMPerature:DIFFerence <K>|MIN|MAX      set-point of radiator minus plate; rounded to the resolution
@@ -25,21 +25,22 @@
 
 namespace todbench {
 
+/// Options of the instrument.
 struct BlackBodyOptions {
   ScpiServerOptions server;
   std::string serial = "BB-0001";
-  double time_constant_s = 4;      ///< of the first-order approach to a set-point; > 0
-  double stable_window_k = 0.001;  ///< stable if |sensor - set-point| stays below this ...
-  double stable_dwell_s = 0.5;     ///< ... for this time
-  double min_delta_t_k = -25, max_delta_t_k = 25;
-  double resolution_k = 0.001;  ///< of the set-point
-  double ambient_k = 295;       ///< of the plate at a difference of zero
+  double time_constant_s = 4;                      ///< time constant of the first-order approach to a set-point; > 0
+  double stable_window_k = 0.001;                  ///< stable if |sensor - set-point| stays below this ...
+  double stable_dwell_s = 0.5;                     ///< ... for this time
+  double min_delta_t_k = -25, max_delta_t_k = 25;  ///< limits of the set-point
+  double resolution_k = 0.001;                     ///< resolution of the set-point
+  double ambient_k = 295;                          ///< temperature of the plate at a difference of zero
   /// The radiator heats the plate in front of it: plate = ambient + coupling * difference.
   double plate_coupling = 0.02;
-  /// The absolute readings are in degrees Celsius, against the table of the instrument.
+  /// Reports absolute temperatures in degrees Celsius, contrary to the table of the instrument.
   bool celsius = false;
-  /// Error of the sensor: returns the real difference for an indication of `indicated_k`, K; finite. Called from any
-  /// thread. Empty: a perfectly calibrated instrument.
+  /// Error of the sensor: returns the real difference in K, a finite number, for an indicated difference of
+  /// `indicated_k`. Called from any thread. Empty: a perfectly calibrated instrument.
   std::function<double(double indicated_k)> real_delta_t_k{};
   /// Time base of the settling. Called from any thread. Never runs backwards.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
@@ -54,9 +55,9 @@ struct BlackBodyState {
   bool is_stable = true;
 };
 
-/// Serves from creation to destruction. It starts stable at a difference of 0. After a set-point s at time 0 the
-/// difference is d(t) = s + (d(0) - s) exp(-t/tau). It never overshoots, and once stable the remaining change is below
-/// the window.
+/// Instrument that serves from creation to destruction. It starts stable at a difference of 0. After a set-point s at
+/// time 0 the difference is d(t) = s + (d(0) - s) exp(-t/tau). It does not overshoot, and when it is stable, the
+/// remaining change is below the window.
 class BlackBody {
   struct Settling {
     double start_k = 0, set_point_k = 0;  ///< as indicated
@@ -65,7 +66,7 @@ class BlackBody {
   };
 
  public:
-  /// Errors: `invalid_input` (options), `not_found` (address in use).
+  /// Starts the instrument. Errors: `invalid_input` (options), `not_found` (address in use).
   [[nodiscard]] static Result<std::unique_ptr<BlackBody>> start(BlackBodyOptions options);
   /// For start() only.
   BlackBody(BlackBodyOptions options, Settling settling);
@@ -73,9 +74,9 @@ class BlackBody {
   BlackBody& operator=(const BlackBody&) = delete;
   ~BlackBody() = default;
 
-  /// State now, for an emulated camera that observes the settling. Any thread.
+  /// Returns the present state, for an emulated camera that observes the settling. Any thread.
   [[nodiscard]] BlackBodyState state() const;
-  /// "address:port". Any thread.
+  /// Returns "address:port". Any thread.
   [[nodiscard]] std::string endpoint() const { return server_->endpoint(); }
 
  private:

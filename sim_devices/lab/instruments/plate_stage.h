@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An emulated plate stage: a changer with named slots, a turning mount and an x/y table, controlled over SCPI/TCP.
+// Emulated plate stage: a changer with named slots, a turning mount and an x/y table, controlled over SCPI/TCP.
 //
 //   ROUTe:PLATe "name"                                    selects a plate
 //   ROUTe:PLATe?  ROUTe:PLATe:ACTual?                     -> selected plate; plate in the beam now
@@ -34,21 +34,23 @@
 
 namespace todbench {
 
+/// Options of the instrument.
 struct PlateStageOptions {
   ScpiServerOptions server;
   std::string serial = "PS-0001";
-  std::vector<std::string> plates;  ///< names of the slots, distinct; the first is in the beam at the start
-  double travel_mm = 5;             ///< to either side of the middle, on both axes
-  double speed_mm_per_s = 10;
-  double settle_s = 0.2;         ///< from arrival to rest
-  double resolution_mm = 0.001;  ///< of the set-point
-  double plate_change_s = 5;
-  double mounting_change_s = 3;
+  std::vector<std::string> plates;     ///< names of the slots, distinct; the first is in the beam at the start
+  double travel_mm = 5;                ///< to either side of the middle, on both axes
+  double speed_mm_per_s = 10;          ///< speed of the table
+  double settle_s = 0.2;               ///< time from arrival to rest
+  double resolution_mm = 0.001;        ///< resolution of the set-point
+  double plate_change_s = 5;           ///< duration of a change of the plate
+  double mounting_change_s = 3;        ///< duration of a change of the mounting
   double slowest_run_mm_per_s = 0.01;  ///< the fastest run has the speed of the table
-  double run_jitter_mm = 0;            ///< standard deviation of the place during a run, new every millisecond
-  std::uint64_t seed = 1;              ///< of the jitter
-  /// Error of the stage: real place of the plate for an indication of `indicated_mm`; finite. Called from any thread.
-  /// Empty: no error. The owner of the scene applies it; the encoders do not contain it.
+  double run_jitter_mm = 0;  ///< standard deviation of the position during a run, drawn anew every millisecond
+  std::uint64_t seed = 1;    ///< seed of the jitter
+  /// Error of the stage: returns the real position of the plate, a finite one, for an indicated position of
+  /// `indicated_mm`. Called from any thread. Empty: no error. The owner of the scene applies this error; the encoders
+  /// do not include it.
   std::function<cv::Point2d(cv::Point2d indicated_mm)> real_place_mm{};
   /// Time base of runs in seconds: the present time of the clock that stamps the camera's frames. Called from any
   /// thread. Empty: `now`.
@@ -61,14 +63,14 @@ struct PlateStageOptions {
 /// State of the stage at one moment.
 struct PlateStageState {
   std::string plate;                       ///< in the beam; the old plate until the change is complete
-  Mounting mounting = Mounting::identity;  ///< likewise
+  Mounting mounting = Mounting::identity;  ///< present mounting; the old one until the change is complete
   cv::Point2d shift_mm{0, 0};
-  double speed_mm_per_s = 0;  ///< of a run along x, with sign; 0 for other movements of the table
-  bool is_moving = false;     ///< something moves or is not yet at rest
+  double speed_mm_per_s = 0;  ///< speed of a run along x, with sign; 0 for other movements of the table
+  bool is_moving = false;     ///< a part moves or is not yet at rest
 };
 
-/// Serves from creation to destruction. The table moves to a new position in a straight line at constant speed,
-/// starting from its present place.
+/// Instrument that serves from creation to destruction. The table moves to a new position in a straight line at
+/// constant speed, starting from its present place.
 class PlateStage {
   template <typename T>
   struct Change {  ///< `from` until `since` + `duration_s`, then `to`
@@ -84,7 +86,7 @@ class PlateStage {
   };
 
  public:
-  /// Errors: `invalid_input` (options), `not_found` (address in use).
+  /// Starts the instrument. Errors: `invalid_input` (options), `not_found` (address in use).
   [[nodiscard]] static Result<std::unique_ptr<PlateStage>> start(PlateStageOptions options);
   /// For start() only.
   PlateStage(PlateStageOptions options, Motion motion);
@@ -92,11 +94,11 @@ class PlateStage {
   PlateStage& operator=(const PlateStage&) = delete;
   ~PlateStage() = default;
 
-  /// State now, for an emulated camera that observes the movement. Any thread.
+  /// Returns the present state, for an emulated camera that observes the movement. Any thread.
   [[nodiscard]] PlateStageState state() const { return state_at(camera_time_s()); }
-  /// The same at another time of the camera's clock, on which runs depend.
+  /// Returns the state at another time of the camera's clock, because runs depend on this clock.
   [[nodiscard]] PlateStageState state_at(double camera_time_s) const;
-  /// "address:port". Any thread.
+  /// Returns "address:port". Any thread.
   [[nodiscard]] std::string endpoint() const { return server_->endpoint(); }
 
  private:

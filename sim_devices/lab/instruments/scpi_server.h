@@ -14,16 +14,18 @@
 
 namespace todbench {
 
+/// Options of the server.
 struct ScpiServerOptions {
-  std::string address = "127.0.0.1";    ///< IPv4 address to listen on
-  std::uint16_t port = 0;               ///< 0: the system chooses
-  std::size_t longest_message = 512;    ///< characters; a longer line is skipped to its end and reported as -363
-  std::size_t most_clients = 8;         ///< a further client is disconnected at once
-  std::size_t most_unread = 64 * 1024;  ///< characters of unread answers after which a client is disconnected
+  std::string address = "127.0.0.1";  ///< IPv4 address to listen on
+  std::uint16_t port = 0;             ///< 0: the system chooses
+  std::size_t longest_message = 512;  ///< characters; a longer line is skipped to its end and reported as -363
+  std::size_t most_clients = 8;       ///< a further client is disconnected at once
+  /// Characters of responses that a client has not read, after which it is disconnected.
+  std::size_t most_unread = 64 * 1024;
 };
 
-/// Serves one instrument from its own thread until destroyed. Commands of all clients run on that thread, one at a
-/// time. All received bytes are untrusted: the options limit the memory per client.
+/// Server of one instrument on its own thread, until it is destroyed. Commands of all clients run on that thread, one
+/// at a time. All received bytes are untrusted: the options limit the memory per client.
 class ScpiServer {
   struct Listening {
     Descriptor socket;
@@ -31,7 +33,7 @@ class ScpiServer {
   };
 
  public:
-  /// `not_found` if the address cannot be listened on.
+  /// Starts the server. Errors: `not_found` if it cannot listen on the address.
   [[nodiscard]] static Result<std::unique_ptr<ScpiServer>> start(ScpiServerOptions options, ScpiLanguage language);
   /// For start() only: Listening is private.
   ScpiServer(ScpiServerOptions options, ScpiLanguage language, Listening listening);
@@ -40,8 +42,9 @@ class ScpiServer {
   /// Ends all connections and joins the thread.
   ~ScpiServer() = default;
 
-  /// Any thread.
+  /// Returns the port. Any thread.
   [[nodiscard]] std::uint16_t port() const { return listening_.port; }
+  /// Returns "address:port". Any thread.
   [[nodiscard]] std::string endpoint() const { return options_.address + ":" + std::to_string(listening_.port); }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Language part of an emulated SCPI instrument: program messages in, response messages out, no sockets.
+// Language part of an emulated SCPI instrument, without sockets: it converts program messages to response messages.
 #pragma once
 
 #include <cstddef>
@@ -30,21 +30,22 @@ struct ScpiCommand {
   std::function<ScpiAnswer(std::span<const std::string> parameters)> run;
 };
 
-/// True if `text` is the short or long form of a mnemonic such as "DIFFerence", in any case.
+/// Returns whether `text` is the short or long form of a mnemonic such as "DIFFerence", in any case.
 [[nodiscard]] bool scpi_keyword(std::string_view text, std::string_view mnemonic);
 
 /// Parses a number in [min, max], or MINimum/MAXimum; an optional suffix must be `unit`. Errors: -131 (suffix), -104
 /// (no number), -222 (range).
 [[nodiscard]] tl::expected<double, ScpiError> scpi_number(std::string_view text, double min, double max,
                                                           std::string_view unit);
-/// Error -109 or -108 unless there are exactly `count` parameters.
+/// Succeeds if there are exactly `count` parameters. Errors: -109 (too few), -108 (too many).
 [[nodiscard]] tl::expected<void, ScpiError> scpi_count(std::span<const std::string> parameters, std::size_t count);
+/// Returns a number with this many decimals.
 [[nodiscard]] std::string scpi_decimal(double value, int decimals);
 
 /// Commands of an instrument. Immutable, shared by its sessions.
 class ScpiLanguage {
  public:
-  /// `identity` is the answer to *IDN?. The commands *IDN?, *CLS, *OPC?, SYSTem:ERRor[:NEXT]? and SYSTem:VERSion? are
+  /// `identity` is the response to *IDN?. The commands *IDN?, *CLS, *OPC?, SYSTem:ERRor[:NEXT]? and SYSTem:VERSion? are
   /// built in.
   ScpiLanguage(std::string identity, std::vector<ScpiCommand> commands);
   [[nodiscard]] const std::string& identity() const { return identity_; }
@@ -61,10 +62,11 @@ class ScpiLanguage {
 class ScpiSession {
  public:
   explicit ScpiSession(const ScpiLanguage& language) : language_(&language) {}  ///< `language` outlives the session
-  /// Executes one program message without its line end. Answers of several queries are separated by ';'; the result is
-  /// empty if there is none. A command error (-1xx) discards the rest of the message (IEEE 488.2). Headers after ';'
-  /// continue the previous path (SCPI-99 6.2.4).
+  /// Executes one program message without its line end. Responses to several queries are separated by ';'; the result
+  /// is empty if there is no response. A command error (-1xx) discards the rest of the message (IEEE 488.2). Headers
+  /// after ';' continue the previous path (SCPI-99 6.2.4).
   [[nodiscard]] std::string execute(std::string_view message);
+  /// Adds an error to the queue.
   void report(ScpiError error);
 
  private:

@@ -16,32 +16,35 @@
 
 namespace todbench {
 
+/// Configuration of the camera.
 struct SeekCameraConfig {
   SeekModel model = SeekModel::compact_pro;
   std::string serial = "TB0001";    ///< in the descriptors; empty: only the chip has a number
-  double frame_rate_hz = 50;        ///< 0.1 ... 1000; real ones send 7 ... 15
-  int shutter_interval_frames = 0;  ///< the shutter closes for one frame after so many; 0: only at the start
+  double frame_rate_hz = 50;        ///< 0.1 ... 1000; real cameras send 7 ... 15
+  int shutter_interval_frames = 0;  ///< frames after which the shutter closes for one frame; 0: only at the start
   int fixed_pattern_counts = 64;    ///< largest offset of a pixel, which the shutter frame shows
   std::vector<cv::Point> dead{};    ///< dead pixels of the picture; sent as zero
-  /// Counter of the first frame after power-up; it wraps soon, so that every longer run tests the client's unwrapping.
+  /// Counter of the first frame after power-up. It wraps soon, so that every longer run tests the unwrapping in the
+  /// client.
   std::uint16_t first_counter = 65400;
 };
 
-/// The camera. After initialisation it sends a calibration frame, one of another kind, a shutter frame, then pictures.
-/// It exposes only on request, at the earliest one frame period after the frame before, so a slow client loses no
-/// frames. Methods may be called from any thread.
+/// Camera that sends, after its initialisation, a calibration frame, a frame of another kind, a shutter frame, and then
+/// pictures. It exposes only on request, at the earliest one frame period after the previous frame, so a slow client
+/// loses no frames. Methods may be called from any thread.
 class SeekCamera : public UsbDevice {
  public:
-  /// Picture of exposure `index`, which counts every frame since power-up, calibration frames included: after one start
-  /// the first picture has index seek_calibration_frames. It has the geometry of the picture and counts up to 16383.
-  /// Called on the thread of the bulk endpoint.
+  /// Returns the picture of exposure `index`, with counts up to 16383. The index counts every frame since power-up,
+  /// including calibration frames: after one start, the first picture has the index seek_calibration_frames. Called on
+  /// the thread of the bulk endpoint.
   using Exposure = std::function<cv::Mat1w(std::uint64_t index)>;
 
-  /// Errors: `invalid_input` (configuration).
+  /// Creates the camera. Errors: `invalid_input` (configuration).
   [[nodiscard]] static Result<std::shared_ptr<SeekCamera>> create(SeekCameraConfig config, Exposure exposure);
 
+  /// Returns the number of exposures since power-up.
   [[nodiscard]] virtual std::uint64_t exposures() const = 0;
-  /// The next `count` exposures are made but never sent.
+  /// Makes the next `count` exposures without sending them.
   virtual void lose_exposures(unsigned count) = 0;
   /// Sends only the first `bytes` of the next frame.
   virtual void truncate_next_frame(std::size_t bytes) = 0;

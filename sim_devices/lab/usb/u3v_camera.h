@@ -17,15 +17,16 @@
 
 namespace todbench {
 
-/// Format of the camera's GenICam description; clients must support both.
+/// Format of the GenICam description of the camera. Clients must support both formats.
 enum class U3vDescription { plain, zipped };
 
-/// Where the camera states its identity.
+/// Places where the camera states its identity.
 enum class U3vIdentityNodes {
   present,  ///< in its bootstrap registers and in its description
   absent,   ///< in its bootstrap registers only
 };
 
+/// Configuration of the camera.
 struct U3vCameraConfig {
   std::string vendor = "todbench", model = "Emulated U3V", serial = "TB0001", firmware = "1.0";
   int width = 320, height = 240;
@@ -37,28 +38,30 @@ struct U3vCameraConfig {
   std::string description_text = {};           ///< the description; empty: that of the camera
   std::uint64_t stated_description_bytes = 0;  ///< 0: the true size
   U3vIdentityNodes identity_nodes = U3vIdentityNodes::present;
-  std::optional<std::string> usb_serial{};  ///< of the USB descriptors if it differs from `serial`
+  std::optional<std::string> usb_serial{};  ///< serial number in the USB descriptors if it differs from `serial`
   int row_padding_bytes = 0;                ///< sent after every row, counted in the payload size
-  bool states_padding = true;               ///< in the leader
-  /// False contents of the stream registers at power-up: address of a 32-bit register, value.
+  bool states_padding = true;               ///< the leader states the padding
+  /// Wrong contents of the stream registers at power-up: address of a 32-bit register, value.
   std::map<std::uint64_t, std::uint32_t> false_registers{};
 };
 
-/// The camera. It exposes only when the host requests data, at the earliest one frame period after the exposure before,
+/// Camera that exposes only when the host requests data, at the earliest one frame period after the previous exposure,
 /// so a slow host loses no frames. Its clock advances by one frame period per exposure from power-up: exposure k at an
 /// unchanged rate f has device_time_ns = (k + 1) 10^9 / f. Methods may be called from any thread.
 class U3vCamera : public UsbDevice {
  public:
-  /// Picture number `index`, counted from 0 at power-up over all streams, with the configured geometry. Called on the
-  /// thread of the stream endpoint.
+  /// Returns picture number `index`, counted from 0 at power-up over all streams, with the configured geometry. Called
+  /// on the thread of the stream endpoint.
   using Exposure = std::function<cv::Mat1w(std::uint64_t index)>;
 
-  /// Errors: `invalid_input` (configuration).
+  /// Creates the camera. Errors: `invalid_input` (configuration).
   [[nodiscard]] static Result<std::shared_ptr<U3vCamera>> create(U3vCameraConfig config, Exposure exposure);
 
+  /// Returns the number of exposures since power-up.
   [[nodiscard]] virtual std::uint64_t exposures() const = 0;
+  /// Returns the number of non-uniformity corrections since power-up.
   [[nodiscard]] virtual std::uint64_t nonuniformity_corrections() const = 0;
-  /// The next `count` exposures are made but never sent.
+  /// Makes the next `count` exposures without sending them.
   virtual void lose_exposures(unsigned count) = 0;
   /// Sends only the first `bytes` of the next picture.
   virtual void truncate_next_frame(std::size_t bytes) = 0;

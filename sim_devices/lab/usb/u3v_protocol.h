@@ -26,7 +26,8 @@ inline constexpr std::size_t bootstrap_size = 0x3000, camera_size = 0x100;
 inline constexpr std::uint64_t si_info = 0x0, si_control = 0x4, si_payload = 0x8, si_leader = 0x10, si_trailer = 0x14;
 inline constexpr std::size_t leader_size = 52, trailer_size = 32;
 
-// The camera's own registers. A client may write those from the pixel format up to the sensor's own (reg_scale).
+// The camera's own registers. A client may write the registers from the pixel format up to the first register of the
+// sensor (reg_scale).
 inline constexpr std::uint64_t reg_width = 0x00, reg_height = 0x04, reg_offset_x = 0x08, reg_offset_y = 0x0C,
                                reg_pixel_format = 0x10, reg_largest_count = 0x14, reg_acquisition_mode = 0x18,
                                reg_acquisition = 0x1C, reg_period_us = 0x20, reg_ir_format = 0x24, reg_nuc_mode = 0x28,
@@ -48,7 +49,7 @@ void put(UsbBytes& bytes, T value) {
   }
 }
 
-/// The number at an offset. Precondition: it lies within the bytes.
+/// Returns the number at an offset. Precondition: it lies within the bytes.
 template <typename T>
 T get(std::span<const std::uint8_t> bytes, std::size_t offset) {
   std::uint64_t value = 0;
@@ -82,10 +83,10 @@ class Registers {
   UsbBytes bytes_;
 };
 
-/// ZIP archive with one stored file, as some cameras hold their GenICam description.
+/// Returns a ZIP archive with one stored file, the form in which some cameras store their GenICam description.
 [[nodiscard]] UsbBytes zipped(std::string_view name, std::string_view content);
 
-/// Descriptors of one high-speed configuration with a control and a stream interface.
+/// Returns the descriptors of one high-speed configuration with a control and a stream interface.
 [[nodiscard]] UsbDescriptors descriptors_of(const U3vCameraConfig& config);
 
 }  // namespace todbench::u3v

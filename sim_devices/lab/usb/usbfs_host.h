@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plugs a model of a USB device into an emulated usbfs. Clients under umockdev's preload library (libusb, Aravis) open
-// its node, claim interfaces, and submit and reap transfers as with the kernel.
+// Connection of a model of a USB device to an emulated usbfs. Clients under the preload library of umockdev (libusb,
+// Aravis) open its node, claim interfaces, and submit and reap transfers as with the kernel.
 #pragma once
 
 #include <memory>
@@ -12,24 +12,24 @@
 
 namespace todbench {
 
-/// A device in a port, from creation to unplug() or destruction. Methods may be called from any thread.
+/// Device in a port, from creation to unplug() or destruction. Methods may be called from any thread.
 ///
-/// As with the kernel: transfers of an endpoint are performed in the order of submission, endpoints run in parallel, a
+/// As with the kernel, transfers of an endpoint are performed in the order of submission, endpoints run in parallel, a
 /// discarded transfer ends with ENOENT, and a claimed interface is EBUSY for the next program. Unplugging ends every
-/// transfer with ESHUTDOWN and every call with ENODEV, and udev announces the removal. Different from the kernel:
-/// poll() on the node is always ready. A REAPURBNDELAY without a finished transfer therefore waits for up to 0.3 ms
-/// before it returns EAGAIN, so that a polling client does not spin. Isochronous and interrupt transfers are rejected.
+/// transfer with ESHUTDOWN and every call with ENODEV, and udev announces the removal. Unlike the kernel, poll() on the
+/// node is always ready. A REAPURBNDELAY without a finished transfer therefore waits for up to 0.3 ms before it returns
+/// EAGAIN, so that a polling client does not spin. Isochronous and interrupt transfers are rejected.
 class PluggedUsbDevice {
  public:
-  /// Errors: `internal` (the emulated file system refuses).
+  /// Plugs the device in. Errors: `internal` (the emulated file system rejects it).
   [[nodiscard]] static Result<std::unique_ptr<PluggedUsbDevice>> plug(std::shared_ptr<MockSystem> system,
                                                                       std::shared_ptr<UsbDevice> device);
-  /// Unplugs it.
+  /// Unplugs the device.
   ~PluggedUsbDevice();
   PluggedUsbDevice(const PluggedUsbDevice&) = delete;
   PluggedUsbDevice& operator=(const PluggedUsbDevice&) = delete;
 
-  /// "/dev/bus/usb/001/051", the path for clients under the preload library.
+  /// Returns "/dev/bus/usb/001/051", the path for clients under the preload library.
   [[nodiscard]] std::string node() const;
   /// Pulls the cable.
   void unplug();

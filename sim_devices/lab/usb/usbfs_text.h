@@ -8,11 +8,12 @@
 
 namespace todbench {
 
-/// "/dev/bus/usb/001/051" of device number 51.
+/// Returns the node of a device: "/dev/bus/usb/001/051" for device number 51.
 [[nodiscard]] std::string usbfs_node(int number);
-/// Path below /sys.
+/// Returns the path below /sys.
 [[nodiscard]] std::string usbfs_sys_path(int number);
-/// Description of the device as in sysfs, in umockdev's format. Precondition: a device descriptor of 18 bytes.
+/// Returns the description of the device as in sysfs, in the format of umockdev. Precondition: a device descriptor of
+/// 18 bytes.
 [[nodiscard]] std::string usbfs_description(const UsbDescriptors& descriptors, int number);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A transfer of the emulated usbfs, from submission by a client until it is reaped.
+// Transfer of the emulated usbfs, from submission by a client until it is reaped.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace todbench {
 /// Size of a setup packet, which precedes the data of a control transfer.
 inline constexpr std::size_t usb_setup_size = 8;
 
-/// A transfer between submission and reaping. Memory of the client is accessed only while one of its calls is served.
+/// Transfer between submission and reaping. Memory of the client is accessed only while one of its calls is served.
 struct UsbfsTransfer {
   UMockdevIoctlClient* client = nullptr;
   UMockdevIoctlData* urb = nullptr;
@@ -40,15 +40,15 @@ struct UsbfsTransfer {
   UsbfsTransfer& operator=(const UsbfsTransfer&) = delete;
   ~UsbfsTransfer();
   [[nodiscard]] bool is_control() const;
-  /// True if the direction is from device to host.
+  /// Returns whether the direction is from device to host.
   [[nodiscard]] bool is_in() const;
 };
 using UsbfsTransferPtr = std::unique_ptr<UsbfsTransfer>;
 
-/// Precondition: at least usb_setup_size bytes.
+/// Returns the setup packet. Precondition: at least usb_setup_size bytes.
 [[nodiscard]] UsbSetup usb_setup_of(const UsbBytes& bytes);
 
-/// Memory of the client behind a pointer; null if it cannot be read. The caller releases the reference.
+/// Returns the memory of the client behind a pointer; null if it cannot be read. The caller releases the reference.
 [[nodiscard]] UMockdevIoctlData* client_memory(UMockdevIoctlData* data, std::size_t offset, std::size_t size);
 
 /// Performs a transfer with the device. Blocks until the device is done or the transfer is cancelled.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emulated thermal camera behind a V4L2 device node. Clients under umockdev's preload library open it, configure it by
-// ioctl and map its buffers as with a kernel driver.
+// Emulated thermal camera behind a V4L2 device node. Clients under the preload library of umockdev open the node,
+// configure it by ioctl and map its buffers, as with a kernel driver.
 #pragma once
 
 #include <cstdint>
@@ -26,20 +26,22 @@ struct VideoDriverQuirks {
   std::string driver = "uvcvideo";
 };
 
-/// Serves frames during its lifetime. The node is a regular file, so that buffers can be mapped. poll() on it is
-/// therefore always ready, and a DQBUF without a frame waits for up to 10 ms before it returns EAGAIN. All else is as
-/// with a driver: buffers are filled in the order in which they were queued; an exposure without a free buffer is lost
-/// and leaves a gap in the sequence; a second program gets EBUSY while one streams; an unplugged camera returns ENODEV,
-/// and udev announces it.
+/// Camera that serves frames during its lifetime. The node is a regular file, so that buffers can be mapped. Therefore
+/// poll() on it is always ready, and a DQBUF without a frame waits for up to 10 ms before it returns EAGAIN. Otherwise
+/// the camera behaves like a driver. Buffers are filled in the order in which they were queued. An exposure without a
+/// free buffer is lost and leaves a gap in the sequence. A second program receives EBUSY while one streams. An
+/// unplugged camera returns ENODEV, and udev announces its removal.
 ///
-/// The timestamps of the buffers (of unknown base, in the words of V4L2) are the camera's clock, which advances by one
-/// frame period per exposure from power-up: exposure k has the time (k + 1) / rate. Exposures need a running stream.
+/// The timestamps of the buffers (of unknown base, in the terms of V4L2) are times of the camera's clock, which
+/// advances by one frame period per exposure from power-up: exposure k has the time (k + 1) / rate. Exposures need a
+/// running stream.
 ///
 /// Methods may be called from any thread.
 class EmulatedV4l2Camera {
  public:
-  /// Picture number `exposure_index`, counted from 0 at power-up over all streams. Called on the camera's thread. Must
-  /// return the configured geometry; a wrong size or an exception is sent as zeros and counted in failed_exposures().
+  /// Returns picture number `exposure_index`, counted from 0 at power-up over all streams. Called on the camera's
+  /// thread. Must return the configured geometry; a wrong size or an exception is sent as zeros and counted in
+  /// failed_exposures().
   using Exposure = std::function<cv::Mat1w(std::uint64_t exposure_index)>;
 
   /// Plugs the camera in. Errors: `invalid_input` (configuration).
@@ -51,26 +53,26 @@ class EmulatedV4l2Camera {
   EmulatedV4l2Camera(const EmulatedV4l2Camera&) = delete;
   EmulatedV4l2Camera& operator=(const EmulatedV4l2Camera&) = delete;
 
-  /// "/dev/video7", the path for clients under the preload library.
+  /// Returns "/dev/video7", the path for clients under the preload library.
   [[nodiscard]] std::string node() const;
   [[nodiscard]] const VideoCameraConfig& config() const;
-  /// Exposures since power-up, including lost ones.
+  /// Returns the number of exposures since power-up, including lost ones.
   [[nodiscard]] std::uint64_t exposures() const;
   [[nodiscard]] std::uint64_t failed_exposures() const;
   [[nodiscard]] std::uint64_t nonuniformity_corrections() const;
 
   /// Pulls the cable: every call of a client fails from now on, and udev announces the removal.
   void unplug();
-  /// The next `count` exposures are made but never sent: a gap of exactly `count` frames.
+  /// Makes the next `count` exposures without sending them: a gap of exactly `count` frames.
   void lose_exposures(unsigned count);
   /// Sends the next frame with only this many bytes and the driver's mark for missing data.
   void truncate_next_frame(std::uint32_t bytes);
-  /// Sends the next frame with only this many bytes and no mark, as drivers do if a transfer ended early and nothing
-  /// was missing on the bus.
+  /// Sends the next frame with only this many bytes and no mark, as drivers do if a transfer ended early although no
+  /// data were lost on the bus.
   void shorten_next_frame(std::uint32_t bytes);
-  /// States this size for the next frame, whatever its true size.
+  /// States this size for the next frame, regardless of its true size.
   void misstate_next_frame(std::uint32_t bytes);
-  /// Returns the next frame in a buffer of this index, whatever was queued.
+  /// Returns the next frame in a buffer of this index, regardless of the queue.
   void misplace_next_frame(std::uint32_t index);
   /// Sets the sequence number of the next frame.
   void restart_sequence(std::uint32_t number);
