@@ -295,14 +295,20 @@ std::vector<Plot> psychometric_plots(const ReportData& data) {
   return plots;
 }
 
+std::string curve_caption(const ReportData& data) {
+  std::string caption =
+      "TOD curve: acuity (linear) against effective contrast (logarithmic), the contrast that the camera observed. "
+      "Horizontal bars are 95 % intervals. An arrow marks a side that the data do not bound. The two curves are drawn "
+      "a few pixels apart so that their bars do not hide each other.";
+  if (data.measured && !data.measured->continuous.empty())
+    caption += " The line of a ramp is the fit over all contrasts, the dotted lines are its 95 % limits.";
+  return caption;
+}
+
 Section curve_section(const ReportData& data) {
   if (!data.measured && !data.simulated) return {"TOD curve", {Paragraph{missing("no results")}}};
   Section section{"TOD curve", {}};
-  section.blocks.emplace_back(
-      Figure{drawn(tod_plot(data)),
-             "TOD curve: acuity (linear) against effective contrast (logarithmic), the contrast that the camera "
-             "observed. Horizontal bars are 95 % intervals. An arrow marks a side that the data do not bound. The two "
-             "curves are drawn a few pixels apart so that their bars do not hide each other."});
+  section.blocks.emplace_back(Figure{drawn(tod_plot(data)), curve_caption(data)});
   if (data.measured)
     section.blocks.emplace_back(
         curve_table(*data.measured, "Measured; brackets: 95 % interval, ±: standard error", false));
