@@ -101,10 +101,16 @@ Document picture_document(const ScenePicturesTask& task, const ScenePictures& pi
   const auto word = [](Decision decision) { return plain(decision == Decision::simulate ? "simulated" : "skipped"); };
   for (const auto& d : pictures.air)
     effects.rows.push_back({plain("atmosphere: " + d.name), word(d.decision), plain(d.reason)});
+  std::string neutral;
   for (const auto& d : pictures.effects.plan.decisions) {
-    if (!is_of_air(d.effect)) effects.rows.push_back({plain(to_string(d.effect)), word(d.decision), plain(d.reason)});
+    if (is_of_air(d.effect)) continue;
+    if (d.changes_nothing())
+      neutral += (neutral.empty() ? "" : ", ") + std::string(to_string(d.effect));
+    else
+      effects.rows.push_back({plain(to_string(d.effect)), word(d.decision), plain(d.reason)});
   }
   std::vector<Block> blocks{std::move(effects)};
+  if (!neutral.empty()) blocks.emplace_back(note(plain("Neutral in this sensor, and therefore skipped: " + neutral)));
   for (const auto& warning : pictures.effects.warnings) blocks.emplace_back(note(plain(warning)));
   const std::string title =
       fmt::format("{} at {:g} m, sensor {}", task.scene.name, task.view.range_m, task.sensor.name);

@@ -270,7 +270,7 @@ std::vector<std::string> left_out_sentences(const SensorPlan& effects) {
     const std::optional<double>& change = decision.predicted_change_percent;
     if (decision.changes_nothing())
       neutral.push_back(name);
-    else if (change && !decision.on_request())
+    else if (change && !decision.on_request)
       below.push_back(fmt::format("{} (at most {} %)", name, significant(*change, 2)));
     else
       requested.push_back(change ? fmt::format("{} (predicted change {} %)", name, significant(*change, 2))

@@ -214,6 +214,7 @@ void effect_fields(JsonFields& json, EffectDecision& effect) {
   json.value("decision", decision);
   json.value("reason", effect.reason);
   json.value("predicted_change_percent", effect.predicted_change_percent);
+  if (json.reading() || effect.on_request) json.later("on_request", effect.on_request);
   effect.decision = decision == "skip" ? Decision::skip : Decision::simulate;
 }
 

@@ -183,7 +183,19 @@ Result<void> check_values(const LoadedPlan& initial, const std::vector<SweepPara
   return {};
 }
 
-Json estimate_json(const LoadedPlan& plan, const std::vector<DirectPoint>& points) {
+/// Names of the effects that the tolerance leaves out although they change the sensor, separated by spaces.
+std::string below_tolerance(const SensorPlan& effects) {
+  std::string names;
+  for (const EffectDecision& effect : effects.decisions) {
+    if (effect.decision != Decision::skip || effect.changes_nothing() || effect.on_request) continue;
+    names += (names.empty() ? "" : " ") + std::string(to_string(effect.effect));
+  }
+  return names;
+}
+
+/// `left_out`: of the estimate, if the sweep states a tolerance.
+Json estimate_json(const LoadedPlan& plan, const std::vector<DirectPoint>& points,
+                   const std::optional<std::string>& left_out) {
   Json list = Json::array();
   const double pitch_mrad = plan.sensor().ifov_mrad();
   for (const auto& point : points) {
@@ -191,6 +203,7 @@ Json estimate_json(const LoadedPlan& plan, const std::vector<DirectPoint>& point
                     {"s75_direct_mrad", point.s75_pitch * pitch_mrad},
                     {"s75_direct_se_mrad", point.standard_error_pitch * pitch_mrad},
                     {"acuity_per_mrad", 1 / (point.s75_pitch * pitch_mrad)}});
+    if (left_out) list.back()["left_out"] = *left_out;
   }
   return {{"points", list}};
 }
@@ -225,7 +238,8 @@ Result<Json> estimated(const RunnableSweep& runnable, const SweepTask& task, con
       direct_estimate(
           inputs.sensor, inputs.effects, observer, plan.plan().target.delta_t_k,
           {.motion = inputs.motion, .accuracy = inputs.accuracy, .seed = plan.plan().seed, .stop = std::move(stop)}));
-  return estimate_json(plan, points);
+  return estimate_json(
+      plan, points, states_tolerance(runnable, task) ? std::optional(below_tolerance(inputs.effects)) : std::nullopt);
 }
 
 /// Everything that the sets and airs of the base and of all axes have in their files.

@@ -170,7 +170,8 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
   for (auto& d : out.plan.decisions) {
     if (contains(options.skip, d.effect)) {
       d.decision = Decision::skip;
-      d.reason = std::string(skipped_on_request) + "; " +
+      d.on_request = true;
+      d.reason = std::string("skipped on request; ") +
                  (d.predicted_change_percent ? fmt::format("predicted change {:.3g} %", *d.predicted_change_percent)
                                              : std::string("no criterion limits the change"));
       out.requested_change_percent += d.predicted_change_percent.value_or(0);
@@ -180,6 +181,7 @@ void obey(const EffectPlannerOptions& options, EffectPlan& out) {
     }
     if (contains(options.force, d.effect)) {
       d.decision = Decision::simulate;
+      d.on_request = false;
       d.reason = "simulated on request";
     }
   }

@@ -46,11 +46,13 @@ SensorPlan full_plan(const SensorSpec& spec, const std::vector<Effect>& skip, co
     }
     if (contains(skip, effect)) {
       decision.decision = Decision::skip;
-      decision.reason = skipped_on_request;
+      decision.reason = "skipped on request";
+      decision.on_request = true;
     }
     if (contains(force, effect)) {
       decision.decision = Decision::simulate;
       decision.reason = "simulated on request";
+      decision.on_request = false;
       decision.predicted_change_percent = std::nullopt;
     }
     plan.decisions.push_back(std::move(decision));

@@ -16,19 +16,15 @@ namespace todbench {
 /// Decision about an effect.
 enum class Decision { simulate, skip };
 
-/// Beginning of the reason of an effect that a list `skip` leaves out.
-inline constexpr std::string_view skipped_on_request = "skipped on request";
-
 struct EffectDecision {
   Effect effect = Effect::diffraction;
   Decision decision = Decision::simulate;
   std::string reason;  ///< a sentence
   /// Change of the 75 % acuity if the effect is skipped; empty if no criterion bounds it.
   std::optional<double> predicted_change_percent;
+  bool on_request = false;  ///< skipped by a list `skip`, whatever it changes
   /// Returns whether the effect is skipped and the sensor is the same with and without it.
   [[nodiscard]] bool changes_nothing() const { return decision == Decision::skip && predicted_change_percent == 0.0; }
-  /// Skipped by a list `skip`, whatever it changes.
-  [[nodiscard]] bool on_request() const { return decision == Decision::skip && reason.starts_with(skipped_on_request); }
 };
 
 /// One decision per effect, in chain order. Part of the configuration, the session folder and the report.

@@ -231,7 +231,7 @@ TEST(AccuracyBill, NamesTheEffectsThatWereLeftOutWithTheReasonOfEach) {
   const SensorPlan effects{.decisions = {{Effect::quantisation, Decision::skip, "below the tolerance", 0.3},
                                          {Effect::temporal_noise, Decision::skip, "below the tolerance", 0.064},
                                          {Effect::distortion, Decision::skip, "neutral", 0.0},
-                                         {Effect::display, Decision::skip, "skipped on request; predicted", 4.21},
+                                         {Effect::display, Decision::skip, "skipped on request; predicted", 4.21, true},
                                          {Effect::diffraction, Decision::simulate, "always", {}}}};
 
   EXPECT_THAT(left_out_sentences(effects),

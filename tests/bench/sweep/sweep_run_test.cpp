@@ -55,7 +55,12 @@ TEST(SweepRun, AnEstimateSkipsWhatItsStatedToleranceAllows) {
     const RunnableSweep sweep = sweep_of_tolerance(folder, tolerance, sigma);
     const auto result = run_task(sweep, sweep.sweep.task(0), folder.path() / "scratch", {});
     EXPECT_TRUE(result) << result.error().message;
-    return (*result)["points"][0]["acuity_per_mrad"].get<double>();
+    const Json point = (*result)["points"][0];
+    EXPECT_EQ(point.contains("left_out"), !tolerance.empty());
+    if (tolerance.starts_with("tolerance_percent = 5")) {
+      EXPECT_EQ(point["left_out"].get<std::string>().find("aberration") != std::string::npos, sigma != "0");
+    }
+    return point["acuity_per_mrad"].get<double>();
   };
   const std::string fine = "tolerance_percent = 0.01\n", coarse = "tolerance_percent = 5\n";
 
