@@ -146,7 +146,9 @@ ValueMistakes check_distance(const Plan& plan, std::size_t /*row*/) {
   const CollimatorPlan& collimator = plan.target.collimator;
   constexpr double rounding = 1e-9;
   const double focal_length_m = 1e-3 * collimator.focal_length_mm;
-  if (!collimator.stated() || std::abs(plan.target.distance_m / focal_length_m - 1) < rounding) return {};
+  if (!collimator.stated() || collimator.focal_length_mm < least_focal_length_mm ||
+      std::abs(plan.target.distance_m / focal_length_m - 1) < rounding)
+    return {};
   return {{std::nullopt, "the plan states a distance of " + number_text(plan.target.distance_m) +
                              " m and a collimator of " + number_text(collimator.focal_length_mm) +
                              " mm: remove one of them"}};
@@ -158,8 +160,7 @@ ValueMistakes check_focal_length(const Plan& plan, std::size_t /*row*/) {
     if (collimator == CollimatorPlan{}) return {};
     return {{std::nullopt, "missing: the angle of a triangle is its size over the focal length of the collimator"}};
   }
-  // Shorter than any collimator; 2 is one of 2 m, stated in metres.
-  constexpr NumberRange possible = NumberRange::between(10, 1e5);
+  constexpr NumberRange possible = NumberRange::between(least_focal_length_mm, 1e5);
   if (!possible.contains(collimator.focal_length_mm))
     return {{std::nullopt, "expected " + possible.describe() + ", found " + number_text(collimator.focal_length_mm) +
                                unit_hint("focal_length_mm", collimator.focal_length_mm, possible)}};

@@ -2,10 +2,12 @@
 // Plan keys of names, camera, target, motion, instruments and modules.
 #include "bench/plan/plan_sections.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "bench/plan/bench_checks.h"
+#include "bench/plan/collimator.h"
 #include "bench/plan/key_places.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/run_checks.h"
@@ -237,7 +239,10 @@ PlanSection target_section() {
            .fallback = {.words = "focal length of the collimator",
                         .value = [](const Plan& plan, const PlanParts&) -> KeyValue {
                           const CollimatorPlan& collimator = plan.target.collimator;
-                          return collimator.stated() ? 1e-3 * collimator.focal_length_mm : plan.target.distance_m;
+                          // A shorter one is refused by its own key.
+                          return collimator.stated()
+                                     ? 1e-3 * std::max(least_focal_length_mm, collimator.focal_length_mm)
+                                     : plan.target.distance_m;
                         }},
            .replaced = {.by = [](const Plan& plan) { return plan.target.collimator.stated(); },
                         .sentence = "the plan states a distance and a collimator: remove distance_m, because behind a "

@@ -16,6 +16,9 @@ namespace todbench {
 /// returns `black_body_k`.
 [[nodiscard]] double seen_through_k(const Plan& plan, const SpectralBand& band, double black_body_k);
 
+/// Shorter than any collimator for a thermal camera: 2 is a focal length of 2 m, stated in metres.
+inline constexpr double least_focal_length_mm = 10;
+
 /// Names of the rows that a collimator adds to a budget.
 inline constexpr std::string_view focal_length_row = "focal length of the collimator";
 inline constexpr std::string_view entrance_pupil_row = "entrance pupil before the collimator";

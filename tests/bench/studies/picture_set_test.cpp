@@ -130,14 +130,17 @@ TEST(PictureSets, RefuseFramesWhoseBytesAreSwapped) {
   cv::Mat1d(two_levels() - 250.0).convertTo(counts, CV_16U, 1 / kelvin_per_count);
   for (std::uint16_t& pixel : counts) pixel = static_cast<std::uint16_t>(pixel << 8 | pixel >> 8);
   write_counts(folder.path() / "swapped.tiff", {counts});
-  folder.write("set.toml",
-               "name = \"s\"\n[[target]]\nname = \"first\"\n[[target.view]]\n"
-               "file = \"swapped.tiff?kelvin_per_count=0.005&offset_k=250\"\nabove_k = 340\npixel_m = 0.1\n");
+  std::string text = "name = \"s\"\n";
+  for (const char* name : {"first", "second"})
+    text += "[[target]]\nname = \"" + std::string(name) +
+            "\"\n[[target.view]]\nfile = \"swapped.tiff?kelvin_per_count=0.005&offset_k=250\"\n"
+            "above_k = 340\npixel_m = 0.1\n";
+  folder.write("set.toml", text);
 
   const auto set = target_set_with_pictures((folder.path() / "set.toml").string());
 
   ASSERT_FALSE(set);
-  EXPECT_EQ(set.error().code, ErrorCode::integrity);
+  EXPECT_EQ(set.error().code, ErrorCode::invalid_input) << "a mistake of the file of the set";
   EXPECT_THAT(set.error().message, HasSubstr("1 of 1 frames have the two bytes of their pixels swapped"));
 }
 
