@@ -34,8 +34,8 @@ struct VideoNode {
 [[nodiscard]] std::string video_id(const VideoNode& node);
 
 /// Gives every node a unique id. Cameras of one kind with equal serial numbers are distinguished by their ports too,
-/// "v4l2:VENDOR-MODEL-SERIAL-at_1_2.3", because the order of their nodes changes when they are plugged in again. A
-/// second capture node of one device gets a number in that order, ".2".
+/// "v4l2:VENDOR-MODEL-SERIAL-at_1_2.3", because the order of their nodes changes when they are plugged in again.
+/// Nodes whose ids are still equal are numbered in the order of the list: the second ends in ".2".
 void tell_apart(std::vector<VideoNode>& nodes);
 
 /// Every node that captures with streaming; nodes that cannot be opened are listed in `unreadable`.

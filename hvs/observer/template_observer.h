@@ -35,8 +35,8 @@ struct TemplateObserverSpec {
   std::optional<EyeParameters> eye{};
   double window_margin_arcmin = 0;         ///< the larger of both margins counts; only with an eye
   std::optional<ViewedDisplay> display{};  ///< of the plan; only with an eye
-  /// Height of a displayed sample over its width, which is that of the camera's pixels. Lengths in samples are widths;
-  /// search and sampling are in samples of each axis. Not part of a parameter set. An eye needs 1.
+  /// Height of a displayed sample over its width, equal to that of the camera's pixels. Lengths in samples are in units
+  /// of the width; search range and step are in samples of each axis. Not part of a parameter set. An eye needs 1.
   double sample_aspect = 1;
   bool operator==(const TemplateObserverSpec&) const = default;
 };
@@ -46,7 +46,7 @@ struct TemplateObserverSpec {
 
 /// Computes the input of an observer's templates: the patch minus its background, in units of the contrast, with the
 /// observer's own noise per sample drawn from the trial's `noise`. The background is the mean of the patch or, with an
-/// eye, of its outermost samples (without_background()). `seen` and `room` have one value for each sample of the patch.
+/// eye, of its outermost samples (without_background()). `seen`: output, `room`: scratch memory; one value per sample.
 void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
                 std::span<float> seen, std::span<float> room);
 /// Returns the alternative with the highest score; equal scores are decided by the trial's `noise`.

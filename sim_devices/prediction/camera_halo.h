@@ -19,13 +19,13 @@ struct CameraHalo {
 };
 
 /// Estimates a halo from several set-ups: the brightness of the plate between the triangles, minus the tail of
-/// diffraction, is compared with that of pictures spread by normal halos of 3 to 22 pixels. The common part of all
+/// diffraction, is compared with that computed for normal halos of 3 to 22 pixels (sigma). The common part of all
 /// set-ups (fixed pattern, uneven lens or background) and a plane of every picture are subtracted, so that only light
 /// that moves with the triangles has an effect. A plate that is warm beside its openings cannot be distinguished from a
 /// halo.
 ///
 /// Pixels within 4 detector pitches of a triangle are not used; CameraOpticsFit evaluates them. The standard error is
-/// the largest of three: from blocks of 16 x 16 pixels over all pictures, and from their rows and columns.
+/// the largest of three estimates, clustered by blocks of 16 x 16 pixels, by rows and by columns of these blocks.
 class CameraHaloFit {
  public:
   /// `samples_per_pitch`: of the camera.

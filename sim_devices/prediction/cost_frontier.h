@@ -60,7 +60,7 @@ struct CostFrontier {
   std::vector<std::string> notes;  ///< sentences: contrasts without threshold, a reference reduced to fit the budget
 };
 
-/// Effects and accuracy of a result that a choice of the planner gives.
+/// One choice of the planner: the effects that are simulated, and the accuracy.
 struct CostChoice {
   std::string setting;
   SensorPlan effects;

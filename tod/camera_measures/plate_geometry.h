@@ -25,7 +25,7 @@ struct GeometryPlace {
 struct PlateGeometry {
   /// Scale on the plate along the picture's rows and columns, at the middle of the plate, without distortion.
   Estimate mm_per_px_x, mm_per_px_y;
-  /// Place of the plate that the middle of the picture shows, from the middle of the plate: x along the plate's rows.
+  /// Point of the plate at the centre of the picture, in mm from the centre of the plate; x along the plate's rows.
   Estimate centre_x_mm, centre_y_mm;
   Estimate rotation_deg;        ///< of the plate in the picture, clockwise
   Estimate keystone_x_percent;  ///< excess of the scale at the plate's right border over that at its left
@@ -37,9 +37,9 @@ struct PlateGeometry {
   std::vector<GeometryPlace> places;
 };
 
-/// Locates each triangle separately (fit_shift()) near its place by `where`. Triangles of at least 1.5 px that stand
+/// Locates each triangle separately (fit_shift()) near the place by `where`. Triangles of at least 1.5 px that stand
 /// out from the noise are used. Nine parameters are fitted by least squares; the error of each place consists of its
-/// noise and 0.004 px for the description of the edges. Intervals use Student's t and the residuals, or the noise if
+/// noise and 0.004 px for the shift by blur and sampling. Intervals use Student's t and the residuals, or the noise if
 /// that is larger. A triangle with a residual above six times the median is left out. Errors: `calibration` (fewer than
 /// ten triangles, or they do not distinguish distortion from perspective).
 [[nodiscard]] Result<PlateGeometry> plate_geometry(const cv::Mat1d& picture, const TargetPlate& mounted_plate,

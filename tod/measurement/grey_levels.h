@@ -34,16 +34,16 @@ inline constexpr std::array all_contrast_units{ContrastUnit::kelvin, ContrastUni
 /// Resolution of the grey levels of a picture near its surround.
 struct GreySteps {
   double noise_levels = 0;  ///< standard deviation of a pixel in a frame, rounding included
-  double step_levels = 1;   ///< mean distance of the occurring levels; above 1 if a gain spreads coarser counts
+  double step_levels = 1;   ///< mean spacing of the levels that occur; above 1 if a gain spreads coarser counts
   /// Standard deviation of the noise in steps before rounding (Sheppard's correction).
   [[nodiscard]] double noise_steps() const;
-  /// rounding_variance() of this noise. Without noise, a level between two steps gives an apparent noise of up to half
-  /// a step: up to 0.52 measured steps count as no noise.
+  /// rounding_variance() of this noise. A level without noise between two steps appears as noise of up to half a step:
+  /// a measured noise of up to 0.52 steps is treated as zero.
   [[nodiscard]] double rounding_variance_steps() const;
 };
 
-/// Steps of the counts in `lowest` and `highest` within three standard deviations of their median. If only one count
-/// occurs despite the noise, the step is the distance to the next count.
+/// Returns the spacing of the counts within three standard deviations of the median; `lowest`, `highest`: smallest and
+/// largest count of each pixel. If only one occurs despite the noise, the step is the distance to the next count.
 [[nodiscard]] GreySteps grey_steps(const cv::Mat1w& lowest, const cv::Mat1w& highest, double noise_levels);
 
 /// Variance of the mean of many rounded values, in squared steps, over all places of the true value between two steps:

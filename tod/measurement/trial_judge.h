@@ -44,10 +44,10 @@ class TrialJudge {
       : options_(options), observer_(observer), taker_(taker), step_(step) {}
 
   /// Returns the answers to all triangles. Errors: those of the camera; `calibration` (a window leaves the picture);
-  /// `internal` (frames of another sampling than the options state); those of the observer.
+  /// `internal` (frames with a sampling that the options do not state); those of the observer.
   [[nodiscard]] Result<PresentationAnswers> answers(const PresentationShown& shown, const std::stop_token& stop);
 
-  /// Side of a window of the judged picture, in whole pixels, even as patch_window() requires.
+  /// Returns the side of a window in camera pixels, for a side in samples of the judged picture: the next even number.
   [[nodiscard]] int in_pixels(int side) const;
 
  private:

@@ -32,8 +32,8 @@ struct EdgeSample {
 /// Pixels within `reach` pitches of the line.
 [[nodiscard]] std::vector<EdgeSample> samples_near(const cv::Mat1d& picture, const EdgeLine& line, double reach);
 
-/// Distance to which the profile extends on both sides in three rows of four, at most 32 pitches; negative if the line
-/// leaves the picture.
+/// Distance to which the profile extends on both sides in at least three quarters of the rows, at most 32 pitches;
+/// negative if the line leaves the picture.
 [[nodiscard]] double reach_of(const cv::Size& size, const EdgeLine& line);
 
 /// Displacement of each row's edge from the line along the normal, in pitches, positive towards the bright side (least
@@ -43,7 +43,7 @@ struct EdgeSample {
 /// Parabola through the offsets of the rows: its coefficients, and the standard uncertainty of the sag.
 struct RowTrend {
   double mean = 0, slope = 0;  ///< per row
-  double sag = 0, sag_u = 0;   ///< middle against ends, positive towards positive offsets at the ends
+  double sag = 0, sag_u = 0;   ///< offset of the ends minus that of the middle, without the slope
 };
 /// Fits the parabola by least squares.
 [[nodiscard]] RowTrend trend_of(const std::vector<double>& offsets);

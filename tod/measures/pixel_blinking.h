@@ -6,9 +6,9 @@
 
 namespace todbench {
 
-/// Limits of blinking pixels.
+/// Limits of a pixel's largest change of level; a pixel that exceeds one of them blinks.
 struct BlinkingRules {
-  double medians = 3;   ///< multiple of the median over all pixels of the largest change of level
+  double medians = 3;   ///< in noise of the pixel, as a multiple of the median over pixels
   double levels = 4.5;  ///< standard deviations between two levels
   double noise_sd = 0;  ///< of the median pixel, in the unit of the series
 };

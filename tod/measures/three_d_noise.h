@@ -25,7 +25,7 @@ struct ThreeDNoise {
   double vh = 0;   ///< fixed pattern, and the scene if there is one
   double v = 0;    ///< fixed rows
   double h = 0;    ///< fixed columns
-  /// Temporal noise of a pixel: the root of the sum of the four squares with t.
+  /// Temporal noise of a pixel: the root of the sum of squares of t, tv, th and tvh.
   [[nodiscard]] double temporal() const;
 };
 
@@ -70,8 +70,8 @@ struct ComponentEstimate {
   /// Signed and unbiased; equal to the correction for finite sampling of Haefner and Burks (Appl. Opt. 54, 4907, 2015).
   double variance = 0;
   /// 95 % interval for normal components: modified large sample (Ting et al. 1990, Graybill and Wang 1980). Signed. For
-  /// noise with memory it includes half of the memory correction, because the mean of two frames, with the same
-  /// correlation as noise of first order, leaves half as much.
+  /// noise with memory, half of the memory correction is added in quadrature: the mean of two frames has the same lag-1
+  /// correlation as noise of first order, but needs only half of the correction.
   double low = 0, high = 0;
   /// For tv, th and vh: probability of so large a mean square without this component (F test against tvh). Empty: no
   /// test for this component, or no noise to test against.
@@ -101,8 +101,8 @@ class NoiseCube {
   [[nodiscard]] Result<NoiseTable> table_without(const cv::Mat1d& fixed) const;
   /// Mean over all frames. Precondition: at least one frame.
   [[nodiscard]] cv::Mat1d mean_frame() const { return first_ + change_ / frames_; }
-  /// Lag-1 correlation of a pixel without rows, columns and whole frames: the rho of noise of first order whose
-  /// successive differences and mean square have this ratio over this number of frames, in [-0.99, 0.99]. Empty: no
+  /// Lag-1 correlation of a pixel without rows, columns and whole frames: the rho of the noise of first order with
+  /// the same ratio of mean squared successive difference to mean square, for as many frames; -0.99 to 0.99. Empty: no
   /// noise, or fewer than five frames.
   [[nodiscard]] std::optional<double> lag1_correlation() const;
   /// NoiseTable::pixel_memory of these frames: lag1_correlation() if it exceeds five standard errors and is at most

@@ -19,8 +19,8 @@ enum class MisfitKind {
   contrast_and_size,  ///< number correct of each contrast and size: sum of (observed - expected)^2 / variance
   confusion,          ///< likewise for answers by the direction of the triangle and the answered direction
   calibration,        ///< likewise for the number correct of patches of similar predicted probability
-  surprise,           ///< sum of -ln p of the answers against its expectation, squared, over its variance
-  wrong_answers,      ///< likewise for ln p of the chosen wrong alternative, over the wrong answers
+  surprise,           ///< (sum of -ln p of the answers - its expectation)^2 / variance
+  wrong_answers,      ///< as surprise, of wrong answers only: p of the chosen alternative given a wrong one
 };
 inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, MisfitKind::confusion,
                                              MisfitKind::calibration, MisfitKind::surprise, MisfitKind::wrong_answers};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps, with values, by which an operator brings a state in front of the camera. The user interface formulates the
-// sentences.
+// Steps that an operator carries out to set the target to a state, with their values. The user interface formulates
+// the sentences.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ struct PutInPlate {
   bool operator==(const PutInPlate&) const = default;
 };
 
-/// Mounts the plate that is in place in another way.
+/// Changes the mounting of the plate that is in the holder.
 struct Remount {
   Mounting mounting = Mounting::identity;
   bool operator==(const Remount&) const = default;

@@ -25,7 +25,7 @@ struct ProfileCrossings {
     std::optional<double> wide, narrow;
   };
   Side below, above;
-  /// A place above the supremum, if the profile meets one: maximise again from there.
+  /// Point with a larger likelihood than ProfileRequest::supremum, if the profile meets one: maximise again from it.
   std::optional<Maximum<3>> better;
 };
 
