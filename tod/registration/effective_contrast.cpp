@@ -57,6 +57,28 @@ double mean_near_median(const std::vector<double>& values, double reach) {
   return sum / n;
 }
 
+/// Smallest rectangle with the outline and `reach` pixels round it, as first and last pixels.
+struct PixelBox {
+  int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+PixelBox box_round(const Polygon& outline, double reach) {
+  cv::Point2d low = outline[0], high = outline[0];
+  for (const cv::Point2d& p : outline) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  return {static_cast<int>(std::floor(low.x - reach)), static_cast<int>(std::floor(low.y - reach)),
+          static_cast<int>(std::ceil(high.x + reach)), static_cast<int>(std::ceil(high.y + reach))};
+}
+
+std::vector<Polygon> outlines_of(const TargetPlate& mounted_plate, const Registration& registration) {
+  std::vector<Polygon> outlines;
+  for (const PlateTriangle& t : mounted_plate.triangles)
+    outlines.push_back(outline_in_picture(registration.plate_to_pixel, t, t.apex));
+  return outlines;
+}
+
 struct Samples {
   std::vector<double> inside, ring;
 };
@@ -65,18 +87,12 @@ struct Samples {
 Samples samples(const cv::Mat1d& picture, const std::vector<Polygon>& outlines, std::size_t which, double margin) {
   const Polygon& own = outlines[which];
   const double reach = ring_begin_px + ring_width_px;
-  cv::Point2d low = own[0], high = own[0];
-  for (const cv::Point2d& p : own) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
+  const PixelBox box = box_round(own, reach);
   Samples result;
   double deepest = -std::numeric_limits<double>::infinity();
   double deepest_value = 0;
-  const int top = std::max(0, static_cast<int>(std::floor(low.y - reach)));
-  const int bottom = std::min(picture.rows - 1, static_cast<int>(std::ceil(high.y + reach)));
-  const int left = std::max(0, static_cast<int>(std::floor(low.x - reach)));
-  const int right = std::min(picture.cols - 1, static_cast<int>(std::ceil(high.x + reach)));
+  const int top = std::max(0, box.top), bottom = std::min(picture.rows - 1, box.bottom);
+  const int left = std::max(0, box.left), right = std::min(picture.cols - 1, box.right);
   for (int y = top; y <= bottom; ++y) {
     for (int x = left; x <= right; ++x) {
       const double d = depth(own, cv::Point2d(x, y));
@@ -102,18 +118,11 @@ Samples samples(const cv::Mat1d& picture, const std::vector<Polygon>& outlines, 
 std::optional<double> summed_contrast(const cv::Mat1d& picture, const std::vector<Polygon>& outlines,
                                       std::size_t which) {
   constexpr double margin_px = 2, reach_px = margin_px + ring_width_px;
-  cv::Point2d low = outlines[which][0], high = low;
-  for (const cv::Point2d& p : outlines[which]) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  const int left = static_cast<int>(std::floor(low.x - reach_px)), top = static_cast<int>(std::floor(low.y - reach_px));
-  const int right = static_cast<int>(std::ceil(high.x + reach_px));
-  const int bottom = static_cast<int>(std::ceil(high.y + reach_px));
-  if (left < 0 || top < 0 || right >= picture.cols || bottom >= picture.rows) return std::nullopt;
+  const PixelBox box = box_round(outlines[which], reach_px);
+  if (box.left < 0 || box.top < 0 || box.right >= picture.cols || box.bottom >= picture.rows) return std::nullopt;
   double sum = 0, ring = 0, pixels = 0, ring_pixels = 0;
-  for (int y = top; y <= bottom; ++y) {
-    for (int x = left; x <= right; ++x) {
+  for (int y = box.top; y <= box.bottom; ++y) {
+    for (int x = box.left; x <= box.right; ++x) {
       const cv::Point2d at(x, y);
       const double d = depth(outlines[which], at);
       if (d < -reach_px) continue;
@@ -131,9 +140,7 @@ std::optional<double> summed_contrast(const cv::Mat1d& picture, const std::vecto
 std::optional<double> contrast_of_small_triangles(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                   const Registration& registration, double below_px) {
   constexpr double least_px = 2;
-  std::vector<Polygon> outlines;
-  for (const PlateTriangle& t : mounted_plate.triangles)
-    outlines.push_back(outline_in_picture(registration.plate_to_pixel, t, t.apex));
+  const std::vector<Polygon> outlines = outlines_of(mounted_plate, registration);
   double sum = 0, area_px = 0;
   for (std::size_t k = 0; k < outlines.size(); ++k) {
     const PlateTriangle& t = mounted_plate.triangles[k];
@@ -154,10 +161,7 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
   if (picture.empty() || !cv::checkRange(picture)) {
     return fail(ErrorCode::invalid_input, doing + "the picture is empty or contains a value that is not finite");
   }
-  std::vector<Polygon> outlines;
-  for (const PlateTriangle& t : mounted_plate.triangles) {
-    outlines.push_back(outline_in_picture(registration.plate_to_pixel, t, t.apex));
-  }
+  const std::vector<Polygon> outlines = outlines_of(mounted_plate, registration);
   std::vector<ReferenceTriangle> references;
   double pixel_error = 0;
   double largest = 0;
