@@ -324,8 +324,7 @@ std::string in_words(const RampDesign& ramp, const PricedDesign& best) {
     half_widths.push_back(contrast.uncertainty_percent ? fmt::format("{:.2g}", *contrast.uncertainty_percent) : "no");
   std::string text = fmt::format(
       "a ramp from {:g} to {:g} K at {:.3g} K/s ({} contrast lag of {:g} s allows up to {:.3g} K/s) takes {:.0f} s "
-      "with "
-      "half-widths of {} %",
+      "with half-widths of {} %",
       *schedule.from_delta_t_k, *schedule.to_delta_t_k, *schedule.ramp_k_per_s,
       ramp.lag_is_stated ? "the stated" : "an assumed", ramp.lag_s,
       largest_ramp_rate(*schedule.from_delta_t_k, ramp.lag_s), ramp.design.bench_s, fmt::join(half_widths, ", "));

@@ -232,8 +232,7 @@ void add_least(AccuracyBill& bill, const BillInput& input) {
   if (share_needed.empty())
     bill.sentences.emplace_back(
         "The demands on acuity have no least time: they are open, or the rows of the budget exceed the distance from "
-        "the "
-        "limit.");
+        "the limit.");
   add_least_time(bill, input, share_needed);
 }
 

@@ -127,14 +127,6 @@ void add_direction(RampOutcome& outcome, const RampFit& fit) {
                               .unfit = true});
 }
 
-/// A simulated scene takes no time: its ramps have the time of their steps.
-std::vector<Presentation> timed(const MeasurementResult& run, const Plan& plan) {
-  std::vector<Presentation> out = run.presentations;
-  if (plan.target.kind != TargetKind::scene) return out;
-  for (Presentation& shown : out) shown.host_time_ns.reset();
-  return out;
-}
-
 /// A lag that the frames show beyond the stated one is not in the interval.
 void add_lag(RampOutcome& outcome, std::span<const Presentation> presentations, double stated_s) {
   const auto lag = contrast_lag(presentations, ramp_step_s);
@@ -237,8 +229,8 @@ Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run, con
                               const Plan& plan) {
   TODBENCH_TRY(auto fit, RampFit::of(ramp_answers(run), surface));
   const RampOptions ramp = ramp_options(plan, {}, 1);
-  const std::vector<Presentation> presentations = timed(run, plan);
-  const double lag = plan.target.max_contrast_lag_s.value_or(0) * relative_rate(presentations, ramp);
+  const double stated_lag_s = plan.target.max_contrast_lag_s.value_or(0);
+  const double lag = stated_lag_s * relative_rate(run.presentations, ramp);
   RampOutcome outcome;
   for (TodPoint& point : curve.points) {
     take_value(point.fit, interval_at(fit, surface, point.delta_t_k), surface.ln_threshold(point.delta_t_k));
@@ -255,7 +247,7 @@ Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run, con
     curve.continuous.push_back({delta_t_k, *one.threshold, one.ci95});
   }
   add_direction(outcome, fit);
-  add_lag(outcome, presentations, plan.target.max_contrast_lag_s.value_or(0));
+  add_lag(outcome, run.presentations, stated_lag_s);
   const double ln_step = std::log(ramp.from_k / ramp.to_k) / static_cast<double>(ramp_steps(ramp) - 1);
   if (const LostContrasts lost = lost_contrasts(run.presentations, ln_step); lost.lost > 0)
     outcome.notes.push_back(fmt::format(

@@ -211,11 +211,13 @@ inline std::vector<MovingResult> moving_run(const MovingContrasts& design, std::
   const auto schedule =
       make_schedule(plan, inputs.plates, plan.camera.ifov_mrad, Side::measured, RandomStream(seed, "schedule"));
   TemplateObserver observer(inputs.observer, triangle_alternatives());
-  const auto run = measure(*bench.camera, target, observer, *schedule, options, *bench.host, {}, {});
+  auto run = measure(*bench.camera, target, observer, *schedule, options, *bench.host, {}, {});
   if (!run || run->ended_by) {
     ADD_FAILURE() << design.name << " " << seed << ": " << (run ? run->ended_by->message : run.error().message);
     return {};
   }
+  // As in the program, the presentations of a simulated scene have no times of the host.
+  for (Presentation& shown : run->presentations) shown.host_time_ns.reset();
   const auto lent = surrogate.lent();
   // The surrogate differs from run to run.
   auto& surface = surfaces[lent ? design.name + " " + std::to_string(seed) : design.name];
