@@ -10,7 +10,7 @@ namespace todbench {
 /// A version of Aravis, ordered.
 struct AravisVersion {
   unsigned major = 0, minor = 0, micro = 0;
-  auto operator<=>(const AravisVersion&) const = default;
+  auto operator<=>(const AravisVersion&) const = default;  // NOLINT(modernize-use-nullptr): of generated code
 };
 [[nodiscard]] std::string to_string(const AravisVersion& version);
 

@@ -288,7 +288,8 @@ std::vector<ContrastDesign> contrast_designs(const Plan& plan, const ExperimentI
     constant.simulation.phases = constant.target.phases = std::max(1, static_cast<int>(std::lround(phases)));
     return constant;
   };
-  const auto points = informations_of(of_phases(static_cast<double>(shown_k.size() / points_k.size())), inputs);
+  const auto points =
+      informations_of(of_phases(static_cast<double>(shown_k.size()) / static_cast<double>(points_k.size())), inputs);
   const ContrastNoise noise{.noise_k = inputs.sensor.netd_k, .internal_noise = inputs.observer.internal_noise};
   const auto equal = points.empty() ? std::vector<double>{} : equal_presentations(points, shown_k, noise);
   for (std::size_t i = 0; i < points_k.size(); ++i) {

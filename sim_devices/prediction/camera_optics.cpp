@@ -67,7 +67,7 @@ struct Images {
 
 class Renderer {
  public:
-  Renderer(const SensorSpec& twin, const SensorPlan& plan, cv::Vec2d theta, int wavelengths)
+  Renderer(const SensorSpec& twin, const SensorPlan& plan, const cv::Vec2d& theta, int wavelengths)
       : at_(spec(twin, theta), plan, accuracy(wavelengths)),
         wider_(spec(twin, theta + cv::Vec2d(variance_step, 0)), plan, accuracy(wavelengths)),
         slower_(spec(twin, theta + cv::Vec2d(0, ratio_step)), plan, accuracy(wavelengths)) {}
@@ -210,7 +210,7 @@ cv::Vec2d bounded_minimum(const cv::Matx22d& curvature, const cv::Vec2d& slope) 
   }
   cv::Vec2d best(0, 1);
   double lowest = std::numeric_limits<double>::infinity();
-  const auto try_one = [&](cv::Vec2d x) {
+  const auto try_one = [&](const cv::Vec2d& x) {
     if (!(value(x) < lowest)) return;
     lowest = value(x);
     best = x;
