@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <numbers>
 #include <string_view>
 
+#include "bench/forecast/visit_order.h"
 #include "bench/plan/plan_options.h"
 
 namespace todbench {
@@ -48,6 +51,66 @@ std::vector<TargetState> with_ramp_ends(const Plan& plan, const RampOptions& ram
       out.push_back(again);
     }
   }
+  return out;
+}
+
+using Strength = std::pair<double, double>;  ///< size of a contrast, and the contrast
+Strength strength_of(double delta_t_k) {
+  return {std::abs(delta_t_k), delta_t_k};
+}
+
+/// Presentations of a set-up in a list, by contrast, the highest first.
+struct ListedSetUp {
+  NumberedSetUp number;
+  std::map<Strength, std::vector<TargetState>, std::greater<>> shown{};
+};
+
+std::vector<ListedSetUp> by_set_ups(const std::vector<TargetState>& listed) {
+  std::vector<ListedSetUp> out;
+  const TargetState* before = nullptr;
+  for (const TargetState& state : listed) {
+    const bool other_plate = before == nullptr || state.plate != before->plate;
+    if (other_plate || state.mounting != before->mounting) {
+      const NumberedSetUp last = out.empty() ? NumberedSetUp{} : out.back().number;
+      const std::size_t plate = other_plate && before != nullptr ? last.plate + 1 : last.plate;
+      out.push_back({.number = {plate, static_cast<std::size_t>(state.mounting)}});
+    }
+    out.back().shown[strength_of(state.delta_t_k)].push_back(state);
+    before = &state;
+  }
+  return out;
+}
+
+/// The presentations of an adaptive schedule that needs these numbers at the contrasts of the plan, from the list of
+/// all set-ups (listed_presentations()): a visit shows the contrasts that need more, and looks at the highest one in a
+/// new set-up.
+std::vector<TargetState> adaptive_visits(const Plan& plan, const std::vector<TargetState>& listed,
+                                         const std::vector<double>& presentations) {
+  const std::vector<double>& contrasts_k = plan.target.delta_t_k;
+  const auto cap = static_cast<std::size_t>(std::max(plan.schedule.max_presentations, 0));
+  std::map<Strength, std::size_t> missing;
+  for (std::size_t i = 0; i < contrasts_k.size(); ++i)
+    missing[strength_of(contrasts_k[i])] =
+        i < presentations.size() ? static_cast<std::size_t>(std::max(0L, std::lround(presentations[i]))) : cap;
+  const std::vector<ListedSetUp> set_ups = by_set_ups(listed);
+  std::vector<NumberedSetUp> numbers;
+  for (const ListedSetUp& one : set_ups) numbers.push_back(one.number);
+  VisitOrder order(plan, numbers);
+  std::vector<TargetState> out;
+  while (out.size() < cap) {
+    const auto open = std::ranges::count_if(missing, [](const auto& one) { return one.second > 0; });
+    if (open == 0) break;
+    const ListedSetUp& set_up = set_ups[order.next(static_cast<int>(open))];
+    for (const auto& [contrast, states] : set_up.shown) {
+      const bool new_set_up =
+          out.empty() || out.back().plate != states[0].plate || out.back().mounting != states[0].mounting;
+      std::size_t& left = missing[contrast];
+      const std::size_t shown = std::min(std::max<std::size_t>(left, new_set_up ? 1 : 0), states.size());
+      out.insert(out.end(), states.begin(), states.begin() + static_cast<std::ptrdiff_t>(shown));
+      left -= std::min(left, shown);
+    }
+  }
+  if (out.size() > cap) out.resize(cap);
   return out;
 }
 
@@ -250,22 +313,18 @@ std::vector<TargetState> listed_presentations(const Plan& plan, const std::vecto
 }
 
 BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
-                     std::optional<double> presentations) {
+                     const std::vector<double>& presentations) {
   return bench_time(plan, plates, listed_presentations(plan, plates), frame_rate_hz, presentations);
 }
 
 BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, const std::vector<TargetState>& states,
-                     double frame_rate_hz, std::optional<double> presentations) {
+                     double frame_rate_hz, const std::vector<double>& presentations) {
   Walk walk(plan);
-  if (states.empty()) return walk.finished(frame_rate_hz);
-  std::uint64_t count = states.size();
-  if (plan.schedule.kind == ScheduleKind::adaptive) {
-    const auto cap = static_cast<double>(plan.schedule.max_presentations);
-    count = static_cast<std::uint64_t>(std::llround(std::min(presentations.value_or(cap), cap)));
-  }
+  const bool adaptive = plan.schedule.kind == ScheduleKind::adaptive && !states.empty();
+  const std::vector<TargetState> visits =
+      adaptive ? adaptive_visits(plan, states, presentations) : std::vector<TargetState>{};
   const TargetState* before = nullptr;
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const TargetState& state = states[i % states.size()];
+  for (const TargetState& state : adaptive ? visits : states) {
     walk.present(before, state);
     before = &state;
   }

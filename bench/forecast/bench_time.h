@@ -43,15 +43,16 @@ struct BenchTime {
 };
 
 /// Computes the bench time of a plan whose frames per presentation are chosen (with_frames()). `presentations`: the
-/// number expected of an adaptive schedule, which visits the same set-ups repeatedly; empty: the number that the plan
-/// lists, or the cap of an adaptive schedule. For a target of kind scene only counts are computed, no times, because
-/// such a target is limited only by the processor.
+/// number that an adaptive schedule is expected to show at each contrast of the plan; empty: its cap. Each visit to a
+/// set-up shows the contrasts that need more, and the highest one at least once. A schedule that lists its
+/// presentations ignores the numbers. For a target of kind scene only counts are computed, no times, because such a
+/// target is limited only by the processor.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
-                                   std::optional<double> presentations);
+                                   const std::vector<double>& presentations);
 /// Computes the bench time for presentations that are already listed.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates,
                                    const std::vector<TargetState>& listed, double frame_rate_hz,
-                                   std::optional<double> presentations);
+                                   const std::vector<double>& presentations);
 
 /// Returns a sentence if a run of this bench time records no frames, so that `measure --resume` could not continue it
 /// after an interruption; empty for runs of less than ten minutes and of a simulated scene.

@@ -225,7 +225,7 @@ double smallest_half_width_ln(const JoinedUncertainty& stated) {
   return stated.half_width(upper_tail) * std::sqrt(std::pow(1 + matters, 2) - 1);
 }
 
-double laboratory_time(Plan plan, const ExperimentInputs& inputs, std::optional<double> presentations) {
+double laboratory_time(Plan plan, const ExperimentInputs& inputs, const std::vector<double>& presentations) {
   if (plan.target.kind == TargetKind::scene) plan.target.kind = TargetKind::scpi;
   return bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations).total_s();
 }

@@ -90,7 +90,8 @@ struct DecisionForecast {
 };
 
 /// Returns the bench time in s. For a simulated scene, the change times of the plan are used, as if it ran on a bench.
-[[nodiscard]] double laboratory_time(Plan plan, const ExperimentInputs& inputs, std::optional<double> presentations);
+[[nodiscard]] double laboratory_time(Plan plan, const ExperimentInputs& inputs,
+                                     const std::vector<double>& presentations);
 
 /// Forecasts every limit on acuity with a threshold: the plan itself; with graded answers 1 to 64 frames, otherwise a
 /// quarter to four times the phases, or of an adaptive schedule a quarter to four times the half-width, or of a ramp a

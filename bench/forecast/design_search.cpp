@@ -216,7 +216,7 @@ class Search {
     const Plan single = candidate(plan_, mountings, phases);
     const std::size_t presentations = set_ups_of(single.target) * static_cast<std::size_t>(phases);
     if (presentations < least_graded_presentations) return {};
-    const double single_s = laboratory_time(single, inputs_, std::nullopt);
+    const double single_s = laboratory_time(single, inputs_, {});
     least_s = std::min(least_s, single_s);
     if (best && single_s >= best->bench_s) return {};
     const bool same_set_ups = best && best->plan.target.mountings_per_plate == single.target.mountings_per_plate;

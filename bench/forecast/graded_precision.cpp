@@ -28,6 +28,12 @@ double part_of_answers(double share) {
   return 0.75 * 0.75 * (both - seen * seen) / (p * (1 - p));
 }
 
+/// Share of the variance of answers that the phases leave.
+double left_of_phases(const GradedDesignFigures& design, double phases) {
+  // The variance left by evenly spread phases falls with the square of their number, that of answers with their number.
+  return by_set_ups(design) ? std::min(0.15, 0.048 / phases) : 0.28 / (1 + std::pow(design.noise / 0.13, 2));
+}
+
 double phases_of(const GradedDesignFigures& design) {
   return std::max(1.0, static_cast<double>(design.presentations) / design.set_ups);
 }
@@ -80,8 +86,7 @@ double of_other_presentations(const GradedDesignFigures& design) {
 
 double graded_variance_ratio(const GradedDesignFigures& design) {
   const double of_sensor = part_of_answers(design.sensor_share), of_pattern = part_of_answers(design.pattern_share);
-  // The variance left by evenly spread phases falls with the square of their number, that of answers with their number.
-  const double left = by_set_ups(design) ? std::min(0.15, 0.048 / phases_of(design)) : 0.15;
+  const double left = left_of_phases(design, phases_of(design));
   const double frames = design.frames, draws = design.draws;
   return of_own_frames(design) + (1 - of_sensor) / (frames * draws) + left + of_pattern * answers_of_a_pattern(design) +
          of_other_presentations(design);
@@ -115,7 +120,7 @@ int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s)
 
 double graded_freedom(const GradedDesignFigures& design) {
   if (by_set_ups(design)) return design.set_ups - 1;
-  return std::max(3.0, 0.5 * design.presentations - 1);
+  return std::max(3.0, 0.7 * design.presentations - 0.5);
 }
 
 double graded_likely_excess(const GradedDesignFigures& design) {

@@ -11,6 +11,7 @@ struct GradedDesignFigures {
   /// Share of the sensor in the variance of the noise that decides an answer; the rest is the observer's.
   double sensor_share = 0;
   double pattern_share = 0;  ///< share of the sensor's fixed pattern in the same variance, part of sensor_share
+  double noise = 0;          ///< that decides an answer at the threshold, over the contrast of the target
   double size_pitch = 4;     ///< at the threshold
   int frames = 1;            ///< per presentation
   int draws = 32;            ///< draws of the observer's noise, per frame
@@ -36,7 +37,8 @@ struct GradedDesignFigures {
 /// 1.5 applies to set-ups that place triangles on the same detectors (both numbers from 78 runs of
 /// `graded_coverage_study` with a pattern of 0.1 K). r is 0.048 over the number of phases, at most 0.15, if the
 /// mountings cancel the phases (five set-ups or more; 138 runs of 12 phases and 11 of 3 of `graded_coverage_study`).
-/// With fewer set-ups it is 0.15, the value of single phases.
+/// With fewer set-ups the phases do not cancel: 0.28 / (1 + (noise / 0.13)^2), because noise hides the place of a
+/// triangle between the detectors (48 runs of adaptive plans at 8 contrasts with the SC2000, 2 to 5 set-ups).
 ///
 /// For first-order noise of lag-1 correlation rho, the answers to frames k apart share
 ///   c(k) = (3/4)^2 (Phi2(z, z; pattern share + (sensor share - pattern share) rho^k) - (2/3)^2) / (p (1 - p)) - g.

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <ranges>
 
 #include "acquisition/base/normal.h"
@@ -12,6 +14,7 @@
 #include "bench/forecast/graded_precision.h"
 #include "bench/forecast/ramp_forecast.h"
 #include "bench/forecast/time_prediction.h"
+#include "bench/forecast/visit_order.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 #include "bench/twin/module_chain.h"
@@ -80,21 +83,36 @@ double information(double size, double threshold, double slope, double lapse, Ps
   return p > 0 && p < 1 ? change * change / (p * (1 - p)) : 0;
 }
 
-/// Number of set-ups by their shares of the information at this contrast.
-double informative_set_ups(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook) {
+/// Information of a presentation of each set-up at this contrast, plate by plate, in any unit.
+std::vector<double> set_up_information(const Plan& plan, const ExperimentInputs& inputs,
+                                       const ContrastOutlook& outlook) {
   const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
   const double slope = std::clamp(outlook.weibull_slope, flattest, steepest);
-  double sum = 0, squares = 0;
+  std::vector<double> out;
   for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
     double of_plate = 0;
     for (const auto& t : inputs.plates[i].triangles)
       of_plate += information(t.size_mm / plan.target.distance_m, s75_mrad, slope, plan.fit.lapse.value_or(0.01),
                               plan.fit.form);
-    const auto mountings = static_cast<double>(mountings_of(plan.target, i));
-    sum += mountings * of_plate;
-    squares += mountings * of_plate * of_plate;
+    out.insert(out.end(), static_cast<std::size_t>(mountings_of(plan.target, i)), of_plate);
   }
-  return squares > 0 ? sum * sum / squares : 0;
+  return out;
+}
+
+double triangles_of(const std::vector<TargetPlate>& plates) {
+  double sum = 0;
+  for (const TargetPlate& plate : plates) sum += static_cast<double>(plate.triangles.size());
+  return sum;
+}
+
+double total(const std::vector<double>& numbers) {
+  return std::accumulate(numbers.begin(), numbers.end(), 0.0);
+}
+
+/// Number of set-ups by their shares of the information, (sum)^2 / sum of squares; 0 without information.
+double effective_number(const std::vector<double>& information) {
+  const double squares = std::inner_product(information.begin(), information.end(), information.begin(), 0.0);
+  return squares > 0 ? std::pow(total(information), 2) / squares : 0;
 }
 
 GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
@@ -105,11 +123,12 @@ GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inpu
   const double change_s = plan.target.kind == TargetKind::scene ? 0 : plan.target.shift_change_s;
   return {.sensor_share = shares.sensor,
           .pattern_share = shares.pattern,
+          .noise = outlook.q_eff,
           .size_pitch = outlook.s75_pitch,
           .frames = frames,
           .draws = MeasurementOptions::graded_draws,
           .set_ups = set_ups,
-          .informative_set_ups = informative_set_ups(plan, inputs, outlook),
+          .informative_set_ups = effective_number(set_up_information(plan, inputs, outlook)),
           .presentations = set_ups * plan.simulation.phases,
           .noise_correlation = inputs.sensor.noise_correlation,
           .frames_between = change_s * inputs.sensor.frame_rate_hz};
@@ -147,22 +166,11 @@ int most_presentations(const Plan& plan) {
   return std::max(plan.schedule.max_presentations / static_cast<int>(plan.target.delta_t_k.size()), 1);
 }
 
-/// Design of the first presentations at a contrast of an adaptive schedule, which visits one set-up after the other.
-GradedDesignFigures after_presentations(GradedDesignFigures design, int presentations, int phases_of_visit) {
-  const int visited = std::clamp((presentations + phases_of_visit - 1) / phases_of_visit, 1, design.set_ups);
-  design.informative_set_ups *= static_cast<double>(visited) / design.set_ups;
-  design.set_ups = visited;
-  design.presentations = presentations;
-  return design;
-}
-
 /// Adapts the prediction of binary answers to constant stimuli to an adaptive schedule: as many trials as the requested
 /// interval needs, or as the cap allows, and at least eight presentations per contrast.
 void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates) {
   if (plan.schedule.kind != ScheduleKind::adaptive || !point.uncertainty_percent || !(point.trials > 0)) return;
-  double triangles = 0;
-  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
-  const double per_presentation = triangles / static_cast<double>(plates.size());
+  const double per_presentation = triangles_of(plates) / static_cast<double>(plates.size());
   const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
   const double needed =
       std::max(point.trials * std::pow(constant / asked, 2), least_adaptive_presentations * per_presentation);
@@ -174,54 +182,107 @@ void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<Target
   point.trials = std::round(std::min(needed, cap));
 }
 
-/// The prediction of graded answers. An adaptive schedule goes on until the interval is narrow enough. After few
-/// set-ups the factor of the interval is larger, and the phases do not cancel yet. Once all set-ups are visited, the
-/// interval only becomes narrower.
-void predict_graded_schedule(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
-                             const ContrastOutlook& outlook, double binary_se) {
-  const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
-  const GradedDesignFigures all = graded_design(plan, inputs, outlook, frames);
-  predict_graded(point, plan, inputs, all, outlook.q_eff, binary_se);
-  if (plan.schedule.kind != ScheduleKind::adaptive) return;
-  const double trials = point.trials, asked = plan.schedule.half_width_percent / 100;
+/// A contrast in a forecast run of an adaptive schedule with graded answers.
+struct AdaptiveContrast {
+  ContrastPrediction* point = nullptr;
+  const ContrastOutlook* outlook =
+      nullptr;                      ///< none: no threshold is expected, so that the schedule goes on to its cap
+  std::vector<double> information;  ///< of a presentation of each set-up
+  GradedDesignFigures all;          ///< every set-up with the phases of the simulation
+  double binary_se = 0;             ///< of that design
+  std::vector<int> shown;           ///< presentations in each set-up
+  int presentations = 0;
+  bool settled = false;
+};
+
+/// Sets the prediction of a contrast after the presentations shown. Returns whether the expected interval is narrow
+/// enough for the schedule.
+bool narrow_enough(AdaptiveContrast& contrast, const Plan& plan, const ExperimentInputs& inputs) {
+  std::vector<double> seen = contrast.information;
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] *= contrast.shown[i];
+  GradedDesignFigures design = contrast.all;
+  design.informative_set_ups = effective_number(seen);
+  design.set_ups = static_cast<int>(std::ranges::count_if(contrast.shown, [](int n) { return n > 0; }));
+  design.presentations = contrast.presentations;
+  const double share = total(seen) / (total(contrast.information) * plan.simulation.phases);
+  predict_graded(*contrast.point, plan, inputs, design, contrast.outlook->q_eff, contrast.binary_se / std::sqrt(share));
+  return contrast.presentations >= least_adaptive_presentations &&
+         contrast.point->interval_factor * contrast.point->se_ln_s75 <= plan.schedule.half_width_percent / 100;
+}
+
+/// Goes through the visits of an adaptive schedule with graded answers until every contrast is expected to have the
+/// requested interval, or until its cap, and sets the predictions of the contrasts, the highest first.
+void run_adaptively(std::vector<AdaptiveContrast>& contrasts, const Plan& plan, const ExperimentInputs& inputs) {
   const int phases = plan.camera.id.empty() ? plan.simulation.phases : plan.target.phases;
-  const int cap = most_presentations(plan), all_visited = std::min(cap, all.set_ups * phases);
-  const auto narrow_after = [&](int presentations) {
-    const double share = static_cast<double>(presentations) / all.presentations;
-    predict_graded(point, plan, inputs, after_presentations(all, presentations, phases), outlook.q_eff,
-                   binary_se / std::sqrt(share));
-    point.trials = std::round(trials * share);
-    return point.interval_factor * point.se_ln_s75 <= asked;
-  };
-  int needed = std::min(least_adaptive_presentations, cap);
-  while (needed < all_visited && !narrow_after(needed)) ++needed;
-  if (needed >= all_visited) {
-    // The smallest number that is enough; the cap if none is.
-    for (int enough = cap; needed < enough;) {
-      const int middle = needed + (enough - needed) / 2;
-      if (narrow_after(middle)) {
-        enough = middle;
-      } else {
-        needed = middle + 1;
+  VisitOrder order(plan, numbered_set_ups(plan, inputs.plates.size()));
+  int left = plan.schedule.max_presentations;
+  while (left > 0) {
+    const auto open = std::ranges::count(contrasts, false, &AdaptiveContrast::settled);
+    if (open == 0) break;
+    const std::size_t set_up = order.next(static_cast<int>(open));
+    for (AdaptiveContrast& contrast : contrasts) {
+      for (int phase = 0; phase < phases && left > 0 && !contrast.settled; ++phase, --left) {
+        ++contrast.shown[set_up];
+        ++contrast.presentations;
+        contrast.settled = contrast.outlook != nullptr && narrow_enough(contrast, plan, inputs);
       }
     }
   }
-  if (narrow_after(needed)) point.uncertainty_percent = 100 * std::expm1(asked);
+  const double per_presentation = triangles_of(inputs.plates) / static_cast<double>(inputs.plates.size());
+  for (AdaptiveContrast& contrast : contrasts) {
+    contrast.point->trials = std::round(contrast.presentations * per_presentation);
+    if (contrast.settled)
+      contrast.point->uncertainty_percent = 100 * std::expm1(plan.schedule.half_width_percent / 100);
+  }
+}
+
+/// Standard error of ln S75 of binary answers of constant stimuli; empty if the sizes do not identify a threshold.
+std::optional<double> binary_error(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook) {
+  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+  const auto design = design_at(levels_of(plan, inputs.plates), plan.fit.form, s75_mrad,
+                                std::clamp(outlook.weibull_slope, flattest, steepest), plan.fit.lapse.value_or(0.01));
+  const auto fit = expected_fit(design, fit_options(plan));
+  return fit ? std::optional(fit->se_ln_threshold) : std::nullopt;
 }
 
 void predict_interval(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
-                      const std::vector<Level>& levels, const ContrastOutlook& outlook) {
-  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
-  const auto design = design_at(levels, plan.fit.form, s75_mrad, std::clamp(outlook.weibull_slope, flattest, steepest),
-                                plan.fit.lapse.value_or(0.01));
-  const auto fit = expected_fit(design, fit_options(plan));
-  if (!fit) return;
+                      const ContrastOutlook& outlook) {
+  point.s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+  const auto binary_se = binary_error(plan, inputs, outlook);
+  if (!binary_se) return;
   if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded) {
-    predict_graded_schedule(point, plan, inputs, outlook, fit->se_ln_threshold);
+    const int frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames;
+    predict_graded(point, plan, inputs, graded_design(plan, inputs, outlook, frames), outlook.q_eff, *binary_se);
     return;
   }
-  predict_binary(point, plan, inputs, outlook, fit->se_ln_threshold);
+  predict_binary(point, plan, inputs, outlook, *binary_se);
   adapt(point, plan, inputs.plates);
+}
+
+/// Replaces the predictions of constant stimuli by those of an adaptive schedule with graded answers.
+void adapt_graded(std::vector<ContrastPrediction>& points, const Plan& plan, const ExperimentInputs& inputs) {
+  const std::size_t set_ups = numbered_set_ups(plan, inputs.plates.size()).size();
+  if (plan.schedule.kind != ScheduleKind::adaptive || set_ups == 0) return;
+  if (chosen_answers(plan, inputs.sensor).kind != AnswerKind::graded) return;
+  std::vector<AdaptiveContrast> contrasts;
+  for (ContrastPrediction& point : points) {
+    AdaptiveContrast contrast;
+    contrast.point = &point;
+    contrast.shown.resize(set_ups);
+    const auto outlook = std::ranges::find(inputs.outlooks, point.delta_t_k, &ContrastOutlook::delta_t_k);
+    const auto error = outlook != inputs.outlooks.end() ? binary_error(plan, inputs, *outlook) : std::nullopt;
+    if (error) {
+      const int frames = chosen_answers(plan, inputs.sensor, point.delta_t_k).frames;
+      contrast.outlook = &*outlook;
+      contrast.information = set_up_information(plan, inputs, *outlook);
+      contrast.all = graded_design(plan, inputs, *outlook, frames);
+      contrast.binary_se = *error;
+    }
+    contrasts.push_back(std::move(contrast));
+  }
+  std::ranges::stable_sort(contrasts, std::greater<>(),
+                           [](const AdaptiveContrast& c) { return std::abs(c.point->delta_t_k); });
+  run_adaptively(contrasts, plan, inputs);
 }
 
 /// Rejects a tolerance beyond the caps; the message states the best possible tolerance over all contrasts, and its time
@@ -317,7 +378,7 @@ Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
   }
   Plan single = plan;
   single.schedule.frames_per_presentation = {1};
-  const BenchTime time = bench_time(single, inputs.plates, rate_hz, std::nullopt);
+  const BenchTime time = bench_time(single, inputs.plates, rate_hz, {});
   const double single_s = time.total_s() / std::max(1.0, static_cast<double>(time.presentations));
   std::vector<int> chosen;
   for (const double delta_t_k : plan.target.delta_t_k) {
@@ -331,13 +392,14 @@ Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
   return plan;
 }
 
-std::optional<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
-                                             const std::vector<ContrastPrediction>& contrasts) {
-  if (plan.schedule.kind != ScheduleKind::adaptive || contrasts.empty() || plates.empty()) return std::nullopt;
-  double triangles = 0, trials = 0;
-  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
-  for (const auto& contrast : contrasts) trials += contrast.trials;
-  return triangles > 0 ? std::optional(trials * static_cast<double>(plates.size()) / triangles) : std::nullopt;
+std::vector<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                           const std::vector<ContrastPrediction>& contrasts) {
+  const double triangles = triangles_of(plates);
+  if (plan.schedule.kind != ScheduleKind::adaptive || !(triangles > 0)) return {};
+  std::vector<double> out;
+  for (const auto& contrast : contrasts)
+    out.push_back(contrast.trials * static_cast<double>(plates.size()) / triangles);
+  return out;
 }
 
 Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& inputs) {
@@ -346,31 +408,27 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
   if (auto met = reachable(plan, inputs); !met) return tl::unexpected(met.error());
 
   PlanPrediction out{.figures = {}, .contrasts = {}, .warnings = inputs.warnings};
-  const std::vector<ContrastDesign> designs = contrast_designs(plan, inputs);
-  double trials = 0;
-  bool all_identified = true;
-  for (std::size_t i = 0; i < designs.size(); ++i) {
-    const double delta_t_k = plan.target.delta_t_k[i];
-    const auto levels = levels_of(designs[i].plan, inputs.plates);
+  for (std::size_t i = 0; const ContrastDesign& design : contrast_designs(plan, inputs)) {
+    const double delta_t_k = plan.target.delta_t_k[i++];
     ContrastPrediction point{.delta_t_k = delta_t_k, .s75_mrad = std::nullopt, .uncertainty_percent = std::nullopt};
-    for (const auto& level : levels) point.trials += level.total;
-    point.trials *= designs[i].shown / designs[i].plan.simulation.phases;
-    for (const auto& outlook : inputs.outlooks) {
-      if (outlook.delta_t_k != delta_t_k) continue;
-      point.s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
-      predict_interval(point, designs[i].plan, inputs, levels, outlook);
-    }
-    trials += point.trials;
-    if (point.uncertainty_percent) {
-      out.figures.predicted_uncertainty_percent =
-          std::max(out.figures.predicted_uncertainty_percent.value_or(0), *point.uncertainty_percent);
-    } else {
-      all_identified = false;
-      out.warnings.push_back("at " + number_text(delta_t_k) + " K the sizes of the plates do not identify a threshold");
-    }
+    for (const auto& level : levels_of(design.plan, inputs.plates)) point.trials += level.total;
+    point.trials *= design.shown / design.plan.simulation.phases;
+    const auto outlook = std::ranges::find(inputs.outlooks, delta_t_k, &ContrastOutlook::delta_t_k);
+    if (outlook != inputs.outlooks.end()) predict_interval(point, design.plan, inputs, *outlook);
     out.contrasts.push_back(point);
   }
-  if (!all_identified) out.figures.predicted_uncertainty_percent.reset();
+  adapt_graded(out.contrasts, plan, inputs);
+  double trials = 0, largest = 0;
+  bool all_identified = true;
+  for (const ContrastPrediction& point : out.contrasts) {
+    trials += point.trials;
+    largest = std::max(largest, point.uncertainty_percent.value_or(0));
+    if (point.uncertainty_percent) continue;
+    all_identified = false;
+    out.warnings.push_back("at " + number_text(point.delta_t_k) +
+                           " K the sizes of the plates do not identify a threshold");
+  }
+  if (all_identified && !out.contrasts.empty()) out.figures.predicted_uncertainty_percent = largest;
   out.figures.trials = static_cast<std::uint64_t>(std::llround(trials));
   return out;
 }

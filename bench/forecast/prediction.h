@@ -55,8 +55,9 @@ struct PlanPrediction {
 [[nodiscard]] Result<void> predict_times(const Plan& plan, const ExperimentInputs& inputs, PlanPrediction& prediction,
                                          std::stop_token stop);
 
-/// Returns the expected presentations of an adaptive schedule; empty for a constant one, which shows its list.
-[[nodiscard]] std::optional<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
-                                                           const std::vector<ContrastPrediction>& contrasts);
+/// Returns the presentations that an adaptive schedule is expected to show at each of these contrasts; empty for
+/// another schedule, which shows its list.
+[[nodiscard]] std::vector<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
+                                                         const std::vector<ContrastPrediction>& contrasts);
 
 }  // namespace todbench

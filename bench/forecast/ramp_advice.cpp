@@ -20,7 +20,7 @@ constexpr double allowed_change = 0.006;  ///< of the contrast, by the lag
 Result<ContrastWay> way_of(const Plan& asked, const ExperimentInputs& inputs) {
   const Plan plan = as_measured(with_frames(asked, inputs));
   TODBENCH_TRY(const auto prediction, predict_plan(plan, inputs));
-  return ContrastWay{bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, std::nullopt).total_s(),
+  return ContrastWay{bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, {}).total_s(),
                      prediction.figures.predicted_uncertainty_percent};
 }
 

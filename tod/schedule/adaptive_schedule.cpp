@@ -44,6 +44,12 @@ bool contradicted(const PsychometricFit& fit) {
 
 }  // namespace
 
+double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting, int contrasts) {
+  const double* cost = stimuli.change_cost_s;
+  return (other_plate ? cost[0] : 0) + (other_mounting ? cost[1] : 0) +
+         contrasts * (cost[2] + stimuli.phases * (cost[3] + frame_s));
+}
+
 AdaptiveSchedule::AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream) : options_(std::move(options)) {
   assert(!options_.plates.empty() && options_.distance_m > 0 && options_.stimuli.phases > 0);
   for (std::size_t p = 0; p < options_.plates.size(); ++p) {
@@ -77,20 +83,20 @@ AdaptiveSchedule::AdaptiveSchedule(AdaptiveOptions options, const RandomStream& 
 }
 
 double AdaptiveSchedule::value_per_second(const SetUp& set_up) const {
-  const double* cost = options_.stimuli.change_cost_s;
-  double seconds = 0, gain = 0;
-  if (shown_ > 0) {
-    const SetUp& now = set_ups_[current_set_up_];
-    if (set_up.plate != now.plate) seconds += cost[0];
-    if (set_up.mounting != now.mounting) seconds += cost[1];
-  }
+  double gain = 0;
+  int open = 0;
   for (const Contrast& contrast : contrasts_) {
     if (contrast.progress.settled) continue;
-    seconds += cost[2] + options_.stimuli.phases * (cost[3] + frame_s);
+    ++open;
     for (const PlateTriangle& t : options_.plates[set_up.plate].triangles)
       gain += contrast.knowledge.expected_gain(t.size_mm / options_.distance_m);
   }
-  return gain / seconds / (1 + set_up.visits);
+  const SetUp& now = set_ups_[current_set_up_];
+  const bool first = shown_ == 0;
+  return gain /
+         visit_seconds(options_.stimuli, !first && set_up.plate != now.plate, !first && set_up.mounting != now.mounting,
+                       open) /
+         (1 + set_up.visits);
 }
 
 void AdaptiveSchedule::begin_visit() {

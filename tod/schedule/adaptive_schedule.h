@@ -17,6 +17,12 @@ namespace todbench {
 /// Presentations of a contrast before it can be settled.
 inline constexpr int least_adaptive_presentations = 8;
 
+/// Returns the time of a visit to a set-up in seconds: the changes of plate and mounting that it needs, and the
+/// contrasts that it shows with their presentations. Changes are added, and a presentation without a change counts as
+/// 0.1 s.
+[[nodiscard]] double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting,
+                                   int contrasts);
+
 /// Options of AdaptiveSchedule.
 struct AdaptiveOptions {
   /// Plates, mountings, contrasts, pixel and costs of changes. `phases`: presentations per visit, which is one contrast

@@ -136,7 +136,7 @@ PlanPreview outlook(const Plan& plan, const std::vector<TargetPlate>& plates, co
                     double frame_rate_hz) {
   PlanPreview out;
   const bool adaptive = plan.schedule.kind == ScheduleKind::adaptive;
-  const auto expected = seen != nullptr ? expected_presentations(plan, plates, seen->camera) : std::optional<double>();
+  const auto expected = seen != nullptr ? expected_presentations(plan, plates, seen->camera) : std::vector<double>{};
   Plan timed = plan;
   if (seen != nullptr && plan.schedule == seen->plan.schedule && plan.target.delta_t_k == seen->plan.target.delta_t_k)
     timed.schedule.frames_per_presentation = seen->frames;

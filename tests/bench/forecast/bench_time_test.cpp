@@ -83,7 +83,7 @@ TEST_P(BenchTimeOfAMeasurement, CountsTheChangesAndFramesThatMeasureAsksFor) {
   ASSERT_FALSE(measured->ended_by);
 
   plan.target.kind = TargetKind::scpi;
-  const BenchTime time = bench_time(plan, loaded.plates(), 50, std::nullopt);
+  const BenchTime time = bench_time(plan, loaded.plates(), 50, {});
 
   const Counted counted = count(target.states, plan.target);
   EXPECT_EQ(time.presentations, target.states.size());
@@ -104,7 +104,7 @@ TEST(BenchTime, OfTheDefaultPlanIsThatOfTheSlowestChangeOfEachPresentation) {
   plan.target.black_body = plan.target.stage = "127.0.0.1:1";
   const LoadedPlan loaded = LoadedPlan::load(plan).value();
 
-  const BenchTime time = bench_time(plan, loaded.plates(), 50, std::nullopt);
+  const BenchTime time = bench_time(plan, loaded.plates(), 50, {});
 
   // 2 plates; 4 mountings each, the first with its plate; 3 contrasts each, the first with its set-up; 16 shifts each.
   EXPECT_EQ(time.plate_changes, 2u);
@@ -124,9 +124,9 @@ TEST(BenchTime, HasTheFramesOfEachContrast) {
   const LoadedPlan loaded = LoadedPlan::load(plan).value();
   plan.target.kind = TargetKind::scpi;
   plan.schedule.frames_per_presentation = {1};
-  const BenchTime ones = bench_time(plan, loaded.plates(), 50, std::nullopt);
+  const BenchTime ones = bench_time(plan, loaded.plates(), 50, {});
   plan.schedule.frames_per_presentation = {3, 7};
-  const BenchTime each = bench_time(plan, loaded.plates(), 50, std::nullopt);
+  const BenchTime each = bench_time(plan, loaded.plates(), 50, {});
 
   EXPECT_EQ(each.frames, ones.frames + ones.presentations / 2 * (2 + 6));
 }
@@ -134,7 +134,7 @@ TEST(BenchTime, HasTheFramesOfEachContrast) {
 TEST(BenchTime, ASimulatedSceneTakesNone) {
   const LoadedPlan loaded = LoadedPlan::load(Plan{}).value();
 
-  EXPECT_EQ(bench_time(loaded.plan(), loaded.plates(), 50, std::nullopt).total_s(), 0);
+  EXPECT_EQ(bench_time(loaded.plan(), loaded.plates(), 50, {}).total_s(), 0);
 }
 
 TEST(BenchTime, OfAnAdaptivePlanGrowsWithWhatIsExpectedUpToItsCap) {
@@ -143,12 +143,31 @@ TEST(BenchTime, OfAnAdaptivePlanGrowsWithWhatIsExpectedUpToItsCap) {
   plan.schedule.kind = ScheduleKind::adaptive;
   plan.schedule.max_presentations = 500;
   const LoadedPlan loaded = LoadedPlan::load(plan).value();
-  const auto expecting = [&](double presentations) { return bench_time(plan, loaded.plates(), 50, presentations); };
+  plan.target.phases = 6;
+  const auto expecting = [&](const std::vector<double>& each) { return bench_time(plan, loaded.plates(), 50, each); };
 
-  EXPECT_EQ(expecting(48).presentations, 48u);
-  EXPECT_EQ(expecting(48).mounting_changes, 1u);
-  EXPECT_LT(expecting(48).total_s(), expecting(96).total_s());
-  EXPECT_EQ(expecting(5000).presentations, 500u);
+  EXPECT_EQ(expecting({12, 12, 12}).presentations, 36u);
+  EXPECT_EQ(expecting({12, 12, 12}).mounting_changes, 2u) << "two set-ups, six presentations of each contrast";
+  EXPECT_LT(expecting({12, 12, 12}).total_s(), expecting({18, 18, 18}).total_s());
+  EXPECT_EQ(expecting({5000, 5000, 5000}).presentations, 500u);
+  EXPECT_EQ(expecting({}).presentations, 500u);
+}
+
+TEST(BenchTime, OfAnAdaptivePlanLooksAtTheHighestContrastInEverySetUpThatAnotherContrastNeeds) {
+  Plan plan;
+  plan.target.kind = TargetKind::prompt;
+  plan.schedule.kind = ScheduleKind::adaptive;
+  plan.target.phases = 6;
+  plan.target.delta_t_k = {10, 1};
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+
+  const BenchTime time = bench_time(plan, loaded.plates(), 50, {8, 30});
+
+  // Set-ups a0, a1, a1 again, a2 and a2 again: without a change of the mounting a second visit counts 42 s,
+  // a first visit with it 51 s.
+  EXPECT_EQ(time.mounting_changes, 3u);
+  EXPECT_EQ(time.presentations, 8u + 1u + 30u) << "one look at 10 K in the third set-up";
+  EXPECT_EQ(time.contrast_changes, 6u);
 }
 
 TEST(BenchTimeOfMeasures, AddsTheirStepsAndFrames) {
@@ -157,12 +176,12 @@ TEST(BenchTimeOfMeasures, AddsTheirStepsAndFrames) {
   plan.camera.ifov_mrad = 1.3;
   plan.measurement.frames_after_change = 1;
   const std::vector<TargetPlate> plates{load_plate("tcat-a").value()};
-  const BenchTime trials = bench_time(plan, plates, 50, std::nullopt);
+  const BenchTime trials = bench_time(plan, plates, 50, {});
 
   plan.measures.noise = true;
-  const BenchTime noise = bench_time(plan, plates, 50, std::nullopt);
+  const BenchTime noise = bench_time(plan, plates, 50, {});
   plan.measures.transfer = true;
-  const BenchTime both = bench_time(plan, plates, 50, std::nullopt);
+  const BenchTime both = bench_time(plan, plates, 50, {});
 
   // To find the plate 3 frames, the cube 64, each of the 6 steps 2; and one that is discarded after each change.
   EXPECT_EQ(noise.frames - trials.frames, 3 + 64 + 2u);
@@ -179,11 +198,11 @@ TEST(BenchTimeOfMeasures, AddsTheirStepsAndFrames) {
   EXPECT_EQ(both.all_measures.frames, both.frames - trials.frames);
   EXPECT_NEAR(both.all_measures.changes_s, both.changes_s - trials.changes_s, 1e-9);
   plan.measures.triangles = true;
-  const BenchTime triangles = bench_time(plan, plates, 50, std::nullopt);
+  const BenchTime triangles = bench_time(plan, plates, 50, {});
   EXPECT_EQ(triangles.frames - both.frames, plan.target.delta_t_k.size() * (2 + 1u));
   plan.measures.triangles = false;
   plan.measures.mtf = true;
-  const BenchTime mtf = bench_time(plan, plates, 50, std::nullopt);
+  const BenchTime mtf = bench_time(plan, plates, 50, {});
   EXPECT_EQ(mtf.frames - both.frames, 64 + 1u);
   EXPECT_NEAR(mtf.changes_s - both.changes_s, std::max(plan.target.plate_change_s, plan.target.contrast_change_s),
               1e-9);

@@ -57,7 +57,7 @@ TEST(DesignSearch, FindsLessTimeForAnAskedHalfWidthAndKeepsFiveSetUps) {
   EXPECT_LT(found->unpaired_share, 0.5);
   EXPECT_GE(found->best.bench_s, found->least_s);
   // The prices of plan and search are one.
-  EXPECT_NEAR(laboratory_time(found->best.plan, bench.inputs, std::nullopt), found->best.bench_s, 1e-9);
+  EXPECT_NEAR(laboratory_time(found->best.plan, bench.inputs, {}), found->best.bench_s, 1e-9);
 }
 
 TEST(DesignSearch, WaitsForContrastsThatAPersonSets) {

@@ -22,7 +22,10 @@ TEST(GradedPrecision, IsThatOfFramesAloneWhereTheSensorMakesAllTheNoise) {
 
 TEST(GradedPrecision, IsThatOfDrawsWhereTheObserverMakesAllTheNoise) {
   EXPECT_NEAR(graded_variance_ratio({.sensor_share = 0, .frames = 4}), 1.0 / 128 + 0.004, 1e-12);
-  EXPECT_NEAR(graded_variance_ratio({.sensor_share = 0, .frames = 4, .set_ups = 4}), 1.0 / 128 + 0.15, 1e-12);
+  EXPECT_NEAR(graded_variance_ratio({.sensor_share = 0, .frames = 4, .set_ups = 4}), 1.0 / 128 + 0.28, 1e-12);
+  EXPECT_NEAR(graded_variance_ratio({.sensor_share = 0, .noise = 0.26, .frames = 4, .set_ups = 4}),
+              1.0 / 128 + 0.28 / 5, 1e-12)
+      << "noise hides the phases";
 }
 
 TEST(GradedPrecision, KeepsMoreOfFewPhases) {
@@ -35,8 +38,8 @@ TEST(GradedPrecision, KeepsMoreOfFewPhases) {
 TEST(GradedPrecision, OfUnequalSetUpsKeepsThePhasesInItsInterval) {
   // Five set-ups whose shares of the information count as 4.8: presentations and places are the clusters.
   const GradedDesignFigures unequal{.frames = 4, .set_ups = 5, .informative_set_ups = 4.8, .presentations = 30};
-  EXPECT_NEAR(graded_variance_ratio(unequal), 1.0 / 128 + 0.15, 1e-12);
-  EXPECT_NEAR(graded_freedom(unequal), 14, 1e-12);
+  EXPECT_NEAR(graded_variance_ratio(unequal), 1.0 / 128 + 0.28, 1e-12);
+  EXPECT_NEAR(graded_freedom(unequal), 20.5, 1e-12);
   GradedDesignFigures equal = unequal;
   equal.informative_set_ups = 5;
   EXPECT_NEAR(graded_variance_ratio(equal), 1.0 / 128 + 0.048 / 6, 1e-12);

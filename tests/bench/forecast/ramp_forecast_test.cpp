@@ -171,7 +171,7 @@ std::string advice_of(const Plan& plan) {
 std::string seconds_of(Plan plan) {
   const ExperimentInputs inputs = inputs_of(plan);
   plan = with_frames(plan, inputs);
-  return std::to_string(std::lround(bench_time(plan, inputs.plates, 50, std::nullopt).total_s())) + " s (";
+  return std::to_string(std::lround(bench_time(plan, inputs.plates, 50, {}).total_s())) + " s (";
 }
 
 /// The plan with settled contrasts, its own phases, and frames that the program chooses.
