@@ -298,7 +298,7 @@ class Run {
     const double unit_per_k = options_.contrast_unit == ContrastUnit::kelvin ? 1 : seen_.levels_per_k;
     TODBENCH_TRY(const auto seen, places_.look(exposed.frames, mounted_plate, base_, asked,
                                                {.contrast = seen_.contrast_k * unit_per_k,
-                                                .noise = seen_.noise_k * std::abs(unit_per_k)},
+                                                .noise = seen_.camera_noise_k * std::abs(unit_per_k)},
                                                presentation_));
     plate_seen_ = seen;
     exposed.registration = asked.moved(seen.used_off_px);

@@ -268,7 +268,7 @@ class MovingRun {
     cv::Point2d off_px(0, 0);
     if (places_.looks()) {
       TODBENCH_TRY(const auto seen, places_.look(taken, set_up.plate, set_up.base, begin,
-                                                 {.contrast = seen_.contrast_k, .noise = seen_.noise_k}, pair));
+                                                 {.contrast = seen_.contrast_k, .noise = seen_.camera_noise_k}, pair));
       off_px = seen.used_off_px;
     }
     std::vector<LocatedFrame> frames;

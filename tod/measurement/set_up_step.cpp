@@ -213,6 +213,7 @@ Result<SeenContrast> SetUpStep::contrast(const TargetPlate& mounted_plate, const
 
 void SetUpStep::judge_by(const std::optional<JudgedScale>& judged, const TargetState& set, SeenContrast& seen) {
   seen.judged = judged;
+  seen.camera_noise_k = seen.noise_k;
   if (!judged) return;
   seen.noise_k *= judged->noise_ratio / std::abs(judged->gain);
   if (grey()) seen.steps = judged->steps;

@@ -38,6 +38,7 @@ namespace todbench {
 struct SeenContrast {
   double contrast_k = 0;                        ///< effective
   double noise_k = 0;                           ///< of a pixel in one frame, as it affects an observer; 0: not measured
+  double camera_noise_k = 0;                    ///< the same of the camera's own frames, in front of any stage
   double levels_per_k = 0;                      ///< signal transfer; 0: the contrast is in kelvin
   GreySteps steps{};                            ///< if the contrast is in grey levels
   std::optional<double> standard_error_k{};     ///< as in Presentation

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <functional>
 
+#include "acquisition/base/rng.h"
+#include "acquisition/core/forwarding_source.h"
+#include "acquisition/core/judged_picture.h"
 #include "tests/tod/measurement/measurement_bench.h"
 
 namespace todbench {
@@ -48,20 +51,41 @@ SimulatedBench bench_at(std::vector<double> contrasts, int phases = 12) {
   return bench;
 }
 
-Result<MeasurementResult> run_with(const SimulatedBench& bench, const Fault& fault, double max_shift_error_px = 0.25) {
+/// A camera behind which a stage adds noise.
+class NoisyStageSource final : public ForwardingSource {
+ public:
+  NoisyStageSource(std::unique_ptr<FrameSource> camera, double counts)
+      : ForwardingSource(std::move(camera)), counts_(counts) {}
+  [[nodiscard]] Result<Frame> next(std::chrono::milliseconds timeout) override {
+    auto frame = ForwardingSource::next(timeout);
+    if (!frame || counts_ == 0) return frame;
+    cv::Mat1f noise(frame->counts.size());
+    RandomStream(1, "stage").sub(frame->sequence).fill_normal({noise.ptr<float>(), noise.total()});
+    JudgedPicture judged;
+    cv::Mat1f(cv::Mat1f(frame->counts) + counts_ * noise).convertTo(judged.counts, CV_16U);
+    frame->judged = std::make_shared<const JudgedPicture>(std::move(judged));
+    return frame;
+  }
+
+ private:
+  double counts_;
+};
+
+Result<MeasurementResult> run_with(const SimulatedBench& bench, const Fault& fault, double max_shift_error_px = 0.25,
+                                   double stage_noise_counts = 0) {
   const auto model = std::make_shared<const SensorModel>(bench.spec, full_plan(bench.spec, bench.skip, {}),
                                                          Accuracy::normal(), bench.seed);
   PlateScene scene;
   scene.plate = bench.plates.front();
   scene.distance_m = bench.distance_m;
   const auto holder = std::make_shared<SceneHolder>(scene);
-  const auto source = simulated_source(model, holder, "1");
+  NoisyStageSource source(simulated_source(model, holder, "1"), stage_noise_counts);
   LyingTarget target(scene_target(holder, bench.plates), holder, fault);
   ListedSchedule schedule = schedule_of(bench);
   TemplateObserver observer({}, triangle_alternatives());
   MeasurementOptions options = options_of(bench);
   options.max_shift_error_px = max_shift_error_px;
-  return measure(*source, target, observer, schedule, options, *bench.host, {}, {});
+  return measure(source, target, observer, schedule, options, *bench.host, {}, {});
 }
 
 /// Why a run ended, and after how many presentations.
@@ -110,6 +134,15 @@ TEST(PlaceWatch, RefusesAPictureThatWasKnockedInMidRun) {
   const auto result = run_with(bench, [&](PlateScene& s, int k) { s.shift_mm.x += k < 7 ? 0 : 2 * pixel; });
 
   EXPECT_THAT(reason(result), HasSubstr("between presentations 6 and 7"));
+}
+
+// A contrast of 1 K is 14 standard deviations of the camera's noise, 3 of that behind the stage.
+TEST(PlaceWatch, MissesAPlateByTheNoiseOfTheCameraAndNotByThatOfAStageBehindIt) {
+  const SimulatedBench bench = bench_at({1}, 4);
+  const double pixel = mm_of_pixel(bench);
+  const Fault gone = [&](PlateScene& scene, int k) { scene.shift_mm.x += k < 2 ? 0 : 40 * pixel; };
+
+  EXPECT_THAT(reason(run_with(bench, gone, 0.25, 30)), HasSubstr("were not found within 6 px"));
 }
 
 TEST(PlaceWatch, FollowsASlowDriftAndNotesIt) {
