@@ -7,12 +7,8 @@
 
 #include "bench/enhance/decidable.h"
 #include "bench/model_comparison/model_comparison.h"
-#include "bench/plan/descriptions.h"
-#include "bench/plan/resources.h"
 #include "bench/scene_dependence/scene_dependence.h"
-#include "sim_devices/prediction/dynamic_trials.h"
 #include "tests/bench/enhance/scale_invariance.h"
-#include "tod/plate/test_pattern.h"
 
 namespace todbench {
 namespace {
@@ -66,19 +62,6 @@ TEST(Enhancement, OfAGainIsNoneButForTheRoundingOfTheAnswersOfAnObserverWithLitt
     EXPECT_LE(std::abs(third.ln_ratio), third.half_width.value());
     EXPECT_EQ(treble.answers, 0);
     EXPECT_EQ(treble.ln_ratio, 0);
-  }
-}
-
-TEST(Enhancement, OfALinearFilterAndItsInverseIsNone) {
-  // A shift by a pixel with a gain of a half, and back with a gain of 2: nothing is rounded between stages.
-  const EnhancementPackage both =
-      package_of({kernel_of({0, 0, 0, 0.5, 0, 0, 0, 0, 0}), kernel_of({0, 0, 0, 0, 0, 2, 0, 0, 0})});
-  for (const std::string& observer : resource_names(ResourceKind::observer)) {
-    if (!load_observer(observer)) continue;  // one with an eye judges displays only
-    const auto found = compare_packages(plan_of_counts(observer, 4, 1, 0.01), {both}, {}, {});
-
-    ASSERT_TRUE(found) << found.error().message;
-    EXPECT_EQ(moved_by(found->results[1], found->results[0]).answers, 0) << observer;
   }
 }
 
@@ -139,40 +122,6 @@ TEST(SceneDependence, BehindAGainThatCutsOffIsInconclusive) {
   EXPECT_NE(fine->verdict, SceneDependenceVerdict::depends);
   EXPECT_EQ(clipped->verdict, SceneDependenceVerdict::inconclusive);
   EXPECT_THAT(clipped->notes.back(), HasSubstr("clipped at an end of the counts"));
-}
-
-TEST(DynamicTrials, BehindAGainAreThoseWithoutIt) {
-  SensorSpec sensor = small_plan("4", 2).sensor();
-  DynamicTrialOptions options{.delta_t_k = 4,
-                              .sizes_pitch = {1.3, 1.8, 2.4, 3},
-                              .speeds_mrad_s = {0, 20},
-                              .passes = 6,
-                              .frames = 2,
-                              .accuracy = Accuracy::draft()};
-  const auto right = [&] {
-    TemplateObserver observer({}, triangle_alternatives());
-    const auto found = dynamic_trials(sensor, observer, options);
-    EXPECT_TRUE(found) << found.error().message;
-    std::vector<double> correct;
-    if (!found) return correct;
-    for (const DynamicTrials& at : *found) {
-      for (const auto& levels : at.levels) {
-        double sum = 0;
-        for (const Level& level : levels) sum += level.correct;
-        correct.push_back(sum);
-      }
-    }
-    return correct;
-  };
-  const std::vector<double> plain = right();
-  options.stages = [] {
-    std::vector<std::unique_ptr<ChainStage>> stages;
-    stages.push_back(kernel_filter({0, 0, 0, 0, 0.3, 0, 0, 0, 0}));
-    return stages;
-  };
-
-  // Nothing is rounded behind the stage: single precision alone differs.
-  EXPECT_THAT(right(), ::testing::Pointwise(::testing::DoubleNear(1), plain));
 }
 
 TEST(Enhancement, ByARecursiveFilterIsThatOfAveragedFramesForAnObserverOfLimitedEfficiency) {
