@@ -35,19 +35,20 @@ double mean_square(const cv::Mat1d& difference) {
 /// Differences between successive frames of one scene.
 class FrameDifferences {
  public:
-  explicit FrameDifferences(int frames) : lag_(static_cast<std::uint64_t>(std::min(8, frames / 4))) {}
+  FrameDifferences(int frames, FrameGain gain)
+      : gain_(gain), lag_(static_cast<std::uint64_t>(std::min(8, frames / 4))) {}
 
   void add(const Frame& frame, const cv::Mat1d& kelvin) {
     for (const Old& old : old_) {
       const std::uint64_t apart = frame.sequence - old.sequence;
       if (apart != 1 && apart != lag_) continue;
       AtLag& at = apart == 1 ? successive_ : later_;
-      at.squares += mean_square(kelvin - old.kelvin);
+      at.squares += mean_square(difference_of(old.kelvin, kelvin, gain_));
       ++at.pairs;
     }
     if (!old_.empty()) {
       // If frames are missing between all of them, the next one is used.
-      const cv::Mat1d difference = kelvin - old_.back().kelvin;
+      const cv::Mat1d difference = difference_of(old_.back().kelvin, kelvin, gain_);
       neighbours_.squares += mean_square(difference);
       ++neighbours_.pairs;
       row_means_ += variance_of_means(difference, 1);
@@ -97,6 +98,7 @@ class FrameDifferences {
     }
   }
 
+  FrameGain gain_;
   std::uint64_t lag_;
   std::deque<Old> old_;
   cv::Mat1w last_counts_;
@@ -267,7 +269,7 @@ Result<void> FrameTaker::discard(std::stop_token stop) {
 
 Result<AveragedPicture> FrameTaker::average(int count, std::stop_token stop, const EachFrame& each) {
   AveragedPicture out;
-  FrameDifferences differences(count);
+  FrameDifferences differences(count, options_.gain);
   for (int i = 0; i < count; ++i) {
     TODBENCH_TRY(auto frame, next(stop));
     TODBENCH_TRY(auto kelvin, to_kelvin(frame));

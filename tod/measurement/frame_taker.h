@@ -14,6 +14,7 @@
 #include "acquisition/core/frame_source.h"
 #include "acquisition/core/integrity_gate.h"
 #include "acquisition/core/repeat_cadence.h"
+#include "tod/measurement/lag_differences.h"
 
 namespace todbench {
 
@@ -32,6 +33,7 @@ struct FrameTakerOptions {
   double max_rejected_share = 0.05;  ///< a larger share, after 100 frames, gives `integrity`
   std::chrono::milliseconds frame_timeout{2000};            ///< longest silence of the camera, then `disconnected`
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< called for every rejected frame; may be empty
+  FrameGain gain = FrameGain::constant;                     ///< of the camera's frames: noise is no change of the gain
   std::shared_ptr<const RadiometricScale> scale{};  ///< replaces the scale of every frame; null: each frame's own
 };
 

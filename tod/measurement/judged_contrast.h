@@ -50,7 +50,7 @@ struct JudgedContrast {
 /// Memory of the noise after the stages relative to that of the camera, from successive frames of one scene.
 class JudgedMemory {
  public:
-  explicit JudgedMemory(int frames) : camera_(frames), judged_(frames) {}
+  explicit JudgedMemory(int frames) : camera_(frames, FrameGain::changing), judged_(frames, FrameGain::changing) {}
   /// Ignores frames without a judged picture and frames that are the camera's own.
   void add(const Frame& frame);
   /// LagDifferences::memory() of the judged frames over that of the camera's; 1 without stages.
@@ -67,8 +67,8 @@ class JudgedFrames {
       : plate_(mounted_plate),
         registration_(registration),
         min_size_px_(min_size_px),
-        camera_noise_(frames),
-        judged_noise_(frames) {}
+        camera_noise_(frames, FrameGain::changing),
+        judged_noise_(frames, FrameGain::changing) {}
 
   void add(const Frame& frame);
   /// Returns the scale of the judged pictures; empty without stages. `memory_ratio`: JudgedMemory::ratio(). Errors:

@@ -18,15 +18,26 @@ void LagDifferences::AtLag::add(const cv::Mat1d& difference) {
   ++pairs;
 }
 
-LagDifferences::LagDifferences(int frames)
-    : references_(static_cast<std::size_t>(std::max(1, frames / 4))),
+cv::Mat1d difference_of(const cv::Mat1d& from, const cv::Mat1d& to, FrameGain gain) {
+  cv::Mat1d difference = to - from;
+  if (gain == FrameGain::constant) return difference;
+  cv::Mat1d scene = to + from;
+  scene -= cv::mean(scene)[0];
+  const double energy = scene.dot(scene);
+  if (energy > 0) difference -= difference.dot(scene) / energy * scene;
+  return difference;
+}
+
+LagDifferences::LagDifferences(int frames, FrameGain gain)
+    : gain_(gain),
+      references_(static_cast<std::size_t>(std::max(1, frames / 4))),
       lag_(static_cast<std::uint64_t>(std::max(1, 3 * frames / 8))) {}
 
 void LagDifferences::add(std::uint64_t sequence, const cv::Mat1d& picture) {
-  if (last_ && sequence == last_->sequence + 1) successive_.add(picture - last_->picture);
+  if (last_ && sequence == last_->sequence + 1) successive_.add(difference_of(last_->picture, picture, gain_));
   for (const Kept& kept : kept_) {
-    if (sequence == kept.sequence + lag_) at_lag_.add(picture - kept.picture);
-    if (sequence == kept.sequence + 2 * lag_) at_twice_.add(picture - kept.picture);
+    if (sequence == kept.sequence + lag_) at_lag_.add(difference_of(kept.picture, picture, gain_));
+    if (sequence == kept.sequence + 2 * lag_) at_twice_.add(difference_of(kept.picture, picture, gain_));
   }
   if (kept_.size() < references_) kept_.push_back({sequence, picture.clone()});
   last_ = Kept{sequence, picture.clone()};

@@ -10,12 +10,23 @@
 
 namespace todbench {
 
+/// Gain of the frames of one scene.
+enum class FrameGain {
+  constant,
+  changing,  ///< gain control: another gain in every frame
+};
+
+/// Returns `to` minus `from`, two pictures of one scene. With a changing gain, without the part that is proportional to
+/// their mean, by least squares: a frame of another gain differs by a multiple of the scene, which is no noise. The
+/// noise of the result is that at the gain 2 a b / (a + b), a and b the gains of both.
+[[nodiscard]] cv::Mat1d difference_of(const cv::Mat1d& from, const cv::Mat1d& to, FrameGain gain);
+
 /// Differences of pictures at three lags: 1, 3/8 and 3/4 of the planned number of frames, without offsets of whole
 /// frames. Keeps a quarter of the frames. One thread at a time.
 class LagDifferences {
  public:
   /// `frames`: planned number, at least 2.
-  explicit LagDifferences(int frames);
+  explicit LagDifferences(int frames, FrameGain gain = FrameGain::constant);
   /// `sequence`: number of the exposure, increasing.
   void add(std::uint64_t sequence, const cv::Mat1d& picture);
 
@@ -39,6 +50,7 @@ class LagDifferences {
     cv::Mat1d picture;
   };
 
+  FrameGain gain_;
   std::size_t references_;
   std::uint64_t lag_;
   std::vector<Kept> kept_;  ///< the first frames

@@ -135,7 +135,7 @@ struct MeasurementResult {
   std::vector<Interruption> interruptions;
   std::vector<GreyFrame> grey_frames;  ///< judged frames, if contrasts are in grey levels
   std::optional<Error> ended_by;       ///< reason of an early end; the trials so far are valid
-  RunConstancy constancy{};            ///< of the averages; empty for contrasts in grey levels
+  RunConstancy constancy{};            ///< of the averages; no residue for contrasts in grey levels
 };
 
 /// Returns the random stream of the observer's answer to a triangle of a presentation, counted in the order of the

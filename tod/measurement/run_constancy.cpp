@@ -96,6 +96,20 @@ double per_sample(const PictureNoise& one) {
   return (1 + 1 / lines) / (4 * lines);
 }
 
+/// Part of the limit that comes from the contrasts by which the noise of two averages was divided.
+double limit_of_contrasts(std::span<const PictureNoise> noise, const PictureNoise& first, const PictureNoise& later) {
+  if (first.triangles < 2 || later.triangles < 2) return 0;
+  double squares = 0, freedom = 0;
+  for (const PictureNoise& one : noise) {
+    if (one.set_delta_t_k != first.set_delta_t_k || one.triangles < 2) continue;
+    squares += (one.triangles - 1) * one.triangle_scatter * one.triangle_scatter;
+    freedom += one.triangles - 1;
+  }
+  const double variance = squares / freedom * (2 + 1.0 / first.triangles + 1.0 / later.triangles);
+  const double tail = transfer_false_alarm / 2 / static_cast<double>(noise.size());
+  return distribution::quantile_above(tail, freedom) * std::hypot(std::sqrt(variance), transfer_systematic_u);
+}
+
 /// The change that is largest relative to its limit.
 template <typename Change>
 std::optional<ConstancyFigure> largest_change(std::span<const PictureNoise> noise, Change change_of) {
@@ -142,13 +156,13 @@ std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasureme
 
 std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise) {
   const auto variance = [](const PictureNoise& one) { return variance_at_lag(one.frames, 1) * per_sample(one) / 4; };
-  return largest_change(noise,
-                        [&](const PictureNoise& first, const PictureNoise& later) -> std::optional<ConstancyFigure> {
-                          if (!(first.noise_k > 0 && later.noise_k > 0)) return std::nullopt;
-                          const double error = std::sqrt(variance(first) + variance(later));
-                          return ConstancyFigure{std::log(later.noise_k / first.noise_k),
-                                                 std::max(most_noise_change, constancy_errors * error)};
-                        });
+  return largest_change(
+      noise, [&](const PictureNoise& first, const PictureNoise& later) -> std::optional<ConstancyFigure> {
+        if (!(first.noise_k > 0 && later.noise_k > 0)) return std::nullopt;
+        const double error = std::sqrt(variance(first) + variance(later));
+        const double limit = std::hypot(constancy_errors * error, limit_of_contrasts(noise, first, later));
+        return ConstancyFigure{std::log(later.noise_k / first.noise_k), std::max(most_noise_change, limit)};
+      });
 }
 
 std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> noise) {

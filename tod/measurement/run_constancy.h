@@ -18,6 +18,10 @@ struct PictureNoise {
   std::optional<double> lag1_correlation{};  ///< empty: too few frames
   int frames = 16;                           ///< of the average, at least 2
   int lines = 120;                           ///< smaller number of rows and columns
+  /// If the contrast is measured in grey levels, noise_k is noise over contrast, times the contrast of the target:
+  /// number of large triangles (at least 2) and standard deviation of one of them, relative to their mean. 0: kelvin.
+  int triangles = 0;
+  double triangle_scatter = 0;
 };
 
 /// Residue of the previous picture in the first frame of an average.
@@ -60,6 +64,11 @@ inline constexpr double transfer_false_alarm = 0.005;
 /// (3 N - 4) / (N - 1)^2 / n for white noise, less for noise with memory. n is the number of independent samples of a
 /// frame: 1/n = 1/(4 L) + 1/(4 L^2) if half of the variance is that of whole lines and L the smaller of rows and
 /// columns.
+/// For contrasts in grey levels the noise is relative to the contrast, so a change of the gain is none. Added to the
+/// limit in quadrature: Student's t for a false-alarm probability of transfer_false_alarm, shared by the averages,
+/// times the error of the quotient of both contrasts. As in transfer_change(), that is the scatter of a triangle,
+/// pooled over the averages of the contrast, for the mean of each average and for a pattern that its triangles share,
+/// and transfer_systematic_u.
 [[nodiscard]] std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise);
 inline constexpr double most_noise_change = 0.1397619;  ///< ln 1.15; five errors of 16 frames of 120 lines: 7 %
 inline constexpr double constancy_errors = 5;

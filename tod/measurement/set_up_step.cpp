@@ -41,8 +41,10 @@ FrameTakerOptions taker_options(const MeasurementOptions& options, const SourceI
                         .on_rejected = std::move(on_rejected)};
   out.integrity.width = camera.width;
   out.integrity.height = camera.height;
-  if (options.contrast_unit == ContrastUnit::grey_levels)
+  if (options.contrast_unit == ContrastUnit::grey_levels) {
     out.scale = std::make_shared<const RadiometricScale>(scale_of_counts());
+    out.gain = FrameGain::changing;
+  }
   return out;
 }
 
@@ -303,6 +305,15 @@ SeenContrast SetUpStep::in_grey_levels(const AveragedPicture& picture, const Eff
     lag1_correlation_ = picture.lag1_correlation;
   }
   const double noise_steps = seen.steps.noise_levels / seen.steps.step_levels;
+  if (seen.steps.noise_steps() >= dithering_noise_steps && measured.triangles > 1)
+    constancy_.noise.push_back(
+        {.set_delta_t_k = set.delta_t_k,
+         .noise_k = seen.steps.noise_steps() * seen.steps.step_levels / std::abs(seen.levels_per_k),
+         .lag1_correlation = picture.lag1_correlation,
+         .frames = options_.contrast_frames,
+         .lines = std::min(picture.kelvin.rows, picture.kelvin.cols),
+         .triangles = measured.triangles,
+         .triangle_scatter = std::sqrt(measured.triangles) * measured.standard_error / std::abs(measured.value)});
   // The coarsest of all contrasts represents the run.
   noise_counts_ = std::min(noise_counts_.value_or(noise_steps), noise_steps);
   if (seen.steps.noise_steps() < dithering_noise_steps) {

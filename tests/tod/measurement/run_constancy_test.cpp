@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "acquisition/base/rng.h"
+#include "tod/measurement/lag_differences.h"
 #include "tod/measures/temporal_noise.h"
 
 namespace todbench {
@@ -117,6 +118,7 @@ TEST(NoiseChange, OfOnePictureOfEachContrastIsNotKnown) {
 struct SmallAverage {
   int frames = 4, rows = 24, columns = 32;
   double noise_k = 0.07, memory = 0;
+  double restless = 0;  ///< half of the range of the frames' gains about 1; the scene has a contrast of 16.9 K
 };
 
 /// Estimated like in an average of a run: differences without the change of the whole frame.
@@ -132,11 +134,19 @@ PictureNoise noise_of(const SmallAverage& average, const RandomStream& stream) {
     }
     seen.push_back(k == 0 ? frame : cv::Mat1d(average.memory * seen.back() + fresh * frame));
   }
+  const FrameGain gain = average.restless > 0 ? FrameGain::changing : FrameGain::constant;
+  if (gain == FrameGain::changing) {
+    for (cv::Mat1d& frame : seen) {
+      frame = frame.clone();
+      frame(cv::Rect(8, 8, 8, 8)) += 16.9;
+      frame *= 1 + average.restless * (2 * stream.uniform(draw++) - 1);
+    }
+  }
   const auto mean_square = [&](int lag) {
     double sum = 0;
     for (std::size_t k = static_cast<std::size_t>(lag); k < seen.size(); ++k) {
       cv::Scalar mean, deviation;
-      cv::meanStdDev(seen[k] - seen[k - static_cast<std::size_t>(lag)], mean, deviation);
+      cv::meanStdDev(difference_of(seen[k - static_cast<std::size_t>(lag)], seen[k], gain), mean, deviation);
       sum += deviation[0] * deviation[0] / 2;
     }
     return sum / (average.frames - lag);
@@ -175,6 +185,71 @@ TEST(NoiseChange, HasFewFalseAlarmsOfFewFramesOfASmallPicture) {
     EXPECT_LE(found.noise, 2) << frames;
     EXPECT_LE(found.correlation, 2) << frames;
   }
+}
+
+// A change of the gain by 5 % is 0.2 K rms over the picture, three times the noise.
+TEST(NoiseChange, OfFramesOfAnotherGainIsThatOfTheirNoise) {
+  const SmallAverage same{.frames = 8, .restless = 0.05};
+  const ChangesFound found = changes_found(same, same, 500);
+  EXPECT_LE(found.noise, 1);
+  EXPECT_LE(found.correlation, 1);
+  EXPECT_NEAR(noise_of(same, RandomStream(1, "one")).noise_k, 0.07, 0.02);
+  EXPECT_GE(changes_found(same, {.frames = 8, .noise_k = 0.14, .restless = 0.05}, 100).noise, 99);
+}
+
+/// Noise of the averages of a camera in grey levels, each divided by the mean of its triangles.
+std::vector<PictureNoise> grey_noise_of(const Camera& camera, std::size_t triangles, std::uint64_t seed) {
+  const RandomStream stream(seed, "grey constancy");
+  std::uint64_t draw = 0;
+  std::vector<PictureNoise> out;
+  for (const ContrastMeasurement& one : run_of(camera, seed)) {
+    std::vector<double> seen_k;
+    for (std::size_t i = 0; i < triangles; ++i) seen_k.push_back(one.references[i].value);
+    const cv::Mat1d all(seen_k);
+    cv::Scalar mean, sd;
+    cv::meanStdDev(all, mean, sd);
+    const auto n = static_cast<double>(triangles);
+    // 16 frames of 120 lines: a standard error of 1.0 %.
+    const double noise_k = (out.size() >= 12 ? camera.later_gain : 1) * 0.07 * std::exp(0.01 * stream.normal(draw++));
+    out.push_back({.set_delta_t_k = one.set_delta_t_k,
+                   .noise_k = noise_k * one.set_delta_t_k / mean[0],
+                   .triangles = static_cast<int>(triangles),
+                   .triangle_scatter = sd[0] * std::sqrt(n / (n - 1)) / mean[0]});
+  }
+  return out;
+}
+
+double share_of_grey_noise_found(const Camera& camera, std::size_t triangles, int runs) {
+  int found = 0;
+  for (int k = 0; k < runs; ++k)
+    found += noise_change(grey_noise_of(camera, triangles, static_cast<std::uint64_t>(k)))->beyond() ? 1 : 0;
+  return static_cast<double>(found) / runs;
+}
+
+TEST(NoiseChange, InGreyLevelsHasFewFalseAlarmsOfCamerasThatStayAsTheyAre) {
+  constexpr int runs = 2000;
+  for (const std::size_t triangles : {std::size_t{2}, std::size_t{4}}) {
+    EXPECT_LE(share_of_grey_noise_found({}, triangles, runs), 0.01) << triangles;
+    EXPECT_LE(share_of_grey_noise_found({.row_k = 0.03}, triangles, runs), 0.01) << triangles;
+    EXPECT_LE(share_of_grey_noise_found({.second_plate = 1.02}, triangles, runs), 0.01) << triangles;
+    EXPECT_LE(share_of_grey_noise_found({.contrasts = {16.9}}, triangles, runs), 0.01) << triangles;
+    EXPECT_LE(share_of_grey_noise_found({.contrasts = {0.23}}, triangles, runs), 0.01) << triangles;
+  }
+}
+
+TEST(NoiseChange, InGreyLevelsIsNoChangeOfTheGain) {
+  // Contrast and noise change alike.
+  EXPECT_LE(share_of_grey_noise_found({.later_gain = 1.5}, 4, 2000), 0.01);
+}
+
+TEST(NoiseChange, InGreyLevelsFindsTwiceTheNoise) {
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    auto run = grey_noise_of({}, 4, seed);
+    for (std::size_t i = 12; i < run.size(); ++i) run[i].noise_k *= 2;
+    found += noise_change(run)->beyond() ? 1 : 0;
+  }
+  EXPECT_GE(found, 198);
 }
 
 TEST(NoiseChange, FindsTwiceTheNoiseAndAFilterInASmallPicture) {
