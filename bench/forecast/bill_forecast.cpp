@@ -12,6 +12,7 @@
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/decision_forecast.h"
 #include "bench/forecast/precision_frontier.h"
+#include "bench/plan/plan_options.h"
 #include "bench/report/number_format.h"
 #include "bench/text/text.h"
 
@@ -49,29 +50,47 @@ void add_rows(AccuracyBill& bill, const Plan& plan, const BenchTime& time, doubl
         fmt::format("The warm-up of the camera takes at least {:.0f} s before the run.", time.warm_up_s));
 }
 
-/// Returns the share of the presentations that decides the limit for a camera of the predicted acuity, and adds its
-/// sentence. `floor_ln`: half-width of the stated rows; `least`: share of one presentation of each set-up.
-std::optional<double> add_decision(AccuracyBill& bill, const AcuityLimit& limit, const ContrastPrediction& contrast,
-                                   double floor_ln, double least) {
+/// What the decision on a limit needs.
+struct DecisionNeed {
+  double share = 0;          ///< of the presentations at its contrast
+  double half_width_ln = 0;  ///< of the trials
+};
+
+/// Returns what decides the limit for a camera of the predicted acuity; empty, with a sentence, if no presentation
+/// does. `floor_ln`: half-width of the stated rows.
+std::optional<DecisionNeed> needed_for(AccuracyBill& bill, const AcuityLimit& limit, const ContrastPrediction& contrast,
+                                       double floor_ln) {
   const std::string at = number_text(contrast.delta_t_k) + " K";
   if (!contrast.s75_mrad || !contrast.uncertainty_percent) {
     bill.sentences.push_back("No least time for the decision at " + at + ": no interval of S75 is predicted.");
     return std::nullopt;
   }
-  const double margin = 100 * std::abs(std::log(*contrast.s75_mrad * limit.least_acuity_per_mrad));
-  const auto needed = share_for_decision(100 * std::log1p(*contrast.uncertainty_percent / 100), margin, 100 * floor_ln);
-  if (!needed) {
-    bill.sentences.push_back(
-        fmt::format("No time decides the predicted acuity at {}: it is {} % from its limit, and the stated rows of the "
-                    "budget make ± {} %.",
-                    at, significant(margin, 2), significant(100 * floor_ln, 2)));
-    return std::nullopt;
-  }
-  const double share = std::max(*needed, least);
+  const double margin = std::abs(std::log(*contrast.s75_mrad * limit.least_acuity_per_mrad));
+  const double fixed = std::hypot(floor_ln, contrast.contrast_half_width);
+  const double all = std::log1p(*contrast.uncertainty_percent / 100);
+  const double trials = std::sqrt(std::max(0.0, all * all - std::pow(contrast.contrast_half_width, 2)));
+  const auto share = share_for_decision(trials, margin, fixed);
+  if (share) return DecisionNeed{*share, std::sqrt(margin * margin - fixed * fixed)};
   bill.sentences.push_back(
-      fmt::format("The decision on the predicted acuity at {} needs about {} % of the presentations of the plan.", at,
-                  significant(100 * share, 2)));
-  return share;
+      fmt::format("No number of presentations decides the predicted acuity at {}: it is {} % from its limit; the "
+                  "stated rows of the "
+                  "budget make ± {} %, and the measured contrast ± {} %.",
+                  at, significant(100 * std::expm1(margin), 2), significant(100 * std::expm1(floor_ln), 2),
+                  significant(100 * std::expm1(contrast.contrast_half_width), 2)));
+  return std::nullopt;
+}
+
+std::string need_in_words(const Plan& plan, const DecisionNeed& need, double delta_t_k) {
+  const std::string decision = "The decision on the predicted acuity at " + number_text(delta_t_k) + " K needs ";
+  if (plan.schedule.kind == ScheduleKind::adaptive)
+    return fmt::format("{}a half-width of {} % ([schedule] half_width_percent, {:g} in the plan).", decision,
+                       significant(100 * std::expm1(need.half_width_ln), 2), plan.schedule.half_width_percent);
+  if (plan.schedule.kind == ScheduleKind::ramp)
+    return fmt::format("{}about {} % of the presentations of the plan: a ramp of about {} K/s in place of {:g}.",
+                       decision, significant(100 * need.share, 2),
+                       significant(plan.schedule.ramp_k_per_s.value_or(0) / need.share, 2),
+                       plan.schedule.ramp_k_per_s.value_or(0));
+  return fmt::format("{}about {} % of the presentations of the plan.", decision, significant(100 * need.share, 2));
 }
 
 /// Adds what the plan's limits on acuity need. `floors_ln`: half-widths of the stated rows, one for each contrast.
@@ -81,8 +100,10 @@ void add_least(AccuracyBill& bill, const Plan& plan, const BenchTime& time, cons
     bill.sentences.emplace_back(no_limit_sentence);
     return;
   }
-  const double least = static_cast<double>(set_ups_of(plan.target) * prediction.contrasts.size()) /
-                       static_cast<double>(std::max<std::uint64_t>(1, time.presentations));
+  const auto set_ups = static_cast<double>(set_ups_of(plan.target));
+  const double each = static_cast<double>(time.presentations) / static_cast<double>(prediction.contrasts.size());
+  const double least = std::min(1.0, std::max<double>(set_ups, least_graded_presentations) / std::max(1.0, each));
+  const double shifts_s = std::max(0.0, each - set_ups) * plan.target.shift_change_s;  // of a contrast
   const auto seconds_of = [&](std::string_view part) {
     const auto row = std::ranges::find(bill.rows, part, &BillRow::part);
     return row == bill.rows.end() ? 0 : row->seconds.value_or(0);
@@ -94,19 +115,24 @@ void add_least(AccuracyBill& bill, const Plan& plan, const BenchTime& time, cons
     double most = 0;
     for (const AcuityLimit& limit : plan.limits.acuity) {
       if (!same_contrast(limit.delta_t_k, contrast.delta_t_k)) continue;
-      const auto share = add_decision(bill, limit, contrast, floors_ln[i], least);
-      decided = decided || share;
-      most = std::max(most, share.value_or(0));
+      auto need = needed_for(bill, limit, contrast, floors_ln[i]);
+      if (!need) continue;
+      need->share = std::max(need->share, least);
+      decided = true;
+      most = std::max(most, need->share);
+      bill.sentences.push_back(need_in_words(plan, *need, contrast.delta_t_k));
     }
     const double contrast_s = seconds_of(presentations_part(contrast.delta_t_k));
-    needed_s += most * contrast_s;
+    needed_s += most * contrast_s + (most - 1) * shifts_s;
     all_s += contrast_s;
   }
   if (!decided) return;
-  bill.sentences.push_back(
-      fmt::format("The decisions on acuity alone need about {} s; {} s are planned for changes, location and "
-                  "presentations.",
-                  significant(needed_s, 2), significant(all_s, 2)));
+  if (plan.schedule.kind == ScheduleKind::constant)
+    bill.sentences.push_back(fmt::format(
+        "In the set-ups of the plan, the decisions on acuity alone need about {} s; {} s are planned for changes, "
+        "location and presentations.",
+        significant(needed_s, 2), significant(all_s, 2)));
+  bill.sentences.emplace_back("`todbench plan --optimise --decide` looks for the fastest design that decides.");
 }
 
 }  // namespace

@@ -122,6 +122,26 @@ class Criterion {
   const CurveUncertainty* budget_;
 };
 
+/// Frames of the measured contrast: the plan's, doubled until their scatter makes at most half of the half-width that
+/// the criterion allows; the plan's if 64 times as many are not enough.
+Result<int> contrast_frames(Plan plan, const ExperimentInputs& inputs, const Criterion& criterion) {
+  constexpr int doublings = 6;
+  const int planned = plan.measurement.contrast_frames;
+  for (int k = 0; k <= doublings; ++k) {
+    TODBENCH_TRY(const auto prediction, predict_plan(plan, inputs));
+    const bool enough = std::ranges::all_of(prediction.contrasts, [&](ContrastPrediction contrast) {
+      const double twice = 2 * contrast.contrast_half_width;
+      if (!(twice > 0)) return true;
+      contrast.uncertainty_percent = 100 * std::expm1(twice);
+      contrast.se_ln_s75 = twice / contrast.interval_factor;
+      return criterion.met(contrast);
+    });
+    if (enough) return plan.measurement.contrast_frames;
+    plan.measurement.contrast_frames *= 2;
+  }
+  return planned;
+}
+
 /// Fewest frames of each contrast that meet the criterion; empty: not with most_frames.
 Result<std::optional<std::vector<int>>> fewest_frames(Plan plan, const ExperimentInputs& inputs,
                                                       const Criterion& criterion) {
@@ -372,7 +392,6 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
   });
   plan.measurement.registration_frames = registration_frames(plan, inputs.sensor);
   const Criterion criterion(plan, request, half_width_percent, rows);
-  Search search(plan, inputs, criterion);
   const std::size_t set_ups = std::min(least_set_ups, set_ups_of(plan.target));
   auto choices = mounting_choices(plan.target.plates.size(), static_cast<int>(plan.target.mountings.size()), set_ups);
   // Few set-ups first: their designs exclude most of the others by their time. Of as many set-ups the even ones first.
@@ -380,6 +399,10 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
     return std::pair(set_ups_of(candidate(plan, counts, 1).target),
                      std::ranges::max(counts) - std::ranges::min(counts));
   });
+  Plan settled = plan;
+  TODBENCH_TRY(settled.measurement.contrast_frames,
+               contrast_frames(candidate(plan, choices.front(), phase_choices.back()), inputs, criterion));
+  Search search(settled, inputs, criterion);
   TODBENCH_TRY_VOID(examine_all(search, choices, stop));
   if (const auto moving = with_settling_band(plan)) {
     Search within_band(*moving, inputs, criterion);
@@ -433,6 +456,12 @@ std::vector<std::string> in_words(const BestDesign& found) {
         fmt::format("presentations begin within {:g} % of the set contrast, and their own frames give their "
                     "contrasts; if every contrast settles, the best design takes {:.0f} s",
                     best.plan.target.contrast_settling_band_percent, *found.settled_s));
+  const int frames = best.plan.measurement.contrast_frames, planned = found.as_planned.plan.measurement.contrast_frames;
+  if (frames != planned)
+    out.push_back(
+        fmt::format("each contrast is measured with {} frames ([measurement] contrast_frames) in place of {}: "
+                    "its scatter enters S75, and no presentation reduces it",
+                    frames, planned));
   if (found.ramp) out.push_back(in_words(*found.ramp, best));
   const bool by_presentations = std::ranges::any_of(best.contrasts, [&](const ContrastPrediction& contrast) {
     return contrast.degrees_of_freedom && *contrast.degrees_of_freedom != found.set_ups - 1;

@@ -108,13 +108,17 @@ Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanP
     const double u_stated = stated != nullptr ? stated->u_stated : 0;
     const double ln_acuity = -std::log(*point->fit.threshold), ln_limit = std::log(limit.least_acuity_per_mrad);
     const FleetRow* row = row_of_acuity(plan.limits, limit.delta_t_k);
+    const double share = expected && contrast->contrast_half_width > 0
+                             ? contrast->contrast_half_width / (expected->se * expected->interval_factor)
+                             : 0;
+    const double of_four = std::hypot(std::sqrt(std::max(0.0, 1 - share * share)) / 2, share);
     auto planned = outlook(plan.limits, row, std::hypot(trials, u_stated), ln_acuity, ln_limit);
-    auto fourfold = outlook(plan.limits, row, std::hypot(trials / 2, u_stated), ln_acuity, ln_limit);
+    auto fourfold = outlook(plan.limits, row, std::hypot(trials * of_four, u_stated), ln_acuity, ln_limit);
     if (!planned) return tl::unexpected(planned.error());
     if (!fourfold) return tl::unexpected(fourfold.error());
     if (expected) {
       ExpectedUncertainty with_four = *expected;
-      with_four.se /= 2;
+      with_four.se *= of_four;
       as_decided(*planned, *expected, ln_acuity, ln_limit, plan.limits);
       as_decided(*fourfold, with_four, ln_acuity, ln_limit, plan.limits);
     }

@@ -11,6 +11,7 @@
 #include "acquisition/base/normal.h"
 #include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
+#include "bench/forecast/contrast_forecast.h"
 #include "bench/forecast/graded_precision.h"
 #include "bench/forecast/ramp_forecast.h"
 #include "bench/forecast/time_prediction.h"
@@ -259,11 +260,14 @@ void predict_interval(ContrastPrediction& point, const Plan& plan, const Experim
   adapt(point, plan, inputs.plates);
 }
 
-/// Replaces the predictions of constant stimuli by those of an adaptive schedule with graded answers.
-void adapt_graded(std::vector<ContrastPrediction>& points, const Plan& plan, const ExperimentInputs& inputs) {
+/// Replaces the predictions of constant stimuli by those of an adaptive schedule with graded answers. Returns the
+/// presentations in each set-up, by contrast of the plan.
+std::vector<std::vector<int>> adapt_graded(std::vector<ContrastPrediction>& points, const Plan& plan,
+                                           const ExperimentInputs& inputs) {
   const std::size_t set_ups = numbered_set_ups(plan, inputs.plates.size()).size();
-  if (plan.schedule.kind != ScheduleKind::adaptive || set_ups == 0) return;
-  if (chosen_answers(plan, inputs.sensor).kind != AnswerKind::graded) return;
+  std::vector<std::vector<int>> shown(points.size(), std::vector<int>(set_ups, plan.simulation.phases));
+  if (plan.schedule.kind != ScheduleKind::adaptive || set_ups == 0) return shown;
+  if (chosen_answers(plan, inputs.sensor).kind != AnswerKind::graded) return shown;
   std::vector<AdaptiveContrast> contrasts;
   for (ContrastPrediction& point : points) {
     AdaptiveContrast contrast;
@@ -283,6 +287,9 @@ void adapt_graded(std::vector<ContrastPrediction>& points, const Plan& plan, con
   std::ranges::stable_sort(contrasts, std::greater<>(),
                            [](const AdaptiveContrast& c) { return std::abs(c.point->delta_t_k); });
   run_adaptively(contrasts, plan, inputs);
+  for (AdaptiveContrast& contrast : contrasts)
+    shown[static_cast<std::size_t>(contrast.point - points.data())] = std::move(contrast.shown);
+  return shown;
 }
 
 /// Rejects a tolerance beyond the caps; the message states the best possible tolerance over all contrasts, and its time
@@ -417,7 +424,9 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
     if (outlook != inputs.outlooks.end()) predict_interval(point, design.plan, inputs, *outlook);
     out.contrasts.push_back(point);
   }
-  adapt_graded(out.contrasts, plan, inputs);
+  const auto shown = adapt_graded(out.contrasts, plan, inputs);
+  if (!plan.camera.id.empty() && plan.schedule.kind != ScheduleKind::ramp)
+    join_contrast_scatter(out.contrasts, plan, inputs, shown);
   double trials = 0, largest = 0;
   bool all_identified = true;
   for (const ContrastPrediction& point : out.contrasts) {

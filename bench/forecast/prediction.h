@@ -27,6 +27,8 @@ struct ContrastPrediction {
   /// Half-width of the 95 % interval of ln S75 over its own standard error.
   double interval_factor = 0;
   std::optional<double> degrees_of_freedom{};  ///< of that standard error; empty: infinite
+  /// Part of that half-width, in ln, from the scatter of the measured contrast, which presentations do not reduce.
+  double contrast_half_width = 0;
   /// Standard error of ln of the ratio of camera and twin by common phases, with the same margin as
   /// `uncertainty_percent`; empty: the plan makes no pairs.
   std::optional<double> paired_se_ln_ratio{};

@@ -11,11 +11,14 @@
 #include <tuple>
 #include <utility>
 
+#include "acquisition/base/distributions.h"
 #include "acquisition/base/median.h"
 #include "acquisition/base/normal.h"
+#include "bench/plan/plan_options.h"
 #include "bench/report/number_format.h"
 #include "bench/report/report_pieces.h"
 #include "sim_devices/sensor/effect_list.h"
+#include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
 namespace {
@@ -30,6 +33,7 @@ struct ContrastTime {
 struct RunTimes {
   double changes_s = 0, looking_s = 0;
   std::map<double, double> presentations_s;  ///< by set contrast
+  std::map<double, double> shifts_s;  ///< by set contrast, part of changes_s: of presentations that only move the plate
 };
 
 /// Set contrast of the point of the curve.
@@ -49,6 +53,7 @@ std::optional<RunTimes> times_of(std::span<const Presentation> presentations) {
     const TargetState* before = i > 0 ? &presentations[i - 1].set : nullptr;
     const bool opens = before == nullptr || before->plate != set.plate || before->mounting != set.mounting ||
                        point_k(*before) != point_k(set);
+    if (!opens) times.shifts_s[point_k(set)] += shown.said.settling_s;
     ContrastTime& contrast = by_contrast[point_k(set)];
     if (i + 1 == presentations.size()) {  // its end is not recorded: counted as the others
       if (!contrast.plain.empty()) contrast.plain.push_back(median(contrast.plain));
@@ -176,39 +181,74 @@ void add_floor(AccuracyBill& bill, const BillInput& input) {
   }
 }
 
-/// Share of the presentations at the contrast of a demand that its decision needs; empty: not known.
-std::optional<double> needed_share(const Demand& demand, const BillInput& input) {
+/// Half-width of the scatter of the measured contrast, in percent: no presentation reduces it.
+double contrast_percent(const TodPoint& point) {
+  return 100 * point.fit.contrast_u * distribution::quantile_above(0.025, freedom_of_contrast(point));
+}
+
+/// What the decision on a demand of acuity needs.
+struct DemandNeed {
+  double margin = 0, floor = 0, contrast = 0;  ///< distance from the limit and half-widths, in percent
+  std::optional<double> share{};  ///< of the presentations at its contrast; empty: no number of them decides
+};
+
+/// Empty if demand or curve state no numbers.
+std::optional<DemandNeed> need_of(const Demand& demand, const BillInput& input) {
   if (demand.kind != DemandKind::acuity || !demand.delta_t_k || !demand.limit || !demand.result) return std::nullopt;
-  if (demand.decision == VerdictKind::inconclusive || !(*demand.limit > 0) || !(*demand.result > 0))
-    return std::nullopt;
+  if (!(*demand.limit > 0) || !(*demand.result > 0)) return std::nullopt;
   const TodPoint* point = point_of(input.curve, *demand.delta_t_k);
   const auto half = point == nullptr ? std::nullopt : half_width_percent(deciding_interval(*point));
   if (!half) return std::nullopt;
   const PointUncertainty* stated_u =
       input.uncertainty == nullptr ? nullptr : point_at(*input.uncertainty, *demand.delta_t_k);
-  const double floor = stated_u == nullptr ? 0 : floor_percent(*stated_u);
-  const double margin = 100 * std::abs(std::log(*demand.result / *demand.limit));
-  const auto share = share_for_decision(*half, margin, floor);
-  if (!share) return std::nullopt;
-  const double presentations = static_cast<double>(count_at(input, *demand.delta_t_k));
-  const double least = static_cast<double>(set_ups_at(input, *demand.delta_t_k)) / presentations;
-  return std::clamp(*share, least, 1.0);
+  DemandNeed need{.margin = 100 * std::abs(std::log(*demand.result / *demand.limit)),
+                  .floor = stated_u == nullptr ? 0 : floor_percent(*stated_u),
+                  .contrast = std::min(*half, contrast_percent(*point))};
+  const double trials = std::sqrt(*half * *half - need.contrast * need.contrast);
+  need.share = share_for_decision(trials, need.margin, std::hypot(need.floor, need.contrast));
+  if (!need.share) return need;
+  const auto presentations = static_cast<double>(count_at(input, *demand.delta_t_k));
+  const auto set_ups = static_cast<double>(set_ups_at(input, *demand.delta_t_k));
+  const double least_graded = is_quasi(point->fit.interval) ? least_graded_presentations : 1;
+  const double least = std::min(presentations, std::max(set_ups, least_graded));
+  need.share = std::max(*need.share, least / presentations);
+  if (demand.decision != VerdictKind::inconclusive) need.share = std::min(*need.share, 1.0);
+  return need;
 }
 
 /// Time of the run with the presentations that the decisions on acuity need, and with all of it.
 void add_least_time(AccuracyBill& bill, const BillInput& input, const std::map<double, double>& share_needed) {
-  const auto times = times_of(input.presentations);
+  const auto times = times_of(input.presentations, input.forecast);
   if (!times || share_needed.empty()) return;
   double needed_s = times->changes_s + times->looking_s, all_s = needed_s;
   for (const auto& [delta_t_k, seconds] : times->presentations_s) {
-    const auto share = share_needed.find(delta_t_k);
-    needed_s += share == share_needed.end() ? 0 : share->second * seconds;
+    const auto found = share_needed.find(delta_t_k);
+    const double share = found == share_needed.end() ? 0 : found->second;
+    const auto shifts = times->shifts_s.find(delta_t_k);
+    needed_s += share * seconds + (share - 1) * (shifts == times->shifts_s.end() ? 0 : shifts->second);
     all_s += seconds;
   }
   bill.sentences.push_back(fmt::format(
-      "The decisions on acuity alone would have taken about {} s of the {} s for changes, location and presentations: "
-      "the changes of the target and the location of the plate stay.",
+      "In the set-ups of this run, the decisions on acuity alone would have taken about {} s of the {} s for "
+      "changes, location and presentations.",
       significant(needed_s, 2), significant(all_s, 2)));
+}
+
+std::string need_in_words(const Demand& demand, const DemandNeed& need, std::size_t presentations) {
+  const std::string at = stated(*demand.delta_t_k) + " K";
+  if (!need.share)
+    return fmt::format(
+        "No number of presentations decides on the acuity at {}: it is {} % from its limit; the stated "
+        "rows of the budget make ± {} %, and the measured contrast ± {} %.",
+        at, significant(need.margin, 2), significant(need.floor, 2), significant(need.contrast, 2));
+  const auto needed = static_cast<std::size_t>(std::ceil(*need.share * static_cast<double>(presentations) - 1e-9));
+  if (demand.decision != VerdictKind::inconclusive)
+    return fmt::format("The decision on the acuity at {} needs about {} of the {} presentations.", at, needed,
+                       presentations);
+  return fmt::format(
+      "The open decision on the acuity at {} needs about {} presentations in place of {}, if the acuity "
+      "stays the same.",
+      at, needed, presentations);
 }
 
 void add_least(AccuracyBill& bill, const BillInput& input) {
@@ -219,21 +259,18 @@ void add_least(AccuracyBill& bill, const BillInput& input) {
     return;
   }
   std::map<double, double> share_needed;
+  bool all_decided = true;
   for (const Demand& demand : input.verdict->demands) {
-    const auto share = needed_share(demand, input);
-    if (!share) continue;
+    const auto need = need_of(demand, input);
+    if (!need) continue;
+    bill.sentences.push_back(need_in_words(demand, *need, count_at(input, *demand.delta_t_k)));
+    all_decided = all_decided && need->share && demand.decision != VerdictKind::inconclusive;
     double& most = share_needed[*demand.delta_t_k];
-    most = std::max(most, *share);
-    const auto all = count_at(input, *demand.delta_t_k);
-    const auto needed = static_cast<std::size_t>(std::ceil(*share * static_cast<double>(all) - 1e-9));
-    bill.sentences.push_back(fmt::format("The decision on the acuity at {} K needs about {} of the {} presentations.",
-                                         stated(*demand.delta_t_k), needed, all));
+    most = std::max(most, need->share.value_or(0));
   }
   if (share_needed.empty())
-    bill.sentences.emplace_back(
-        "The demands on acuity have no least time: they are open, or the rows of the budget exceed the distance from "
-        "the limit.");
-  add_least_time(bill, input, share_needed);
+    bill.sentences.emplace_back("No limit on an acuity has a least time: the curve has no interval there.");
+  if (all_decided) add_least_time(bill, input, share_needed);
 }
 
 void add_forecast(AccuracyBill& bill, const TimeForecast& forecast) {

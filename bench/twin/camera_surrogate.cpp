@@ -299,14 +299,13 @@ void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degr
 }
 
 void join_contrast_errors(TodCurve& curve) {
-  constexpr double measured_slope = 1.14;
   const std::vector<double> slopes = contrast_slopes(curve);
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     TodPoint& point = curve.points[i];
     const auto se = contrast_se_k(point);
     const double seen = contrast_seen_k(point);
     if (!se || !(seen > 0) || !std::isfinite(slopes[i])) continue;
-    point.fit.contrast_u = std::max(measured_slope, slopes[i]) * *se / seen;
+    point.fit.contrast_u = std::max(measured_contrast_slope, slopes[i]) * *se / seen;
     join_uncertainty(point.fit, point.fit.contrast_u, freedom_of_contrast(point));
   }
 }

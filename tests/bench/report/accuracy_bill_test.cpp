@@ -211,7 +211,54 @@ TEST(AccuracyBill, SaysWhatNoPresentationReducesAndWhatTheDecisionNeeds) {
   EXPECT_THAT(text, HasSubstr("the acuity at 16.9 K needs about 2 of the 6 presentations"));
   // ln(0.3333 / 0.3175) = 4.87 %, less the budget 4.46 %: (4 / 4.46)^2 = 0.80 of 6.
   EXPECT_THAT(text, HasSubstr("the acuity at 0.5 K needs about 5 of the 6 presentations"));
+  EXPECT_THAT(text,
+              HasSubstr("No number of presentations decides on the acuity at 0.5 K: it is 1.0 % from its limit; the "
+                        "stated rows of the budget make ± 2.0 %"));
+  EXPECT_THAT(text, Not(HasSubstr("would have taken"))) << "one decision is open";
   EXPECT_THAT(text, HasSubstr("leaves out no effect"));
+}
+
+TEST(AccuracyBill, StatesTheTimeOfDecisionsAndWhatAnOpenOneNeeds) {
+  const auto presentations = run_of_twelve();
+  TodCurve curve = curve_of_two();
+  const SensorPlan effects;
+  Verdict verdict;
+  verdict.demands = {{.kind = DemandKind::acuity,
+                      .delta_t_k = 16.9,
+                      .limit = 0.5 / 1.0149,  // 1.48 %: (1.2 / 1.48)^2 = 0.66 of 6
+                      .result = 0.5,
+                      .decision = VerdictKind::pass}};
+  const auto text = [&] {
+    return all_sentences(accuracy_bill(
+        {.presentations = presentations, .curve = curve, .verdict = &verdict, .effects = effects, .wall_s = 60}));
+  };
+
+  // Changes 24 s and location 16 s; of 16.9 K 0.66 of 6 s and of the 8 s for four shifts, of 0.5 K nothing and no
+  // shift.
+  EXPECT_THAT(text(), HasSubstr("have taken about 33 s of the 52 s for changes, location and presentations."));
+  verdict.demands[0].decision = VerdictKind::inconclusive;
+  verdict.demands[0].limit = 0.5 / 1.006;
+  EXPECT_THAT(text(),
+              HasSubstr("The open decision on the acuity at 16.9 K needs about 25 presentations in place of 6"));
+  // The measured contrast alone makes 0.7 %.
+  curve.points[0].fit.contrast_u = 0.007 / 1.96;
+  EXPECT_THAT(text(), HasSubstr("No number of presentations decides on the acuity at 16.9 K"));
+}
+
+TEST(AccuracyBill, NeedsAsManyPresentationsAsGradedAnswersDo) {
+  std::vector<Presentation> presentations;
+  for (const Presentation& one : run_of_twelve()) presentations.insert(presentations.end(), 4, one);
+  TodCurve curve = curve_of_two();
+  curve.points[0].fit.interval = IntervalKind::set_ups;
+  const SensorPlan effects;
+  Verdict verdict;
+  verdict.demands = {
+      {.kind = DemandKind::acuity, .delta_t_k = 16.9, .limit = 0.4, .result = 0.5, .decision = VerdictKind::pass}};
+
+  EXPECT_THAT(
+      all_sentences(accuracy_bill(
+          {.presentations = presentations, .curve = curve, .verdict = &verdict, .effects = effects, .wall_s = 60})),
+      HasSubstr("needs about 8 of the 24 presentations"));
 }
 
 TEST(AccuracyBill, SaysSoWithoutABudgetAndWithoutALimit) {

@@ -191,7 +191,7 @@ TEST(BillForecast, StatesTheLeastTimeAndTheEffectsLeftOutOrWhyItCannot) {
   EXPECT_TRUE(has(without, no_budget_sentence) && has(without, no_limit_sentence));
   EXPECT_FALSE(has(with, no_limit_sentence));
   EXPECT_TRUE(has(with, "The decision on the predicted acuity at"));
-  EXPECT_TRUE(has(with, "The decisions on acuity alone need about"));
+  EXPECT_TRUE(has(with, "In the set-ups of the plan, the decisions on acuity alone need about"));
   EXPECT_TRUE(has(with, "The simulation leaves out on request: detector"));
 }
 

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/forecast/contrast_forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "acquisition/base/distributions.h"
+#include "bench/forecast/limit_forecast.h"
+#include "bench/plan/plan_options.h"
+#include "bench/twin/camera_surrogate.h"
+#include "tod/plate/test_pattern.h"
+#include "tod/psychometric/contrast_slope.h"
+
+namespace todbench {
+namespace {
+
+/// Size of the part of a reference triangle that effective_contrast() takes, over the triangle's own.
+double inner_part(double size_px) {
+  constexpr double inner_share = 0.45, inner_most_px = 1.25;  // effective_contrast()
+  const double radius_px = triangle_centroid_to_base * size_px;
+  return 1 - std::min(inner_share * radius_px, inner_most_px) / radius_px;
+}
+
+/// Variance of a frame's contrast due to noise of this standard deviation per pixel, row and column.
+struct PixelNoise {
+  double pixel_k = 0, row_k = 0, column_k = 0;
+};
+
+double contrast_variance(const TargetPlate& plate, double pixels_per_mm, double min_size_px, const PixelNoise& noise) {
+  constexpr double of_median = std::numbers::pi / 2, ring_width_px = 3;
+  double sum = 0, references = 0;
+  for (const PlateTriangle& t : plate.triangles) {
+    const double size_px = t.size_mm * pixels_per_mm;
+    if (size_px < min_size_px) continue;
+    const double inner_px = inner_part(size_px) * size_px, height = 3 * triangle_centroid_to_base;
+    const double perimeter = 6 / height;  // an equilateral triangle of unit area has the height h, the side 2 / h
+    const double inside = std::max(1.0, inner_px * inner_px), ring = ring_width_px * perimeter * size_px;
+    sum += of_median * std::pow(noise.pixel_k, 2) * (1 / inside + 1 / ring) +
+           std::pow(noise.row_k, 2) / std::max(1.0, height * inner_px) +
+           std::pow(noise.column_k, 2) / std::max(1.0, 2 / height * inner_px);
+    references += 1;
+  }
+  return references > 0 ? sum / (references * references) : 0;
+}
+
+/// Number of independent frames in a mean of successive ones.
+double independent_frames(double frames, double correlation) {
+  const double rho = std::clamp(correlation, 0.0, 0.99);
+  return std::max(1.0, frames * (1 - rho) / (1 + rho));
+}
+
+/// Standard error of a contrast over its set-ups, and its degrees of freedom.
+struct ContrastScatterForecast {
+  double standard_error_k = 0;
+  double degrees_of_freedom = 1;
+};
+
+ContrastScatterForecast scatter_of(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
+                                   const std::vector<int>& presentations) {
+  const SensorSpec& sensor = inputs.sensor;
+  const double pixels_per_mm = 1 / (plan.target.distance_m * sensor.ifov_mrad());
+  double variance = 0, set_ups = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
+    const auto mountings = static_cast<std::size_t>(mountings_of(plan.target, i));
+    for (std::size_t k = first; k < first + mountings && k < presentations.size(); ++k) {
+      if (presentations[k] == 0) continue;
+      const double frames = has_own_contrasts(plan)
+                                ? static_cast<double>(presentations[k]) * chosen_answers(plan, sensor, delta_t_k).frames
+                                : plan.measurement.contrast_frames;
+      const double temporal = 1 / std::sqrt(independent_frames(frames, sensor.noise_correlation));
+      variance += contrast_variance(inputs.plates[i], pixels_per_mm, plan.measurement.min_reference_px,
+                                    {.pixel_k = std::hypot(temporal * sensor.netd_k, sensor.fixed_pattern_k),
+                                     .row_k = temporal * sensor.row_noise_k,
+                                     .column_k = temporal * sensor.column_noise_k});
+      set_ups += 1;
+    }
+    first += mountings;
+  }
+  if (set_ups == 0) return {};
+  return {std::sqrt(variance) / set_ups, std::max(1.0, set_ups - 1)};
+}
+
+double excess_of(double degrees_of_freedom) {
+  return std::sqrt(distribution::quantile(distribution::ChiSquared(degrees_of_freedom), 0.95) / degrees_of_freedom);
+}
+
+/// Adds a standard uncertainty of ln S75 to a prediction: half-widths are added in quadrature (join_uncertainty()), and
+/// 19 of 20 runs stay below the factor of the effective degrees of freedom (Welch 1947, Satterthwaite 1946).
+void join(ContrastPrediction& point, double u, double degrees_of_freedom, bool once_in_a_set_up) {
+  if (!point.uncertainty_percent || !(u > 0) || !(point.se_ln_s75 > 0)) return;
+  const double own = point.interval_factor * point.se_ln_s75;
+  const double of_contrast = u * distribution::quantile_above(0.025, degrees_of_freedom);
+  const double both = std::hypot(own, of_contrast), own_likely = std::log1p(*point.uncertainty_percent / 100);
+  const double freedom = std::pow(both, 4) / (std::pow(own, 4) / point.degrees_of_freedom.value_or(1e6) +
+                                              std::pow(of_contrast, 4) / degrees_of_freedom);
+  // An adaptive schedule ends at its own half-width, without a margin.
+  const double likely = own_likely > own ? both * excess_of(freedom) : std::hypot(own_likely, of_contrast);
+  point.uncertainty_percent = 100 * std::expm1(std::max(likely, own_likely));
+  point.se_ln_s75 = std::hypot(point.se_ln_s75, u);
+  point.interval_factor = both / point.se_ln_s75;
+  point.degrees_of_freedom = freedom;
+  point.contrast_half_width = once_in_a_set_up ? of_contrast : 0;
+}
+
+}  // namespace
+
+double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_mm, double min_size_px) {
+  return contrast_variance(plate, pixels_per_mm, min_size_px, {.pixel_k = 1});
+}
+
+void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
+                           const std::vector<std::vector<int>>& presentations) {
+  PlanPrediction expected;
+  expected.contrasts = contrasts;
+  const std::vector<double> slopes = contrast_slopes(expected_curve(expected));
+  for (std::size_t i = 0; i < contrasts.size() && i < presentations.size(); ++i) {
+    ContrastPrediction& point = contrasts[i];
+    const ContrastScatterForecast scatter = scatter_of(plan, inputs, point.delta_t_k, presentations[i]);
+    const double slope = std::max(measured_contrast_slope, std::isfinite(slopes[i]) ? slopes[i] : 1.0);
+    join(point, slope * scatter.standard_error_k / std::abs(point.delta_t_k), scatter.degrees_of_freedom,
+         !has_own_contrasts(plan));
+  }
+}
+
+}  // namespace todbench
