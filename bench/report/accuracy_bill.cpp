@@ -28,10 +28,12 @@ using SetUp = std::pair<std::string, Mounting>;
 /// Times of the presentations of one contrast, in seconds.
 struct ContrastTime {
   std::vector<double> plain, opening;  ///< opening: the first of a set-up or a contrast
+  std::size_t count = 0;               ///< with the last presentation of the run, which has no time
 };
 
 struct RunTimes {
   double changes_s = 0, looking_s = 0;
+  bool location_is_separate = true;          ///< if not, presentations_s contains a part of looking_s
   std::map<double, double> presentations_s;  ///< by set contrast
   std::map<double, double> shifts_s;  ///< by set contrast, part of changes_s: of presentations that only move the plate
 };
@@ -41,10 +43,21 @@ double point_k(const TargetState& set) {
   return set.point_delta_t_k.value_or(set.delta_t_k);
 }
 
-/// Empty if a presentation has no time.
-std::optional<RunTimes> times_of(std::span<const Presentation> presentations) {
+/// Time of a presentation of this contrast without location: the median of those that only move the plate; if every one
+/// opens a set-up or a contrast, the forecast; empty without both.
+std::optional<double> usual_s(double delta_t_k, const ContrastTime& contrast, const TimeForecast* forecast) {
+  if (!contrast.plain.empty()) return median(contrast.plain);
+  if (forecast == nullptr) return std::nullopt;
+  const auto found = forecast->parts_s.find(presentations_part(delta_t_k));
+  if (found == forecast->parts_s.end()) return std::nullopt;
+  return found->second / static_cast<double>(contrast.count);
+}
+
+/// Empty if a presentation has no time. `forecast`: of the plan, null if there is none.
+std::optional<RunTimes> times_of(std::span<const Presentation> presentations, const TimeForecast* forecast = nullptr) {
   RunTimes times;
   std::map<double, ContrastTime> by_contrast;
+  std::optional<double> last_k;  // its end is not recorded: counted as the others
   for (std::size_t i = 0; i < presentations.size(); ++i) {
     const Presentation& shown = presentations[i];
     if (!shown.host_time_ns) return std::nullopt;
@@ -55,8 +68,9 @@ std::optional<RunTimes> times_of(std::span<const Presentation> presentations) {
                        point_k(*before) != point_k(set);
     if (!opens) times.shifts_s[point_k(set)] += shown.said.settling_s;
     ContrastTime& contrast = by_contrast[point_k(set)];
-    if (i + 1 == presentations.size()) {  // its end is not recorded: counted as the others
-      if (!contrast.plain.empty()) contrast.plain.push_back(median(contrast.plain));
+    ++contrast.count;
+    if (i + 1 == presentations.size()) {
+      last_k = point_k(set);
       continue;
     }
     const Presentation& next = presentations[i + 1];
@@ -67,12 +81,14 @@ std::optional<RunTimes> times_of(std::span<const Presentation> presentations) {
   for (const auto& [delta_t_k, contrast] : by_contrast) {
     double& sum = times.presentations_s[delta_t_k];
     for (const double s : contrast.plain) sum += s;
-    const double usual = contrast.plain.empty() ? 0 : median(contrast.plain);
+    const auto usual = usual_s(delta_t_k, contrast, forecast);
+    times.location_is_separate = times.location_is_separate && usual;
     for (const double s : contrast.opening) {
-      const double looking = contrast.plain.empty() ? 0 : std::max(0.0, s - usual);
+      const double looking = usual ? std::max(0.0, s - *usual) : 0;
       times.looking_s += looking;
       sum += s - looking;
     }
+    if (last_k == delta_t_k) sum += usual.value_or(0);
   }
   return times;
 }
@@ -130,11 +146,16 @@ std::string changes_bought(const BillInput& input) {
 
 /// Adds the rows of where the time went. Returns the seconds that the records of presentations account for.
 double add_rows(AccuracyBill& bill, const BillInput& input) {
-  const auto times = times_of(input.presentations);
+  const auto times = times_of(input.presentations, input.forecast);
   double known_s = 0;
   if (times) {
     bill.rows.push_back({std::string(changes_part), times->changes_s, changes_bought(input)});
-    bill.rows.push_back({std::string(location_part), times->looking_s, contrast_bought(input.curve)});
+    BillRow location{std::string(location_part), times->looking_s, contrast_bought(input.curve)};
+    if (!times->location_is_separate) {
+      location.seconds.reset();
+      location.bought += "; time within the presentations, each of which opens a set-up or a contrast";
+    }
+    bill.rows.push_back(std::move(location));
     known_s = times->changes_s + times->looking_s;
   }
   for (const TodPoint& point : input.curve.points) {

@@ -49,9 +49,11 @@ struct BillInput {
 
 /// Divides the time of a run. A presentation begins when the target is in place and ends when its next change begins.
 /// The first presentation of a set-up or a contrast also locates the plate and measures the contrast: the excess over
-/// the median presentation of the same contrast is that time. If the presentations have no times, all time beside the
-/// physical measures is computing. The least time for the verdict keeps the set-ups and assumes that the half-width of
-/// the trials falls with the root of the presentations, at least one of each set-up and `least_graded_presentations`.
+/// the median presentation of the same contrast is that time, or, if every presentation of the contrast is a first one,
+/// the excess over the forecast; without a forecast the location has no time. If the presentations have no times, all
+/// time beside the physical measures is computing. The least time for the verdict keeps the set-ups and assumes that the
+/// half-width of the trials falls with the root of the presentations, at least one of each set-up and
+/// `least_graded_presentations`.
 [[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);
 
 /// Returns the effects that the simulation leaves out, one sentence for each reason: below the tolerance with the bound

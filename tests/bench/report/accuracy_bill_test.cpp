@@ -98,6 +98,29 @@ TEST(AccuracyBill, DividesTheTimeOfARunWithoutARest) {
   EXPECT_THAT(bill.rows[1].bought, HasSubstr("0.20 %"));
 }
 
+TEST(AccuracyBill, SeparatesTheLocationIfEveryPresentationOpensAContrast) {
+  auto presentations = run_of_twelve();
+  std::erase_if(presentations, [](const Presentation& shown) { return shown.presentation % 3 != 0; });
+  for (std::size_t i = 0; i < presentations.size(); ++i)
+    presentations[i].host_time_ns = std::llround((100.0 + 7.0 * static_cast<double>(i)) * 1e9);  // 2 s of change, 5 s
+  const TodCurve curve = curve_of_two();
+  const SensorPlan effects;
+  // 1 s for each of the 2 presentations at a contrast.
+  const TimeForecast forecast{.total_s = 20, .parts_s = {{presentations_part(16.9), 2}, {presentations_part(0.5), 2}}};
+  BillInput input{.presentations = presentations, .curve = curve, .effects = effects, .wall_s = 60};
+
+  const AccuracyBill alone = accuracy_bill(input);
+  input.forecast = &forecast;
+  const AccuracyBill bill = accuracy_bill(input);
+
+  // 3 of the 4 presentations have a recorded end.
+  EXPECT_NEAR(seconds_of(bill, "Location"), 12, 1e-6);
+  EXPECT_NEAR(seconds_of(bill, "Presentations at 16.9 K"), 2, 1e-6);
+  EXPECT_NEAR(seconds_of(bill, "Presentations at 0.5 K"), 2, 1e-6);
+  EXPECT_TRUE(std::isnan(seconds_of(alone, "Location")));
+  EXPECT_NEAR(seconds_of(alone, "Presentations at 16.9 K"), 10, 1e-6);
+}
+
 TEST(AccuracyBill, SeparatesThePhysicalMeasuresFromTheRest) {
   auto presentations = run_of_twelve();
   const TodCurve curve = curve_of_two();
