@@ -31,6 +31,12 @@ constexpr int most_frames = 256;
 constexpr double least_gain = 0.995;  // a smaller one is not worth another design
 constexpr double decided = 0.95, coarsest_percent = 10;
 
+/// Largest half-width at any contrast of a design that decides, in percent.
+double most_percent(const LimitsPlan& limits) {
+  return limits.equivalence_margin_percent ? std::min(coarsest_percent, *limits.equivalence_margin_percent / 3)
+                                           : coarsest_percent;
+}
+
 /// Requirement at each contrast.
 class Criterion {
  public:
@@ -39,14 +45,11 @@ class Criterion {
 
   [[nodiscard]] bool met(const ContrastPrediction& contrast) const {
     if (!contrast.uncertainty_percent || !contrast.s75_mrad) return false;
-    if (!decide_) return *contrast.uncertainty_percent <= half_width_percent_;
+    if (*contrast.uncertainty_percent > (decide_ ? most_percent(plan_.limits) : half_width_percent_)) return false;
+    if (!decide_) return true;
     const auto limit = std::ranges::find_if(
         plan_.limits.acuity, [&](const AcuityLimit& row) { return same_contrast(row.delta_t_k, contrast.delta_t_k); });
-    if (limit == plan_.limits.acuity.end()) {
-      const auto& margin = plan_.limits.equivalence_margin_percent;
-      return *contrast.uncertainty_percent <= (margin ? *margin / 3 : coarsest_percent);
-    }
-    if (*contrast.uncertainty_percent > coarsest_percent) return false;
+    if (limit == plan_.limits.acuity.end()) return true;
     const auto expected = expected_uncertainty(contrast, budget_);
     if (!expected) return false;
     const double over = -std::log(*contrast.s75_mrad * limit->least_acuity_per_mrad);
@@ -324,7 +327,10 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
 
   plan.schedule.kind = ScheduleKind::constant;
   plan.target.mountings = in_pairs(plan.target.mountings);
-  if (request.decide) found.dropped_contrasts_k = not_needed(plan);
+  if (request.decide) {
+    found.dropped_contrasts_k = not_needed(plan);
+    if (plan.limits.equivalence_margin_percent) found.equivalence_half_width_percent = most_percent(plan.limits);
+  }
   std::erase_if(plan.target.delta_t_k, [&](double delta_t_k) {
     return std::ranges::find(found.dropped_contrasts_k, delta_t_k) != found.dropped_contrasts_k.end();
   });
@@ -408,6 +414,9 @@ std::vector<std::string> in_words(const BestDesign& found) {
     out.emplace_back(
         "the set-ups have unequal shares of the information and count as fewer than five: the intervals come from "
         "presentations and places. They are safe, and longer than those of set-ups");
+  if (found.equivalence_half_width_percent)
+    out.push_back(fmt::format("to compare camera and twin within {:g} %, every half-width is at most {:.2g} %",
+                              *best.plan.limits.equivalence_margin_percent, *found.equivalence_half_width_percent));
   for (const double delta_t_k : found.dropped_contrasts_k)
     out.push_back("the contrast of " + number_text(delta_t_k) + " K is left out, because no limit names it");
   return out;

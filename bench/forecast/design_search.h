@@ -20,8 +20,8 @@ struct DesignRequest {
   /// the half-width of the plan as it is.
   std::optional<double> half_width_percent{};
   /// If true, the design decides every limit on an acuity for a camera like the simulated one with a probability of 95
-  /// %; `half_width_percent` is not used. The half-width at contrasts without a limit is at most a third of the
-  /// equivalence margin, or 10 %.
+  /// %; `half_width_percent` is not used. The half-width at every contrast is at most 10 %, and at most a third of the
+  /// equivalence margin if the plan states one.
   bool decide = false;
 };
 
@@ -50,6 +50,8 @@ struct BestDesign {
   /// error that reverses its sign with this rotation enters S75 with this share; its scatter is in the interval.
   double unpaired_share = 0;
   std::vector<double> dropped_contrasts_k{};
+  /// Largest half-width at any contrast for the comparison with the twin, with `decide` and an equivalence margin.
+  std::optional<double> equivalence_half_width_percent{};
   /// Bench time of the best design whose contrasts settle, if the best one has a settling band.
   std::optional<double> settled_s{};
   /// The fastest ramp that meets the request; empty if the bench or the plan admits none.

@@ -165,6 +165,23 @@ TEST(DesignSearch, DecidesFromTheLimitsAndLeavesOutContrastsThatNoLimitNames) {
   EXPECT_GE(1 - planned->cameras.back().chances.inconclusive, 0.95);
 }
 
+TEST(DesignSearch, KeepsTheHalfWidthsForEquivalenceAtContrastsWithALimit) {
+  Plan plan = plan_of_defaults();
+  plan.limits = {};
+  plan.limits.equivalence_margin_percent = 10;
+  plan.limits.acuity = {{16.9, 0.40}, {0.23, 0.20}};
+  const SearchedBench bench = bench_of(plan);
+
+  const auto found = best_design(bench.loaded.plan(), bench.inputs, {.decide = true}, {});
+
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_EQ(found->best.contrasts.size(), 3u);
+  for (const ContrastPrediction& contrast : found->best.contrasts)
+    EXPECT_LE(*contrast.uncertainty_percent, 10.0 / 3) << contrast.delta_t_k;
+  EXPECT_THAT(in_words(*found),
+              Contains(HasSubstr("to compare camera and twin within 10 %, every half-width is at most 3.3 %")));
+}
+
 TEST(ConstantStimuli, ShowEachPlateInItsNumberOfMountings) {
   ConstantStimuliOptions options{.plates = {"a", "b"},
                                  .mountings = {all_mountings.begin(), all_mountings.end()},
