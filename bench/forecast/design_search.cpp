@@ -228,11 +228,13 @@ Result<void> examine_all(Search& search, const std::vector<std::vector<int>>& ch
   return {};
 }
 
-/// The plan as a ramp between its contrasts, at the largest rate, with the lag that limits it; empty if bench or plan
-/// admit none.
+/// Time of a ramp in one direction, in s: none shorter is studied, none longer is sensible.
+constexpr double shortest_ramp_s = 10, longest_ramp_s = 1200;
+
+/// The plan as a ramp between its contrasts, with the lag that limits its rate; empty if bench or plan admit none.
 std::optional<Plan> as_ramp(Plan plan) {
-  constexpr double assumed_lag_s = 0.1, shortest_s = 10;  // no shorter ramp is studied
-  constexpr int least_phases = 3;                         // of no use in a ramp; fewer would make its answers binary
+  constexpr double assumed_lag_s = 0.1;
+  constexpr int least_phases = 3;  // of no use in a ramp; fewer would make its answers binary
   if (plan.target.contrast_change_s == 0 || plan.target.delta_t_k.empty()) return std::nullopt;
   const auto [to, from] =
       std::ranges::minmax_element(plan.target.delta_t_k, {}, [](double delta_t_k) { return std::abs(delta_t_k); });
@@ -243,37 +245,72 @@ std::optional<Plan> as_ramp(Plan plan) {
   plan.target.phases = plan.simulation.phases = std::max(least_phases, plan.target.phases);
   if (!plan.target.max_contrast_lag_s) plan.target.max_contrast_lag_s = assumed_lag_s;
   if (!check_schedule_kind(plan, 0).empty() || !check_ramp_to(plan, 0).empty()) return std::nullopt;
-  const double shortest_rate = std::abs(*from) * std::log(*from / *to) / shortest_s;
-  plan.schedule.ramp_k_per_s = std::min(largest_ramp_rate(*from, *plan.target.max_contrast_lag_s), shortest_rate);
   return plan;
 }
 
-/// The fastest ramp that meets the criterion, in these mountings at the largest rate or a slower one.
+/// Rates that are compared, in K/s: the largest that the lag of the plate allows, then slower ones in steps of 2 %. The
+/// slower ones are the same for every lag, so that a shorter lag never makes the ramp slower.
+std::vector<double> ramp_rates(const Plan& ramp) {
+  constexpr double step = 1.02;
+  const double from_k = *ramp.schedule.from_delta_t_k;
+  const double of_1_s = std::abs(from_k) * std::log(from_k / *ramp.schedule.to_delta_t_k);
+  const double largest = std::min(largest_ramp_rate(from_k, *ramp.target.max_contrast_lag_s), of_1_s / shortest_ramp_s);
+  std::vector<double> rates{largest};
+  for (double seconds = shortest_ramp_s; seconds <= longest_ramp_s; seconds *= step) {
+    if (of_1_s / seconds < largest) rates.push_back(of_1_s / seconds);
+  }
+  return rates;
+}
+
+struct RatedRamp {
+  PricedDesign design;
+  bool meets = false;
+};
+
+/// The ramp at the fastest of the rates that meets the criterion; if none does in less than `best_s`, at the first one.
+Result<RatedRamp> fastest_ramp(Plan ramp, const ExperimentInputs& inputs, const Criterion& criterion, double best_s,
+                               const std::stop_token& stop) {
+  const std::vector<double> rates = ramp_rates(ramp);
+  const auto at = [&](std::size_t rate) -> Result<RatedRamp> {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    ramp.schedule.ramp_k_per_s = rates[rate];
+    ramp.schedule.frames_per_presentation = {0};
+    TODBENCH_TRY(auto design, priced(with_frames(ramp, inputs), inputs));
+    const bool meets = std::ranges::all_of(design.contrasts, [&](const auto& one) { return criterion.met(one); });
+    return RatedRamp{std::move(design), meets};
+  };
+  TODBENCH_TRY(auto found, at(0));
+  // A slower ramp takes longer and has shorter half-widths.
+  std::size_t fails = 0, meets = rates.size();
+  if (found.meets || found.design.bench_s >= best_s) return found;
+  while (meets - fails > 1) {
+    const std::size_t middle = (fails + meets) / 2;
+    TODBENCH_TRY(auto one, at(middle));
+    if (!one.meets && one.design.bench_s >= best_s) break;
+    (one.meets ? meets : fails) = middle;
+    if (one.meets) found = std::move(one);
+  }
+  return found;
+}
+
+/// The fastest ramp that meets the criterion, in these mountings.
 Result<std::optional<RampDesign>> examine_ramps(const Plan& asked, const ExperimentInputs& inputs,
                                                 const Criterion& criterion,
                                                 const std::vector<std::vector<int>>& choices,
                                                 const std::stop_token& stop) {
-  const auto largest = as_ramp(asked);
-  if (!largest) return std::nullopt;
+  const auto ramp = as_ramp(asked);
+  if (!ramp) return std::nullopt;
   std::optional<RampDesign> best;
   for (const std::vector<int>& mountings : choices) {
-    Plan ramp = candidate(*largest, mountings, largest->target.phases);
-    for (const double slower : {1.0, 1.4, 2.0, 2.8, 4.0, 8.0, 16.0}) {
-      if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
-      ramp.schedule.ramp_k_per_s = *largest->schedule.ramp_k_per_s / slower;
-      ramp.schedule.frames_per_presentation = {0};
-      ramp = with_frames(ramp, inputs);
-      TODBENCH_TRY(auto design, priced(ramp, inputs));
-      const bool meets = std::ranges::all_of(design.contrasts, [&](const auto& one) { return criterion.met(one); });
-      const bool faster = !best || !best->meets || design.bench_s < best->design.bench_s;
-      // Without any that meets it, the last choice at the largest rate: it has most set-ups.
-      if (meets ? faster : (slower == 1 && (!best || !best->meets)))
-        best = RampDesign{.design = std::move(design),
-                          .lag_s = *largest->target.max_contrast_lag_s,
-                          .lag_is_stated = asked.target.max_contrast_lag_s.has_value(),
-                          .meets = meets};
-      if (meets || (best && best->meets && !faster)) break;
-    }
+    const double best_s = best && best->meets ? best->design.bench_s : std::numeric_limits<double>::infinity();
+    TODBENCH_TRY(auto found,
+                 fastest_ramp(candidate(*ramp, mountings, ramp->target.phases), inputs, criterion, best_s, stop));
+    // Without any that meets it, the last choice at the largest rate: it has most set-ups.
+    if (found.meets ? found.design.bench_s < best_s : (!best || !best->meets))
+      best = RampDesign{.design = std::move(found.design),
+                        .lag_s = *ramp->target.max_contrast_lag_s,
+                        .lag_is_stated = asked.target.max_contrast_lag_s.has_value(),
+                        .meets = found.meets};
   }
   return best;
 }

@@ -65,10 +65,10 @@ struct BestDesign {
 /// counterparts. The plate is located in fewer frames than planned if their noise is at most 0.15 % of the highest
 /// contrast. With `decide` and without an equivalence margin, contrasts without a limit are left out, except the
 /// highest one, which locates the plate. A ramp between the strongest and the weakest contrast is compared, at the
-/// largest rate that the lag of the plate allows (0.1 s if the plan states none) and at slower ones, in at least 10 s.
-/// It is the best design if it is faster and the plan states the lag. Errors: `invalid_input` (no design examined meets
-/// the request; the message states the least half-width, or the rows of the budget that prevent the decision),
-/// predict_plan(), `interrupted`.
+/// fastest rate that meets the request, up to the one that the lag of the plate allows (0.1 s if the plan states none).
+/// It takes 10 to 1200 s in one direction. It is the best design if it is faster and the plan states the lag. Errors:
+/// `invalid_input` (no design examined meets the request; the message states the least half-width, or the rows of the
+/// budget that prevent the decision), predict_plan(), `interrupted`.
 [[nodiscard]] Result<BestDesign> best_design(const Plan& plan, const ExperimentInputs& inputs,
                                              const DesignRequest& request, std::stop_token stop);
 

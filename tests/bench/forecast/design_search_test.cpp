@@ -113,6 +113,25 @@ TEST(DesignSearch, ProposesARampIfTheLagIsStatedAndItIsFaster) {
   EXPECT_EQ(*read, found->best.plan);
 }
 
+TEST(DesignSearch, TakesNoMoreTimeForARampIfThePlateLagsLess) {
+  double before_s = 1e9;
+  for (const double lag_s : {0.1, 0.01}) {
+    Plan plan = plan_of_defaults();
+    plan.target.max_contrast_lag_s = lag_s;
+    const SearchedBench bench = bench_of(plan);
+
+    const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = 3}, {});
+
+    ASSERT_TRUE(found) << found.error().message;
+    ASSERT_TRUE(found->ramp && found->ramp->meets);
+    // No more precise than asked: a slower rate would only take more time.
+    EXPECT_LE(*found->ramp->design.half_width_percent, 3);
+    EXPECT_GT(*found->ramp->design.half_width_percent, 2.8);
+    EXPECT_LE(found->ramp->design.bench_s, 1.02 * before_s);  // rates differ by 2 %
+    before_s = found->ramp->design.bench_s;
+  }
+}
+
 TEST(DesignSearch, WritesAPlanThatReadsBackAndShowsTheSetUps) {
   const SearchedBench bench = bench_of(plan_of_defaults());
   const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = 2.5}, {});
