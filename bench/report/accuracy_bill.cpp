@@ -93,9 +93,15 @@ std::optional<RunTimes> times_of(std::span<const Presentation> presentations, co
   return times;
 }
 
+/// In 100 times ln S75, as shares of presentations need it; shown by percent_of_ln().
 std::optional<double> half_width_percent(const Interval& s75) {
   if (!s75.low || !s75.high || !(*s75.low > 0)) return std::nullopt;
   return 50 * std::log(*s75.high / *s75.low);
+}
+
+/// A difference of ln in percent of the acuity, as text.
+std::string percent_of_ln(double ln_percent) {
+  return significant(100 * std::expm1(ln_percent / 100), 2);
 }
 
 const TodPoint* point_of(const TodCurve& curve, double set_delta_t_k) {
@@ -119,7 +125,7 @@ std::size_t set_ups_at(const BillInput& input, double set_delta_t_k) {
 std::string presentations_bought(const BillInput& input, const TodPoint& point) {
   const std::string count = std::to_string(count_at(input, point.set_delta_t_k)) + " presentations";
   const auto half = half_width_percent(deciding_interval(point));
-  return half ? fmt::format("S75 to ± {} % (95 %), {}", significant(*half, 2), count) : count + ", no interval of S75";
+  return half ? fmt::format("S75 to ± {} % (95 %), {}", percent_of_ln(*half), count) : count + ", no interval of S75";
 }
 
 /// Largest relative standard error of the contrasts.
@@ -178,7 +184,7 @@ double add_rows(AccuracyBill& bill, const BillInput& input) {
   return known_s;
 }
 
-/// Half-width of the rows that are stated in the budget, in percent: no time reduces them.
+/// Half-width of the rows that are stated in the budget, in 100 times ln acuity: no time reduces them.
 double floor_percent(const PointUncertainty& point) {
   double sum = 0;
   for (const AppliedRow& row : point.rows) {
@@ -198,7 +204,7 @@ void add_floor(AccuracyBill& bill, const BillInput& input) {
     if (!half || !(floor > 0)) continue;
     bill.sentences.push_back(fmt::format(
         "At {} K the stated rows of the budget make ± {} %, which no presentation reduces; the trials make ± {} %.",
-        stated(point.set_delta_t_k), significant(floor, 2), significant(*half, 2)));
+        stated(point.set_delta_t_k), percent_of_ln(floor), percent_of_ln(*half)));
   }
 }
 

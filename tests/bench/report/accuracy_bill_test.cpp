@@ -229,7 +229,12 @@ TEST(AccuracyBill, SaysWhatNoPresentationReducesAndWhatTheDecisionNeeds) {
                                                         .wall_s = 60}));
 
   EXPECT_THAT(text, HasSubstr("At 0.5 K the stated rows of the budget make ± 2.0 %, which no presentation reduces; the "
-                              "trials make ± 4.0 %"));
+                              "trials make ± 4.1 %"));
+  // Of the row of 5.9 % in ln acuity the forecast states 6.1 %, too.
+  uncertainty.points[0].rows[0].contribution = 0.03;
+  EXPECT_THAT(all_sentences(accuracy_bill(
+                  {.presentations = presentations, .curve = curve, .uncertainty = &uncertainty, .effects = effects})),
+              HasSubstr("At 0.5 K the stated rows of the budget make ± 6.1 %"));
   // A margin of 22 % needs far less than the 1.2 % that was measured: one presentation of each set-up.
   EXPECT_THAT(text, HasSubstr("the acuity at 16.9 K needs about 2 of the 6 presentations"));
   // ln(0.3333 / 0.3175) = 4.87 %, less the budget 4.46 %: (4 / 4.46)^2 = 0.80 of 6.
