@@ -2,6 +2,7 @@
 #include "bench/forecast/decision_forecast.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -268,6 +269,26 @@ Result<std::vector<DecisionForecast>> decision_forecasts(const Plan& asked, cons
   }
   std::ranges::for_each(forecasts, finish);
   return forecasts;
+}
+
+std::string open_by_budget(const Plan& plan, const std::vector<ContrastPrediction>& contrasts,
+                           const CurveUncertainty* budget, double probability) {
+  std::vector<std::string> open;
+  for (const ContrastPrediction& contrast : contrasts) {
+    auto rows_alone = expected_uncertainty(contrast, budget);
+    if (!rows_alone || !contrast.s75_mrad || !(rows_alone->stated.u() > 0)) continue;
+    rows_alone->se *= 1e-6;
+    for (const AcuityLimit& limit : plan.limits.acuity) {
+      if (!same_contrast(limit.delta_t_k, contrast.delta_t_k)) continue;
+      const double over = -std::log(*contrast.s75_mrad * limit.least_acuity_per_mrad);
+      if (1 - decision_chances(over, *rows_alone, plan.limits).inconclusive >= probability) continue;
+      open.push_back(
+          fmt::format("at {} K it is {:.2g} % from its limit, and the stated rows of the budget make ± {:.2g} %",
+                      number_text(contrast.delta_t_k), percent_of_ln(std::abs(over)),
+                      percent_of_ln(rows_alone->stated.half_width(upper_tail))));
+    }
+  }
+  return open.empty() ? "" : fmt::format("{}, which no presentation reduces", fmt::join(open, "; "));
 }
 
 std::string in_words(const DecisionForecast& forecast) {

@@ -103,6 +103,11 @@ struct DecisionForecast {
 /// Errors: those of curve_uncertainty().
 [[nodiscard]] Result<std::vector<double>> floors_ln(const Plan& plan, const PlanPrediction& prediction);
 
+/// Returns the limits that the stated rows of the budget alone leave open, with their distance from a camera of the
+/// predicted acuity: without trials that scatter they are decided with less than `probability`. Empty: none.
+[[nodiscard]] std::string open_by_budget(const Plan& plan, const std::vector<ContrastPrediction>& contrasts,
+                                         const CurveUncertainty* budget, double probability);
+
 /// Returns "0.23 K, at least 0.2 1/mrad: ..."
 [[nodiscard]] std::string in_words(const DecisionForecast& forecast);
 

@@ -332,15 +332,21 @@ std::string in_words(const RampDesign& ramp, const PricedDesign& best) {
   return text + ": it is faster. Measure the lag of the plate and state max_contrast_lag_s to use it";
 }
 
-Error not_found(const DesignRequest& request, double half_width_percent, const Search& search,
-                const CurveUncertainty* budget) {
+Error not_found(const Plan& plan, const DesignRequest& request, double half_width_percent, const Search& search,
+                const std::string& by_budget) {
   std::string text = request.decide ? fmt::format(
                                           "no design decides every limit for a camera like the simulated one with a "
                                           "probability of {:.0f} %",
                                           100 * decided)
                                     : fmt::format("no design has a half-width of {:.3g} %", half_width_percent);
-  if (search.least_percent) text += fmt::format(": the trials reach {:.2g} % at best", *search.least_percent);
-  if (request.decide && budget != nullptr) text += ", and no presentation reduces the stated rows of the budget";
+  const auto& margin = plan.limits.equivalence_margin_percent;
+  if (request.decide && margin)
+    text += fmt::format(" and has half-widths of {:.2g} % or less for the equivalence margin of {:g} %",
+                        most_percent(plan.limits), *margin);
+  if (!by_budget.empty()) text += ": " + by_budget;
+  if (search.least_percent)
+    text +=
+        fmt::format("{} trials reach {:.2g} % at best", by_budget.empty() ? ": the" : ". The", *search.least_percent);
   return Error{ErrorCode::invalid_input, text + ". `todbench plan --decide` shows each limit"};
 }
 
@@ -400,7 +406,10 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
     search.best = found.ramp->design;
     search.least_s = std::min(search.least_s, search.best->bench_s);
   }
-  if (!search.best) return tl::unexpected(not_found(request, half_width_percent, search, rows));
+  if (!search.best) {
+    const std::string by_budget = request.decide ? open_by_budget(plan, found.as_planned.contrasts, rows, decided) : "";
+    return tl::unexpected(not_found(plan, request, half_width_percent, search, by_budget));
+  }
   found.best = *std::move(search.best);
   found.least_s = search.least_s;
   found.set_ups = static_cast<int>(set_ups_of(found.best.plan.target));

@@ -14,6 +14,7 @@ namespace todbench {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -163,6 +164,22 @@ TEST(DesignSearch, RejectsAHalfWidthThatCannotBeHad) {
 
   ASSERT_FALSE(found);
   EXPECT_THAT(found.error().message, HasSubstr("% at best"));
+}
+
+TEST(DesignSearch, NamesTheBudgetIfItLeavesALimitOpen) {
+  Plan plan = plan_of_defaults();
+  plan.limits = {};
+  plan.limits.acuity = {{0.23, 0.28}};  // 9.7 % below the acuity of the camera
+  plan.uncertainty = {};
+  plan.uncertainty.rows = {{.name = "distance", .value = 200, .unit = "mm"}};  // 10 % of 2 m: +- 22 %
+  const SearchedBench bench = bench_of(plan);
+
+  const auto found = best_design(bench.loaded.plan(), bench.inputs, {.decide = true}, {});
+
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().message,
+              ContainsRegex("with a probability of 95 %: at 0.23 K it is (9.[0-9]|10) % from its limit, and the stated "
+                            "rows of the budget make ± 2[12] %, which no presentation reduces. The trials reach "));
 }
 
 TEST(DesignSearch, DecidesFromTheLimitsAndLeavesOutContrastsThatNoLimitNames) {
