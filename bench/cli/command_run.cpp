@@ -8,6 +8,7 @@
 
 #include "acquisition/base/try.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/effect_decisions.h"
 #include "bench/cli/key_options.h"
 #include "bench/cli/run_display.h"
 #include "bench/cli/run_results.h"
@@ -61,6 +62,7 @@ struct DemoArguments {
 struct SimulateArguments {
   RunArguments run;
   SimulationOverrides overrides;
+  bool why = false;
 };
 
 ExperimentOptions folder_of(const RunArguments& arguments, const std::string& name) {
@@ -161,7 +163,7 @@ int run_simulate(Console& console, SimulateArguments arguments, const Program& p
       simulate_plan(*loaded, folder_of(arguments.run, loaded->plan().name), shown.listener(), program.stop->token());
   console.end_progress();
   if (!outcome) return report_error(console, outcome.error());
-  return show_run(console, *outcome, {.effects = true});
+  return show_run(console, *outcome, {.effects = true, .why = arguments.why});
 }
 
 int run_demo(Console& console, const DemoArguments& asked, const Program& program) {
@@ -318,6 +320,7 @@ void add_simulate_command(CLI::App& app, Program& program) {
       "PLAN.toml", o.plan,
       "plan: name or file; without a plan the options define the simulation, at a distance that suits the sensor");
   add_folder_options(*command, a->run);
+  command->add_flag("--why", a->why, why_text);
   // --force means an existing folder here as well.
   add_key_options(*command, OptionOf::simulations, o.keys, "simulation.force");
   auto forced = std::make_shared<std::vector<std::string>>();

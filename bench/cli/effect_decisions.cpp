@@ -8,7 +8,7 @@
 namespace todbench {
 
 void EffectDecisionOptions::add_to(CLI::App& command) {
-  command.add_flag("--why", why, "states why each neutral effect is neutral, instead of one line for all of them");
+  command.add_flag("--why", why, why_text);
   command.add_flag("--dry-run", dry_run, "states the simulated and skipped effects with their reasons, and ends");
 }
 

@@ -13,6 +13,10 @@
 
 namespace todbench {
 
+/// Help of the option --why.
+inline constexpr const char* why_text =
+    "states why each neutral effect is neutral, instead of one line for all of them";
+
 /// Options of a command that simulates a sensor; they outlive the parser.
 struct EffectDecisionOptions {
   /// Lists neutral effects with their reasons, instead of in one line.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/cli/effect_decisions.h"
 #include "bench/cli/exit_codes.h"
 #include "bench/cli/findings.h"
 #include "bench/judgement/demand_kinds.h"
@@ -43,21 +44,6 @@ void print_comparison(const Console& console, const ExperimentOutcome& outcome) 
   console.table(
       {"dT [K]", "acuity measured [1/mrad]", "95 %", "simulated [1/mrad]", "95 %", "ratio", "95 %", "verdict"}, rows);
   print_paired(console, *outcome.comparison, has_contrast_measured_once(outcome.curve));
-}
-
-void print_effects(const Console& console, const SensorPlan& effects) {
-  std::vector<TableRow> rows;
-  std::string neutral;
-  for (const auto& d : effects.decisions) {
-    if (d.changes_nothing()) {
-      neutral += (neutral.empty() ? "" : ", ") + std::string(to_string(d.effect));
-      continue;
-    }
-    rows.push_back(
-        {std::string(to_string(d.effect)), d.decision == Decision::simulate ? "simulated" : "skipped", d.reason});
-  }
-  console.table({"effect", "decision", "reason"}, rows);
-  if (!neutral.empty()) console.text("neutral in this sensor, so skipped: " + neutral);
 }
 
 /// Prints the verdict, unless the run ended early. Thresholds without a limit are in the table of the curve.
@@ -210,7 +196,7 @@ void print_run(const Console& console, const ExperimentOutcome& outcome, const R
   if (shown.curve) print_curve(console, outcome.curve);
   if (shown.effects) {
     console.text("");
-    print_effects(console, outcome.effects);
+    print_effect_table(console, outcome.effects, shown.why);
   }
   if (outcome.comparison) {
     if (shown.curve) console.text("");

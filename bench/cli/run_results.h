@@ -13,6 +13,7 @@ namespace todbench {
 struct RunShown {
   bool curve = true;     ///< printed; the JSON object has it always
   bool effects = false;  ///< of the simulated sensor, printed
+  bool why = false;      ///< with the reason of each neutral effect
 };
 
 /// Prints curve, comparison, uncertainty, measures, bill and verdict of a run, or its JSON object, and returns the exit

@@ -243,10 +243,14 @@ TEST_F(Planning, NeutralEffectsShareALineAndStateTheirReasonsOnRequest) {
 
   const Ended folded = run({"plan", "./plan.toml"});
   const Ended why = run({"plan", "./plan.toml", "--why"});
+  const Ended simulated = run({"simulate", "./plan.toml", "--out", "folded"});
+  const Ended simulated_why = run({"simulate", "./plan.toml", "--out", "why", "--why"});
 
   EXPECT_THAT(folded.out,
               AllOf(HasSubstr("neutral in this sensor, so skipped"), Not(HasSubstr("frames_averaged is 1"))));
   EXPECT_THAT(why.out, HasSubstr("frames_averaged is 1"));
+  EXPECT_THAT(simulated.out, AllOf(HasSubstr("--why"), Not(HasSubstr("frames_averaged is 1"))));
+  EXPECT_THAT(simulated_why.out, HasSubstr("frames_averaged is 1"));
 }
 
 }  // namespace
