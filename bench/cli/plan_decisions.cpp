@@ -28,7 +28,13 @@ const DecisionChances* chances_at(const DecisionDesign& design, int over_percent
 
 void print_designs(const Console& console, const DecisionForecast& forecast) {
   const bool ramp = std::ranges::any_of(forecast.designs, [](const auto& one) { return one.ramp_k_per_s.has_value(); });
-  TableRow header{"frames", ramp ? "ramp [K/s]" : "phases", "bench time [s]", "expected trials [%]", "with budget [%]"};
+  const bool adaptive =
+      std::ranges::any_of(forecast.designs, [](const auto& one) { return one.asked_percent.has_value(); });
+  TableRow header{"frames",
+                  ramp       ? "ramp [K/s]"
+                  : adaptive ? "half-width asked [%]"
+                             : "phases",
+                  "bench time [s]", "expected trials [%]", "with budget [%]"};
   for (const int over : shown_cameras) header.push_back(fmt::format("{:+d} %", over));
   const bool fleet =
       std::ranges::any_of(forecast.designs, [](const auto& design) { return design.consumer_risk.has_value(); });
@@ -37,7 +43,9 @@ void print_designs(const Console& console, const DecisionForecast& forecast) {
   std::vector<TableRow> rows;
   for (const DecisionDesign& design : forecast.designs) {
     TableRow row{fmt::format("{}", fmt::join(design.frames, ", ")),
-                 design.ramp_k_per_s ? fmt::format("{:.3g}", *design.ramp_k_per_s) : std::to_string(design.phases),
+                 design.ramp_k_per_s    ? fmt::format("{:.3g}", *design.ramp_k_per_s)
+                 : design.asked_percent ? fmt::format("{:g}", *design.asked_percent)
+                                        : std::to_string(design.phases),
                  fixed(design.bench_s, 0), fixed(design.half_width_percent, 2), fixed(design.deciding_percent, 2)};
     for (const int over : shown_cameras) {
       const DecisionChances* chances = chances_at(design, over);
@@ -87,6 +95,7 @@ Json design_json(const DecisionDesign& design) {
             {"deciding_half_width_percent", json_number(design.deciding_percent)},
             {"planned", design.planned},
             {"cameras", cameras_json(design.cameras)}};
+  if (design.asked_percent) json["asked_half_width_percent"] = json_number(design.asked_percent);
   if (design.ramp_k_per_s) json["ramp_k_per_s"] = json_number(*design.ramp_k_per_s);
   if (design.consumer_risk) json["consumer_risk"] = json_number(design.consumer_risk);
   if (design.producer_risk) json["producer_risk"] = json_number(design.producer_risk);

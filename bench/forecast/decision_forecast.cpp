@@ -176,10 +176,12 @@ std::optional<DecisionDesign> design_of(const Plan& plan, const ContrastPredicti
   DecisionDesign design{.frames = plan.schedule.frames_per_presentation,
                         .phases = plan.target.phases,
                         .ramp_k_per_s = std::nullopt,
+                        .asked_percent = std::nullopt,
                         .bench_s = bench_s,
                         .half_width_percent = percent_of_ln(ChancesOf(trials, two_sided).mean_half_ln()),
                         .deciding_percent = percent_of_ln(ChancesOf(*expected, two_sided).mean_half_ln())};
   if (plan.schedule.kind == ScheduleKind::ramp) design.ramp_k_per_s = plan.schedule.ramp_k_per_s;
+  if (plan.schedule.kind == ScheduleKind::adaptive) design.asked_percent = plan.schedule.half_width_percent;
   for (int over = -largest_camera_percent; over <= largest_camera_percent; over += camera_step_percent)
     design.cameras.push_back({static_cast<double>(over), chances.at(std::log1p(over / 100.0))});
   const double ln_limit = std::log(forecast.least_acuity_per_mrad);

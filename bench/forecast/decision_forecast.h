@@ -56,16 +56,18 @@ struct CameraChance {
   DecisionChances chances;
 };
 
-/// One number of frames or phases of the plan, or one rate of its ramp.
+/// One number of frames or phases of the plan, one rate of its ramp, or one half-width of its adaptive schedule.
 struct DecisionDesign {
   std::vector<int> frames{};             ///< per presentation, of every contrast or for each
   int phases = 0;                        ///< per set-up and contrast
   std::optional<double> ramp_k_per_s{};  ///< of a ramp, which has no phases
-  double bench_s = 0;                    ///< of the whole plan (laboratory_time())
-  double half_width_percent = 0;         ///< of the trials at the contrast of the limit, expected
-  double deciding_percent = 0;           ///< the same with the stated rows
-  bool planned = false;                  ///< the choice of the plan
-  std::vector<CameraChance> cameras{};   ///< -10 to +10 % in steps of 1 %
+  /// Half-width at which an adaptive schedule ends, in percent.
+  std::optional<double> asked_percent{};
+  double bench_s = 0;                   ///< of the whole plan (laboratory_time())
+  double half_width_percent = 0;        ///< of the trials at the contrast of the limit, expected
+  double deciding_percent = 0;          ///< the same with the stated rows
+  bool planned = false;                 ///< the choice of the plan
+  std::vector<CameraChance> cameras{};  ///< -10 to +10 % in steps of 1 %
   /// Of a unit of the fleet, if the plan states it: accepted and below the limit, not accepted and above it.
   std::optional<double> consumer_risk{}, producer_risk{};
 };
@@ -95,7 +97,8 @@ struct DecisionForecast {
 
 /// Forecasts every limit on acuity with a threshold: the plan itself; with graded answers 1 to 64 frames, otherwise a
 /// quarter to four times the phases, or of an adaptive schedule a quarter to four times the half-width, or of a ramp a
-/// quarter to four times the rate. Errors: those of predict_plan() and curve_uncertainty().
+/// quarter to four times the rate, at most the one that a stated lag of the plate allows. Errors: those of
+/// predict_plan() and curve_uncertainty().
 [[nodiscard]] Result<std::vector<DecisionForecast>> decision_forecasts(const Plan& plan,
                                                                        const ExperimentInputs& inputs);
 

@@ -204,6 +204,21 @@ TEST_F(Planning, DecideShowsBenchTimeAgainstTheProbabilityOfEachDecision) {
                               HasSubstr("decisions of the planned design")));
 }
 
+TEST_F(Planning, DecideShowsTheHalfWidthsOfAdaptiveDesigns) {
+  write("plan.toml", plan_of_a_bench("[schedule]\nkind = \"adaptive\"\nhalf_width_percent = 4\n[[limits.acuity]]\n"
+                                     "delta_t_k = 1.93\nleast_acuity_per_mrad = 0.46\n"));
+
+  const Ended ended = run({"plan", "./plan.toml", "--decide", "--json"});
+  const Ended text = run({"plan", "./plan.toml", "--decide"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  std::set<double> asked;
+  for (const Json& design : one_object(ended)["decide"][0]["designs"])
+    asked.insert(design["asked_half_width_percent"].get<double>());
+  EXPECT_EQ(asked, (std::set<double>{1, 2, 4, 8, 16}));
+  EXPECT_THAT(text.out, HasSubstr("half-width asked [%]"));
+}
+
 TEST_F(Planning, OptimiseWritesAFasterPlanThatPlanAndSimulateTake) {
   write("plan.toml", plan_of_a_bench(""));
 
