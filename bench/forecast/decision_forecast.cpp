@@ -13,6 +13,7 @@
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/limit_forecast.h"
 #include "bench/forecast/precision_frontier.h"
+#include "bench/forecast/ramp_advice.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
 
@@ -126,8 +127,13 @@ std::vector<Plan> varied_plans(const Plan& plan, const ExperimentInputs& inputs)
       plans.push_back(other);
     }
   } else if (plan.schedule.kind == ScheduleKind::ramp) {
+    const double planned = plan.schedule.ramp_k_per_s.value_or(0);
+    const double largest =
+        largest_ramp_rate(plan.schedule.from_delta_t_k.value_or(0), plan.target.max_contrast_lag_s.value_or(0));
     for (const double factor : {4.0, 2.0, 0.5, 0.25}) {
-      other.schedule.ramp_k_per_s = factor * plan.schedule.ramp_k_per_s.value_or(0);
+      const double rate = std::min(factor * planned, largest);
+      if (rate == planned || rate == plans.back().schedule.ramp_k_per_s) continue;
+      other.schedule.ramp_k_per_s = rate;
       plans.push_back(other);
     }
   } else if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded) {

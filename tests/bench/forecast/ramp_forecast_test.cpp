@@ -156,6 +156,22 @@ TEST(RampForecast, OfBillFrontierAndDecisionsFollowsTheRate) {
   EXPECT_TRUE(std::ranges::is_sorted(half_widths, std::ranges::greater{}));
 }
 
+TEST(RampForecast, OfDecisionsHasNoRateBeyondTheLagExceptThePlannedOne) {
+  const auto rates_of = [](double planned_k_per_s) {
+    Plan plan = ramp_plan(planned_k_per_s, 0.01);
+    plan.limits.acuity = {{0.23, 0.28}};
+    std::vector<double> rates;
+    for (const DecisionDesign& design : decision_forecasts(plan, inputs_of(plan)).value().at(0).designs)
+      rates.push_back(design.ramp_k_per_s.value_or(0));
+    std::ranges::sort(rates);
+    return rates;
+  };
+  const double largest = largest_ramp_rate(16.9, 0.01);  // 10.1 K/s
+
+  EXPECT_THAT(rates_of(8), ElementsAre(2, 4, 8, largest));
+  EXPECT_THAT(rates_of(16), ElementsAre(4, 8, largest, 16));
+}
+
 TEST(RampForecast, OfTheComparisonCountsTheTrialsOfTheRamp) {
   Plan plan = ramp_plan(7.3);
   plan.simulation.phases = 60;
