@@ -187,7 +187,7 @@ void print_forecast(const Console& console, const RunForecast& forecast, const P
   if (forecast.viewing) console.text(in_words(*forecast.viewing, *inputs.observer.display));
   for (const LimitForecast& limit : forecast.limits) console.text("limit at " + in_words(limit));
   for (const MeasureForecast& limit : forecast.measure_limits) console.text("limit on " + in_words(limit));
-  if (asked.decide) print_decisions(console, forecast.decisions);
+  if (asked.decide) print_decisions(console, forecast.decisions, plan.target.kind);
 }
 
 /// Warnings and remarks, on standard error.

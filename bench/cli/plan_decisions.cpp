@@ -26,6 +26,14 @@ const DecisionChances* chances_at(const DecisionDesign& design, int over_percent
   return nullptr;
 }
 
+/// Meaning of bench times, if the target of the plan takes no time.
+std::string laboratory_text(TargetKind target) {
+  return target == TargetKind::scene
+             ? "bench times are those of a laboratory with the change times of the plan; the simulated target takes no "
+               "time"
+             : "";
+}
+
 void print_designs(const Console& console, const DecisionForecast& forecast) {
   const bool ramp = std::ranges::any_of(forecast.designs, [](const auto& one) { return one.ramp_k_per_s.has_value(); });
   const bool adaptive =
@@ -145,7 +153,7 @@ Json priced_json(const PricedDesign& design) {
 
 }  // namespace
 
-void print_decisions(const Console& console, const std::vector<DecisionForecast>& forecasts) {
+void print_decisions(const Console& console, const std::vector<DecisionForecast>& forecasts, TargetKind target) {
   if (forecasts.empty()) console.text("the plan has no limit on an acuity with an expected threshold");
   for (const DecisionForecast& forecast : forecasts) {
     console.text("");
@@ -153,6 +161,7 @@ void print_decisions(const Console& console, const std::vector<DecisionForecast>
     console.text(fmt::format("a camera like the simulated one is {:.1f} % {} the limit",
                              std::abs(forecast.expected_over_limit_percent),
                              forecast.expected_over_limit_percent < 0 ? "below" : "above"));
+    if (const std::string text = laboratory_text(target); !text.empty()) console.text(text);
     print_designs(console, forecast);
     const auto planned = std::ranges::find_if(forecast.designs, &DecisionDesign::planned);
     if (planned != forecast.designs.end()) print_planned(console, *planned);
@@ -188,6 +197,7 @@ void print_design(const Console& console, const BestDesign& found) {
   }
   console.table(header, {design_row("as planned", found.as_planned, contrasts_k),
                          design_row("least time", found.best, contrasts_k)});
+  if (const std::string text = laboratory_text(found.best.plan.target.kind); !text.empty()) console.text(text);
   for (const std::string& sentence : in_words(found)) console.text(sentence);
 }
 

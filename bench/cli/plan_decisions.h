@@ -17,7 +17,7 @@
 namespace todbench {
 
 /// Prints, for each limit, time against the probability of a decision, and the decisions of the planned design.
-void print_decisions(const Console& console, const std::vector<DecisionForecast>& forecasts);
+void print_decisions(const Console& console, const std::vector<DecisionForecast>& forecasts, TargetKind target);
 
 /// Returns the value of the key "decide" of `plan --decide --json`.
 [[nodiscard]] Json decisions_json(const std::vector<DecisionForecast>& forecasts);

@@ -201,6 +201,7 @@ TEST_F(Planning, DecideShowsBenchTimeAgainstTheProbabilityOfEachDecision) {
   }
   EXPECT_EQ(planned, 1);
   EXPECT_THAT(text.out, AllOf(HasSubstr("The smallest half-width of the trials that matters is 0.31 %"),
+                              HasSubstr("bench times are those of a laboratory with the change times of the plan"),
                               HasSubstr("decisions of the planned design")));
 }
 
