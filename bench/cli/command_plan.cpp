@@ -22,8 +22,17 @@
 namespace todbench {
 namespace {
 
+/// Part of the time to measure that is in the bill, and the rest.
+std::string beside_bill(const Plan& plan, double measured_s, double bill_s) {
+  const double rest_s = measured_s - bill_s;
+  if (!(rest_s >= 0)) return "";
+  const bool warm_up = plan.camera.warm_up.time_s > 0 || plan.camera.warm_up.drift_k_per_min > 0;
+  return " (the bill of " + fixed(bill_s, 1) + " s, and " + fixed(rest_s, 1) + " s of computing" +
+         (warm_up ? " and warm-up" : "") + ")";
+}
+
 void print_plan(const Console& console, const Plan& plan, const ExperimentInputs& inputs,
-                const PlanPrediction& prediction, bool why) {
+                const PlanPrediction& prediction, const std::optional<AccuracyBill>& bill, bool why) {
   print_effect_table(console, inputs.effects, why);
   console.text("");
   std::vector<TableRow> contrasts;
@@ -37,6 +46,7 @@ void print_plan(const Console& console, const Plan& plan, const ExperimentInputs
                "; uncertainty of S75 (95 %): " + fixed(prediction.figures.predicted_uncertainty_percent, 1) +
                " %; time to simulate on one core of this machine: " + fixed(prediction.figures.predicted_s, 1) + " s" +
                (measured_s ? "; time to measure with the camera: " + fixed(measured_s, 0) + " s" : "") +
+               (measured_s && bill ? beside_bill(plan, *measured_s, bill->total_s) : "") +
                (measured_s && plan.target.kind == TargetKind::scene && plan.measures.any()
                     ? ", without the physical measures, which take as long as this machine needs for their pictures"
                     : ""));
@@ -180,7 +190,7 @@ Json forecast_json(const RunForecast& forecast, const PlanArguments& asked, cons
 
 void print_forecast(const Console& console, const RunForecast& forecast, const PlanArguments& asked, const Plan& plan,
                     const ExperimentInputs& inputs) {
-  print_plan(console, plan, inputs, forecast.prediction, asked.why);
+  print_plan(console, plan, inputs, forecast.prediction, forecast.bill, asked.why);
   if (forecast.frontier) print_frontier(console, *forecast.frontier);
   if (forecast.bill) print_bill_forecast(console, *forecast.bill);
   for (const AcuityLimits& at : forecast.acuity) console.text(in_words(at));

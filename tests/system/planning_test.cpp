@@ -254,6 +254,19 @@ TEST_F(Planning, OptimiseRejectsAHalfWidthThatNoDesignHas) {
   expect_refused(run({"plan", "./plan.toml", "--optimise", "--half-width", "0.02"}), 2, "at best");
 }
 
+TEST_F(Planning, TimeToMeasureStatesItsDifferenceFromTheBill) {
+  const Ended text = run({"plan", "demo"});
+  const Ended json = run({"plan", "demo", "--json"});
+
+  ASSERT_EQ(json.code, 0) << json.err;
+  const std::string before = " s (the bill of ";
+  const std::size_t bill = text.out.find(before);
+  ASSERT_NE(bill, std::string::npos) << text.out;
+  EXPECT_NEAR(std::stod(text.out.substr(bill + before.size())), one_object(json)["bill"]["total_s"].get<double>(),
+              0.06);
+  EXPECT_THAT(text.out, HasSubstr(" s of computing)"));
+}
+
 TEST_F(Planning, NeutralEffectsShareALineAndStateTheirReasonsOnRequest) {
   write("plan.toml", small_plan(8));
 
