@@ -290,10 +290,10 @@ std::string open_by_budget(const Plan& plan, const std::vector<ContrastPredictio
       if (!same_contrast(limit.delta_t_k, contrast.delta_t_k)) continue;
       const double over = -std::log(*contrast.s75_mrad * limit.least_acuity_per_mrad);
       if (1 - decision_chances(over, *rows_alone, plan.limits).inconclusive >= probability) continue;
-      open.push_back(
-          fmt::format("at {} K it is {:.2g} % from its limit, and the stated rows of the budget make ± {:.2g} %",
-                      number_text(contrast.delta_t_k), percent_of_ln(std::abs(over)),
-                      percent_of_ln(rows_alone->stated.half_width(upper_tail))));
+      open.push_back(fmt::format(
+          "at {} K the acuity is {:.2g} % from its limit, and the stated rows of the budget make ± {:.2g} %",
+          number_text(contrast.delta_t_k), percent_of_ln(std::abs(over)),
+          percent_of_ln(rows_alone->stated.half_width(upper_tail))));
     }
   }
   return open.empty() ? "" : fmt::format("{}, which no presentation reduces", fmt::join(open, "; "));
