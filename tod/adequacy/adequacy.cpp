@@ -9,6 +9,7 @@
 
 #include "acquisition/base/normal.h"
 #include "tod/adequacy/alternatives.h"
+#include "tod/adequacy/contradiction.h"
 #include "tod/adequacy/guessing.h"
 #include "tod/adequacy/model_test.h"
 #include "tod/adequacy/orientation.h"
@@ -66,6 +67,10 @@ class Examination {
       add(FindingKind::slope, fit_.slope.value_or(min_slope), min_slope,
           "correct answers do not increase with size: there is no threshold", true);
     }
+    if (!options_.graded) {
+      if (const auto found = below_chance(point_.levels, false_alarms_of_contradiction))
+        add_contradiction(*found, "guessing gives", "the orientations of triangles and answers do not belong together");
+    }
     if (fit_.threshold) {
       examine_chance();
       const bool regular = fit_.verdict == FitVerdict::ok || fit_.verdict == FitVerdict::extrapolated;
@@ -75,6 +80,8 @@ class Examination {
         examine_twin_shape();
       } else if (regular) {
         examine_model();
+      } else if (!options_.graded) {
+        examine_step();
       }
       examine_direct_estimate();
     }
@@ -122,6 +129,26 @@ class Examination {
             "the threshold lies {} all sizes shown: it is extrapolated and depends on the form of the function alone",
             below ? "below" : "above"),
         true);
+  }
+
+  void add_contradiction(const Contradiction& at, const std::string& expected, const std::string& meaning) {
+    add(FindingKind::deviance, at.p, false_alarms_of_contradiction,
+        fmt::format("at size {:.4g}, {:g} of {:g} answers are correct, but {} {}: the probability of this by chance is "
+                    "{:.1g}; {}",
+                    at.size, at.correct, at.total, expected, percent(at.expected), at.p, meaning),
+        true);
+  }
+
+  // At the end of the domain of the slope the score tests do not hold, but every size has an exact distribution.
+  void examine_step() {
+    const auto found = contradicts_step(point_.levels, fit_, options_.form, false_alarms_of_contradiction);
+    // Below chance it is named already.
+    if (found && found->correct >= chance_level * found->total)
+      add_contradiction(*found, "the fitted step function gives", "no function of this form fits the answers");
+    // The threshold adapts to the answers near the step, so that too little scatter means nothing.
+    Dispersions scatter = test_model(point_.levels, fit_, std::nullopt, options_, false_alarms).scatter;
+    scatter.less = {};
+    add_scatter(scatter);
   }
 
   void examine_model() {

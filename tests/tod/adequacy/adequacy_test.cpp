@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/tod/adequacy/adequacy_support.h"
@@ -175,6 +176,43 @@ TEST(Adequacy, AStepThatSomebodyWhoGuessesMayGiveIsUnfit) {
   EXPECT_NEAR(p_guessed(step(2)), 3.0 / 256, 1e-12);
   EXPECT_THAT(adequacy_of(step(1), {}).findings, unfit_of_kind(FindingKind::slope));
   EXPECT_THAT(adequacy_of(step(2), {}).findings, Not(unfit_of_kind(FindingKind::slope)));
+}
+
+TEST(Adequacy, AnswersBelowChanceAndStepsThatDoNotFitAreUnfit) {
+  const auto counts = [](double a, double b, double c, double d) {
+    return std::vector<Level>{{1, a, 100, -1}, {2, b, 100, -1}, {3, c, 100, -1}, {4, d, 100, -1}};
+  };
+  const std::vector<Level> many{{1, 0, 1000, -1}, {2, 0, 1000, -1}, {3, 0, 1000, -1}, {4, 100, 100, -1}};
+
+  EXPECT_THAT(adequacy_of(counts(0, 0, 100, 100), {}).findings, unfit_of_kind(FindingKind::deviance));
+  EXPECT_THAT(adequacy_of(counts(2, 2, 90, 100), {}).findings, unfit_of_kind(FindingKind::deviance));
+  EXPECT_THAT(adequacy_of(counts(0, 10, 70, 100), {}).findings, unfit_of_kind(FindingKind::deviance));
+  EXPECT_THAT(adequacy_of(many, {}).findings, unfit_of_kind(FindingKind::deviance));
+  ASSERT_EQ(fit_psychometric(counts(48, 24, 70, 100), {})->verdict, FitVerdict::step);
+  EXPECT_THAT(adequacy_of(counts(48, 24, 70, 100), {}).findings, unfit_of_kind(FindingKind::deviance)) << "above";
+  EXPECT_THAT(adequacy_of(counts(0, 0, 0, 0), {}).findings, unfit_of_kind(FindingKind::deviance)) << "no threshold";
+  EXPECT_THAT(adequacy_of(counts(25, 25, 70, 100), {}).findings, IsEmpty());
+}
+
+TEST(Adequacy, AnswersOfASteepFunctionHardlyEverContradictIt) {
+  constexpr int replicates = 500;
+  int unfit = 0, deviant = 0, steps = 0;
+  for (const double slope : {15.0, 30.0, 50.0, 1000.0}) {
+    for (int r = 0; r < replicates; ++r) {
+      const AdequacyDesign design{.sizes = 5 + r % 4, .trials_per_size = r % 2 == 0 ? 20 : 100, .slope = slope};
+      const std::vector<Level> levels = drawn(
+          design, RandomStream(11, "steep").sub(static_cast<std::uint64_t>(slope)).sub(static_cast<std::uint64_t>(r)));
+      const FitOptions options{PsychometricForm::size, 0.0, false};
+      const auto fit = fit_psychometric(levels, options).value();
+      const Adequacy found = adequacy(levels, fit, options);
+      steps += fit.verdict == FitVerdict::step ? 1 : 0;
+      unfit += found.adequate() ? 0 : 1;
+      deviant += std::ranges::count(found.findings, FindingKind::deviance, &AdequacyFinding::kind) > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(steps, replicates);
+  EXPECT_LE(unfit, 4 * replicates / 100);
+  EXPECT_LE(deviant, 4 * replicates / 100);
 }
 
 TEST(Adequacy, CorrelatedFramesWithholdAnIntervalOfIndependentAnswersOnly) {
