@@ -13,9 +13,9 @@
 #include "acquisition/base/try.h"
 #include "acquisition/core/correction_watch.h"
 #include "acquisition/core/input_gate.h"
-#include "acquisition/core/integrity_gate.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/noise_components.h"
+#include "bench/cli/noise_gates.h"
 #include "bench/cli/started_recording.h"
 #include "bench/judgement/verdict.h"
 #include "bench/plan/descriptions.h"
@@ -109,18 +109,6 @@ void split_at_jumps(std::vector<TimedPicture>& pictures, const std::vector<std::
   for (std::size_t k = 0; k < pictures.size(); ++k) pictures[k].segment += added += more[k];
 }
 
-/// Returns kelvin per count at the level of the picture; 0: unknown.
-double kelvin_per_count(const Frame& frame, const RadiometricScale& scale) {
-  return std::abs(scale.kelvin_per_count(cv::mean(frame.counts)[0]).value_or(0));
-}
-
-/// 1 if a pixel is at either end of the counts.
-cv::Mat1b saturated_pixels(const Frame& frame) {
-  const double full = std::pow(2.0, frame.significant_bits) - 1;
-  const cv::Mat1b ends = (frame.counts == 0) | (frame.counts >= full);
-  return ends & 1;
-}
-
 /// Reads all complete frames that are separate exposures.
 Result<Frames> frames_of(const std::string& id, Console& console) {
   TODBENCH_TRY(const auto source, started_recording(console, id));
@@ -197,11 +185,11 @@ bool correlated(const TemporalNoise& noise) {
 
 /// The noise is so low that rounding makes it depend on the level between two counts.
 bool too_coarse(const Found& found) {
-  return found.time.successive < least_measurable_noise_counts * found.unit_per_count;
+  return noise_too_coarse(found.time.successive, found.unit_per_count);
 }
 
 bool clipped(const Found& found) {
-  return found.saturated_share > IntegrityOptions{}.max_saturated_share;
+  return noise_clipped(found.saturated_share);
 }
 
 /// Whether the counts contain no noise that could be stated.
@@ -226,13 +214,15 @@ std::string memory_sentence(const TemporalNoise& noise) {
          " times as much noise. Averaging N frames reduces the noise by less than the square root of N.";
 }
 
-Json components_json(const ThreeDNoise& c) {
+Json components_json(const ThreeDNoise& c, bool stated) {
+  if (!stated) return nullptr;
   return {{"tvh", json_number(c.tvh)}, {"tv", json_number(c.tv)}, {"th", json_number(c.th)}, {"t", json_number(c.t)},
           {"vh", json_number(c.vh)},   {"v", json_number(c.v)},   {"h", json_number(c.h)}};
 }
 
-Json structure_json(const TemporalNoise& noise) {
-  return {{"lags", noise.lags}, {"values", json_numbers(noise.structure)}};
+Json structure_json(const TemporalNoise& noise, bool stated) {
+  return {{"lags", stated ? Json(noise.lags) : Json::array()},
+          {"values", stated ? Json(json_numbers(noise.structure)) : Json::array()}};
 }
 
 Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, const NoiseArguments& arguments) {
@@ -263,10 +253,10 @@ Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, cons
           {"pixels_left_out", pixels_left_out(found.time)},
           {"temporal_noise", no_number(found) ? Json() : json_number(found.time.successive)},
           {"lag1_correlation", json_number(found.time.lag1_correlation)},
-          {"structure_function", structure_json(found.time)},
+          {"structure_function", structure_json(found.time, !no_number(found))},
           {"whole_to_successive", json_number(found.time.whole_to_successive)},
-          {"block_noise", json_number(noise.temporal_noise)},
-          {"components", components_json(noise.components)},
+          {"block_noise", no_number(found) ? Json() : json_number(noise.temporal_noise)},
+          {"components", components_json(noise.components, !no_number(found))},
           {"correlation_x", json_number(noise.correlation_x)},
           {"correlation_y", json_number(noise.correlation_y)},
           {"observer", arguments.observer},
@@ -282,6 +272,7 @@ void print_time(Console& console, const Found& found, const std::string& unit) {
   console.text("temporal noise " + fixed(noise, 4) + " " + unit + " (from differences of successive frames) over " +
                fixed(100 * time.usable_share, 1) + " % of the pixels; lag-1 correlation " +
                fixed(time.lag1_correlation, 3));
+  if (!noise) return;
   std::vector<TableRow> rows;
   for (std::size_t i = 0; i < time.lags.size(); ++i) {
     const int lag = time.lags[i];
@@ -296,6 +287,7 @@ void print_components(Console& console, const Found& found) {
   const auto& c = noise.components;
   const std::string unit = found.kelvin ? "K" : "counts";
   print_time(console, found, unit);
+  if (no_number(found)) return;
   console.text("noise within blocks " + fixed(noise.temporal_noise, 4) + " " + unit + " over " +
                fixed(100 * noise.usable_share, 1) + " % of the pixels; correlation of adjacent pixels: " +
                fixed(noise.correlation_x, 3) + " in a row, " + fixed(noise.correlation_y, 3) + " in a column");
@@ -327,14 +319,6 @@ void print_acuities(Console& console, const std::vector<NoiseAcuity>& points) {
   console.table({"dT / noise", "r", "pixels", "rows", "columns", "correlated"}, why);
 }
 
-/// States how many frames are no exposures of their own; empty if all are.
-std::string frozen_sentence(int repeated) {
-  return repeated == 0
-             ? ""
-             : std::to_string(repeated) + (repeated == 1 ? " frame repeats" : " frames repeat") +
-                   " the frame before bit for bit (frozen) and " + (repeated == 1 ? "is" : "are") + " left out";
-}
-
 int run_noise(Console& console, NoiseArguments arguments, const Program& program) {
   auto sensor = load_sensor(arguments.sensor);
   if (!sensor) return report_error(console, sensor.error());
@@ -344,13 +328,7 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
   if (!frames) return report_error(console, frames.error());
   const auto count = static_cast<int>(frames->pictures.size());
   if (count < 2) {
-    return report_error(console,
-                        {ErrorCode::invalid_input, arguments.recording +
-                                                       ": the noise cannot be computed: it needs at least two "
-                                                       "different frames without a correction (NUC) between them, "
-                                                       "found " +
-                                                       std::to_string(count) + (frames->repeated > 0 ? "; " : "") +
-                                                       frozen_sentence(frames->repeated)});
+    return report_error(console, with_context(arguments.recording, too_few_frames(count, frames->repeated)));
   }
   if (frames->repeated > 0) console.note(frozen_sentence(frames->repeated));
   if (count < arguments.block_frames) {
@@ -371,11 +349,9 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
                     saturated_share,    frames->repeated, frames->byte_order};
   std::vector<NoiseAcuity> points;
   if (clipped(found)) {
-    console.note(
-        fixed(100 * found.saturated_share, 1) +
-        " % of the pixels are saturated (lowest or highest count): their noise is clipped, so no noise is reported");
+    console.note(clipped_sentence(found.saturated_share));
   } else if (too_coarse(found)) {
-    console.note("the noise is below half a count: the counts are too coarse to measure it");
+    console.note(std::string(too_coarse_sentence));
   } else if (moved(found.blocks)) {
     // Components and acuity would be those of the moving scene.
     console.note(

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/noise_components.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "acquisition/base/try.h"
 #include "acquisition/core/input_gate.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/noise_gates.h"
 #include "bench/cli/started_recording.h"
 #include "bench/judgement/verdict.h"
 #include "tod/measures/three_d_noise.h"
@@ -21,10 +23,27 @@ struct WholeRecording {
   NoiseTable table;
   bool kelvin = false;
   ByteOrderVerdict byte_order = ByteOrderVerdict::as_stated;
-  int left_out = 0;   ///< incomplete or damaged frames
-  int repeated = 0;   ///< frames identical to the one before, bit for bit
-  double memory = 0;  ///< correlation of the pixels' noise in successive frames, if known
+  int left_out = 0;            ///< incomplete or damaged frames
+  int repeated = 0;            ///< frames identical to the one before, bit for bit
+  double memory = 0;           ///< correlation of the pixels' noise in successive frames, if known
+  double unit_per_count = 1;   ///< 0: unknown
+  double saturated_share = 0;  ///< of all pixels of all frames, because every pixel counts in the components
 };
+
+bool clipped(const WholeRecording& whole) {
+  return noise_clipped(whole.saturated_share);
+}
+
+bool too_coarse(const WholeRecording& whole) {
+  const double variance = estimate_of(whole.table, NoiseComponent::tvh).variance;
+  return noise_too_coarse(std::sqrt(std::max(0.0, variance)), whole.unit_per_count);
+}
+
+std::string_view verdict_of(const WholeRecording& whole) {
+  if (clipped(whole)) return "saturated";
+  if (too_coarse(whole)) return "too_coarse";
+  return std::abs(whole.memory) > components_white_enough ? "correlated" : "ok";
+}
 
 /// Detects that the camera reports a correction between this frame and the last one.
 class StatedCorrection {
@@ -75,6 +94,8 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
       continue;
     }
     last = frame->counts;
+    if (cube.frames() == 0 && whole.kelvin) whole.unit_per_count = kelvin_per_count(*frame, source->info().scale);
+    whole.saturated_share += cv::mean(saturated_pixels(*frame))[0];
     if (auto added = add(cube, *frame, whole.kelvin); !added)
       return fail(ErrorCode::invalid_input, added.error().message);
   }
@@ -83,6 +104,8 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
     if (!sentence.empty()) console.note(sentence);
   }
   whole.byte_order = gate.byte_order().verdict();
+  if (cube.frames() < 2) return tl::unexpected(too_few_frames(cube.frames(), whole.repeated));
+  whole.saturated_share /= cube.frames();
   TODBENCH_TRY(whole.table, cube.table());
   whole.memory = cube.pixel_memory();
   if (const auto change = cube.abrupt_change(); change && across == AcrossCorrections::refuse)
@@ -92,15 +115,17 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
 
 Json components_json(const WholeRecording& whole, const std::string& recording) {
   Json variances, intervals, deviations, squares, freedom, absent;
+  const bool stated = !clipped(whole) && !too_coarse(whole);
   for (const NoiseComponent component : noise_components) {
     const ComponentEstimate found = estimate_of(whole.table, component);
     const std::string name(to_string(component));
-    variances[name] = json_number(found.variance);
-    intervals[name] = {json_number(found.low), json_number(found.high)};
-    deviations[name] = json_number(std::sqrt(std::max(0.0, found.variance)));
-    squares[name] = json_number(whole.table.mean_squares[component]);
+    const auto number = [&](double value) { return stated ? json_number(value) : Json(); };
+    variances[name] = number(found.variance);
+    intervals[name] = {number(found.low), number(found.high)};
+    deviations[name] = number(std::sqrt(std::max(0.0, found.variance)));
+    squares[name] = number(whole.table.mean_squares[component]);
     freedom[name] = whole.table.degrees_of_freedom[component];
-    if (found.p_absent) absent[name] = json_number(found.p_absent);
+    if (found.p_absent) absent[name] = number(*found.p_absent);
   }
   return {{"recording", recording},
           {"unit", whole.kelvin ? "K" : "counts"},
@@ -110,6 +135,7 @@ Json components_json(const WholeRecording& whole, const std::string& recording) 
           {"byte_order", to_string(whole.byte_order)},
           {"frames_left_out", whole.left_out},
           {"frames_repeated", whole.repeated},
+          {"verdict", verdict_of(whole)},
           {"variances", variances},
           {"intervals", intervals},
           {"standard_deviations", deviations},
@@ -150,11 +176,14 @@ int run_noise_components(Console& console, const std::string& recording, AcrossC
                  ". The components assume independent frames, so tvh is too " +
                  (whole->memory > 0 ? "small and vh too large" : "large and vh too small"));
   }
+  const bool stated = !clipped(*whole) && !too_coarse(*whole);
+  if (!stated)
+    console.note(clipped(*whole) ? clipped_sentence(whole->saturated_share) : std::string(too_coarse_sentence));
   if (console.json())
     console.object(components_json(*whole, recording));
-  else
+  else if (stated)
     print_components(console, *whole);
-  return 0;
+  return stated ? 0 : exit_code(VerdictKind::inconclusive);
 }
 
 }  // namespace todbench

@@ -126,8 +126,18 @@ TEST(NoiseCommand, StatesNoNoiseOfCountsThatHoldNone) {
     EXPECT_EQ(json["verdict"], verdict);
     EXPECT_TRUE(json["temporal_noise"].is_null()) << json["temporal_noise"];
     EXPECT_EQ(json["points"].size(), 0u);
+    EXPECT_TRUE(json["components"].is_null());
+    EXPECT_TRUE(json["block_noise"].is_null());
+
+    const Ended only = todbench({"noise", file, "--components-only", "--json"});
+    EXPECT_EQ(only.code, 3) << only.err;
+    EXPECT_EQ(one_object(only)["verdict"], verdict);
+    EXPECT_TRUE(one_object(only)["variances"]["tvh"].is_null());
   }
-  expect_refused(todbench({"noise", still}), 2, "at least two different frames");
+  for (const auto& words : {std::vector<std::string>{"noise", still}, {"noise", still, "--components-only"}}) {
+    expect_refused(todbench(words), 2, "at least two different frames");
+    expect_refused(todbench(words), 2, "39 frames repeat the frame before bit for bit (frozen)");
+  }
 }
 
 /// Frames of 80 x 60 pixels, each changed by its number.
