@@ -9,10 +9,11 @@
 #include "bench/cli/run_display.h"
 #include "bench/cli/session_argument.h"
 #include "bench/enhance/blind_judgement.h"
+#include "bench/enhance/decidable.h"
+#include "bench/judgement/verdict.h"
 #include "bench/report/number_format.h"
 #include "bench/session/provenance.h"
 #include "bench/text/text.h"
-#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -35,10 +36,16 @@ void show(Console& console, const BlindResult& result) {
         }
       }
       rows.push_back({result.sources[s], number_text(point.set_delta_t_k),
-                      with_interval(stated_threshold(point.fit), point.fit.ci95), ratio});
+                      with_interval(identified_threshold(point.fit), point.fit.ci95), ratio});
     }
   }
   console.table({"source", "set dT (K)", "S75 (mrad) [95 %]", "acuity / " + result.sources.front() + " [95 %]"}, rows);
+  for (std::size_t s = 0; s < result.sources.size(); ++s) {
+    for (const TodPoint& point : result.records[s].curve.points) {
+      if (const auto why = why_undecided(result.sources[s], point); !why.empty())
+        console.text("not fit for a decision: " + number_text(point.set_delta_t_k) + " K: " + why);
+    }
+  }
 }
 
 /// The answers of a person who sees as the model observer does.
@@ -90,7 +97,7 @@ int run_blind(Console& console, const BlindArguments& a, const Program& program)
   } else {
     show(console, *result);
   }
-  return 0;
+  return exit_code(*result);
 }
 
 }  // namespace

@@ -11,8 +11,11 @@
 
 #include "acquisition/base/try.h"
 #include "bench/devices/processed_source.h"
+#include "bench/enhance/decidable.h"
 #include "bench/enhance/judge_again.h"
+#include "bench/judgement/verdict.h"
 #include "bench/plan/plan_options.h"
+#include "bench/session/fit_record.h"
 #include "bench/text/files.h"
 #include "bench/text/folders.h"
 #include "bench/text/json_fields.h"
@@ -86,25 +89,41 @@ std::vector<JudgedTrial> shown_by_all(const BlindSource& source, const std::vect
   return out;
 }
 
+/// Removes the ratios of the last source at contrasts at which a point may not be used.
+void withhold(BlindResult& result) {
+  for (ComparisonPoint& point : result.ratios.back().points) {
+    if (why_withheld(result, result.records.size() - 1, point.set_delta_t_k).empty()) continue;
+    point.ratio.reset();
+    point.ratio_ci95 = point.ratio_ci90 = {};
+    point.p_difference.reset();
+    point.p_equivalence.reset();
+    point.withheld = true;
+    point.verdict = ComparisonVerdict::inconclusive;
+  }
+}
+
 Json points_json(const TodCurve& curve) {
   Json points = Json::array();
   for (const TodPoint& point : curve.points) {
     points.push_back({{"set_delta_t_k", point.set_delta_t_k},
                       {"answers", point.fit.trials},
-                      {"s75_mrad", json_number(stated_threshold(point.fit))},
+                      {"s75_mrad", json_number(identified_threshold(point.fit))},
                       {"s75_ci95_mrad", json_interval(point.fit.ci95)},
-                      {"verdict", to_string(point.fit.verdict)}});
+                      {"verdict", to_string(point.fit.verdict)},
+                      {"adequacy", adequacy_json(point.adequacy)}});
   }
   return points;
 }
 
-Json ratios_json(const Comparison& comparison) {
+Json ratios_json(const BlindResult& result, std::size_t source) {
   Json points = Json::array();
-  for (const ComparisonPoint& point : comparison.points) {
+  for (const ComparisonPoint& point : result.ratios[source - 1].points) {
+    const std::string why = why_withheld(result, source, point.set_delta_t_k);
     points.push_back({{"set_delta_t_k", point.set_delta_t_k},
                       {"acuity_ratio", json_number(point.ratio)},
                       {"acuity_ratio_ci95", json_interval(point.ratio_ci95)},
-                      {"p_difference", json_number(point.p_difference)}});
+                      {"p_difference", json_number(point.p_difference)},
+                      {"withheld", why.empty() ? Json() : Json(why)}});
   }
   return points;
 }
@@ -190,8 +209,28 @@ Result<BlindResult> blind_result(const std::vector<std::string>& sources, const 
                                     .fit = fit_options(plan)};
     TODBENCH_TRY(Comparison ratio, compare(result.records[s].curve, result.records[0].curve, options));
     result.ratios.push_back(std::move(ratio));
+    withhold(result);
   }
   return result;
+}
+
+std::string why_withheld(const BlindResult& result, std::size_t source, double set_delta_t_k) {
+  for (const std::size_t s : {std::size_t{0}, source}) {
+    for (const TodPoint& point : result.records[s].curve.points) {
+      if (!same_contrast(point.set_delta_t_k, set_delta_t_k)) continue;
+      if (auto why = why_undecided(result.sources[s], point); !why.empty()) return why;
+    }
+  }
+  return "";
+}
+
+int exit_code(const BlindResult& result) {
+  for (std::size_t s = 0; s < result.sources.size(); ++s) {
+    for (const TodPoint& point : result.records[s].curve.points) {
+      if (!why_undecided(result.sources[s], point).empty()) return exit_code(VerdictKind::inconclusive);
+    }
+  }
+  return 0;
 }
 
 Json blind_json(const BlindResult& result, const PersonFacts& person, std::uint64_t seed) {
@@ -206,7 +245,7 @@ Json blind_json(const BlindResult& result, const PersonFacts& person, std::uint6
   }
   for (std::size_t r = 0; r < result.ratios.size(); ++r) {
     ratios.push_back(
-        {{"source", result.sources[r + 1]}, {"to", result.sources[0]}, {"points", ratios_json(result.ratios[r])}});
+        {{"source", result.sources[r + 1]}, {"to", result.sources[0]}, {"points", ratios_json(result, r + 1)}});
   }
   return {{"person", person.code},
           {"judged_utc", person.judged_utc},

@@ -45,7 +45,7 @@ struct BlindAnswer {
 struct BlindResult {
   std::vector<std::string> sources;
   std::vector<HumanRecord> records;  ///< one per source
-  std::vector<Comparison> ratios;    ///< ratios of the second and later sources
+  std::vector<Comparison> ratios;  ///< of the second and later sources; empty values where why_withheld() has a reason
 };
 
 /// Replays the recorded frames of a session, and again through each package; the sessions of the model observer go to
@@ -65,6 +65,12 @@ struct BlindResult {
 /// answers).
 [[nodiscard]] Result<BlindResult> blind_result(const std::vector<std::string>& sources,
                                                const std::vector<BlindAnswer>& answers, const Plan& plan);
+
+/// Returns the reason why the ratio of a source to the first is withheld at a contrast: a point of either may not be
+/// used. Empty: it is stated.
+[[nodiscard]] std::string why_withheld(const BlindResult& result, std::size_t source, double set_delta_t_k);
+/// Returns 0 if every point of every source may be used (why_undecided()), otherwise 3.
+[[nodiscard]] int exit_code(const BlindResult& result);
 
 /// Returns {"sources": [{"name", "answers", "points": [...]}], "ratios": [{"source", "to", "points": [...]}], ...}.
 [[nodiscard]] Json blind_json(const BlindResult& result, const PersonFacts& person, std::uint64_t seed);

@@ -11,16 +11,19 @@
 
 namespace todbench {
 
+std::string why_undecided(const std::string& name, const TodPoint& point) {
+  if (!threshold_identified(point.fit)) return name + " has no threshold: " + std::string(to_string(point.fit.verdict));
+  if (point.adequacy && !point.adequacy->adequate())
+    return name + " is not fit for a decision: " + reasons_unfit(*point.adequacy);
+  return "";
+}
+
 std::string why_undecided(const PackageResult& result, double set_delta_t_k) {
   const auto& points = result.curve.points;
   const auto point =
       std::ranges::find_if(points, [&](const TodPoint& p) { return same_contrast(p.set_delta_t_k, set_delta_t_k); });
   if (point == points.end()) return result.name + " has no answers at this contrast";
-  if (!threshold_identified(point->fit))
-    return result.name + " has no threshold: " + std::string(to_string(point->fit.verdict));
-  if (point->adequacy && !point->adequacy->adequate())
-    return result.name + " is not fit for a decision: " + reasons_unfit(*point->adequacy);
-  return "";
+  return why_undecided(result.name, *point);
 }
 
 void withhold_undecided(std::vector<PairedRatio>& ratios, const PackageResult& with, const PackageResult& without) {

@@ -9,6 +9,9 @@
 
 namespace todbench {
 
+/// Returns the reason why a point of the curve of `name` may not be used: no threshold, no interval, or a finding that
+/// makes it unfit. Empty: it may be used.
+[[nodiscard]] std::string why_undecided(const std::string& name, const TodPoint& point);
 /// Returns the reason why the point of a curve may not be used: no threshold, no interval, or a finding that makes it
 /// unfit. Empty: it may be used.
 [[nodiscard]] std::string why_undecided(const PackageResult& result, double set_delta_t_k);

@@ -116,6 +116,10 @@ bool threshold_identified(const PsychometricFit& fit) {
          fit.verdict != FitVerdict::underdetermined && fit.verdict != FitVerdict::no_data;
 }
 
+std::optional<double> identified_threshold(const PsychometricFit& fit) {
+  return threshold_identified(fit) ? fit.threshold : std::nullopt;
+}
+
 bool limits_asked(const Verdict& verdict) {
   return std::any_of(verdict.demands.begin(), verdict.demands.end(),
                      [](const Demand& demand) { return demand.kind != DemandKind::identified; });

@@ -153,6 +153,9 @@ struct JudgementInput {
 /// its lower bound, and the likelihood has no ridge (fewer sizes than parameters).
 [[nodiscard]] bool threshold_identified(const PsychometricFit& fit);
 
+/// Returns the threshold of a fit that identifies it.
+[[nodiscard]] std::optional<double> identified_threshold(const PsychometricFit& fit);
+
 /// Converts decisions; conditional ones become inconclusive.
 [[nodiscard]] VerdictKind kind_of(ConformityDecision decision);
 /// Converts a decision to the terms of a rule.

@@ -140,6 +140,40 @@ TEST(BlindResult, RatiosOfSimulatedPeopleContainTheTruthAsOftenAsTheyState) {
   EXPECT_NEAR(ln_ratio, 0, 4 * 0.017);
 }
 
+TEST(BlindResult, WithholdsWhatTheAnswersDoNotDetermine) {
+  const std::vector<BlindSource> sources{synthetic_source("camera", 1, 40, 4), synthetic_source("blurred", 1, 40, 4)};
+  const auto patches = blind_order(sources, 40, 1);
+  ASSERT_TRUE(patches);
+  Plan plan;
+  plan.target.delta_t_k = {2};
+  // The second source is seen with this S75, or guessed: exactly a quarter is right at every size.
+  const auto result_with = [&](std::optional<double> s75_mrad) {
+    std::vector<BlindAnswer> answers;
+    for (std::size_t i = 0; i < patches->size(); ++i) {
+      BlindAnswer answer{.source = (*patches)[i].source, .trial = (*patches)[i].judged.trial};
+      const bool lucky = answer.trial.presentation / 4 % 4 == 0;
+      const auto other = all_apexes[(static_cast<std::size_t>(answer.trial.truth) + 1) % 4];
+      if (answer.source == 0 || s75_mrad)
+        answer.trial.answer = answer_of(answer.trial, answer.source == 0 ? 1 : *s75_mrad, RandomStream(1, "person"), i);
+      else
+        answer.trial.answer = lucky ? answer.trial.truth : other;
+      answers.push_back(std::move(answer));
+    }
+    return blind_result({"camera", "blurred"}, answers, plan).value();
+  };
+
+  const BlindResult seen = result_with(1.2), guessed = result_with(std::nullopt);
+
+  EXPECT_EQ(exit_code(seen), 0);
+  EXPECT_TRUE(seen.ratios[0].points[0].ratio);
+  EXPECT_EQ(exit_code(guessed), 3);
+  EXPECT_FALSE(guessed.ratios[0].points[0].ratio);
+  EXPECT_FALSE(guessed.ratios[0].points[0].ratio_ci95.high);
+  EXPECT_THAT(why_withheld(guessed, 1, 2), HasSubstr("blurred"));
+  const Json json = blind_json(guessed, {}, 1);
+  EXPECT_FALSE(json["ratios"][0]["points"][0]["withheld"].is_null());
+}
+
 class BlindSession : public MeasuredSession {};
 
 TEST_F(BlindSession, OfARecordedSessionHasCameraTwinAndPackages) {
