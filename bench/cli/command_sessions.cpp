@@ -237,6 +237,7 @@ int run_verify(Console& console, const std::string& folder, const std::string& p
               {"changed", files.changed},
               {"missing", files.missing},
               {"foreign", files.foreign},
+              {"links", files.links},
               {"signed_by", *signature && signature_holds ? Json((*signature)->signature.key_sha256()) : Json()},
               {"manifest_sha256", files.manifest_sha256.empty() ? Json() : Json(files.manifest_sha256)},
               {"condition", to_string(check->condition)},
@@ -248,6 +249,7 @@ int run_verify(Console& console, const std::string& folder, const std::string& p
   for (const std::string& file : files.changed) console.text("changed   " + file);
   for (const std::string& file : files.missing) console.text("missing   " + file);
   for (const std::string& file : files.foreign) console.text("foreign   " + file);
+  for (const std::string& file : files.links) console.text("link      " + file);
   if (!files.manifest_sha256.empty()) console.text("SHA-256 of the manifest: " + files.manifest_sha256);
   if (!signature_holds)
     return report_error(console, {ErrorCode::invalid_input, folder + ": " + (*signature)->sentence});

@@ -120,6 +120,18 @@ std::vector<std::string> everything_in(const std::filesystem::path& folder) {
   return paths;
 }
 
+bool is_link(const std::filesystem::path& path) {
+  std::error_code problem;
+  return std::filesystem::is_symlink(std::filesystem::symlink_status(path, problem));
+}
+
+/// Whether the file or a folder of its path inside the session is a symbolic link.
+bool through_link(const std::filesystem::path& folder, const std::filesystem::path& path) {
+  std::filesystem::path at = folder;
+  return std::any_of(path.begin(), path.end(),
+                     [&at](const std::filesystem::path& part) { return is_link(at /= part); });
+}
+
 /// Compares every listed file with its entry.
 Result<void> check_entries(const std::filesystem::path& folder, const ManifestEntries& entries, ManifestCheck& check) {
   for (const auto& [path, expected] : entries) {
@@ -128,15 +140,11 @@ Result<void> check_entries(const std::filesystem::path& folder, const ManifestEn
       check.missing.push_back(path);
       continue;
     }
+    if (through_link(folder, path)) check.links.push_back(path);
     TODBENCH_TRY(const ManifestEntry found, entry_of(folder / path));
     if (found != expected) check.changed.push_back(path);
   }
   return {};
-}
-
-bool is_link(const std::filesystem::path& path) {
-  std::error_code problem;
-  return std::filesystem::is_symlink(std::filesystem::symlink_status(path, problem));
 }
 
 /// Returns the files that neither the manifest nor a signature lists.
@@ -223,7 +231,7 @@ Result<bool> is_listed(const std::filesystem::path& folder, const std::string& p
   const Result<Manifest> manifest = read_manifest(folder);
   if (!manifest || !manifest->as_written) return false;
   const auto entry = manifest->entries.find(path);
-  if (entry == manifest->entries.end()) return false;
+  if (entry == manifest->entries.end() || through_link(folder, path)) return false;
   TODBENCH_TRY(const ManifestEntry found, entry_of(folder / path));
   return found == entry->second;
 }
@@ -246,6 +254,7 @@ Result<ManifestCheck> check_manifest(const std::filesystem::path& folder) {
     check.missing.emplace_back(manifest_name);
     return check;
   }
+  if (is_link(folder / manifest_name)) check.links.emplace_back(manifest_name);
   const Result<Manifest> manifest = read_manifest(folder);
   if (!manifest || !manifest->as_written) check.changed.emplace_back(manifest_name);
   if (!manifest) return check;
@@ -253,6 +262,7 @@ Result<ManifestCheck> check_manifest(const std::filesystem::path& folder) {
   TODBENCH_TRY_VOID(check_entries(folder, manifest->entries, check));
   check.foreign = not_listed(folder, manifest->entries);
   std::sort(check.changed.begin(), check.changed.end());
+  std::sort(check.links.begin(), check.links.end());
   return check;
 }
 

@@ -31,16 +31,20 @@ struct ManifestCheck {
   std::vector<std::string> changed;
   std::vector<std::string> missing;  ///< listed but absent; includes manifest.json if absent
   std::vector<std::string> foreign;  ///< present but not listed, of any type; empty without a manifest
+  /// Listed files that are symbolic links or lie in a linked folder, and manifest.json if it is one: their content can
+  /// change without a change of the session folder.
+  std::vector<std::string> links{};
   /// Digest of the manifest, as printed in reports: SHA-256 of the lines "SHA256  PATH" of all files except the report
   /// pages, in the order of the manifest. Empty without a manifest.
   std::string manifest_sha256;
   /// Returns whether the folder equals its manifest.
-  [[nodiscard]] bool intact() const { return changed.empty() && missing.empty() && foreign.empty(); }
+  [[nodiscard]] bool intact() const { return changed.empty() && missing.empty() && foreign.empty() && links.empty(); }
 };
 
 /// Reads every file of the folder. Errors: `io` with the path of an unreadable file.
 [[nodiscard]] Result<ManifestCheck> check_manifest(const std::filesystem::path& folder);
-/// Returns whether the manifest confirms the current content of this file; false without a manifest. Errors: `io` with
+/// Returns whether the manifest confirms the current content of this file; false without a manifest, and for a symbolic
+/// link. Errors: `io` with
 /// the path.
 [[nodiscard]] Result<bool> is_listed(const std::filesystem::path& folder, const std::string& path);
 /// Returns the digest of the existing manifest. Errors: as refresh_manifest().

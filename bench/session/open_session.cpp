@@ -47,7 +47,17 @@ std::string sentence_of(const std::vector<Kind>& kinds) {
     text += (text.empty() ? "" : ", ") + listed(kind.files) + " " +
             std::string(kind.files.size() == 1 ? kind.one : kind.more);
   }
-  return text + " after the session ended";
+  return text.empty() ? "" : text + " after the session ended";
+}
+
+/// States what is wrong with links, and the remedy; empty without links.
+std::string sentence_of_links(const std::vector<std::string>& links) {
+  if (links.empty()) return "";
+  const bool one = links.size() == 1;
+  return listed(links) +
+         (one ? " is a symbolic link or lies in a linked folder" : " are symbolic links or lie in a linked folder") +
+         ", so that " + (one ? "its" : "their") + " content can change at any time: put a copy in place of " +
+         (one ? "the link" : "each link");
 }
 
 }  // namespace
@@ -86,9 +96,16 @@ Result<SessionCheck> check_session(const std::filesystem::path& folder) {
                is_session_file);
   for (const Kind* kind : {&changed, &missing, &added})
     check.not_vouched_for.insert(check.not_vouched_for.end(), kind->files.begin(), kind->files.end());
+  check.not_vouched_for.insert(check.not_vouched_for.end(), check.files.links.begin(), check.files.links.end());
   std::sort(check.not_vouched_for.begin(), check.not_vouched_for.end());
+  const auto twice = std::unique(check.not_vouched_for.begin(), check.not_vouched_for.end());
+  check.not_vouched_for.erase(twice, check.not_vouched_for.end());
   if (!check.files.intact()) check.condition = SessionCondition::changed;
-  if (!check.not_vouched_for.empty()) check.sentence = sentence_of({changed, missing, added});
+  if (!check.not_vouched_for.empty()) {
+    const std::string links = sentence_of_links(check.files.links);
+    check.sentence = sentence_of({changed, missing, added});
+    check.sentence += (check.sentence.empty() || links.empty() ? "" : "; ") + links;
+  }
   return check;
 }
 

@@ -25,8 +25,8 @@ enum class SessionCondition {
 struct SessionCheck {
   SessionCondition condition = SessionCondition::intact;
   ManifestCheck files;
-  /// Files that a reader would use but the manifest does not confirm, sorted: changed, missing or added. Missing report
-  /// pages and foreign files that no reader uses are not included.
+  /// Files that a reader would use but the manifest does not confirm, sorted: changed, missing, added or linked.
+  /// Missing report pages and foreign files that no reader uses are not included.
   std::vector<std::string> not_vouched_for;
   std::string sentence;  ///< explains `not_vouched_for` or `cut_off`; empty if neither applies
 };

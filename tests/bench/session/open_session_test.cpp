@@ -218,6 +218,37 @@ TEST_F(ChangedSession, NothingIsWrittenWhereALinkOrAForeignFileIs) {
   EXPECT_THAT(require_no_links(session_).error().message, HasSubstr(".report.csv.part"));
 }
 
+TEST_F(ChangedSession, ALinkIsNamedAndNotTrusted) {
+  const testing::TemporaryFolder elsewhere;
+  for (const std::string name : {"trials.csv", "manifest.json", "report.html"}) {
+    const auto outside = elsewhere.write(name, content(name));
+    std::filesystem::rename(at(name), at(name + ".kept"));
+    std::filesystem::create_symlink(outside, at(name));
+    std::filesystem::copy_file(at(name + ".kept"), elsewhere.path() / "kept");
+    std::filesystem::remove(at(name + ".kept"));
+
+    const auto check = check_session(session_);
+    ASSERT_TRUE(check) << check.error().message;
+    EXPECT_THAT(check->files.links, ElementsAre(name));
+    EXPECT_EQ(check->condition, SessionCondition::changed);
+    EXPECT_THAT(check->sentence, HasSubstr(name + " is a symbolic link"));
+    EXPECT_THAT(check->sentence, HasSubstr("put a copy in place"));
+    EXPECT_THAT(refusal(), HasSubstr("is a symbolic link"));
+    EXPECT_FALSE(require_intact(session_));
+
+    std::filesystem::remove(at(name));
+    std::filesystem::copy_file(elsewhere.path() / "kept", at(name));
+    std::filesystem::remove(elsewhere.path() / "kept");
+  }
+  EXPECT_EQ(refusal(), "");
+
+  std::filesystem::copy(at("frames"), elsewhere.path() / "frames");
+  std::filesystem::remove_all(at("frames"));
+  std::filesystem::create_directory_symlink(elsewhere.path() / "frames", at("frames"));
+  EXPECT_THAT(check_session(session_)->files.links, ElementsAre("frames/camera.todrec"));
+  EXPECT_THAT(refusal(), HasSubstr("frames/camera.todrec is a symbolic link or lies in a linked folder"));
+}
+
 TEST_F(ChangedSession, ALinkedFolderIsNotEmptiedByANewRun) {
   const testing::TemporaryFolder elsewhere;
   const auto file = elsewhere.write("precious.toml", "mine");
