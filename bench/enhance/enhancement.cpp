@@ -17,6 +17,7 @@
 #include "bench/enhance/decidable.h"
 #include "bench/enhance/package_spread.h"
 #include "bench/enhance/stage_scan.h"
+#include "bench/enhance/unseen_differences.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/twin/experiment_inputs.h"
@@ -171,9 +172,10 @@ void run_recorded_one(const Chains& chains, const std::filesystem::path& session
   if (auto agreed = recording->answers->agreed(); !agreed && !result.error) result.error = agreed.error();
 }
 
-/// Returns ln S75 of the trials at one contrast, without one group of presentations.
-std::optional<double> ln_threshold(std::span<const Trial> trials, double set_delta_t_k,
-                                   const std::function<bool(std::int64_t presentation)>& included, FitOptions options) {
+/// Fits the trials at one contrast, without one group of presentations; empty without a threshold.
+std::optional<PsychometricFit> fit_of(std::span<const Trial> trials, double set_delta_t_k,
+                                      const std::function<bool(std::int64_t presentation)>& included,
+                                      FitOptions options) {
   std::map<double, Level> levels;
   for (const Trial& trial : trials) {
     if (!same_contrast(trial.set_delta_t_k, set_delta_t_k) || !included(trial.presentation)) continue;
@@ -188,7 +190,7 @@ std::optional<double> ln_threshold(std::span<const Trial> trials, double set_del
   options.graded = false;
   const auto fit = fit_psychometric(list, options);
   if (!fit || !fit->threshold || !(*fit->threshold > 0)) return std::nullopt;
-  return std::log(*fit->threshold);
+  return *fit;
 }
 
 /// Assigns the presentations at one contrast that both runs contain to groups in turn.
@@ -215,16 +217,18 @@ PairedRatio ratio_at(std::span<const Trial> with, std::span<const Trial> without
   const auto groups = groups_of(with, without, set_delta_t_k);
   std::size_t count = 0;
   for (const auto& [presentation, group] : groups) count = std::max(count, group + 1);
+  PsychometricFit fit_without;
   // ln of S75 without over S75 with the package; `left_out` beyond the last group leaves none out.
   const auto ln_ratio = [&](std::size_t left_out) -> std::optional<double> {
     const auto included = [&](std::int64_t presentation) {
       const auto found = groups.find(presentation);
       return found != groups.end() && found->second != left_out;
     };
-    const auto a = ln_threshold(with, set_delta_t_k, included, options);
-    const auto b = ln_threshold(without, set_delta_t_k, included, options);
+    const auto a = fit_of(with, set_delta_t_k, included, options);
+    const auto b = fit_of(without, set_delta_t_k, included, options);
     if (!a || !b) return std::nullopt;
-    return *b - *a;
+    if (left_out == count) fit_without = *b;
+    return std::log(*b->threshold) - std::log(*a->threshold);
   };
   const auto whole = ln_ratio(count);
   if (!whole) return ratio;
@@ -239,7 +243,13 @@ PairedRatio ratio_at(std::span<const Trial> with, std::span<const Trial> without
   const double n = static_cast<double>(values.size()), mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
   double squares = 0;
   for (const double value : values) squares += (value - mean) * (value - mean);
-  const double half = distribution::quantile(distribution::StudentsT(n - 1), 0.975) * std::sqrt((n - 1) / n * squares);
+  double half = distribution::quantile(distribution::StudentsT(n - 1), 0.975) * std::sqrt((n - 1) / n * squares);
+  if (const auto answers = paired_answers(with, without, set_delta_t_k);
+      !answers.identical && answers.differing < enough_differing) {
+    const auto unseen = unseen_ln_ratio(answers, without, set_delta_t_k, fit_without, options.form);
+    if (!unseen) return ratio;
+    half = std::max(half, *unseen);
+  }
   ratio.ci95 = {std::exp(*whole - half), std::exp(*whole + half)};
   return ratio;
 }

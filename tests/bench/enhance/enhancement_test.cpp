@@ -11,6 +11,7 @@
 
 #include "bench/enhance/enhancement_page.h"
 #include "bench/enhance/package_spread.h"
+#include "bench/enhance/unseen_differences.h"
 #include "bench/report/html.h"
 #include "hvs/observer/open_parameters.h"
 #include "sim_devices/prediction/direct_estimate.h"
@@ -223,6 +224,7 @@ TEST(PairedRatios, OfTheSameTrialsAreOneWithoutWidth) {
       trial.set_delta_t_k = 2;
       trial.size_mrad = size;
       trial.answer = (presentation * 7 + size * 3) % 8 < size + 1 ? Apex::up : Apex::down;
+      trial.scores = {1, 0.5, 0.25, size + 0.1 * presentation};
       trials.push_back(trial);
     }
   }
@@ -239,13 +241,47 @@ TEST(PairedRatios, OfTheSameTrialsAreOneWithoutWidth) {
   EXPECT_NEAR(ratio[0].ci95.low.value(), 1.25, 1e-4);
 }
 
-TEST(PairedRatios, HoldTheTrueRatioAsOftenAsTheySay) {
-  const auto found = testing::coverage_of({.presentations = 24}, 50, 7);
+TEST(PairedRatios, OfEqualAnswersToOtherPicturesHaveAWidth) {
+  std::vector<Trial> without;
+  for (int presentation = 0; presentation < 12; ++presentation) {
+    for (int size = 1; size <= 6; ++size) {
+      Trial trial;
+      trial.presentation = presentation;
+      trial.set_delta_t_k = 2;
+      trial.size_mrad = size;
+      trial.answer = (presentation * 7 + size * 3) % 8 < size + 1 ? Apex::up : Apex::down;
+      trial.scores = {1, 0.5, 0.25, size + 0.1 * presentation};
+      without.push_back(trial);
+    }
+  }
+  auto with = without;
+  for (Trial& trial : with) trial.scores[0] += 1e-6;
 
-  EXPECT_EQ(found.intervals, 50);
-  // Of 50 with 95 % fewer than 42 hold it with a probability of 1e-3.
-  EXPECT_GE(found.holding, 42);
-  EXPECT_LT(found.mean_half_width, 0.2);
+  const PairedAnswers answers = paired_answers(with, without, 2);
+  const auto ratios = paired_ratios(with, without, {});
+
+  EXPECT_EQ(answers.count, 72u);
+  EXPECT_EQ(answers.differing, 0u);
+  EXPECT_FALSE(answers.identical);
+  EXPECT_TRUE(paired_answers(without, without, 2).identical);
+  ASSERT_TRUE(ratios.size() == 1 && ratios[0].ratio && ratios[0].ci95.low && ratios[0].ci95.high);
+  EXPECT_EQ(*ratios[0].ratio, 1);
+  // 3.6 answers of 72 may differ unseen; a change of ln S75 by 1 changes about half of the answers.
+  EXPECT_GT(std::log(*ratios[0].ci95.high), 0.04);
+  EXPECT_LT(std::log(*ratios[0].ci95.high), 0.4);
+  EXPECT_NEAR(std::log(*ratios[0].ci95.low), -std::log(*ratios[0].ci95.high), 1e-12);
+}
+
+TEST(PairedRatios, HoldASmallRatioThatFewAnswersShow) {
+  // All answers come from common random numbers: of 480 answers none, one or a few differ.
+  for (const double ratio : {1.002, 1.03}) {
+    const auto found = testing::coverage_of({.ratio = ratio, .shared_noise = 1}, 40, 9);
+
+    EXPECT_EQ(found.intervals, 40) << ratio;
+    // Of 40 with 95 % fewer than 33 hold it with a probability of 1e-3.
+    EXPECT_GE(found.holding, 33) << ratio;
+    EXPECT_LT(found.mean_half_width, 0.06) << ratio;
+  }
 }
 
 TEST(PackageFile, IsRefusedInASentence) {
