@@ -233,6 +233,14 @@ struct ReplayArguments {
   bool run_modules = false;
 };
 
+/// The likely reason of different answers.
+std::string why_different(const std::vector<std::string>& accepted_changes) {
+  if (accepted_changes.empty()) return "it was recorded by another version of the program, or the program has a defect";
+  std::string files;
+  for (const std::string& file : accepted_changes) files += (files.empty() ? "" : ", ") + file;
+  return "files of the session were changed, which --accept-changed accepted: " + files;
+}
+
 int run_replay(Console& console, const ReplayArguments& asked, const Program& program) {
   const auto& [arguments, session, opening, run_modules] = asked;
   const ExperimentOptions options = folder_of(arguments, session_name(session) + "-replay");
@@ -257,9 +265,8 @@ int run_replay(Console& console, const ReplayArguments& asked, const Program& pr
     console.text("trials: " + std::string(said(outcome->same_trials)) + "; fits: " + said(outcome->same_fits));
   }
   if (!outcome->same_trials || !outcome->same_fits.value_or(true)) {
-    console.error(
-        "the answers of the replay differ from those of the session: it was recorded by another version of the "
-        "program, or the program has a defect");
+    console.error("the answers of the replay differ from those of the session: " +
+                  why_different(outcome->accepted_changes));
     return exit_code(VerdictKind::fail);
   }
   return finish_run(console, outcome->run);

@@ -159,6 +159,16 @@ TEST_F(ChangedSessions, AReplayOfOneSaysSoInTheNewSession) {
   expect_whole_session(at("r"), "complete");
 }
 
+TEST_F(ChangedSessions, AReplayThatDiffersNamesTheAcceptedChange) {
+  change_a_digit("m/trials.csv", 0.5);
+
+  const Ended ended = run({"replay", "m", "--out", "r", "--accept-changed"});
+
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("files of the session were changed, which --accept-changed accepted: trials.csv"));
+  EXPECT_THAT(ended.err, ::testing::Not(HasSubstr("defect")));
+}
+
 TEST_F(ChangedSessions, WithoutAManifestAreChangedUnlessTheRunWasCutOff) {
   std::filesystem::remove(at("m/manifest.json"));
   expect_refused(run({"report", "m"}), 2, "manifest.json was removed after the session ended");
