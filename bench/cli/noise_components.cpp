@@ -72,6 +72,14 @@ tl::unexpected<Error> corrected(int frame) {
                                             "camera's noise. Record again, or accept this with --across-corrections");
 }
 
+tl::unexpected<Error> unsteady() {
+  return fail(
+      ErrorCode::invalid_input,
+      "the noise changes within the recording, or the scene moves: many successive frames differ much more than "
+      "others; the components would not be those of the camera's noise. Record again, or accept this with "
+      "--across-corrections");
+}
+
 Result<WholeRecording> whole_recording(Console& console, const std::string& id, AcrossCorrections across) {
   TODBENCH_TRY(const auto source, started_recording(console, id));
   InputGate gate;
@@ -109,7 +117,7 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
   TODBENCH_TRY(whole.table, cube.table());
   whole.memory = cube.pixel_memory();
   if (const auto change = cube.abrupt_change(); change && across == AcrossCorrections::refuse)
-    return corrected(*change);
+    return cube.few_pairs_stand_out() ? corrected(*change) : unsteady();
   return whole;
 }
 

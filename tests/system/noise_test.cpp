@@ -342,6 +342,16 @@ TEST(NoiseCommand, SaysThatComponentsKnowNoMemory) {
   EXPECT_EQ(none.err, "");
 }
 
+TEST(NoiseCommand, SaysThatTheNoiseOfAComponentsCubeChanges) {
+  const TemporaryFolder folder;
+  const std::string quiet = white_frames(8000, 2), noisy = white_frames(8000, 8);
+  const std::string file =
+      folder.write("frames.raw", noisy.substr(0, noisy.size() / 2) + quiet.substr(quiet.size() / 2)).string();
+
+  expect_refused(todbench({"noise", file + "?width=80&height=60", "--components-only"}), 2,
+                 "the noise changes within the recording, or the scene moves");
+}
+
 TEST(NoiseCommand, WithholdsTheAcuityWhereTheSceneMoved) {
   const Ended ended = todbench({"noise", recordings + "flir_sc660.seq", "--json"});
 

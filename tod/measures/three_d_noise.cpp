@@ -321,6 +321,16 @@ std::optional<int> NoiseCube::abrupt_change() const {
   return std::nullopt;
 }
 
+bool NoiseCube::few_pairs_stand_out() const {
+  if (steps_.empty()) return true;
+  constexpr double standing_out = 1.3;
+  constexpr std::ptrdiff_t few = 3;
+  std::vector<double> sorted = steps_;
+  std::sort(sorted.begin(), sorted.end());
+  const double limit = standing_out * sorted[sorted.size() / 2];
+  return std::distance(std::upper_bound(sorted.begin(), sorted.end(), limit), sorted.end()) <= few;
+}
+
 std::optional<double> NoiseCube::lag1_correlation() const {
   const auto found = table();
   if (frames_ < 5 || !found || !(found->mean_squares[tvh] > 0)) return std::nullopt;

@@ -113,6 +113,10 @@ class NoiseCube {
   /// mean. Its expectation is the same for every pair, whatever the memory of the noise. Limit: 1.69 times the median
   /// pair's, exceeded by chance in less than 1e-9 of all recordings. Empty: no such frame, or fewer than five frames.
   [[nodiscard]] std::optional<int> abrupt_change() const;
+  /// Whether at most three pairs of frames differ by more than 1.3 times the median pair (mean square), as with a
+  /// correction. If more do, the noise changes within the recording or the scene moves, and the frame of
+  /// abrupt_change() is arbitrary.
+  [[nodiscard]] bool few_pairs_stand_out() const;
 
  private:
   template <typename Pixel>
