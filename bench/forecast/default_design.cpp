@@ -5,10 +5,35 @@
 #include <cmath>
 #include <utility>
 
+#include "bench/twin/experiment_inputs.h"
 #include "sim_devices/prediction/direct_estimate.h"
+#include "tod/measurement/geometry.h"
 #include "tod/plate/test_pattern.h"
 
 namespace todbench {
+namespace {
+
+/// The largest distance from `nearest_m` to that of the plan at which the windows of the observer keep clear of the
+/// neighbouring triangles: their sides are whole pitches and a margin, so they shrink less than the plate. That of the
+/// plan if there is none, whose check then names the sizes.
+double distance_of_clear_windows(Plan plan, const LoadedPlan& loaded, TemplateObserver& observer, double nearest_m) {
+  ExperimentInputs inputs;
+  inputs.plates = loaded.plates();
+  inputs.observer = loaded.observer();
+  inputs.sensor = loaded.sensor();
+  const int samples = inputs.sensor.samples_per_pitch();
+  const cv::Size picture(inputs.sensor.width * samples, inputs.sensor.height * samples);
+  const double chosen_m = plan.target.distance_m;
+  constexpr double step = 0.98;
+  for (; plan.target.distance_m >= nearest_m; plan.target.distance_m *= step) {
+    const auto misfits = find_misfits(simulated_options(plan, inputs), observer, picture);
+    if (!misfits) return chosen_m;
+    if (misfits->empty()) return plan.target.distance_m;
+  }
+  return chosen_m;
+}
+
+}  // namespace
 
 Plan plan_of_nobody(Plan plan) {
   plan.name = "simulate";
@@ -52,6 +77,7 @@ Result<LoadedPlan> with_suitable_distance(const LoadedPlan& loaded, std::stop_to
   // Registration and contrast need triangles of at least five displayed samples.
   const double farthest_m = largest * sensor.samples_per_pitch() / (5.0 * sensor.ifov_mrad());
   plan.target.distance_m = std::max(nearest_m, std::min(middle_mm / middle_mrad, farthest_m));
+  plan.target.distance_m = distance_of_clear_windows(plan, loaded, observer, nearest_m);
   return loaded.with(std::move(plan));
 }
 

@@ -154,6 +154,10 @@ MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& i
   MeasurementOptions options =
       measurement_options(plan, inputs.plates, inputs.sensor.ifov_mrad() / inputs.sensor.samples_per_pitch());
   options.samples_per_pitch = inputs.sensor.samples_per_pitch();
+  // The blur of optics and detector grows with the number of samples; a smaller triangle does not show where it points.
+  constexpr double least_pitches = 1.25;
+  options.registration.min_triangle_px =
+      std::max(options.registration.min_triangle_px, least_pitches * options.samples_per_pitch);
   take_answers(options, plan, inputs);
   options.frames_after_change = 0;
   options.nuc_interval_s = 0;

@@ -46,6 +46,16 @@ TEST(SimulatedSc2000, SeesSmallerTrianglesWithMicroscan) {
             0.9 * plain["points"][0]["s75_direct_mrad"].get<double>());
 }
 
+TEST(SimulatedSc2000, IsMeasurableWithEveryMicroscanAtTheDistanceThatTheProgramChooses) {
+  for (const char* samples : {"3", "4"}) {
+    // At 10 K the middle of the sizes would be so far away that windows touch (3) or triangles are unclear (4).
+    const Json json = simulated({"--delta-t-k", "10", "--accuracy", "draft", "--microscan", samples});
+
+    ASSERT_EQ(json["points"].size(), 1u) << samples;
+    EXPECT_TRUE(json["points"][0]["s75_mrad"].is_number()) << samples;
+  }
+}
+
 TEST(SimulatedSc2000, AgreesBetweenTheLevelsOfAccuracyWithinTheirErrors) {
   const Json draft = simulated({"--delta-t-k", "16.9", "--accuracy", "draft"})["points"][0];
   const Json reference = simulated({"--delta-t-k", "16.9", "--accuracy", "reference"})["points"][0];
