@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/prediction/identification.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -13,6 +15,7 @@
 #include "acquisition/base/try.h"
 #include "hvs/observer/identification_bank.h"
 #include "hvs/observer/open_parameters.h"
+#include "hvs/observer/template_bank.h"
 #include "hvs/observer/viewing_filter.h"
 #include "sim_devices/prediction/identification_passes.h"
 #include "sim_devices/prediction/identification_views.h"
@@ -268,6 +271,59 @@ class RangeTrial {
   std::vector<std::vector<float>> eye_;                   ///< by draw; only with an eye
 };
 
+/// Half width in metres of the largest view.
+double reach_of_views(const SeenTargets& targets) {
+  double reach_m = 0;
+  for (const auto& target : targets) {
+    for (const auto& aspect : target) {
+      for (const auto& edge : aspect.edges_m)
+        reach_m = std::max({reach_m, std::abs(edge.a.x), std::abs(edge.a.y), std::abs(edge.b.x), std::abs(edge.b.y)});
+    }
+  }
+  return reach_m;
+}
+
+/// Predicted size of the templates of one range.
+struct PredictedTemplates {
+  double reach_pitch = 0, side = 0, samples = 0, rank = 0, bytes = 0;
+};
+
+PredictedTemplates predicted_templates(const IdentificationTask& task, const SensorSpec& spec,
+                                       const SeenTargets& targets, double reach_m, double range_m) {
+  PredictedTemplates out;
+  const int n = spec.samples_per_pitch();
+  double views = 0;
+  for (const auto& target : targets) views += static_cast<double>(target.size());
+  out.reach_pitch = reach_m * 1e3 / (range_m * spec.ifov_mrad());
+  out.side = 2 * n * std::ceil(1.1 * out.reach_pitch + task.observer.window_margin_pitch);
+  out.samples = out.side * out.side;
+  // Rank of the templates of one view at all places: 30 for a point, about half of the places for a large target.
+  out.rank = std::min(
+      {30 + 8 * out.reach_pitch * n, static_cast<double>(places_of_search(task.observer)) / 2 + 1, out.samples});
+  out.bytes = out.samples * out.rank * views * sizeof(float);
+  return out;
+}
+
+/// Refuses a range whose templates are beyond the limit of the bank even if the prediction is four times too large:
+/// before anything is computed, because the pictures of such a range need more memory than any machine has.
+Result<void> check_memory(const IdentificationTask& task, const SensorSpec& spec, const SeenTargets& targets) {
+  constexpr double limit = TemplateBank::max_bytes, sure = 4, gib = 1 << 30;
+  const double reach_m = reach_of_views(targets);
+  const auto bytes = [&](double range_m) { return predicted_templates(task, spec, targets, reach_m, range_m).bytes; };
+  for (const auto& range : task.ranges) {
+    const double needed = bytes(range.range_m);
+    if (needed <= sure * limit) continue;
+    double feasible_m = range.range_m;
+    for (; feasible_m < 1e9 && bytes(feasible_m) > limit; feasible_m *= 1.02) {
+    }
+    return fail(ErrorCode::invalid_input,
+                fmt::format("at {:g} m the targets are too large for this observer: their templates would need about "
+                            "{:.0f} GiB, at most {:.0f} GiB are allowed; the shortest feasible range is about {:.3g} m",
+                            range.range_m, needed / gib, limit / gib, feasible_m));
+  }
+  return {};
+}
+
 }  // namespace
 
 SensorSpec sensor_at(const IdentificationTask& task, double range_m) {
@@ -284,18 +340,17 @@ Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
   TODBENCH_TRY(const auto targets, seen_targets(task));
   const SensorSpec spec = as_planned(task.sensor, task.plan);
   const int n = spec.samples_per_pitch();
-  double views = 0, edges = 0, reach_m = 0;
+  TODBENCH_TRY_VOID(check_memory(task, spec, targets));
+  const double reach_m = reach_of_views(targets);
+  double views = 0, edges = 0;
   for (const auto& target : targets) {
     for (const auto& aspect : target) {
       ++views;
       edges += static_cast<double>(aspect.edges_m.size());
-      for (const auto& edge : aspect.edges_m)
-        reach_m = std::max({reach_m, std::abs(edge.a.x), std::abs(edge.a.y), std::abs(edge.b.x), std::abs(edge.b.y)});
     }
   }
   const auto draws = static_cast<double>(draws_of(task));
-  const double places =
-      std::pow(2 * std::round(task.observer.search_range_samples / task.observer.search_step_samples) + 1, 2);
+  const auto places = static_cast<double>(places_of_search(task.observer));
   IdentificationEffort out;
   out.decisions = draws * views * static_cast<double>(task.ranges.size());
   const double windows = task.sequence == SequenceObserver::tracking_sum ? task.frames : 1;
@@ -306,12 +361,8 @@ Result<IdentificationEffort> planned_effort(const IdentificationTask& task) {
     if (!task.stage_reach_px) whole = static_cast<double>(spec.width) * spec.height * n * n;
   }
   for (const auto& range : task.ranges) {
-    const double reach = reach_m * 1e3 / (range.range_m * spec.ifov_mrad());  // pitches
-    const double side = 2 * n * std::ceil(1.1 * reach + task.observer.window_margin_pitch);
-    const double samples = side * side;
-    // Rank of the templates of one view at all places: 30 for a point, about half of the places for a large target.
-    const double rank = std::min({30 + 8 * reach * n, places / 2 + 1, samples});
-    out.largest_bytes = std::max(out.largest_bytes, samples * rank * views * sizeof(float));
+    const auto [reach, side, samples, rank, bytes] = predicted_templates(task, spec, targets, reach_m, range.range_m);
+    out.largest_bytes = std::max(out.largest_bytes, bytes);
     double band = task.knowledge == TemplateKnowledge::ideal ? 1.2 / task.observer.blur_sigma_samples : 3.0 / n;
     if (task.observer.eye) band = std::min(viewing_filter(task.observer).band_per_sample, 3.0 / n);
     const double frequencies = 2 * std::pow(band * (0.5 * side + reach * n + 6), 2);
@@ -348,6 +399,7 @@ Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task
                 "a count of the camera is larger than its noise, so rounding depends on the targets. The experiment "
                 "does not simulate this");
   const SensorSpec spec = as_planned(task.sensor, task.plan);
+  TODBENCH_TRY_VOID(check_memory(task, spec, *targets));
   const SceneImager imager(spec, task.plan, task.accuracy, task.motion);
   std::vector<Result<IdentificationPoint>> found(task.ranges.size(), IdentificationPoint{});
   std::atomic<std::size_t> next = 0;

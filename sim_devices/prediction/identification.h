@@ -103,7 +103,7 @@ struct IdentificationEffort {
   double largest_bytes = 0;  ///< memory of the templates of one range
   double processor_s = 0;    ///< on one core with about 2 x 10^10 template samples a second, to a factor of two
 };
-/// Predicts the effort without computing. Errors: those of identify() about the targets.
+/// Predicts the effort without computing. Errors: those of identify() about the targets and their size.
 [[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);
 
 /// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor and

@@ -473,6 +473,21 @@ TEST(Identification, PlansAnEffortThatGrowsWithDecisionsAndNearness) {
   EXPECT_GT(near->largest_bytes, once->largest_bytes);
 }
 
+TEST(Identification, RefusesARangeWhoseTemplatesNeedMoreMemoryThanAllowedBeforeAnyComputation) {
+  IdentificationTask task = two_mirror_images();
+  task.ranges = {{0.001, 1}, {350, 1}};
+
+  const auto effort = planned_effort(task);
+  const auto found = identify(task);
+
+  ASSERT_FALSE(effort || found);
+  for (const Error& error : {effort.error(), found.error()}) {
+    EXPECT_EQ(error.code, ErrorCode::invalid_input);
+    EXPECT_NE(error.message.find("at 0.001 m the targets are too large for this observer"), std::string::npos);
+    EXPECT_NE(error.message.find("the shortest feasible range is about"), std::string::npos) << error.message;
+  }
+}
+
 TEST(Identification, RefusesWhatCannotBeToldApart) {
   IdentificationTask alike = two_mirror_images();
   alike.targets[1] = {"again", {triangle_scene(Apex::up, 1)}};
