@@ -127,7 +127,7 @@ void add_pattern_command(CLI::App& app, Program& program) {
       ->check(number_in(0.1, 16384));
   command
       ->add_option("--frequency-per-px", a->frequencies_per_px,
-                   "mrtd: spatial frequencies in cycles per pixel; default: 0.05 to 0.5")
+                   "mrtd: spatial frequencies in cycles per pixel, at most 0.5 (Nyquist); default: 0.05 to 0.5")
       ->delimiter(',')
       ->check(number_in(1e-4, 1));
   command->add_option("--angle-deg", a->angle_deg, "edge: angle of the edge from the vertical in degrees")

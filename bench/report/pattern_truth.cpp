@@ -43,7 +43,8 @@ std::string other_toml(const PictureRequest& request, const TestPicture& picture
                   picture.levels.cols, picture.levels.rows, number_text(request.low), number_text(request.high));
   if (const auto* edge = std::get_if<EdgePicture>(&request.kind))
     text += fmt::format("angle_deg = {}\n", number_text(edge->angle_deg));
-  if (const auto* star = std::get_if<SiemensPicture>(&request.kind)) text += fmt::format("spokes = {}\n", star->spokes);
+  if (const auto* star = std::get_if<SiemensPicture>(&request.kind))
+    text += fmt::format("spokes = {}\nnyquist_radius_px = {}\n", star->spokes, number_text(finest_radius_px(*star)));
   if (const auto* flat = std::get_if<FlatPicture>(&request.kind))
     text += fmt::format("level = {}\n", number_text(flat->level));
   for (const auto& group : picture.bars) {

@@ -105,9 +105,11 @@ Result<std::vector<BarGroup>> groups_of(const MrtdPicture& kind, cv::Size size) 
   std::vector<BarGroup> groups;
   double x = 0, y = 0, row_height = 0;
   for (const double f : kind.frequencies_per_px) {
-    if (!(f > 0 && f <= 1))
+    if (!(f > 0 && f <= 0.5))
       return fail(ErrorCode::invalid_input,
-                  fmt::format("a frequency must be above 0 and at most 1 cycle per pixel, found {:g}", f));
+                  fmt::format("a frequency must be above 0 and at most 0.5 cycles per pixel (Nyquist: a bar of one "
+                              "pixel), found {:g}",
+                              f));
     const double side = 3.5 / f, cell = side + std::max(2.0, 1 / f);
     if (cell > size.width || cell > size.height)
       return fail(
@@ -173,6 +175,13 @@ Result<void> draw(const RampPicture&, const PictureRequest& request, TestPicture
 
 Result<void> draw(const SiemensPicture& kind, const PictureRequest& request, TestPicture& picture) {
   if (kind.spokes < 2) return fail(ErrorCode::invalid_input, "a star needs at least two spokes");
+  if (finest_radius_px(kind) >= std::min(request.size.width, request.size.height) / 2.0)
+    return fail(
+        ErrorCode::invalid_input,
+        fmt::format("a star of {} spokes is finer than half a cycle per pixel within {:.4g} pixels of its "
+                    "middle, and this picture ends {:.4g} pixels from it: at most {:.0f} spokes can be shown",
+                    kind.spokes, finest_radius_px(kind), std::min(request.size.width, request.size.height) / 2.0,
+                    std::ceil(std::numbers::pi * std::min(request.size.width, request.size.height) / 2.0) - 1));
   const cv::Point2d middle(request.size.width / 2.0, request.size.height / 2.0);
   const double radius = std::min(middle.x, middle.y);
   for (int i = 0; i < kind.spokes; ++i) {
@@ -192,6 +201,10 @@ Result<void> draw(const FlatPicture& kind, const PictureRequest&, TestPicture& p
 }
 
 }  // namespace
+
+double finest_radius_px(const SiemensPicture& star) {
+  return star.spokes / std::numbers::pi;
+}
 
 Polygon outline_px(const PlateTriangle& triangle_of_plate, cv::Size size) {
   return triangle(triangle_of_plate.size_mm, triangle_of_plate.apex,
@@ -224,6 +237,11 @@ Result<TestPicture> drawn_picture(const PictureRequest& request) {
   const auto level = [](double value) { return value >= 0 && value <= 1; };
   if (!level(request.low) || !level(request.high))
     return fail(ErrorCode::invalid_input, "the levels must be from 0 to 1");
+  if (request.low == request.high && !std::holds_alternative<FlatPicture>(request.kind))
+    return fail(ErrorCode::invalid_input,
+                fmt::format("background and pattern both have the level {:g}, so the picture shows no pattern: low and "
+                            "high must differ (the pattern without contrast is 'flat')",
+                            request.low));
   TestPicture picture;
   picture.levels = cv::Mat1d::zeros(request.size);
   const auto done = std::visit([&](const auto& kind) { return draw(kind, request, picture); }, request.kind);

@@ -61,10 +61,12 @@ struct TestPicture {
   std::vector<BarGroup> bars;
 };
 
-/// Draws a test picture. Errors: `invalid_input` in one sentence (a size without room for a pattern, invalid levels, a
-/// triangle that does not fit).
+/// Draws a test picture. Errors: `invalid_input` in one sentence (a size without room for a pattern, invalid or equal
+/// levels, a triangle that does not fit, bars or a whole star beyond half a cycle per pixel).
 [[nodiscard]] Result<TestPicture> drawn_picture(const PictureRequest& request);
 
+/// Radius in pixels below which the spokes have more than half a cycle per pixel (Nyquist).
+[[nodiscard]] double finest_radius_px(const SiemensPicture& star);
 /// Outline of a triangle of the plate in pixels from the upper left corner.
 [[nodiscard]] Polygon outline_px(const PlateTriangle& triangle, cv::Size size);
 /// Outlines of the four bars of a group.

@@ -114,6 +114,13 @@ TEST(OtherPictures, HaveTheirMeans) {
   EXPECT_EQ(cv::mean(drawn_picture({.size = {7, 5}, .kind = FlatPicture{0.25}})->levels)[0], 0.25);
 }
 
+TEST(SiemensPicture, IsDrawnUpToTheSpokesThatAreHalfACyclePerPixelAtItsBorder) {
+  // 50 pi is 157.08.
+  EXPECT_TRUE(drawn_picture({.size = {100, 100}, .kind = SiemensPicture{157}}));
+  EXPECT_FALSE(drawn_picture({.size = {100, 100}, .kind = SiemensPicture{158}}));
+  EXPECT_NEAR(finest_radius_px({.spokes = 157}), 49.975, 0.001);
+}
+
 TEST(Pictures, ThatCannotBeAreRefusedInASentence) {
   for (const PictureRequest& request : {PictureRequest{.size = {0, 5}, .kind = RampPicture{}},
                                         PictureRequest{.size = {100000, 5}, .kind = RampPicture{}},
@@ -124,7 +131,12 @@ TEST(Pictures, ThatCannotBeAreRefusedInASentence) {
                                         PictureRequest{.size = {64, 64}, .low = -1, .kind = RampPicture{}},
                                         PictureRequest{.size = {64, 64}, .kind = FlatPicture{2}},
                                         PictureRequest{.size = {64, 64}, .kind = EdgePicture{NAN}},
-                                        PictureRequest{.size = {64, 64}, .kind = SiemensPicture{1}}}) {
+                                        PictureRequest{.size = {64, 64}, .kind = SiemensPicture{1}},
+                                        // Nothing of the pattern can be seen: beyond Nyquist, or without contrast.
+                                        PictureRequest{.size = {640, 480}, .kind = MrtdPicture{{0.1, 0.9}}},
+                                        PictureRequest{.size = {100, 100}, .kind = SiemensPicture{1000}},
+                                        PictureRequest{.size = {64, 64}, .low = 1, .high = 1, .kind = EdgePicture{}},
+                                        PictureRequest{.size = {64, 64}, .low = 0, .high = 0, .kind = RampPicture{}}}) {
     const auto picture = drawn_picture(request);
     ASSERT_FALSE(picture.has_value());
     EXPECT_EQ(picture.error().code, ErrorCode::invalid_input);
