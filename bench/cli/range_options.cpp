@@ -46,6 +46,13 @@ Result<std::vector<RangeModel>> models_from(const std::string& text) {
   return models;
 }
 
+/// Whether a curve falls from its first point to its last without rising between.
+bool falls(std::span<const CurvePoint> points) {
+  const auto rises = [](const CurvePoint& a, const CurvePoint& b) { return b.value > a.value; };
+  return points.back().value < points.front().value &&
+         std::adjacent_find(points.begin(), points.end(), rises) == points.end();
+}
+
 /// Reads a curve over frequency_per_mrad from a CSV file.
 Result<LogLinearCurve> curve_from(const std::string& file, const std::string& column) {
   // Covers cameras from microscopes to telescopes; a threshold is in kelvin or a contrast.
@@ -72,6 +79,13 @@ Result<LogLinearCurve> curve_from(const std::string& file, const std::string& co
   }
   auto curve = LogLinearCurve::of(points, column);
   if (!curve) return fail(file, curve.error());
+  if (falls(curve->points()))
+    return table.wrong(2, "column " + column + " falls over its whole length, from " +
+                              number_text(points.front().value) + " at " + number_text(points.front().frequency) +
+                              " per mrad to " + number_text(points.back().value) + " at " +
+                              number_text(points.back().frequency) +
+                              " per mrad: a threshold that rises with frequency is expected; are the rows or the "
+                              "columns exchanged?");
   return curve;
 }
 

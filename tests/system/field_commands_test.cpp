@@ -173,6 +173,21 @@ TEST(RangeCommand, ReadsTheSessionThroughAirAndRefusesWhatIsNone) {
   expect_refused(range({"--atmosphere", "tropical", "--extinction-per-km", "0.2"}), 2, "has its own extinction");
 }
 
+TEST(RangeCommand, RefusesAThresholdThatFallsWithFrequencyOverItsWholeLength) {
+  const TemporaryFolder folder;
+  folder.write("m.csv", "frequency_per_mrad,mrtd_k\n0.1,0.5\n0.2,0.3\n0.3,0.1\n");
+  folder.write("scatter.csv", "frequency_per_mrad,mrtd_k\n0.1,0.05\n0.2,0.04\n0.3,0.1\n0.4,0.9\n");
+  folder.write("t.csv", "frequency_per_mrad,mtdp_k\n0.1,0.5\n0.2,0.5\n0.3,0.1\n");
+  const auto range = [&](const char* model, const char* option, const char* file) {
+    return todbench({"range", "--size-m", "2.3", "--delta-t-k", "4", "--models", model, option, file},
+                    {.folder = folder.path()});
+  };
+
+  expect_refused(range("acquire", "--mrtd", "m.csv"), 2, "a threshold that rises with frequency is expected");
+  expect_refused(range("mtdp", "--mtdp", "t.csv"), 2, "column mtdp_k falls over its whole length");
+  EXPECT_NE(range("acquire", "--mrtd", "scatter.csv").code, 2);
+}
+
 TEST(PatternCommand, WritesPictureAndPlate) {
   const TemporaryFolder folder;
   for (const char* kind : {"tod", "mrtd", "edge", "ramp", "siemens", "flat"}) {
