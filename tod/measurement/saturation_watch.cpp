@@ -124,4 +124,12 @@ int SaturationWatch::saturated_pixels(const Frame& frame, const cv::Rect& window
   return count;
 }
 
+bool saturated(const AveragedPicture& picture) {
+  constexpr double noted = 0.001;
+  SaturationWatch watch;
+  watch.learn_ends(picture);
+  const cv::Mat1b always = (picture.lowest >= watch.high_end_) | (picture.highest <= watch.low_end_);
+  return cv::countNonZero(always) > noted * static_cast<double>(always.total());
+}
+
 }  // namespace todbench

@@ -27,11 +27,16 @@ class SaturationWatch {
   [[nodiscard]] int saturated_pixels(const Frame& frame, const cv::Rect& window) const;
 
  private:
+  friend bool saturated(const AveragedPicture& picture);
   void learn_ends(const AveragedPicture& picture);
   [[nodiscard]] bool at_end(std::uint16_t count) const { return count <= low_end_ || count >= high_end_; }
 
   int low_end_ = 0, high_end_ = 65535;
   cv::Mat1b defective_;  ///< empty: not yet learnt
 };
+
+/// Whether more than one in a thousand pixels stay at an end of the counts in every frame. The ends are those of
+/// SaturationWatch::learn().
+[[nodiscard]] bool saturated(const AveragedPicture& picture);
 
 }  // namespace todbench

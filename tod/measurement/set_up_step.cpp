@@ -31,6 +31,20 @@ std::string plate_and_mounting(const TargetState& state) {
 
 }  // namespace
 
+std::string unexpected_sign(double set_k, const EffectiveContrast& observed, ContrastUnit unit,
+                            std::optional<double> kelvin_per_count) {
+  std::string text =
+      fmt::format("the target was set to {:+.3f} K, but the camera observes {:+.3f} {} +- {:.3f}: ", set_k,
+                  observed.value, unit == ContrastUnit::grey_levels ? "grey levels" : "K", observed.standard_error);
+  if (kelvin_per_count && std::abs(set_k) < std::abs(*kelvin_per_count))
+    return text + fmt::format("the contrast is below one count of the camera ({:.3g} K)", std::abs(*kelvin_per_count));
+  if (std::abs(observed.value) <= least_certainty * observed.standard_error)
+    return text +
+           "the contrast is not seen above the noise; average more frames ([measurement] contrast_frames) or "
+           "choose a larger contrast";
+  return text + "one of them has the wrong sign";
+}
+
 FrameTakerOptions taker_options(const MeasurementOptions& options, const SourceInfo& camera,
                                 std::function<void(const RejectedFrame&)> on_rejected) {
   FrameTakerOptions out{.integrity = options.integrity,
@@ -123,6 +137,13 @@ Result<Registration> SetUpStep::find(const AveragedPicture& picture, const Targe
                                      const TargetState& state) const {
   const std::string where = "plate " + state.plate + " mounted " + std::string(to_string(state.mounting));
   auto registration = register_plate(picture.kelvin, mounted_plate, options_.registration);
+  if (!registration && saturated(picture))
+    return fail(
+        ErrorCode::calibration,
+        fmt::format("registering {}: the picture is saturated: at {:+.3f} K many of its pixels stay at an end of "
+                    "the camera's counts, so the shapes of the triangles are wrong; choose a smaller contrast "
+                    "or a larger range of the camera ({})",
+                    where, state.delta_t_k, registration.error().message));
   if (!registration) return fail("registering " + where, registration.error());
   if ((registration->contrast_sign > 0) != (state.delta_t_k > 0)) {
     return fail(ErrorCode::calibration,
@@ -200,10 +221,10 @@ Result<SeenContrast> SetUpStep::contrast(const TargetPlate& mounted_plate, const
   if (!measured) return fail("measuring the effective contrast", measured.error());
   note_saturation(*picture, mounted_plate, registration, set, measured->value);
   if (!(measured->value * set.delta_t_k > 0)) {
+    const auto surround = grey() ? std::nullopt : camera_.info().scale.counts(cv::mean(picture->kelvin)[0]);
     return fail(ErrorCode::calibration,
-                fmt::format("the target was set to {:+.3f} K, but the camera observes {:+.3f} {} +- {:.3f}: one of "
-                            "them has the wrong sign",
-                            set.delta_t_k, measured->value, grey() ? "grey levels" : "K", measured->standard_error));
+                unexpected_sign(set.delta_t_k, *measured, options_.contrast_unit,
+                                surround ? camera_.info().scale.kelvin_per_count(*surround) : std::nullopt));
   }
   const auto judged = behind.scale(memory_ratio_);
   if (!judged) return fail(plate_and_mounting(set), judged.error());

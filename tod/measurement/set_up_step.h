@@ -47,6 +47,11 @@ struct SeenContrast {
   std::optional<JudgedScale> judged{};          ///< empty: no stage after the camera
 };
 
+/// Why a contrast was observed without the sign of its set-point: it is below one count of the camera
+/// (`kelvin_per_count`, if known), not seen above the noise (three standard errors), or one of the signs is wrong.
+[[nodiscard]] std::string unexpected_sign(double set_k, const EffectiveContrast& observed, ContrastUnit unit,
+                                          std::optional<double> kelvin_per_count);
+
 /// Locates plates and measures their effective contrasts. One thread at a time. The arguments must outlive it.
 class SetUpStep {
  public:

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "tests/tod/measurement/faulty_bench.h"
+#include "tod/measurement/saturation_watch.h"
+#include "tod/measurement/set_up_step.h"
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
@@ -74,6 +76,45 @@ INSTANTIATE_TEST_SUITE_P(All, TargetsBeyondTheCounts,
                                            Camera{"within_8_bits", 8, 0.1, 295, 16.9, false},
                                            Camera{"the_upper_end_of_16_bits", 16, 0.001, 250, 30, true}),
                          [](const auto& row) { return std::string(row.param.name); });
+
+TEST(Saturation, OfAPictureIsToldFromSingleStuckPixels) {
+  AveragedPicture picture;
+  picture.significant_bits = 10;
+  picture.lowest = cv::Mat1w(100, 100, std::uint16_t{990});
+  picture.highest = cv::Mat1w(100, 100, std::uint16_t{1010});
+  picture.lowest(5, 5) = picture.highest(5, 5) = 1023;
+  EXPECT_FALSE(saturated(picture));
+
+  picture.lowest(cv::Rect(20, 20, 10, 10)) = 1023;
+  picture.highest(cv::Rect(20, 20, 10, 10)) = 1023;
+  EXPECT_TRUE(saturated(picture));
+}
+
+TEST(Saturation, ThatHidesTheShapesOfThePlateIsNamedInsteadOfAnotherPlate) {
+  // Counts end 0.23 K above the surround, so blur moves the visible edges of triangles of 30 K outwards.
+  const test::SmallBench bench = bench_of({"", 10, 0.01, 290, 30, true});
+  const auto source = bench.camera();
+  MeasurementOptions options = test::options_of(bench);
+  options.integrity.max_saturated_share = 1;
+
+  const auto result = bench.run(*source, options);
+
+  const std::string reason = !result ? result.error().message : result->ended_by ? result->ended_by->message : "";
+  EXPECT_THAT(reason, testing::AnyOf("", HasSubstr("the picture is saturated")));
+}
+
+TEST(UnexpectedSign, IsCalledWrongOnlyIfTheContrastIsCertain) {
+  const auto said = [](double set_k, double value, double standard_error, std::optional<double> kelvin_per_count) {
+    EffectiveContrast observed;
+    observed.value = value, observed.standard_error = standard_error;
+    return unexpected_sign(set_k, observed, ContrastUnit::kelvin, kelvin_per_count);
+  };
+
+  EXPECT_THAT(said(0.5, 0, 0, 5), HasSubstr("the contrast is below one count of the camera (5 K)"));
+  EXPECT_THAT(said(0.5, -0.219, 0.225, 0.01), HasSubstr("not seen above the noise"));
+  EXPECT_THAT(said(0.5, -0.219, 0.225, 0.01), Not(HasSubstr("sign")));
+  EXPECT_THAT(said(0.5, -0.5, 0.01, 0.01), HasSubstr("one of them has the wrong sign"));
+}
 
 /// Counts that end where no format does: fewer bits than the format has, or the end of a temperature range.
 TEST(Saturation, IsSeenWhereCountsStopBelowFullScale) {
