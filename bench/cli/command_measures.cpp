@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // todbench sfr, todbench sitf
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "acquisition/base/try.h"
 #include "acquisition/recording/picture_file.h"
@@ -10,6 +12,7 @@
 #include "bench/judgement/verdict.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/text.h"
+#include "sim_devices/sensor/effect_diffraction.h"
 #include "tod/measures/signal_transfer.h"
 #include "tod/measures/slanted_edge.h"
 #include "tod/measures/slanted_star.h"
@@ -49,6 +52,18 @@ Interval interval_of(const SlantedEdge& edge, const std::vector<double>& low, st
   return {known ? std::optional(low[i]) : std::nullopt, edge.mtf_high[i]};
 }
 
+/// Bounds with a stated largest share of all halos.
+TailBounds with_halos(TailBounds bounds, double most) {
+  bounds.most_halo = most;
+  bounds.most_wide = std::min(bounds.most_wide, most);
+  return bounds;
+}
+
+/// Bounds without the stated lens.
+TailBounds bounds_without_lens(const SfrArguments& a) {
+  return a.halo_at_most ? with_halos({}, *a.halo_at_most) : TailBounds();
+}
+
 /// Returns the tails that remain for the stated aperture, band and pitch.
 Result<TailBounds> tail_bounds(const SfrArguments& a) {
   TailBounds bounds;
@@ -59,8 +74,36 @@ Result<TailBounds> tail_bounds(const SfrArguments& a) {
     const double mean_um = 0.5 * (a.wavelength_um.front() + a.wavelength_um.back());
     bounds = diffraction_bounds(*a.f_number, mean_um, *a.pitch_um);
   }
-  if (a.halo_at_most) bounds.most_halo = *a.halo_at_most;
+  if (a.halo_at_most) bounds = with_halos(bounds, *a.halo_at_most);
   return bounds;
+}
+
+/// Lowest frequency, in cycles per pitch, at which the lower end of the interval is above the MTF of a perfect lens as
+/// stated, at the shortest wavelength of the band. Empty: none, or no stated lens.
+std::optional<double> above_stated_lens(const SlantedEdge& edge, const SfrArguments& a) {
+  constexpr double tolerance = 0.02;  // of the MTF, for rounded f-numbers and bands
+  if (!a.f_number) return std::nullopt;
+  const double shortest_um = std::min(a.wavelength_um.front(), a.wavelength_um.back());
+  for (std::size_t i = 0; i < edge.mtf.size(); ++i) {
+    const double frequency = edge.frequency_per_pitch[i];
+    if (edge.mtf_low[i] > diffraction_mtf(frequency, shortest_um, *a.f_number, *a.pitch_um) + tolerance)
+      return frequency;
+  }
+  return std::nullopt;
+}
+
+/// Finding about a lens that cannot have made the picture; empty if it can.
+std::string lens_finding(const SlantedEdge& edge, const SfrArguments& a) {
+  const auto above = above_stated_lens(edge, a);
+  if (!above) return {};
+  const double shortest_um = std::min(a.wavelength_um.front(), a.wavelength_um.back());
+  const auto i = static_cast<std::size_t>(std::lround(*above * static_cast<double>(edge.mtf.size() - 1)));
+  return "the stated lens contradicts the picture: at " + fixed(*above, 2) + " cycles per pitch the MTF is at least " +
+         fixed(edge.mtf_low[i], 3) + ", but that of a perfect lens is " +
+         fixed(diffraction_mtf(*above, shortest_um, *a.f_number, *a.pitch_um), 3) +
+         ". Check f-number, wavelength and pitch, and whether the camera sharpens its picture. The tails are not "
+         "bounded "
+         "by this lens.";
 }
 
 Json edge_json(const SlantedEdge& edge, const SfrArguments& arguments) {
@@ -93,6 +136,7 @@ Json edge_json(const SlantedEdge& edge, const SfrArguments& arguments) {
           {"wide_halo_ci95", {json_number(edge.wide_halo_least), json_number(edge.wide_halo_most)}},
           {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
           {"mtf50_per_mrad", per_mrad(edge.mtf50_per_pitch)},
+          {"above_stated_lens_per_pitch", json_number(above_stated_lens(edge, arguments))},
           {"notes", edge.notes}};
 }
 
@@ -166,8 +210,30 @@ bool reaches_end(const PictureFile& file) {
   return high >= file.counts->second || (low <= file.counts->first && file.counts->first != 0);
 }
 
+bool above_lens(const SlantedEdge& edge, const SfrArguments& arguments) {
+  return above_stated_lens(edge, arguments).has_value();
+}
+
+bool above_lens(const std::vector<StarEdge>& edges, const SfrArguments& arguments) {
+  return std::ranges::any_of(edges,
+                             [&](const StarEdge& e) { return e.measured && above_lens(*e.measured, arguments); });
+}
+
+/// Measures without the stated lens first, and with its bounds only if it can have made the picture: false bounds
+/// change the tails and so the MTF.
+template <typename Measure>
+auto without_false_lens(SlantedEdgeOptions options, const SfrArguments& arguments, Measure measure) {
+  const TailBounds of_lens = options.tails;
+  options.tails = bounds_without_lens(arguments);
+  auto found = measure(options);
+  if (!found || !arguments.f_number || above_lens(*found, arguments)) return found;
+  options.tails = of_lens;
+  return measure(options);
+}
+
 /// Adds what the file and the bounds say of a measured edge.
 void add_notes(SlantedEdge& edge, bool at_end, const SfrArguments& arguments) {
+  if (std::string finding = lens_finding(edge, arguments); !finding.empty()) edge.notes.push_back(std::move(finding));
   if (at_end) edge.notes.emplace_back("pixels have the lowest or highest value of the pixel type and may be clipped");
   if (!arguments.halo_at_most && !std::all_of(edge.low_known.begin(), edge.low_known.end(), [](bool k) { return k; })) {
     edge.notes.emplace_back(
@@ -179,7 +245,9 @@ void add_notes(SlantedEdge& edge, bool at_end, const SfrArguments& arguments) {
 
 int run_star(Console& console, const PictureFile& file, const SlantedEdgeOptions& options,
              const SfrArguments& arguments) {
-  auto edges = slanted_star(file.picture, {{arguments.star[0], arguments.star[1]}, arguments.star[2]}, options);
+  auto edges = without_false_lens(options, arguments, [&](const SlantedEdgeOptions& within) {
+    return slanted_star(file.picture, {{arguments.star[0], arguments.star[1]}, arguments.star[2]}, within);
+  });
   if (!edges) return report_error(console, with_context(arguments.picture, edges.error()));
   const bool at_end = reaches_end(file);
   std::vector<std::string> said;
@@ -194,7 +262,7 @@ int run_star(Console& console, const PictureFile& file, const SlantedEdgeOptions
     console.object(star_json(*edges, arguments));
   else
     print_star(console, *edges, arguments);
-  return 0;
+  return exit_code(above_lens(*edges, arguments) ? VerdictKind::inconclusive : VerdictKind::pass);
 }
 
 int run_sfr(Console& console, const SfrArguments& arguments) {
@@ -208,7 +276,8 @@ int run_sfr(Console& console, const SfrArguments& arguments) {
   if (!arguments.star.empty()) return run_star(console, *file, options, arguments);
   const auto picture = cut(file->picture, arguments.region);
   if (!picture) return report_error(console, with_context(arguments.picture, picture.error()));
-  auto edge = slanted_edge(*picture, options);
+  auto edge = without_false_lens(options, arguments,
+                                 [&](const SlantedEdgeOptions& within) { return slanted_edge(*picture, within); });
   if (!edge) return report_error(console, with_context(arguments.picture, edge.error()));
   add_notes(*edge, reaches_end(*file), arguments);
   for (const auto& note : edge->notes) console.note(note);
@@ -216,7 +285,7 @@ int run_sfr(Console& console, const SfrArguments& arguments) {
     console.object(sfr_json(*edge, arguments));
   else
     print_sfr(console, *edge, arguments);
-  return 0;
+  return exit_code(above_stated_lens(*edge, arguments) ? VerdictKind::inconclusive : VerdictKind::pass);
 }
 
 /// Returns the column of the first name in the header.
@@ -373,8 +442,10 @@ void add_sfr_command(CLI::App& app, Program& program) {
       ->check(number_in(0.1, 100, "um"));
   command->add_option("--pitch-um", a->pitch_um, "detector pitch in um")->check(number_in(0.1, 1000, "um"));
   command
-      ->add_option("--halo-at-most", a->halo_at_most,
-                   "largest share of the step that halos can have, if known; it bounds the lower end of the intervals")
+      ->add_option(
+          "--halo-at-most", a->halo_at_most,
+          "largest share of the step that halos of any width can have, if known; it bounds the lower end of the "
+          "intervals")
       ->check(number_in(0, 0.9));
   finish_command(*command, program, [a](Console& console) { return run_sfr(console, *a); });
 }

@@ -107,6 +107,35 @@ TEST(Sfr, FindsTheMtfOfAnEdgeAndItsAngle) {
   }
 }
 
+TEST(Sfr, NamesAStatedLensThatCannotHaveMadeThePicture) {
+  const TemporaryFolder folder;
+  const std::string picture = npy_picture(folder, test::EdgePicture().picture());
+  const auto of_lens = [&](const char* f_number) {
+    return todbench({"sfr", picture, "--f-number", f_number, "--wavelength-um", "10", "--pitch-um", "10", "--json"});
+  };
+
+  const Ended plain = todbench({"sfr", picture, "--json"}), contradicted = of_lens("4"), possible = of_lens("0.1");
+
+  // At f/4 the cut-off is 0.25 cycles per pitch.
+  ASSERT_EQ(contradicted.code, 3) << contradicted.err;
+  EXPECT_THAT(contradicted.err, ::testing::HasSubstr("the stated lens contradicts the picture"));
+  const Json json = one_object(contradicted);
+  EXPECT_LT(json["above_stated_lens_per_pitch"].get<double>(), 0.25);
+  EXPECT_EQ(json["mtf"], one_object(plain)["mtf"]);
+  EXPECT_TRUE(one_object(plain)["above_stated_lens_per_pitch"].is_null());
+  EXPECT_EQ(possible.code, 0) << possible.err;
+}
+
+TEST(Sfr, ALimitOfZeroExcludesHalosOfEveryWidth) {
+  const TemporaryFolder folder;
+  const std::string picture = npy_picture(folder, test::EdgePicture().noisy(0.01, 1));
+
+  const Json json = one_object(todbench({"sfr", picture, "--halo-at-most", "0", "--json"}));
+
+  EXPECT_LT(json["wide_halo_ci95"][1].get<double>(), 0.001);
+  EXPECT_EQ(json["mtf_ci95"], json["mtf_ci95_in_picture"]);
+}
+
 TEST(Sfr, MeasuresEveryEdgeOfAStar) {
   const TemporaryFolder folder;
   const test::StarPicture made;

@@ -16,7 +16,6 @@ using namespace edge_tails;
 constexpr double cauchy_slope = 2 * pi * cauchy_pitch;  // k
 constexpr double least_noise = 3e-5;                    // of the step: the accuracy of the shapes
 constexpr std::size_t slacks = 4;
-constexpr double most_wide = 0.5;  // of the step in wide halos
 constexpr double bound_sd = 1e-4;  // tolerance of a bound on a sum of unknowns
 // Two degrees of freedom: most tails are 0, at a corner of the permitted region, at which the likelihood ratio exceeds
 // that of one degree. With 3.84 the coverage at up to 0.25 cycles is 0.91 to 0.93, with this value 0.95 to 0.98.
@@ -164,7 +163,7 @@ TailFit TailSamples::fit_with(const TailBounds& bounds, double variance) const {
   rows[0][step] = bounds.most_halo;
   rows[1][step] = -bounds.least_slope_pitch, rows[1][slope] = 1;
   rows[2][step] = bounds.most_slope_pitch, rows[2][slope] = -1;
-  rows[3][step] = most_wide;
+  rows[3][step] = bounds.most_wide;
   for (std::size_t k = 0; k < halos; ++k) {
     const std::size_t i = first_halo + k;
     rows[wide(k, bounds) ? 3 : 0][i] = -1;

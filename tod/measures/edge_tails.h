@@ -53,6 +53,7 @@ struct TailBounds {
   /// is not stated.
   double most_halo = 0.2;
   double widest_pitch = 70;  ///< largest sigma of a halo that belongs to the MTF
+  double most_wide = 0.5;    ///< largest share of the step in the wider halos
 };
 /// Bounds for a stated aperture: 0.9 to 1.8 times (4 / pi) wavelength f-number / pitch. Obscured pupils and aberrations
 /// can only make the slope steeper; 0.9 allows for the stated band and f-number.
