@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "acquisition/base/machine_memory.h"
 #include "acquisition/base/try.h"
 #include "bench/cli/chain_options.h"
 #include "bench/cli/effect_decisions.h"
@@ -41,6 +42,7 @@ Result<ScenePicturesTask> picture_task(const PictureArguments& a, std::uint64_t 
   TODBENCH_TRY(auto chain, a.chain.load());
   task.scene = std::move(scene);
   task.sensor = std::move(chain.sensor);
+  TODBENCH_TRY_VOID(check_picture_memory(task.sensor, machine_memory_bytes()));
   if (a.cn2) {
     task.sensor.turbulence_cn2_m_minus_2_3 = *a.cn2;
     task.sensor.turbulence_path_m = a.range_m;

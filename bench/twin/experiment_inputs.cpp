@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "acquisition/base/machine_memory.h"
 #include "acquisition/base/try.h"
 #include "bench/plan/bench_air.h"
 #include "bench/plan/plan_options.h"
@@ -176,6 +177,7 @@ Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& i
 }
 
 Result<void> check_simulated_geometry(const Plan& plan, const ExperimentInputs& inputs) {
+  TODBENCH_TRY_VOID(check_picture_memory(inputs.sensor, machine_memory_bytes()));
   const int samples = inputs.sensor.samples_per_pitch();
   return check_geometry(simulated_options(plan, inputs), inputs,
                         {inputs.sensor.width * samples, inputs.sensor.height * samples});

@@ -60,7 +60,7 @@ void take_answers(MeasurementOptions& options, const Plan& plan, const Experimen
 /// Checks that all sizes fit into the picture and keep their distance from neighbours. Errors: `invalid_input` with up
 /// to three sizes that do not. Call it before the first calculation or movement.
 [[nodiscard]] Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& inputs, cv::Size picture);
-/// Checks the same for the picture of the simulated sensor.
+/// Checks the same for the picture of the simulated sensor, and that it fits into the memory of this machine.
 [[nodiscard]] Result<void> check_simulated_geometry(const Plan& plan, const ExperimentInputs& inputs);
 
 }  // namespace todbench

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim_devices/sensor/sensor_spec.h"
 
+#include <fmt/format.h>
+
 #include <type_traits>
 
 #include "sim_devices/sensor/effect_row.h"
@@ -54,6 +56,19 @@ Result<void> require_square_pixels(const SensorSpec& spec, std::string_view task
   return fail(ErrorCode::invalid_input,
               "sensor " + spec.name + " has another pitch along y (pitch_y_um) than along x: " + std::string(task) +
                   " needs square pixels");
+}
+
+Result<void> check_picture_memory(const SensorSpec& spec, double memory_bytes) {
+  constexpr double bytes_per_sample = 40;  // double, float, counts, and the mean, lowest and highest of an average
+  constexpr double gib = 1 << 30;
+  const int n = spec.samples_per_pitch();
+  const double needed = bytes_per_sample * n * n * spec.width * spec.height;
+  if (needed <= memory_bytes) return {};
+  return fail(
+      ErrorCode::invalid_input,
+      fmt::format("sensor {}: pictures of {} x {} samples need about {:.3g} GiB of memory, and this machine has "
+                  "{:.3g} GiB; choose a smaller width and height, or fewer samples per pitch",
+                  spec.name, spec.width * n, spec.height * n, needed / gib, memory_bytes / gib));
 }
 
 }  // namespace todbench

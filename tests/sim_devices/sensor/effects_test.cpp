@@ -215,5 +215,20 @@ TEST(Effects, TheEstimateWithoutFramesSeesThemInTheirDirection) {
   EXPECT_LT(s75(super, 0.23), 0.8 * s75(scanned, 0.23));
 }
 
+TEST(PictureMemory, IsRefusedIfTheMachineHasLess) {
+  SensorSpec spec = test::sc2000();
+  spec.width = spec.height = 16384;
+  spec.microscan = 4;
+  constexpr double gib = 1 << 30;
+
+  const auto refused = check_picture_memory(spec, 24 * gib);
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+  EXPECT_NE(refused.error().message.find("pictures of 65536 x 65536 samples need about 160 GiB"), std::string::npos)
+      << refused.error().message;
+  EXPECT_TRUE(check_picture_memory(test::sc2000(), gib));
+}
+
 }  // namespace
 }  // namespace todbench
