@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // todbench sfr, todbench sitf
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -78,29 +77,33 @@ Result<TailBounds> tail_bounds(const SfrArguments& a) {
   return bounds;
 }
 
-/// Lowest frequency, in cycles per pitch, at which the lower end of the interval is above the MTF of a perfect lens as
-/// stated, at the shortest wavelength of the band. Empty: none, or no stated lens.
+/// MTF of a perfect lens as stated, at the shortest wavelength of the band. Precondition: a stated lens.
+double lens_mtf(const SlantedEdge& edge, const SfrArguments& a, std::size_t i) {
+  const double shortest_um = std::min(a.wavelength_um.front(), a.wavelength_um.back());
+  return diffraction_mtf(edge.frequency_per_pitch[i], shortest_um, *a.f_number, *a.pitch_um);
+}
+
+/// Lowest frequency, in cycles per pitch, at which the lower end of the interval is above the MTF of the stated lens.
+/// Empty: none, or no stated lens.
 std::optional<double> above_stated_lens(const SlantedEdge& edge, const SfrArguments& a) {
   constexpr double tolerance = 0.02;  // of the MTF, for rounded f-numbers and bands
   if (!a.f_number) return std::nullopt;
-  const double shortest_um = std::min(a.wavelength_um.front(), a.wavelength_um.back());
   for (std::size_t i = 0; i < edge.mtf.size(); ++i) {
-    const double frequency = edge.frequency_per_pitch[i];
-    if (edge.mtf_low[i] > diffraction_mtf(frequency, shortest_um, *a.f_number, *a.pitch_um) + tolerance)
-      return frequency;
+    if (edge.mtf_low[i] > lens_mtf(edge, a, i) + tolerance) return edge.frequency_per_pitch[i];
   }
   return std::nullopt;
 }
 
-/// Finding about a lens that cannot have made the picture; empty if it can.
+/// Finding about a lens that cannot have made the picture, at the frequency where it does so most; empty if it can.
 std::string lens_finding(const SlantedEdge& edge, const SfrArguments& a) {
-  const auto above = above_stated_lens(edge, a);
-  if (!above) return {};
-  const double shortest_um = std::min(a.wavelength_um.front(), a.wavelength_um.back());
-  const auto i = static_cast<std::size_t>(std::lround(*above * static_cast<double>(edge.mtf.size() - 1)));
-  return "the stated lens contradicts the picture: at " + fixed(*above, 2) + " cycles per pitch the MTF is at least " +
-         fixed(edge.mtf_low[i], 3) + ", but that of a perfect lens is " +
-         fixed(diffraction_mtf(*above, shortest_um, *a.f_number, *a.pitch_um), 3) +
+  if (!above_stated_lens(edge, a)) return {};
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < edge.mtf.size(); ++k) {
+    if (edge.mtf_low[k] - lens_mtf(edge, a, k) > edge.mtf_low[i] - lens_mtf(edge, a, i)) i = k;
+  }
+  return "the stated lens contradicts the picture: at " + fixed(edge.frequency_per_pitch[i], 2) +
+         " cycles per pitch the MTF is at least " + fixed(edge.mtf_low[i], 3) + ", but that of a perfect lens is " +
+         fixed(lens_mtf(edge, a, i), 3) +
          ". Check f-number, wavelength and pitch, and whether the camera sharpens its picture. The tails are not "
          "bounded "
          "by this lens.";

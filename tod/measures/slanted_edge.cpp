@@ -496,7 +496,10 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   edge.low_known = std::move(transfer.low_known);
   edge.widest_halo_pitch = tails->fit.bounds().widest_pitch;
   edge.halo_allowance = tails->fit.halo_allowance();
-  edge.wide_halo_least = tails->fit.least_wide_share(), edge.wide_halo_most = tails->fit.most_wide_share();
+  // The bounds of the fit have a tolerance.
+  const double most_wide = tails->fit.bounds().most_wide;
+  edge.wide_halo_least = std::min(tails->fit.least_wide_share(), most_wide);
+  edge.wide_halo_most = std::min(tails->fit.most_wide_share(), most_wide);
   edge.mtf = std::move(transfer.mtf), edge.mtf_low = std::move(transfer.low), edge.mtf_high = std::move(transfer.high);
   edge.mtf_low_in_picture = edge.mtf_low;
   if (edge.wide_halo_most > least_wide_share)
