@@ -267,7 +267,7 @@ std::string need_in_words(const Demand& demand, const DemandNeed& need, std::siz
     return fmt::format(
         "No number of presentations decides on the acuity at {}: it is {} % from its limit; the stated "
         "rows of the budget make ± {} %, and the measured contrast ± {} %.",
-        at, significant(need.margin, 2), significant(need.floor, 2), significant(need.contrast, 2));
+        at, percent_of_ln(need.margin), percent_of_ln(need.floor), percent_of_ln(need.contrast));
   const auto needed = static_cast<std::size_t>(std::ceil(*need.share * static_cast<double>(presentations) - 1e-9));
   if (demand.decision != VerdictKind::inconclusive)
     return fmt::format("The decision on the acuity at {} needs about {} of the {} presentations.", at, needed,

@@ -51,8 +51,8 @@ struct BillInput {
 /// The first presentation of a set-up or a contrast also locates the plate and measures the contrast: the excess over
 /// the median presentation of the same contrast is that time, or, if every presentation of the contrast is a first one,
 /// the excess over the forecast; without a forecast the location has no time. If the presentations have no times, all
-/// time beside the physical measures is computing. The least time for the verdict keeps the set-ups and assumes that the
-/// half-width of the trials falls with the root of the presentations, at least one of each set-up and
+/// time beside the physical measures is computing. The least time for the verdict keeps the set-ups and assumes that
+/// the half-width of the trials falls with the root of the presentations, at least one of each set-up and
 /// `least_graded_presentations`.
 [[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);
 
