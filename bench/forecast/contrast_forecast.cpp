@@ -27,21 +27,28 @@ struct PixelNoise {
   double pixel_k = 0, row_k = 0, column_k = 0;
 };
 
-double contrast_variance(const TargetPlate& plate, double pixels_per_mm, double min_size_px, const PixelNoise& noise) {
+/// Contrast of one frame of a plate: its variance, and the number of large triangles.
+struct FrameContrast {
+  double variance = 0, references = 0;
+};
+
+FrameContrast frame_contrast(const TargetPlate& plate, double pixels_per_mm, double min_size_px,
+                             const PixelNoise& noise) {
   constexpr double of_median = std::numbers::pi / 2, ring_width_px = 3;
-  double sum = 0, references = 0;
+  FrameContrast out;
   for (const PlateTriangle& t : plate.triangles) {
     const double size_px = t.size_mm * pixels_per_mm;
     if (size_px < min_size_px) continue;
     const double inner_px = inner_part(size_px) * size_px, height = 3 * triangle_centroid_to_base;
     const double perimeter = 6 / height;  // an equilateral triangle of unit area has the height h, the side 2 / h
     const double inside = std::max(1.0, inner_px * inner_px), ring = ring_width_px * perimeter * size_px;
-    sum += of_median * std::pow(noise.pixel_k, 2) * (1 / inside + 1 / ring) +
-           std::pow(noise.row_k, 2) / std::max(1.0, height * inner_px) +
-           std::pow(noise.column_k, 2) / std::max(1.0, 2 / height * inner_px);
-    references += 1;
+    out.variance += of_median * std::pow(noise.pixel_k, 2) * (1 / inside + 1 / ring) +
+                    std::pow(noise.row_k, 2) / std::max(1.0, height * inner_px) +
+                    std::pow(noise.column_k, 2) / std::max(1.0, 2 / height * inner_px);
+    out.references += 1;
   }
-  return references > 0 ? sum / (references * references) : 0;
+  if (out.references > 0) out.variance /= out.references * out.references;
+  return out;
 }
 
 /// Number of independent frames in a mean of successive ones.
@@ -50,17 +57,18 @@ double independent_frames(double frames, double correlation) {
   return std::max(1.0, frames * (1 - rho) / (1 + rho));
 }
 
-/// Standard error of a contrast over its set-ups, and its degrees of freedom.
+/// Standard error of a contrast over its set-ups. Its estimate has the degrees of freedom of the places of the large
+/// triangles, but scatters as that over the set-ups (contrast_error()).
 struct ContrastScatterForecast {
   double standard_error_k = 0;
-  double degrees_of_freedom = 1;
+  double of_places = 1, of_set_ups = 1;
 };
 
 ContrastScatterForecast scatter_of(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
                                    const std::vector<int>& presentations) {
   const SensorSpec& sensor = inputs.sensor;
   const double pixels_per_mm = 1 / (plan.target.distance_m * sensor.ifov_mrad());
-  double variance = 0, set_ups = 0;
+  double variance = 0, set_ups = 0, places = 0;
   std::size_t first = 0;
   for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
     const auto mountings = static_cast<std::size_t>(mountings_of(plan.target, i));
@@ -70,33 +78,40 @@ ContrastScatterForecast scatter_of(const Plan& plan, const ExperimentInputs& inp
                                 ? static_cast<double>(presentations[k]) * chosen_answers(plan, sensor, delta_t_k).frames
                                 : plan.measurement.contrast_frames;
       const double temporal = 1 / std::sqrt(independent_frames(frames, sensor.noise_correlation));
-      variance += contrast_variance(inputs.plates[i], pixels_per_mm, plan.measurement.min_reference_px,
-                                    {.pixel_k = std::hypot(temporal * sensor.netd_k, sensor.fixed_pattern_k),
-                                     .row_k = temporal * sensor.row_noise_k,
-                                     .column_k = temporal * sensor.column_noise_k});
+      const FrameContrast one = frame_contrast(inputs.plates[i], pixels_per_mm, plan.measurement.min_reference_px,
+                                               {.pixel_k = std::hypot(temporal * sensor.netd_k, sensor.fixed_pattern_k),
+                                                .row_k = temporal * sensor.row_noise_k,
+                                                .column_k = temporal * sensor.column_noise_k});
+      variance += one.variance;
+      places += one.references;
       set_ups += 1;
     }
     first += mountings;
   }
   if (set_ups == 0) return {};
-  return {std::sqrt(variance) / set_ups, std::max(1.0, set_ups - 1)};
+  return {std::sqrt(variance) / set_ups, std::max(1.0, places - 1), std::max(1.0, set_ups - 1)};
 }
 
 double excess_of(double degrees_of_freedom) {
   return std::sqrt(distribution::quantile(distribution::ChiSquared(degrees_of_freedom), 0.95) / degrees_of_freedom);
 }
 
-/// Adds a standard uncertainty of ln S75 to a prediction: half-widths are added in quadrature (join_uncertainty()), and
-/// 19 of 20 runs stay below the factor of the effective degrees of freedom (Welch 1947, Satterthwaite 1946).
-void join(ContrastPrediction& point, double u, double degrees_of_freedom, bool once_in_a_set_up) {
+/// Adds the scatter of the contrast, `slope` times its relative standard error, to a prediction: half-widths are added
+/// in quadrature (join_uncertainty()), and 19 of 20 runs stay below the factor of the effective degrees of freedom
+/// (Welch 1947, Satterthwaite 1946).
+void join(ContrastPrediction& point, const ContrastScatterForecast& scatter, double slope, bool once_in_a_set_up) {
+  // contrast_error() states the largest of three variances: on the mean this factor (48 runs of five set-ups).
+  constexpr double of_largest = 1.17;
+  const double u = of_largest * slope * scatter.standard_error_k / std::abs(point.delta_t_k);
   if (!point.uncertainty_percent || !(u > 0) || !(point.se_ln_s75 > 0)) return;
   const double own = point.interval_factor * point.se_ln_s75;
-  const double of_contrast = u * distribution::quantile_above(0.025, degrees_of_freedom);
+  const double of_contrast = u * distribution::quantile_above(0.025, scatter.of_places);
   const double both = std::hypot(own, of_contrast), own_likely = std::log1p(*point.uncertainty_percent / 100);
   const double freedom = std::pow(both, 4) / (std::pow(own, 4) / point.degrees_of_freedom.value_or(1e6) +
-                                              std::pow(of_contrast, 4) / degrees_of_freedom);
+                                              std::pow(of_contrast, 4) / scatter.of_set_ups);
   // An adaptive schedule ends at its own half-width, without a margin.
-  const double likely = own_likely > own ? both * excess_of(freedom) : std::hypot(own_likely, of_contrast);
+  const double likely = own_likely > own ? both * excess_of(freedom)
+                                         : std::hypot(own_likely, of_contrast * excess_of(scatter.of_set_ups));
   point.uncertainty_percent = 100 * std::expm1(std::max(likely, own_likely));
   point.se_ln_s75 = std::hypot(point.se_ln_s75, u);
   point.interval_factor = both / point.se_ln_s75;
@@ -107,7 +122,7 @@ void join(ContrastPrediction& point, double u, double degrees_of_freedom, bool o
 }  // namespace
 
 double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_mm, double min_size_px) {
-  return contrast_variance(plate, pixels_per_mm, min_size_px, {.pixel_k = 1});
+  return frame_contrast(plate, pixels_per_mm, min_size_px, {.pixel_k = 1}).variance;
 }
 
 void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
@@ -119,8 +134,7 @@ void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Pla
     ContrastPrediction& point = contrasts[i];
     const ContrastScatterForecast scatter = scatter_of(plan, inputs, point.delta_t_k, presentations[i]);
     const double slope = std::max(measured_contrast_slope, std::isfinite(slopes[i]) ? slopes[i] : 1.0);
-    join(point, slope * scatter.standard_error_k / std::abs(point.delta_t_k), scatter.degrees_of_freedom,
-         !has_own_contrasts(plan));
+    join(point, scatter, slope, !has_own_contrasts(plan));
   }
 }
 

@@ -179,7 +179,7 @@ double add_rows(AccuracyBill& bill, const BillInput& input) {
     known_s += input.measures_s;
   }
   const double rest_s = std::max(0.0, input.wall_s - known_s);
-  bill.rows.push_back(times ? BillRow{"Rest of the run", rest_s, "start, fits"}
+  bill.rows.push_back(times ? BillRow{"Rest of the run", rest_s, "computing: start, functions of the twin, fits"}
                             : BillRow{"Computing", rest_s, "all rows above without a time: the scene is simulated"});
   return known_s;
 }

@@ -213,8 +213,9 @@ TEST_F(Planning, DecideShowsTheHalfWidthsOfAdaptiveDesigns) {
   const Ended text = run({"plan", "./plan.toml", "--decide"});
 
   ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json json = one_object(ended);
   std::set<double> asked;
-  for (const Json& design : one_object(ended)["decide"][0]["designs"])
+  for (const Json& design : json["decide"][0]["designs"])
     asked.insert(design["asked_half_width_percent"].get<double>());
   EXPECT_EQ(asked, (std::set<double>{1, 2, 4, 8, 16}));
   EXPECT_THAT(text.out, HasSubstr("half-width asked [%]"));
