@@ -66,10 +66,10 @@ struct BlindResult {
 [[nodiscard]] Result<BlindResult> blind_result(const std::vector<std::string>& sources,
                                                const std::vector<BlindAnswer>& answers, const Plan& plan);
 
-/// Returns the reason why the ratio of a source to the first is withheld at a contrast: a point of either may not be
-/// used. Empty: it is stated.
+/// Returns why the ratio of a source to the first source has no value at a contrast: the threshold of one of them may
+/// not be used. Empty: the ratio is stated.
 [[nodiscard]] std::string why_withheld(const BlindResult& result, std::size_t source, double set_delta_t_k);
-/// Returns 0 if every point of every source may be used (why_undecided()), otherwise 3.
+/// Returns the exit code: 0 if every threshold of every source may be used (why_undecided()), otherwise 3.
 [[nodiscard]] int exit_code(const BlindResult& result);
 
 /// Returns {"sources": [{"name", "answers", "points": [...]}], "ratios": [{"source", "to", "points": [...]}], ...}.

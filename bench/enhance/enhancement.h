@@ -26,7 +26,8 @@ struct PairedRatio {
   std::optional<double> ratio;  ///< empty: a threshold is missing
   /// Jackknife of ln ratio over at most 20 groups of whole presentations, which are left out of both runs together,
   /// with Student's t. Common variation cancels, in particular the noise of the frames. If fewer than ten answers
-  /// differ, at least as wide as unseen_ln_ratio(), unless the observer judged equal pictures.
+  /// differ, the interval is at least as wide as unseen_ln_ratio(). It has no width if the observer judged equal
+  /// pictures.
   Interval ci95;
   /// Lowest and highest ratio by the observer as stated and by the observers at both limits of its open parameters,
   /// each used in both runs. Not a confidence interval. Empty: no open parameters, or a threshold is missing.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "acquisition/base/distributions.h"
+#include "bench/forecast/graded_precision.h"
 #include "bench/forecast/limit_forecast.h"
 #include "bench/plan/plan_options.h"
 #include "bench/twin/camera_surrogate.h"
@@ -92,10 +93,6 @@ ContrastScatterForecast scatter_of(const Plan& plan, const ExperimentInputs& inp
   return {std::sqrt(variance) / set_ups, std::max(1.0, places - 1), std::max(1.0, set_ups - 1)};
 }
 
-double excess_of(double degrees_of_freedom) {
-  return std::sqrt(distribution::quantile(distribution::ChiSquared(degrees_of_freedom), 0.95) / degrees_of_freedom);
-}
-
 /// Adds the scatter of the contrast, `slope` times its relative standard error, to a prediction: half-widths are added
 /// in quadrature (join_uncertainty()), and 19 of 20 runs stay below the factor of the effective degrees of freedom
 /// (Welch 1947, Satterthwaite 1946).
@@ -110,8 +107,9 @@ void join(ContrastPrediction& point, const ContrastScatterForecast& scatter, dou
   const double freedom = std::pow(both, 4) / (std::pow(own, 4) / point.degrees_of_freedom.value_or(1e6) +
                                               std::pow(of_contrast, 4) / scatter.of_set_ups);
   // An adaptive schedule ends at its own half-width, without a margin.
-  const double likely = own_likely > own ? both * excess_of(freedom)
-                                         : std::hypot(own_likely, of_contrast * excess_of(scatter.of_set_ups));
+  const double likely = own_likely > own
+                            ? both * likely_excess_of_error(freedom)
+                            : std::hypot(own_likely, of_contrast * likely_excess_of_error(scatter.of_set_ups));
   point.uncertainty_percent = 100 * std::expm1(std::max(likely, own_likely));
   point.se_ln_s75 = std::hypot(point.se_ln_s75, u);
   point.interval_factor = both / point.se_ln_s75;

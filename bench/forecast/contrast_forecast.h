@@ -14,9 +14,9 @@ namespace todbench {
 [[nodiscard]] double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_mm, double min_size_px);
 
 /// Adds the scatter of the measured contrast to the predictions of a plan with a camera, as join_contrast_errors()
-/// (bench/twin/camera_surrogate.h) adds it to the curve. `presentations`: in each set-up, by contrast of the plan; a
-/// contrast is measured once in each set-up that shows it, or in every presentation if presentations have their own
-/// contrasts. The noise is that of the sensor's file: temporal noise over the frames, and its fixed pattern.
+/// (bench/twin/camera_surrogate.h) adds it to the curve. `presentations`: their numbers in each set-up, by contrast of
+/// the plan. A set-up measures each contrast that it shows once, or in every presentation if these have contrasts of
+/// their own. The noise is that of the sensor's file: temporal noise over the frames, and its fixed pattern.
 void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
                            const std::vector<std::vector<int>>& presentations);
 

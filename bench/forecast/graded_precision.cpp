@@ -123,9 +123,12 @@ double graded_freedom(const GradedDesignFigures& design) {
   return std::max(3.0, 0.7 * design.presentations - 0.5);
 }
 
+double likely_excess_of_error(double degrees_of_freedom) {
+  return std::sqrt(distribution::quantile(distribution::ChiSquared(degrees_of_freedom), 0.95) / degrees_of_freedom);
+}
+
 double graded_likely_excess(const GradedDesignFigures& design) {
-  const double freedom = graded_freedom(design);
-  return std::sqrt(distribution::quantile(distribution::ChiSquared(freedom), 0.95) / freedom);
+  return likely_excess_of_error(graded_freedom(design));
 }
 
 double graded_interval_factor(const GradedDesignFigures& design) {

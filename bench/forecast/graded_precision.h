@@ -68,6 +68,9 @@ inline constexpr std::array frame_choices{1, 2, 4, 8};
 /// 95 % of runs stay below: a variance from few set-ups scatters as chi-square over its degrees of freedom. From five
 /// set-ups on it includes 1.06, the root of the chance share of detectors common to set-ups (clustered_variance.h).
 [[nodiscard]] double graded_interval_factor(const GradedDesignFigures& design);
+/// Returns the ratio of an estimated standard error to the true one that 19 of 20 estimates with these degrees of
+/// freedom do not exceed.
+[[nodiscard]] double likely_excess_of_error(double degrees_of_freedom);
 /// Returns the part of graded_interval_factor() that 19 of 20 runs stay below: the half-width over its mean square.
 [[nodiscard]] double graded_likely_excess(const GradedDesignFigures& design);
 /// Returns the degrees of freedom of the variance of graded answers.

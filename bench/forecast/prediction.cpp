@@ -100,12 +100,6 @@ std::vector<double> set_up_information(const Plan& plan, const ExperimentInputs&
   return out;
 }
 
-double triangles_of(const std::vector<TargetPlate>& plates) {
-  double sum = 0;
-  for (const TargetPlate& plate : plates) sum += static_cast<double>(plate.triangles.size());
-  return sum;
-}
-
 double total(const std::vector<double>& numbers) {
   return std::accumulate(numbers.begin(), numbers.end(), 0.0);
 }
@@ -397,6 +391,12 @@ Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
   const bool same = std::ranges::all_of(chosen, [&](int n) { return n == chosen[0]; });
   frames = same && !chosen.empty() ? std::vector<int>{chosen[0]} : chosen;
   return plan;
+}
+
+double triangles_of(const std::vector<TargetPlate>& plates) {
+  double sum = 0;
+  for (const TargetPlate& plate : plates) sum += static_cast<double>(plate.triangles.size());
+  return sum;
 }
 
 std::vector<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,

@@ -27,7 +27,8 @@ struct ContrastPrediction {
   /// Half-width of the 95 % interval of ln S75 over its own standard error.
   double interval_factor = 0;
   std::optional<double> degrees_of_freedom{};  ///< of that standard error; empty: infinite
-  /// Part of that half-width, in ln, from the scatter of the measured contrast, which presentations do not reduce.
+  /// Half-width of ln S75 that the scatter of the measured contrast makes alone; more presentations do not reduce it.
+  /// It is part of the half-width above.
   double contrast_half_width = 0;
   /// Standard error of ln of the ratio of camera and twin by common phases, with the same margin as
   /// `uncertainty_percent`; empty: the plan makes no pairs.
@@ -56,6 +57,9 @@ struct PlanPrediction {
 /// (bench/forecast/bench_time.h). If the times cannot be predicted, they stay empty.
 [[nodiscard]] Result<void> predict_times(const Plan& plan, const ExperimentInputs& inputs, PlanPrediction& prediction,
                                          std::stop_token stop);
+
+/// Returns the number of triangles of all plates.
+[[nodiscard]] double triangles_of(const std::vector<TargetPlate>& plates);
 
 /// Returns the presentations that an adaptive schedule is expected to show at each of these contrasts; empty for
 /// another schedule, which shows its list.

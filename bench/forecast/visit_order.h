@@ -17,14 +17,14 @@ struct NumberedSetUp {
 /// Returns the set-ups of a plan, plate by plate.
 [[nodiscard]] std::vector<NumberedSetUp> numbered_set_ups(const Plan& plan, std::size_t plates);
 
-/// The visits of AdaptiveSchedule if all set-ups are equally informative: each visit is the one whose changes and
-/// presentations take least time, and a set-up that was visited n times counts 1 / (n + 1).
+/// The visits of AdaptiveSchedule if all set-ups are equally informative. The next visit is the one with the lowest
+/// price: the time of its changes and presentations, times n + 1 for a set-up that was visited n times.
 class VisitOrder {
  public:
   /// `set_ups`: at least one.
   VisitOrder(const Plan& plan, std::vector<NumberedSetUp> set_ups);
 
-  /// Index of the next set-up, for a visit that shows this number of contrasts.
+  /// Begins the next visit, which shows this number of contrasts. Returns the index of its set-up.
   [[nodiscard]] std::size_t next(int contrasts);
 
  private:

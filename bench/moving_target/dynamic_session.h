@@ -20,8 +20,9 @@ struct DynamicSession {
 /// Fails with `invalid_input` and one sentence if the plan requests something that does not apply to a moving target.
 [[nodiscard]] Result<void> check_dynamic_plan(const Plan& plan, const SensorSpec& sensor);
 
-/// Runs measure_dynamic() into a session folder. trials.csv, fits, verdict and report are for the plate at rest and the
-/// observer `single-frame`; dynamic.json contains all results, moving-trials.csv the answers of all speeds, observers.
+/// Runs measure_dynamic() and writes its session folder. trials.csv, fits, verdict and report are for the plate at rest
+/// and the observer `single-frame`. dynamic.json contains all results. moving-trials.csv contains the answers at all
+/// speeds, of all observers.
 /// Errors: those of measure_dynamic() and check_dynamic_plan(). An error before the devices are open leaves no folder;
 /// a later one leaves a folder that is marked interrupted and contains the trials so far.
 [[nodiscard]] Result<DynamicSession> measure_dynamic_session(

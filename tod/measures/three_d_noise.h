@@ -113,9 +113,9 @@ class NoiseCube {
   /// mean. Its expectation is the same for every pair, whatever the memory of the noise. Limit: 1.69 times the median
   /// pair's, exceeded by chance in less than 1e-9 of all recordings. Empty: no such frame, or fewer than five frames.
   [[nodiscard]] std::optional<int> abrupt_change() const;
-  /// Whether at most three pairs of frames differ by more than 1.3 times the median pair (mean square), as with a
-  /// correction. If more do, the noise changes within the recording or the scene moves, and the frame of
-  /// abrupt_change() is arbitrary.
+  /// Whether few pairs of successive frames stand out, as with a correction. A pair stands out if its mean square
+  /// difference is above 1.3 times the median; few are at most three. If more stand out, the noise changes or the scene
+  /// moves, and the frame of abrupt_change() means nothing.
   [[nodiscard]] bool few_pairs_stand_out() const;
 
  private:

@@ -17,9 +17,8 @@ namespace todbench {
 /// Presentations of a contrast before it can be settled.
 inline constexpr int least_adaptive_presentations = 8;
 
-/// Returns the time of a visit to a set-up in seconds: the changes of plate and mounting that it needs, and the
-/// contrasts that it shows with their presentations. Changes are added, and a presentation without a change counts as
-/// 0.1 s.
+/// Returns the time of a visit to a set-up, in s. It is the sum of the changes of plate, mounting and contrasts, of the
+/// shifts, and of 0.1 s for each presentation.
 [[nodiscard]] double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting,
                                    int contrasts);
 

@@ -17,12 +17,6 @@ namespace {
 
 constexpr int least_phases = 2, most_phases = 256;
 
-double triangles_of(const std::vector<TargetPlate>& plates) {
-  double triangles = 0;
-  for (const auto& plate : plates) triangles += static_cast<double>(plate.triangles.size());
-  return triangles;
-}
-
 /// Rescales from `from` to `phases`: intervals of ln S75 fall with the root of the number of answers.
 std::optional<double> rescaled_percent(std::optional<double> uncertainty_percent, int from, int phases) {
   if (!uncertainty_percent || from == phases || phases <= 0) return uncertainty_percent;

@@ -215,7 +215,8 @@ TEST(Enhancement, RefusesPlansThatShowEachPackageOtherFrames) {
   EXPECT_EQ(found.error().code, ErrorCode::invalid_input);
 }
 
-TEST(PairedRatios, OfTheSameTrialsAreOneWithoutWidth) {
+/// Twelve presentations of six sizes at 2 K, with scores.
+std::vector<Trial> scored_trials() {
   std::vector<Trial> trials;
   for (int presentation = 0; presentation < 12; ++presentation) {
     for (int size = 1; size <= 6; ++size) {
@@ -228,6 +229,11 @@ TEST(PairedRatios, OfTheSameTrialsAreOneWithoutWidth) {
       trials.push_back(trial);
     }
   }
+  return trials;
+}
+
+TEST(PairedRatios, OfTheSameTrialsAreOneWithoutWidth) {
+  const std::vector<Trial> trials = scored_trials();
   auto better = trials;
   for (auto& trial : better) trial.size_mrad /= 1.25;
 
@@ -242,18 +248,7 @@ TEST(PairedRatios, OfTheSameTrialsAreOneWithoutWidth) {
 }
 
 TEST(PairedRatios, OfEqualAnswersToOtherPicturesHaveAWidth) {
-  std::vector<Trial> without;
-  for (int presentation = 0; presentation < 12; ++presentation) {
-    for (int size = 1; size <= 6; ++size) {
-      Trial trial;
-      trial.presentation = presentation;
-      trial.set_delta_t_k = 2;
-      trial.size_mrad = size;
-      trial.answer = (presentation * 7 + size * 3) % 8 < size + 1 ? Apex::up : Apex::down;
-      trial.scores = {1, 0.5, 0.25, size + 0.1 * presentation};
-      without.push_back(trial);
-    }
-  }
+  const std::vector<Trial> without = scored_trials();
   auto with = without;
   for (Trial& trial : with) trial.scores[0] += 1e-6;
 
