@@ -25,17 +25,21 @@ double time_constant_s(const Plan& plan) {
   return strongest > settled_k * std::numbers::e ? plan.target.contrast_change_s / std::log(strongest / settled_k) : 0;
 }
 
-/// Wait for a contrast. Within a band it ends when a first-order approach is near and slow enough; a lag of 0.1 s is
-/// assumed if the plan states none.
+/// Wait for a contrast, which ends when a first-order approach is near: within the tolerance of a black body, or within
+/// a band and slow enough; a lag of 0.1 s is assumed if the plan states none.
 double contrast_wait_s(const Plan& plan, const TargetState* before, const TargetState& state) {
-  if (state.wait == ContrastWait::settled || state.wait == ContrastWait::held) return plan.target.contrast_change_s;
-  if (state.wait == ContrastWait::none || before == nullptr) return 0;
+  if (state.wait == ContrastWait::none) return 0;
+  const bool settles = state.wait == ContrastWait::settled || state.wait == ContrastWait::held;
+  const double tau_s = time_constant_s(plan), longest_s = plan.target.contrast_change_s;
+  // A person takes as long for a small step.
+  const bool by_hand = plan.target.kind == TargetKind::prompt;
+  if (before == nullptr || (settles && (tau_s == 0 || by_hand))) return settles ? longest_s : 0;
   constexpr double default_band_percent = 10, default_rate_per_s = 0.06;
-  const double tau_s = time_constant_s(plan);
   const double percent = plan.target.contrast_settling_band_percent;
   const double band = std::min((percent > 0 ? percent : default_band_percent) / 100, default_rate_per_s * tau_s);
-  const double step = std::abs(state.delta_t_k - before->delta_t_k), near = band * std::abs(state.delta_t_k);
-  return near > 0 && step > near ? std::min(plan.target.contrast_change_s, tau_s * std::log(step / near)) : 0;
+  const double step = std::abs(state.delta_t_k - before->delta_t_k);
+  const double near = settles ? settled_k : band * std::abs(state.delta_t_k);
+  return near > 0 && step > near ? std::min(longest_s, tau_s * std::log(step / near)) : 0;
 }
 
 /// Adds the presentations that a slow black body needs at the end of each ramp down.

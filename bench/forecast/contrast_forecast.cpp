@@ -3,15 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "acquisition/base/distributions.h"
+#include "acquisition/base/rng.h"
 #include "bench/forecast/graded_precision.h"
 #include "bench/forecast/limit_forecast.h"
 #include "bench/plan/plan_options.h"
-#include "bench/twin/camera_surrogate.h"
+#include "tod/measurement/contrast_error.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/contrast_slope.h"
+#include "tod/schedule/adaptive_schedule.h"
 
 namespace todbench {
 namespace {
@@ -66,18 +71,18 @@ struct ContrastScatterForecast {
 };
 
 ContrastScatterForecast scatter_of(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
-                                   const std::vector<int>& presentations) {
+                                   const std::vector<int>& looks) {
   const SensorSpec& sensor = inputs.sensor;
   const double pixels_per_mm = 1 / (plan.target.distance_m * sensor.ifov_mrad());
   double variance = 0, set_ups = 0, places = 0;
   std::size_t first = 0;
   for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
     const auto mountings = static_cast<std::size_t>(mountings_of(plan.target, i));
-    for (std::size_t k = first; k < first + mountings && k < presentations.size(); ++k) {
-      if (presentations[k] == 0) continue;
-      const double frames = has_own_contrasts(plan)
-                                ? static_cast<double>(presentations[k]) * chosen_answers(plan, sensor, delta_t_k).frames
-                                : plan.measurement.contrast_frames;
+    for (std::size_t k = first; k < first + mountings && k < looks.size(); ++k) {
+      if (looks[k] == 0) continue;
+      const double frames =
+          static_cast<double>(looks[k]) *
+          (has_own_contrasts(plan) ? chosen_answers(plan, sensor, delta_t_k).frames : plan.measurement.contrast_frames);
       const double temporal = 1 / std::sqrt(independent_frames(frames, sensor.noise_correlation));
       const FrameContrast one = frame_contrast(inputs.plates[i], pixels_per_mm, plan.measurement.min_reference_px,
                                                {.pixel_k = std::hypot(temporal * sensor.netd_k, sensor.fixed_pattern_k),
@@ -106,15 +111,44 @@ void join(ContrastPrediction& point, const ContrastScatterForecast& scatter, dou
   const double both = std::hypot(own, of_contrast), own_likely = std::log1p(*point.uncertainty_percent / 100);
   const double freedom = std::pow(both, 4) / (std::pow(own, 4) / point.degrees_of_freedom.value_or(1e6) +
                                               std::pow(of_contrast, 4) / scatter.of_set_ups);
-  // An adaptive schedule ends at its own half-width, without a margin.
-  const double likely = own_likely > own
-                            ? both * likely_excess_of_error(freedom)
-                            : std::hypot(own_likely, of_contrast * likely_excess_of_error(scatter.of_set_ups));
-  point.uncertainty_percent = 100 * std::expm1(std::max(likely, own_likely));
+  point.uncertainty_percent =
+      point.stopped_at_percent.value_or(100 * std::expm1(std::max(both * likely_excess_of_error(freedom), own_likely)));
   point.se_ln_s75 = std::hypot(point.se_ln_s75, u);
   point.interval_factor = both / point.se_ln_s75;
   point.degrees_of_freedom = freedom;
   point.contrast_half_width = once_in_a_set_up ? of_contrast : 0;
+}
+
+/// Half-width of the 95 % interval of a contrast over its standard error, as an adaptive schedule takes it from the
+/// scatter over set-ups and places: two fifths of 201 simulated runs of white noise are below. A run ends at its first
+/// set-up with a narrow interval, so that more than these have ended there. Every second set-up has its triangles at
+/// the same places.
+double stopping_half_width(int set_ups, int triangles) {
+  thread_local std::map<std::pair<int, int>, double> known;
+  const auto [found, is_new] = known.try_emplace({set_ups, triangles}, 0);
+  if (!is_new) return found->second;
+  constexpr int runs = 201;
+  const double noise_k = std::sqrt(static_cast<double>(set_ups * triangles));  // so that the mean has the error 1
+  const RandomStream stream(1, "contrast_forecast");
+  std::vector<double> widths;
+  for (std::uint64_t run = 0, drawn = 0; run < runs; ++run) {
+    std::vector<ContrastMeasurement> measured;
+    for (int i = 0; i < set_ups; ++i) {
+      ContrastMeasurement one;
+      for (int k = 0; k < triangles; ++k) {
+        one.references.push_back({.value = noise_k * static_cast<double>(stream.normal(drawn++)),
+                                  .place_px = {10.0 * k, 10.0 * (i % 2)},
+                                  .size_px = 5,
+                                  .noise = noise_k});
+        one.delta_t_k += one.references.back().value / triangles;
+      }
+      measured.push_back(std::move(one));
+    }
+    const ContrastError error = at_least_the_noise(contrast_error(measured).value_or(ContrastError{.noise_k = 1}));
+    widths.push_back(error.standard_error_k * distribution::quantile_above(0.025, error.degrees_of_freedom));
+  }
+  std::ranges::sort(widths);
+  return found->second = widths[2 * runs / 5];
 }
 
 }  // namespace
@@ -123,16 +157,28 @@ double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_m
   return frame_contrast(plate, pixels_per_mm, min_size_px, {.pixel_k = 1}).variance;
 }
 
-void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
-                           const std::vector<std::vector<int>>& presentations) {
+std::vector<double> expected_contrast_slopes(const std::vector<ContrastPrediction>& contrasts) {
   PlanPrediction expected;
   expected.contrasts = contrasts;
-  const std::vector<double> slopes = contrast_slopes(expected_curve(expected));
-  for (std::size_t i = 0; i < contrasts.size() && i < presentations.size(); ++i) {
+  std::vector<double> slopes = contrast_slopes(expected_curve(expected));
+  for (double& slope : slopes) slope = std::max(measured_contrast_slope, std::isfinite(slope) ? slope : 1.0);
+  return slopes;
+}
+
+double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
+                           const std::vector<int>& looks, double slope) {
+  const ContrastScatterForecast scatter = scatter_of(plan, inputs, delta_t_k, looks);
+  const auto set_ups = static_cast<int>(std::lround(scatter.of_set_ups)) + 1;
+  const auto triangles = static_cast<int>(std::lround((scatter.of_places + 1) / set_ups));
+  return stopping_half_width(set_ups, triangles) * slope * scatter.standard_error_k / std::abs(delta_t_k);
+}
+
+void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
+                           const std::vector<std::vector<int>>& looks) {
+  const std::vector<double> slopes = expected_contrast_slopes(contrasts);
+  for (std::size_t i = 0; i < contrasts.size() && i < looks.size(); ++i) {
     ContrastPrediction& point = contrasts[i];
-    const ContrastScatterForecast scatter = scatter_of(plan, inputs, point.delta_t_k, presentations[i]);
-    const double slope = std::max(measured_contrast_slope, std::isfinite(slopes[i]) ? slopes[i] : 1.0);
-    join(point, scatter, slope, !has_own_contrasts(plan));
+    join(point, scatter_of(plan, inputs, point.delta_t_k, looks[i]), slopes[i], !has_own_contrasts(plan));
   }
 }
 

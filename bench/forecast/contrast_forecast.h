@@ -13,11 +13,20 @@ namespace todbench {
 /// enough.
 [[nodiscard]] double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_mm, double min_size_px);
 
+/// Returns d ln S75 / d ln contrast at each contrast of a prediction, as join_contrast_errors() takes it from a curve.
+[[nodiscard]] std::vector<double> expected_contrast_slopes(const std::vector<ContrastPrediction>& contrasts);
+
+/// Returns the half-width of ln S75 that the scatter of a measured contrast makes alone, as AdaptiveSchedule takes it:
+/// at the set-up with which half of the runs have ended. `looks`: number of its
+/// measurements in each set-up, each of `contrast_frames`, or of a presentation's frames if presentations have
+/// contrasts of their own. The noise is that of the sensor's file: temporal noise over the frames, and its fixed
+/// pattern.
+[[nodiscard]] double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
+                                         const std::vector<int>& looks, double slope);
+
 /// Adds the scatter of the measured contrast to the predictions of a plan with a camera, as join_contrast_errors()
-/// (bench/twin/camera_surrogate.h) adds it to the curve. `presentations`: their numbers in each set-up, by contrast of
-/// the plan. A set-up measures each contrast that it shows once, or in every presentation if these have contrasts of
-/// their own. The noise is that of the sensor's file: temporal noise over the frames, and its fixed pattern.
+/// (tod/psychometric/contrast_slope.h) adds it to the curve. `looks`: those of contrast_half_width(), by contrast.
 void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
-                           const std::vector<std::vector<int>>& presentations);
+                           const std::vector<std::vector<int>>& looks);
 
 }  // namespace todbench

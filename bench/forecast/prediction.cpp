@@ -162,19 +162,27 @@ int most_presentations(const Plan& plan) {
 }
 
 /// Adapts the prediction of binary answers to constant stimuli to an adaptive schedule: as many trials as the requested
-/// interval needs, or as the cap allows, and at least eight presentations per contrast.
-void adapt(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates) {
+/// interval needs, or as the cap allows, and at least eight presentations per contrast. The interval includes
+/// `of_contrast`, the half-width of ln S75 from the measured contrast.
+void adapt_binary(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates,
+                  double of_contrast) {
   if (plan.schedule.kind != ScheduleKind::adaptive || !point.uncertainty_percent || !(point.trials > 0)) return;
   const double per_presentation = triangles_of(plates) / static_cast<double>(plates.size());
   const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
-  const double needed =
-      std::max(point.trials * std::pow(constant / asked, 2), least_adaptive_presentations * per_presentation);
-  const double cap = most_presentations(plan) * per_presentation;
+  const double of_answers = std::sqrt(std::max(0.0, asked * asked - of_contrast * of_contrast));
+  // Beyond the reach of answers it ends after two visits of each set-up.
+  const double two_visits = 2.0 * static_cast<double>(set_ups_of(plan.target)) * plan.target.phases * per_presentation;
+  const double needed = of_answers > 0 ? std::max(point.trials * std::pow(constant / of_answers, 2),
+                                                  least_adaptive_presentations * per_presentation)
+                                       : two_visits;
+  const double shown = std::min(needed, most_presentations(plan) * per_presentation);
   // Below the cap the schedule continues until the interval itself is narrow enough.
-  const double reached = needed <= cap ? asked : constant * std::sqrt(point.trials / cap);
+  const bool stops = of_answers > 0 && needed <= shown;
+  const double reached = stops ? of_answers : constant * std::sqrt(point.trials / shown);
+  if (stops) point.stopped_at_percent = 100 * std::expm1(asked);
   point.uncertainty_percent = 100 * std::expm1(reached);
   point.se_ln_s75 *= reached / constant;
-  point.trials = std::round(std::min(needed, cap));
+  point.trials = std::round(shown);
 }
 
 /// A contrast in a forecast run of an adaptive schedule with graded answers.
@@ -185,13 +193,15 @@ struct AdaptiveContrast {
   std::vector<double> information;  ///< of a presentation of each set-up
   GradedDesignFigures all;          ///< every set-up with the phases of the simulation
   double binary_se = 0;             ///< of that design
+  double slope = 0;                 ///< of ln S75 over ln contrast; 0: the contrast is no part of the interval
   std::vector<int> shown;           ///< presentations in each set-up
+  std::vector<int> looks;           ///< measurements of the contrast in each set-up
   int presentations = 0;
   bool settled = false;
 };
 
 /// Sets the prediction of a contrast after the presentations shown. Returns whether the expected interval is narrow
-/// enough for the schedule.
+/// enough for the schedule, or cannot become so (AdaptiveSchedule).
 bool narrow_enough(AdaptiveContrast& contrast, const Plan& plan, const ExperimentInputs& inputs) {
   std::vector<double> seen = contrast.information;
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] *= contrast.shown[i];
@@ -201,8 +211,14 @@ bool narrow_enough(AdaptiveContrast& contrast, const Plan& plan, const Experimen
   design.presentations = contrast.presentations;
   const double share = total(seen) / (total(contrast.information) * plan.simulation.phases);
   predict_graded(*contrast.point, plan, inputs, design, contrast.outlook->q_eff, contrast.binary_se / std::sqrt(share));
-  return contrast.presentations >= least_adaptive_presentations &&
-         contrast.point->interval_factor * contrast.point->se_ln_s75 <= plan.schedule.half_width_percent / 100;
+  if (contrast.presentations < least_adaptive_presentations) return false;
+  const double asked = plan.schedule.half_width_percent / 100;
+  const double of_contrast =
+      contrast.slope > 0 ? contrast_half_width(plan, inputs, contrast.point->delta_t_k, contrast.looks, contrast.slope)
+                         : 0;
+  const bool reached = std::hypot(contrast.point->interval_factor * contrast.point->se_ln_s75, of_contrast) <= asked;
+  if (reached) contrast.point->stopped_at_percent = 100 * std::expm1(asked);
+  return reached || (of_contrast >= asked && std::ranges::all_of(contrast.looks, [](int looks) { return looks > 1; }));
 }
 
 /// Goes through the visits of an adaptive schedule with graded answers until every contrast is expected to have the
@@ -211,11 +227,15 @@ void run_adaptively(std::vector<AdaptiveContrast>& contrasts, const Plan& plan, 
   const int phases = plan.camera.id.empty() ? plan.simulation.phases : plan.target.phases;
   VisitOrder order(plan, numbered_set_ups(plan, inputs.plates.size()));
   int left = plan.schedule.max_presentations;
+  std::optional<std::size_t> before;
   while (left > 0) {
     const auto open = std::ranges::count(contrasts, false, &AdaptiveContrast::settled);
     if (open == 0) break;
     const std::size_t set_up = order.next(static_cast<int>(open));
+    const bool looks = before != set_up;
+    before = set_up;
     for (AdaptiveContrast& contrast : contrasts) {
+      if (looks && !contrast.settled) ++contrast.looks[set_up];
       for (int phase = 0; phase < phases && left > 0 && !contrast.settled; ++phase, --left) {
         ++contrast.shown[set_up];
         ++contrast.presentations;
@@ -226,8 +246,7 @@ void run_adaptively(std::vector<AdaptiveContrast>& contrasts, const Plan& plan, 
   const double per_presentation = triangles_of(inputs.plates) / static_cast<double>(inputs.plates.size());
   for (AdaptiveContrast& contrast : contrasts) {
     contrast.point->trials = std::round(contrast.presentations * per_presentation);
-    if (contrast.settled)
-      contrast.point->uncertainty_percent = 100 * std::expm1(plan.schedule.half_width_percent / 100);
+    if (const auto stopped = contrast.point->stopped_at_percent) contrast.point->uncertainty_percent = stopped;
   }
 }
 
@@ -251,39 +270,51 @@ void predict_interval(ContrastPrediction& point, const Plan& plan, const Experim
     return;
   }
   predict_binary(point, plan, inputs, outlook, *binary_se);
-  adapt(point, plan, inputs.plates);
 }
 
-/// Replaces the predictions of constant stimuli by those of an adaptive schedule with graded answers. Returns the
-/// presentations in each set-up, by contrast of the plan.
-std::vector<std::vector<int>> adapt_graded(std::vector<ContrastPrediction>& points, const Plan& plan,
-                                           const ExperimentInputs& inputs) {
+/// A contrast before the forecast run.
+AdaptiveContrast begun(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs, double slope) {
   const std::size_t set_ups = numbered_set_ups(plan, inputs.plates.size()).size();
-  std::vector<std::vector<int>> shown(points.size(), std::vector<int>(set_ups, plan.simulation.phases));
-  if (plan.schedule.kind != ScheduleKind::adaptive || set_ups == 0) return shown;
-  if (chosen_answers(plan, inputs.sensor).kind != AnswerKind::graded) return shown;
-  std::vector<AdaptiveContrast> contrasts;
-  for (ContrastPrediction& point : points) {
-    AdaptiveContrast contrast;
-    contrast.point = &point;
-    contrast.shown.resize(set_ups);
-    const auto outlook = std::ranges::find(inputs.outlooks, point.delta_t_k, &ContrastOutlook::delta_t_k);
-    const auto error = outlook != inputs.outlooks.end() ? binary_error(plan, inputs, *outlook) : std::nullopt;
-    if (error) {
-      const int frames = chosen_answers(plan, inputs.sensor, point.delta_t_k).frames;
-      contrast.outlook = &*outlook;
-      contrast.information = set_up_information(plan, inputs, *outlook);
-      contrast.all = graded_design(plan, inputs, *outlook, frames);
-      contrast.binary_se = *error;
-    }
-    contrasts.push_back(std::move(contrast));
+  AdaptiveContrast contrast;
+  contrast.point = &point;
+  contrast.slope = slope;
+  contrast.shown.resize(set_ups);
+  contrast.looks.resize(set_ups);
+  const auto outlook = std::ranges::find(inputs.outlooks, point.delta_t_k, &ContrastOutlook::delta_t_k);
+  const auto error = outlook != inputs.outlooks.end() ? binary_error(plan, inputs, *outlook) : std::nullopt;
+  if (!error) return contrast;
+  contrast.outlook = &*outlook;
+  contrast.information = set_up_information(plan, inputs, *outlook);
+  contrast.all = graded_design(plan, inputs, *outlook, chosen_answers(plan, inputs.sensor, point.delta_t_k).frames);
+  contrast.binary_se = *error;
+  return contrast;
+}
+
+/// Replaces the predictions of constant stimuli by those of an adaptive schedule. Returns the measurements of each
+/// contrast of the plan in each set-up (contrast_half_width()).
+std::vector<std::vector<int>> adapt(std::vector<ContrastPrediction>& points, const Plan& plan,
+                                    const ExperimentInputs& inputs) {
+  const std::size_t set_ups = numbered_set_ups(plan, inputs.plates.size()).size();
+  std::vector<std::vector<int>> looks(points.size(),
+                                      std::vector<int>(set_ups, has_own_contrasts(plan) ? plan.simulation.phases : 1));
+  if (plan.schedule.kind != ScheduleKind::adaptive || set_ups == 0) return looks;
+  const bool joined = !plan.camera.id.empty();
+  const std::vector<double> slopes =
+      joined ? expected_contrast_slopes(points) : std::vector<double>(points.size(), 0.0);
+  if (chosen_answers(plan, inputs.sensor).kind != AnswerKind::graded) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      adapt_binary(points[i], plan, inputs.plates,
+                   joined ? contrast_half_width(plan, inputs, points[i].delta_t_k, looks[i], slopes[i]) : 0);
+    return looks;
   }
+  std::vector<AdaptiveContrast> contrasts;
+  for (std::size_t i = 0; i < points.size(); ++i) contrasts.push_back(begun(points[i], plan, inputs, slopes[i]));
   std::ranges::stable_sort(contrasts, std::greater<>(),
                            [](const AdaptiveContrast& c) { return std::abs(c.point->delta_t_k); });
   run_adaptively(contrasts, plan, inputs);
   for (AdaptiveContrast& contrast : contrasts)
-    shown[static_cast<std::size_t>(contrast.point - points.data())] = std::move(contrast.shown);
-  return shown;
+    looks[static_cast<std::size_t>(contrast.point - points.data())] = std::move(contrast.looks);
+  return looks;
 }
 
 /// Rejects a tolerance beyond the caps; the message states the best possible tolerance over all contrasts, and its time
@@ -424,9 +455,9 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
     if (outlook != inputs.outlooks.end()) predict_interval(point, design.plan, inputs, *outlook);
     out.contrasts.push_back(point);
   }
-  const auto shown = adapt_graded(out.contrasts, plan, inputs);
+  const auto looks = adapt(out.contrasts, plan, inputs);
   if (!plan.camera.id.empty() && plan.schedule.kind != ScheduleKind::ramp)
-    join_contrast_scatter(out.contrasts, plan, inputs, shown);
+    join_contrast_scatter(out.contrasts, plan, inputs, looks);
   double trials = 0, largest = 0;
   bool all_identified = true;
   for (const ContrastPrediction& point : out.contrasts) {

@@ -30,6 +30,9 @@ struct ContrastPrediction {
   /// Half-width of ln S75 that the scatter of the measured contrast makes alone; more presentations do not reduce it.
   /// It is part of the half-width above.
   double contrast_half_width = 0;
+  /// Half-width at which an adaptive schedule is expected to stop, in percent; empty: another schedule, or it does not
+  /// get there.
+  std::optional<double> stopped_at_percent{};
   /// Standard error of ln of the ratio of camera and twin by common phases, with the same margin as
   /// `uncertainty_percent`; empty: the plan makes no pairs.
   std::optional<double> paired_se_ln_ratio{};

@@ -109,6 +109,7 @@ std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector
                                                             .fit = fit_options(plan),
                                                             .functions = std::move(functions),
                                                             .half_width_percent = plan.schedule.half_width_percent,
+                                                            .with_contrast_errors = side == Side::measured,
                                                             .max_presentations = plan.schedule.max_presentations},
                                             stream);
 }

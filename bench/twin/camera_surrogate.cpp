@@ -283,31 +283,4 @@ AdequacyFinding CameraSurrogate::finding() const {
           .unfit = false};
 }
 
-void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom) {
-  if (!(u > 0) || !fit.threshold || !(*fit.threshold > 0)) return;
-  const auto widened = [&](Interval& interval, double tail) {
-    const double half = u * distribution::quantile_above(tail, degrees_of_freedom);
-    for (std::optional<double>* side : {&interval.low, &interval.high}) {
-      if (!*side || !(**side > 0)) continue;
-      const double own = std::log(**side / *fit.threshold);
-      *side = *fit.threshold * std::exp(std::copysign(std::hypot(own, half), own));
-    }
-  };
-  widened(fit.ci95, 0.025);
-  widened(fit.ci90, 0.05);
-  fit.joined_u = std::hypot(fit.joined_u, u);
-}
-
-void join_contrast_errors(TodCurve& curve) {
-  const std::vector<double> slopes = contrast_slopes(curve);
-  for (std::size_t i = 0; i < curve.points.size(); ++i) {
-    TodPoint& point = curve.points[i];
-    const auto se = contrast_se_k(point);
-    const double seen = contrast_seen_k(point);
-    if (!se || !(seen > 0) || !std::isfinite(slopes[i])) continue;
-    point.fit.contrast_u = std::max(measured_contrast_slope, slopes[i]) * *se / seen;
-    join_uncertainty(point.fit, point.fit.contrast_u, freedom_of_contrast(point));
-  }
-}
-
 }  // namespace todbench

@@ -88,17 +88,4 @@ class CameraSurrogate {
   cv::Size size_;
 };
 
-/// Adds a standard uncertainty `u` of ln threshold, which the answers do not show, to the intervals of a fit, using
-/// Student's t with these degrees of freedom.
-void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom);
-
-/// d ln S75 / d ln contrast at least, by measurement.
-inline constexpr double measured_contrast_slope = 1.14;
-
-/// Adds the scatter of the effective contrast as an uncertainty of S75. The answers were scored with the effective
-/// contrast, and the size is stated at that contrast. Let w be the share of the observer's own noise, and d ln S75 / d
-/// ln SNR = -k. An error of the contrast changes ln S75 by k w through the score, and by k (1 - w) through the stated
-/// contrast: together by k for every w. k is 1.14 by measurement, or the slope of the curve if that is larger.
-void join_contrast_errors(TodCurve& curve);
-
 }  // namespace todbench

@@ -45,19 +45,21 @@ std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement>
   for (const ContrastMeasurement& one : measurements) mean += one.delta_t_k / static_cast<double>(measurements.size());
   std::vector<Share> shares;
   std::vector<ReferenceTriangle> places;
-  double alone = 0;
+  double alone = 0, noise = 0;
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     const auto weight = 1 / static_cast<double>(measurements[i].references.size() * measurements.size());
     for (const ReferenceTriangle& triangle : measurements[i].references) {
       shares.push_back({.set_up = i, .place = place_of(triangle, places), .value = weight * (triangle.value - mean)});
       alone += shares.back().value * shares.back().value;
+      noise += std::pow(weight * triangle.noise, 2);
     }
   }
   const OneWay set_ups = one_way(shares, &Share::set_up), at_places = one_way(shares, &Share::place);
   if (set_ups.clusters < 2 && at_places.clusters < 2) return std::nullopt;
   const double seen = set_ups.clusters < 2 ? 0 : set_ups.variance;
   const auto error = [&](double variance, double clusters) {
-    return ContrastError{std::sqrt(variance), std::sqrt(std::max(0.0, variance - seen)), clusters - 1};
+    return ContrastError{std::sqrt(variance), std::sqrt(std::max(0.0, variance - seen)), clusters - 1,
+                         std::sqrt(noise)};
   };
   // With one set-up or one place, no deviation from the overall mean can be estimated.
   if (set_ups.clusters < 2) return error(at_places.variance, at_places.clusters);
@@ -69,18 +71,20 @@ std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement>
   return error(larger.variance, larger.clusters);
 }
 
-void add_contrast_errors(TodCurve& curve, std::span<const ContrastMeasurement> measurements) {
-  for (TodPoint& point : curve.points) {
-    std::vector<ContrastMeasurement> own;
-    std::ranges::copy_if(measurements, std::back_inserter(own), [&](const ContrastMeasurement& one) {
-      return one.set_delta_t_k == point.set_delta_t_k && !one.references.empty();
-    });
+std::map<double, ContrastError> contrast_errors(std::span<const ContrastMeasurement> measurements) {
+  std::map<double, std::vector<ContrastMeasurement>> by_contrast;
+  for (const ContrastMeasurement& one : measurements)
+    if (!one.references.empty()) by_contrast[one.set_delta_t_k].push_back(one);
+  std::map<double, ContrastError> errors;
+  for (const auto& [set_delta_t_k, own] : by_contrast) {
     const auto error = contrast_error(own);
-    if (!error || !(error->standard_error_k > 0)) continue;
-    point.delta_t_se_k = error->standard_error_k;
-    point.delta_t_shared_se_k = error->shared_k;
-    point.delta_t_freedom = error->degrees_of_freedom;
+    if (error && error->standard_error_k > 0) errors[set_delta_t_k] = *error;
   }
+  return errors;
+}
+
+void add_contrast_errors(TodCurve& curve, std::span<const ContrastMeasurement> measurements) {
+  set_contrast_errors(curve, contrast_errors(measurements));
 }
 
 }  // namespace todbench

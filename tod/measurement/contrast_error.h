@@ -2,10 +2,12 @@
 // Standard error of a contrast that was measured in several set-ups by several triangles.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "tod/psychometric/contrast_slope.h"
 #include "tod/psychometric/tod_curve.h"
 #include "tod/registration/registration.h"
 
@@ -18,19 +20,15 @@ struct ContrastMeasurement {
   std::vector<ReferenceTriangle> references;  ///< each with its contrast in kelvin
 };
 
-/// Standard error of a contrast.
-struct ContrastError {
-  double standard_error_k = 0;
-  double shared_k = 0;  ///< part of it that the scatter over set-ups does not show: errors common to one place
-  double degrees_of_freedom = 1;
-};
-
 /// Standard error of the mean over measurements of one contrast. Errors common to the triangles of a set-up and errors
 /// of the detectors at a place (fixed pattern) both remain in that mean. Set-ups and places are therefore two-way
 /// clusters, V_set_up + V_place - V_triangle (Cameron, Gelbach and Miller 2011), at least the variance of either alone.
 /// Triangles whose centroids are nearer than half their size count as one place, because mountings and plates may image
 /// them onto the same detectors. Empty with fewer than two set-ups and fewer than two places.
 [[nodiscard]] std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement> measurements);
+
+/// contrast_error() of each set contrast; without those that have no error or none that can be estimated.
+[[nodiscard]] std::map<double, ContrastError> contrast_errors(std::span<const ContrastMeasurement> measurements);
 
 /// Sets the standard errors of the contrasts of the points of a curve, if they can be estimated from `measurements`.
 void add_contrast_errors(TodCurve& curve, std::span<const ContrastMeasurement> measurements);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+
+#include "acquisition/base/distributions.h"
 #include "tod/psychometric/acuity.h"
 
 namespace todbench {
@@ -42,6 +44,16 @@ double slope_at(const std::vector<SlopePoint>& points, std::size_t i) {
 }
 
 }  // namespace
+
+void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>& errors) {
+  for (TodPoint& point : curve.points) {
+    const auto error = errors.find(point.set_delta_t_k);
+    if (error == errors.end()) continue;
+    point.delta_t_se_k = error->second.standard_error_k;
+    point.delta_t_shared_se_k = error->second.shared_k;
+    point.delta_t_freedom = error->second.degrees_of_freedom;
+  }
+}
 
 double contrast_seen_k(const TodPoint& point) {
   const double seen = std::abs(point.delta_t_k);
@@ -96,6 +108,33 @@ std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve) {
                        .degrees_of_freedom = freedom_of_contrast(point)});
   }
   return scatter;
+}
+
+void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom) {
+  if (!(u > 0) || !fit.threshold || !(*fit.threshold > 0)) return;
+  const auto widened = [&](Interval& interval, double tail) {
+    const double half = u * distribution::quantile_above(tail, degrees_of_freedom);
+    for (std::optional<double>* side : {&interval.low, &interval.high}) {
+      if (!*side || !(**side > 0)) continue;
+      const double own = std::log(**side / *fit.threshold);
+      *side = *fit.threshold * std::exp(std::copysign(std::hypot(own, half), own));
+    }
+  };
+  widened(fit.ci95, 0.025);
+  widened(fit.ci90, 0.05);
+  fit.joined_u = std::hypot(fit.joined_u, u);
+}
+
+void join_contrast_errors(TodCurve& curve) {
+  const std::vector<double> slopes = contrast_slopes(curve);
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    TodPoint& point = curve.points[i];
+    const auto se = contrast_se_k(point);
+    const double seen = contrast_seen_k(point);
+    if (!se || !(seen > 0) || !std::isfinite(slopes[i])) continue;
+    point.fit.contrast_u = std::max(measured_contrast_slope, slopes[i]) * *se / seen;
+    join_uncertainty(point.fit, point.fit.contrast_u, freedom_of_contrast(point));
+  }
 }
 
 }  // namespace todbench

@@ -2,12 +2,25 @@
 // Effect of an error of the contrast on the acuity.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "tod/psychometric/tod_curve.h"
 
 namespace todbench {
+
+/// Standard error of a measured contrast.
+struct ContrastError {
+  double standard_error_k = 0;
+  double shared_k = 0;  ///< part of it that the scatter over set-ups does not show: errors common to one place
+  double degrees_of_freedom = 1;
+  double noise_k = 0;  ///< standard error from the noise of the pixels alone; 0: not known
+};
+
+/// Sets the standard errors of the contrasts of the points of a curve, by set contrast. A point without one keeps its
+/// own.
+void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>& errors);
 
 /// Magnitude of the effective contrast, or of the set contrast if the effective one is not known.
 [[nodiscard]] double contrast_seen_k(const TodPoint& point);
@@ -34,5 +47,18 @@ struct ContrastScatter {
 };
 /// Returns for each point the standard error of the contrast times contrast_slopes().
 [[nodiscard]] std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve);
+
+/// Adds a standard uncertainty `u` of ln threshold, which the answers do not show, to the intervals of a fit, using
+/// Student's t with these degrees of freedom.
+void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom);
+
+/// d ln S75 / d ln contrast at least, by measurement.
+inline constexpr double measured_contrast_slope = 1.14;
+
+/// Adds the scatter of the effective contrast as an uncertainty of S75. The answers were scored with the effective
+/// contrast, and the size is stated at that contrast. Let w be the share of the observer's own noise, and d ln S75 / d
+/// ln SNR = -k. An error of the contrast changes ln S75 by k w through the score, and by k (1 - w) through the stated
+/// contrast: together by k for every w. k is 1.14 by measurement, or the slope of the curve if that is larger.
+void join_contrast_errors(TodCurve& curve);
 
 }  // namespace todbench

@@ -163,7 +163,6 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
   }
   const std::vector<Polygon> outlines = outlines_of(mounted_plate, registration);
   std::vector<ReferenceTriangle> references;
-  double pixel_error = 0;
   double largest = 0;
   for (std::size_t k = 0; k < outlines.size(); ++k) {
     const PlateTriangle& t = mounted_plate.triangles[k];
@@ -183,9 +182,10 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
     const double contrast = level == LevelEstimate::median
                                 ? between_medians
                                 : mean_near_median(s.inside, reach) - mean_near_median(s.ring, reach);
-    references.push_back(
-        {.value = contrast, .place_px = to_pixel(registration.plate_to_pixel, t.position_mm), .size_px = size});
-    pixel_error = std::hypot(median_error(s.inside, noise), median_error(s.ring, noise));
+    references.push_back({.value = contrast,
+                          .place_px = to_pixel(registration.plate_to_pixel, t.position_mm),
+                          .size_px = size,
+                          .noise = std::hypot(median_error(s.inside, noise), median_error(s.ring, noise))});
   }
   if (references.empty()) {
     return fail(ErrorCode::invalid_input, doing + "no triangle is at least " + fixed(min_size_px, 1) +
@@ -197,7 +197,7 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
   for (const ReferenceTriangle& r : references) result.value += r.value / n;
   double squares = 0;
   for (const ReferenceTriangle& r : references) squares += (r.value - result.value) * (r.value - result.value);
-  result.standard_error = n > 1 ? std::sqrt(squares / (n - 1) / n) : pixel_error;
+  result.standard_error = n > 1 ? std::sqrt(squares / (n - 1) / n) : references[0].noise;
   result.references = std::move(references);
   return result;
 }

@@ -90,6 +90,7 @@ struct ReferenceTriangle {
   double value = 0;      ///< its contrast
   cv::Point2d place_px;  ///< its centroid
   double size_px = 0;
+  double noise = 0;  ///< standard error of `value` from the noise of the pixels round it; 0: not known
 };
 
 /// Observed contrast in the unit of the picture, signed.

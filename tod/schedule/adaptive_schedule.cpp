@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "acquisition/base/distributions.h"
-#include "tod/psychometric/tod_curve.h"
 #include "tod/psychometric/twin_shape.h"
 
 namespace todbench {
@@ -42,7 +42,23 @@ bool contradicted(const PsychometricFit& fit) {
   return distribution::cdf(distribution::complement(law, *fit.deviance / fit.variance_inflation)) < contradiction;
 }
 
+/// Half the width of the 95 % interval of ln S75; empty while a side is open.
+std::optional<double> half_width(const PsychometricFit& fit) {
+  if (!fit.threshold || !fit.ci95.low || !fit.ci95.high || *fit.ci95.low <= 0) return std::nullopt;
+  return std::log(*fit.ci95.high / *fit.ci95.low) / 2;
+}
+
 }  // namespace
+
+ContrastError at_least_the_noise(ContrastError error) {
+  constexpr double tail = 0.025;
+  if (error.noise_k * distribution::quantile_above(tail, std::nullopt) <=
+      error.standard_error_k * distribution::quantile_above(tail, error.degrees_of_freedom))
+    return error;
+  error.standard_error_k = error.noise_k;
+  error.degrees_of_freedom = std::numeric_limits<double>::infinity();
+  return error;
+}
 
 double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting, int contrasts) {
   const double* cost = stimuli.change_cost_s;
@@ -71,6 +87,7 @@ AdaptiveSchedule::AdaptiveSchedule(AdaptiveOptions options, const RandomStream& 
     Contrast contrast{.delta_t_k = sorted[c],
                       .knowledge = PsiPlacement(prior, stream.sub(2 * c)),
                       .trials = {},
+                      .point = {},
                       .starts = {},
                       .progress = {}};
     contrast.progress.delta_t_k = sorted[c];
@@ -88,6 +105,7 @@ double AdaptiveSchedule::value_per_second(const SetUp& set_up) const {
   for (const Contrast& contrast : contrasts_) {
     if (contrast.progress.settled) continue;
     ++open;
+    if (contrast.progress.needs_set_up && &set_up == &set_ups_[current_set_up_]) continue;
     for (const PlateTriangle& t : options_.plates[set_up.plate].triangles)
       gain += contrast.knowledge.expected_gain(t.size_mm / options_.distance_m);
   }
@@ -158,6 +176,11 @@ std::optional<TargetState> AdaptiveSchedule::next() {
   return state;
 }
 
+void AdaptiveSchedule::observe_contrasts(const std::map<double, ContrastError>& errors) {
+  contrast_errors_.clear();
+  for (const auto& [contrast, error] : errors) contrast_errors_[contrast] = at_least_the_noise(error);
+}
+
 void AdaptiveSchedule::observe(std::span<const Trial> trials) {
   std::map<std::pair<double, double>, std::pair<double, double>> counts;  // contrast, size: right, all
   for (const Trial& trial : trials) {
@@ -180,29 +203,59 @@ void AdaptiveSchedule::observe(std::span<const Trial> trials) {
   }
 }
 
+std::optional<TodPoint> AdaptiveSchedule::fitted(const Contrast& contrast) const {
+  FitOptions options = options_.fit;
+  options.with_posterior = false;
+  auto curve = tod_curve(contrast.trials, options);
+  if (!curve || curve->points.empty()) return std::nullopt;
+  TodPoint point = std::move(curve->points.front());
+  point.levels.clear();
+  if (const auto function = options_.functions.find(contrast.delta_t_k); function != options_.functions.end()) {
+    if (auto shaped = fit_twin_shape(graded_answers(contrast.trials), point.fit, function->second, options))
+      point.fit = *std::move(shaped);
+  }
+  if (!half_width(point.fit)) return std::nullopt;
+  return point;
+}
+
+bool AdaptiveSchedule::narrow_enough(Contrast& contrast) const {
+  const double asked = options_.half_width_percent / 100, of_answers = *half_width(contrast.point->fit);
+  double joined = of_answers;
+  if (options_.with_contrast_errors) {
+    TodCurve curve;
+    std::size_t own = 0;
+    for (const Contrast& other : contrasts_) {
+      if (&other == &contrast) own = curve.points.size();
+      if (other.point) curve.points.push_back(*other.point);
+    }
+    set_contrast_errors(curve, contrast_errors_);
+    join_contrast_errors(curve);
+    joined = half_width(curve.points[own].fit).value_or(of_answers);
+  }
+  contrast.progress.half_width_percent = 100 * joined;
+  contrast.progress.needs_set_up =
+      joined >= asked && of_answers * of_answers < (1 - contrast_decides) * joined * joined;
+  if (joined < asked) return true;
+  const bool out_of_reach = joined * joined - of_answers * of_answers >= asked * asked;
+  return out_of_reach && std::ranges::all_of(set_ups_, [](const SetUp& one) { return one.visits > 1; });
+}
+
 void AdaptiveSchedule::judge(Contrast& contrast) const {
   ContrastProgress& progress = contrast.progress;
   progress.trials = static_cast<double>(contrast.trials.size());
-  FitOptions options = options_.fit;
-  options.with_posterior = false;
-  const auto curve = tod_curve(contrast.trials, options);
   progress.half_width_percent.reset();
-  progress.settled = false;
-  if (!curve || curve->points.empty()) return;
-  PsychometricFit fit = curve->points.front().fit;
-  if (const auto function = options_.functions.find(contrast.delta_t_k); function != options_.functions.end()) {
-    if (auto shaped = fit_twin_shape(graded_answers(contrast.trials), fit, function->second, options))
-      fit = *std::move(shaped);
-  }
-  if (!fit.threshold || !fit.ci95.low || !fit.ci95.high || *fit.ci95.low <= 0) return;
-  progress.half_width_percent = 100 * std::log(*fit.ci95.high / *fit.ci95.low) / 2;
+  progress.settled = progress.needs_set_up = false;
+  contrast.point = fitted(contrast);
+  if (!contrast.point) return;
+  const bool narrow = narrow_enough(contrast);
   std::vector<double> sizes;
   for (const Trial& trial : contrast.trials) sizes.push_back(trial.size_mrad);
   std::ranges::sort(sizes);
   const auto distinct = static_cast<std::size_t>(std::unique(sizes.begin(), sizes.end()) - sizes.begin());
-  progress.settled = fit.verdict == FitVerdict::ok && progress.trials >= least_trials && distinct >= least_sizes &&
-                     progress.presentations >= least_adaptive_presentations &&
-                     *progress.half_width_percent < options_.half_width_percent && !contradicted(fit);
+  const PsychometricFit& fit = contrast.point->fit;
+  progress.settled = narrow && fit.verdict == FitVerdict::ok && progress.trials >= least_trials &&
+                     distinct >= least_sizes && progress.presentations >= least_adaptive_presentations &&
+                     !contradicted(fit);
 }
 
 std::vector<ContrastProgress> AdaptiveSchedule::progress() const {

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "tod/psychometric/contrast_slope.h"
 #include "tod/psychometric/psychometric_fit.h"
+#include "tod/psychometric/tod_curve.h"
 #include "tod/schedule/even_phases.h"
 #include "tod/schedule/psi_placement.h"
 #include "tod/schedule/schedule.h"
@@ -22,6 +24,11 @@ inline constexpr int least_adaptive_presentations = 8;
 [[nodiscard]] double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting,
                                    int contrasts);
 
+/// Returns the error of a contrast by which the schedule decides: the one with the longer 95 % interval of the given
+/// error and that of the noise of the pixels. The scatter over a few set-ups may be small by chance, which must not end
+/// a run.
+[[nodiscard]] ContrastError at_least_the_noise(ContrastError error);
+
 /// Options of AdaptiveSchedule.
 struct AdaptiveOptions {
   /// Plates, mountings, contrasts, pixel and costs of changes. `phases`: presentations per visit, which is one contrast
@@ -32,8 +39,9 @@ struct AdaptiveOptions {
   FitOptions fit;  ///< of the final fit
   /// Functions of the twin by contrast, if the final fit uses them; a contrast without one has a Weibull function.
   std::map<double, ProportionTable> functions{};
-  double half_width_percent = 10;  ///< target for half the width of the 95 % interval of ln S75, at every contrast
-  int max_presentations = 1000;    ///< hard limit, over all contrasts; at least one visit to each contrast is made
+  double half_width_percent = 10;     ///< target for half the width of the 95 % interval of ln S75, at every contrast
+  bool with_contrast_errors = false;  ///< the interval includes those of the measured contrasts (observe_contrasts())
+  int max_presentations = 1000;       ///< hard limit, over all contrasts; at least one visit to each contrast is made
 };
 
 /// Progress of a contrast.
@@ -43,7 +51,13 @@ struct ContrastProgress {
   int presentations = 0;
   std::optional<double> half_width_percent;  ///< empty while a side of the interval is open
   bool settled = false;
+  /// Not settled, and three quarters or more of the variance come from the measured contrast: another set-up reduces
+  /// it, another presentation in the same set-up does not.
+  bool needs_set_up = false;
 };
+
+/// Share of the variance of an interval from which on the measured contrast decides its width.
+inline constexpr double contrast_decides = 0.75;
 
 /// All triangles of a picture are answered at once without cost; changing the target costs time. The schedule therefore
 /// chooses set-ups (plate and mounting): the one whose triangles are expected to remove most entropy from the
@@ -52,8 +66,10 @@ struct ContrastProgress {
 /// where the plate is registered, and continues with the open ones. A contrast is settled, also in the middle of a
 /// visit, when it has at least 40 trials of three sizes in eight presentations, a two-sided interval with a half-width
 /// below the target, and a fit that the data do not contradict (deviance, p > 0.001; graded answers have their own
-/// interval and no deviance). The run ends when all are settled or at the limit. The shifts of a visit are those of
-/// even_phases(), over the mountings of its plate; those of every further visit of a set-up lie between them.
+/// interval and no deviance). If the errors of the measured contrasts belong to the interval and are too large without
+/// the answers, it is settled after two visits of each set-up. The run ends when all are settled or at the limit. The
+/// shifts of a visit are those of even_phases(), over the mountings of its plate; those of every further visit of a
+/// set-up lie between them.
 class AdaptiveSchedule final : public TrialSchedule {
  public:
   AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream);
@@ -61,6 +77,7 @@ class AdaptiveSchedule final : public TrialSchedule {
   [[nodiscard]] std::optional<TargetState> next() override;
   [[nodiscard]] std::size_t planned() const override { return static_cast<std::size_t>(options_.max_presentations); }
   void observe(std::span<const Trial> trials) override;
+  void observe_contrasts(const std::map<double, ContrastError>& errors) override;
 
   /// Progress of the contrasts, highest first.
   [[nodiscard]] std::vector<ContrastProgress> progress() const;
@@ -76,6 +93,7 @@ class AdaptiveSchedule final : public TrialSchedule {
     double delta_t_k = 0;
     PsiPlacement knowledge;
     std::vector<Trial> trials;
+    std::optional<TodPoint> point{};  ///< last fit, without the errors of contrasts
     std::vector<cv::Point2d> starts;  ///< of the phases of each plate, fractions of a pixel
     ContrastProgress progress;
   };
@@ -85,11 +103,16 @@ class AdaptiveSchedule final : public TrialSchedule {
   [[nodiscard]] cv::Point2d next_phase(const Contrast& contrast) const;
   [[nodiscard]] double value_per_second(const SetUp& set_up) const;
   void judge(Contrast& contrast) const;
+  /// Fit of the answers to a contrast; empty if there is none.
+  [[nodiscard]] std::optional<TodPoint> fitted(const Contrast& contrast) const;
+  /// Sets the half-width of a contrast. Returns whether it is below the target or cannot get there.
+  [[nodiscard]] bool narrow_enough(Contrast& contrast) const;
 
   AdaptiveOptions options_;
   std::vector<SetUp> set_ups_;
   std::vector<EvenPhases> phases_;  ///< of each plate
   std::vector<Contrast> contrasts_;
+  std::map<double, ContrastError> contrast_errors_;
   std::size_t current_set_up_ = 0;
   std::vector<std::size_t> to_visit_;  ///< remaining contrasts of this visit, the present one first
   int shown_here_ = 0;                 ///< of the present contrast in this visit

@@ -131,6 +131,7 @@ class Nesting {
 }  // namespace
 
 void TrialSchedule::observe(std::span<const Trial> /*trials*/) {}
+void TrialSchedule::observe_contrasts(const std::map<double, ContrastError>& /*errors*/) {}
 
 cv::Size2d pixel_of(const ConstantStimuliOptions& options) {
   return {options.pixel_mm, options.pixel_mm * options.pixel_aspect};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "tod/plate/target_plate.h"
 #include "tod/presentation/target.h"
 #include "tod/presentation/trial.h"
+#include "tod/psychometric/contrast_slope.h"
 
 namespace todbench {
 
@@ -25,6 +27,9 @@ class TrialSchedule {
   [[nodiscard]] virtual std::size_t planned() const = 0;
   /// Takes the answers to the last state of next(). Schedules that do not adapt ignore them.
   virtual void observe(std::span<const Trial> trials);
+  /// Takes the standard errors of the contrasts measured so far, by set contrast, before the answers that follow.
+  /// Those that cannot be estimated are missing. Schedules that do not adapt ignore them.
+  virtual void observe_contrasts(const std::map<double, ContrastError>& errors);
 };
 
 /// The method of constant stimuli on plates: every plate in its mountings at every contrast in every phase.

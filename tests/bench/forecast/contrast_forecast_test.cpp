@@ -16,9 +16,13 @@ namespace {
 
 // Witness: effective_contrast() of 300 pictures of white noise, without triangles.
 TEST(ContrastForecast, HasTheVarianceOfTheEstimator) {
-  for (const char* name : {"tcat-a", "tcat-b"}) {
+  struct Row {
+    const char* name;
+    double min_size_px;
+  };
+  for (const auto& [name, min_size_px] : {Row{"tcat-a", 4}, Row{"tcat-b", 4}, Row{"tcat-c", 6}, Row{"tcat-d", 6}}) {
     const TargetPlate plate = load_plate(name).value();
-    testing::PictureSpec spec;
+    testing::PictureSpec spec{.size = {180, 200}, .centre_px = {89.8, 99.7}};
     Registration registration;
     registration.plate_to_pixel = testing::true_mapping(spec);
     registration.scale_px_per_mm = spec.scale;
@@ -29,13 +33,21 @@ TEST(ContrastForecast, HasTheVarianceOfTheEstimator) {
       const RandomStream noise(static_cast<std::uint64_t>(i), "contrast_forecast");
       for (std::size_t k = 0; k < picture.total(); ++k)
         picture(static_cast<int>(k) / picture.cols, static_cast<int>(k) % picture.cols) = noise.normal(k);
-      const auto seen = effective_contrast(picture, plate, registration, 4);
+      const auto seen = effective_contrast(picture, plate, registration, min_size_px);
       ASSERT_TRUE(seen) << seen.error().message;
       squares += seen->value * seen->value / pictures;
     }
     // Four standard errors of a variance of 300 are 33 %; medians of few pixels are better than their asymptote.
-    EXPECT_NEAR(contrast_variance_per_pixel(plate, spec.scale, 4) / squares, 1.1, 0.35) << name;
+    EXPECT_NEAR(contrast_variance_per_pixel(plate, spec.scale, min_size_px) / squares, 1.1, 0.35) << name;
   }
+}
+
+TEST(ContrastForecast, ReferenceTrianglesHaveAQuarterOfTheVariance) {
+  const auto variance = [](const char* name, double min_size_px) {
+    return contrast_variance_per_pixel(load_plate(name).value(), testing::expected_scale, min_size_px);
+  };
+  EXPECT_LT(variance("tcat-c", 6), 0.25 * variance("tcat-a", 4));
+  EXPECT_LT(variance("tcat-d", 6), 0.25 * variance("tcat-b", 4));
 }
 
 Plan plan_with_camera(int contrast_frames) {

@@ -43,8 +43,8 @@ inline std::vector<GradedDesign> unlike_designs() {
   const SensorSpec remembers = sensor([](SensorSpec& s) { s.noise_correlation = 0.6; });
   const SensorSpec noisy = sensor([](SensorSpec& s) { s.netd_k = 0.14; });
   const SensorSpec defective = sensor([](SensorSpec& s) { s.defective_pixel_share = 0.001; });
-  GradedDesign microscan = row("microscan", plain, plain, 3);
-  microscan.microscan = 2;
+  GradedDesign microscan = row("microscan", plain, plain, 3), microscan_12 = row("microscan, 12 phases", plain, plain);
+  microscan.microscan = microscan_12.microscan = 2;
   return {row("equal", plain, plain),
           row("blur 0.5 / 0.35", more, blurred),
           row("f/2 / f/1", slow, plain),
@@ -53,11 +53,13 @@ inline std::vector<GradedDesign> unlike_designs() {
           row("noise correlation 0.6 / 0", remembers, plain),
           row("NETD x 2", noisy, plain),
           microscan,
+          microscan_12,
           row("0.1 % of the detectors defective / none", defective, plain),
           row("blur 0.5 / 0.35, 3 phases", more, blurred, 3),
           row("f/2 / f/1, 3 phases", slow, plain, 3),
           row("column noise 70 mK / none, 3 phases", columns, plain, 3),
           row("NETD x 2, 3 phases", noisy, plain, 3),
+          row("noise correlation 0.6 / 0, 3 phases", remembers, plain, 3),
           row("halo 3 % / none", sensor([](SensorSpec& s) { s.halo_share = 0.03, s.halo_sigma_pitch = 8; }), plain),
           row("detector 30 / 42.5 um", sensor([](SensorSpec& s) { s.detector_um = 30; }), plain),
           row("row noise 50 mK / none", sensor([](SensorSpec& s) { s.row_noise_k = 0.05; }), plain),

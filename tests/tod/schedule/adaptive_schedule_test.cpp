@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "acquisition/base/distributions.h"
 #include "tests/tod/registration/plate_picture.h"
 #include "tod/psychometric/tod_curve.h"
 
@@ -34,9 +35,23 @@ const std::map<double, double> shipped_thresholds{{16.9, 2.1}, {0.23, 3.4}};  //
 struct SimulatedAnswers {
   std::map<double, double> threshold_mrad = shipped_thresholds;
   double slope = 4;
-  bool graded = false;  ///< a third of the answers' variance left, a function that is no Weibull function
+  bool graded = false;        ///< a third of the answers' variance left, a function that is no Weibull function
+  double contrast_error = 0;  ///< relative standard error of a contrast measured in one set-up
   std::vector<Trial> all = {};
   std::vector<TargetState> shown = {};
+  int visits = 0;
+  std::map<double, std::set<int>> looks = {};  ///< visits that measured each contrast
+
+  [[nodiscard]] std::map<double, ContrastError> contrast_errors() const {
+    std::map<double, ContrastError> errors;
+    for (const auto& [contrast_k, visited] : looks) {
+      const auto n = static_cast<double>(visited.size());
+      errors[contrast_k] = {.standard_error_k = contrast_error * contrast_k / std::sqrt(n),
+                            .shared_k = 0,
+                            .degrees_of_freedom = std::max(1.0, n - 1)};
+    }
+    return errors;
+  }
 
   void run(AdaptiveSchedule& schedule, const AdaptiveOptions& options, const RandomStream& stream) {
     while (const auto state = schedule.next()) {
@@ -63,8 +78,11 @@ struct SimulatedAnswers {
         }
         trials.push_back(trial);
       }
+      if (shown.empty() || shown.back().plate != state->plate || shown.back().mounting != state->mounting) ++visits;
+      looks[state->delta_t_k].insert(visits);
       shown.push_back(*state);
       all.insert(all.end(), trials.begin(), trials.end());
+      if (contrast_error > 0) schedule.observe_contrasts(contrast_errors());
       schedule.observe(trials);
     }
   }
@@ -187,6 +205,50 @@ TEST(AdaptiveSchedule, StopsByTheIntervalOfGradedAnswers) {
     EXPECT_LT(contrast.half_width_percent.value_or(100), 4);
   }
   EXPECT_LT(of_graded.shown.size(), of_binary.shown.size());
+}
+
+TEST(AdaptiveSchedule, StopsWhereAnswersAndContrastsTogetherAreKnownWellEnough) {
+  AdaptiveOptions options = both_plates(5);
+  const auto shown = [&](bool with_errors) {
+    options.with_contrast_errors = with_errors;
+    AdaptiveSchedule schedule(options, RandomStream(3, "schedule"));
+    SimulatedAnswers answers{.graded = true, .contrast_error = 0.08};
+    answers.run(schedule, options, RandomStream(3, "answers"));
+    return std::pair{schedule.progress(), answers};
+  };
+  const auto [alone, few] = shown(false);
+  const auto [joined, more] = shown(true);
+
+  EXPECT_GT(more.visits, few.visits);
+  for (const ContrastProgress& contrast : joined) {
+    ASSERT_TRUE(contrast.settled);
+    const double visits = static_cast<double>(more.looks.at(contrast.delta_t_k).size());
+    const double of_contrast = measured_contrast_slope * 8 / std::sqrt(visits) *
+                               distribution::quantile_above(0.025, std::max(1.0, visits - 1));
+    EXPECT_LT(of_contrast, *contrast.half_width_percent) << contrast.delta_t_k;
+    EXPECT_LT(*contrast.half_width_percent, 5);
+  }
+}
+
+TEST(AdaptiveSchedule, EndsWhereTheContrastCannotBeKnownWellEnough) {
+  AdaptiveOptions options = both_plates(5);
+  options.with_contrast_errors = true;
+  AdaptiveSchedule schedule(options, RandomStream(4, "schedule"));
+  SimulatedAnswers answers{.graded = true, .contrast_error = 0.5};
+
+  answers.run(schedule, options, RandomStream(4, "answers"));
+
+  std::map<std::pair<std::string, Mounting>, int> visits;
+  for (std::size_t i = 0; i < answers.shown.size(); ++i) {
+    const TargetState &now = answers.shown[i], &before = answers.shown[i == 0 ? 0 : i - 1];
+    if (i == 0 || now.plate != before.plate || now.mounting != before.mounting) ++visits[{now.plate, now.mounting}];
+  }
+  EXPECT_EQ(visits.size(), 2 * all_mountings.size());
+  EXPECT_LT(answers.shown.size(), static_cast<std::size_t>(options.max_presentations) / 2);
+  for (const ContrastProgress& contrast : schedule.progress()) {
+    EXPECT_TRUE(contrast.settled);
+    EXPECT_GT(*contrast.half_width_percent, 5);
+  }
 }
 
 }  // namespace
