@@ -15,7 +15,12 @@ namespace {
 using todbench::testing::mm_per_pixel;
 using todbench::testing::shipped_plate;
 
-const char* const names[] = {"tcat-a", "tcat-b"};
+const char* const names[] = {"tcat-a", "tcat-b", "tcat-c", "tcat-d"};
+
+/// Rows of four triangles. The plates with reference triangles have two more.
+std::size_t rows_of(const TargetPlate& plate) {
+  return plate.triangles.size() / 4;
+}
 
 TEST(ShippedPlates, AreValidAndNamedLikeTheirFiles) {
   for (const char* name : names) {
@@ -25,15 +30,16 @@ TEST(ShippedPlates, AreValidAndNamedLikeTheirFiles) {
 
     EXPECT_TRUE(result.has_value()) << result.error().message;
     EXPECT_EQ(plate.name, name);
-    EXPECT_EQ(plate.triangles.size(), 20U);
-    EXPECT_EQ(plate.width_mm, 200);
-    EXPECT_EQ(plate.height_mm, 280);
+    const bool with_references = plate.width_mm > 200;
+    EXPECT_EQ(rows_of(plate), with_references ? 7 : 5);
+    EXPECT_EQ(plate.width_mm, with_references ? 260 : 200);
+    EXPECT_EQ(plate.height_mm, with_references ? 400 : 280);
   }
 }
 
 TEST(ShippedPlates, TogetherHaveTenSizesInEqualStepsTakenInTurns) {
   std::map<double, std::string> owner;
-  for (const char* name : names) {
+  for (const char* name : {"tcat-a", "tcat-b"}) {
     for (const PlateTriangle& t : shipped_plate(name).triangles) owner[t.size_mm] = name;
   }
 
@@ -47,7 +53,7 @@ TEST(ShippedPlates, TogetherHaveTenSizesInEqualStepsTakenInTurns) {
   EXPECT_NEAR(owner.rbegin()->first / mm_per_pixel, 5.16, 0.01);
 }
 
-TEST(ShippedPlates, ShowEveryOrientationFiveTimesAndEquallyOftenPerSizeOverTheMountings) {
+TEST(ShippedPlates, ShowEveryOrientationEquallyOftenAlsoPerSizeOverTheMountings) {
   for (const char* name : names) {
     std::map<Apex, int> on_plate;
     std::map<std::pair<double, Apex>, int> over_mountings;
@@ -56,9 +62,11 @@ TEST(ShippedPlates, ShowEveryOrientationFiveTimesAndEquallyOftenPerSizeOverTheMo
       for (const Mounting mounting : all_mountings) ++over_mountings[{t.size_mm, mounted(t.apex, mounting)}];
     }
 
-    for (const Apex apex : all_apexes) EXPECT_EQ(on_plate[apex], 5) << name;
-    EXPECT_EQ(over_mountings.size(), 20U);
-    for (const auto& [key, count] : over_mountings) EXPECT_EQ(count, 4) << name << " size " << key.first;
+    const std::size_t rows = rows_of(shipped_plate(name));
+    for (const Apex apex : all_apexes) EXPECT_EQ(on_plate[apex], static_cast<int>(rows)) << name;
+    EXPECT_EQ(over_mountings.size(), rows > 5 ? 24U : 20U);
+    for (const auto& [key, count] : over_mountings)
+      EXPECT_EQ(count, key.first > 14 ? 8 : 4) << name << " size " << key.first;
   }
 }
 
@@ -66,14 +74,15 @@ TEST(ShippedPlates, NoTwoRowsShowTheSamePattern) {
   std::set<std::string> patterns;
   for (const char* name : names) {
     const TargetPlate plate = shipped_plate(name);
-    for (std::size_t row = 0; row < 5; ++row) {
+    for (std::size_t row = 0; row < rows_of(plate); ++row) {
       std::string pattern;
       for (std::size_t i = 0; i < 4; ++i) pattern += to_string(plate.triangles[4 * row + i].apex).front();
       patterns.insert(pattern);
     }
   }
 
-  EXPECT_EQ(patterns.size(), 10U);
+  // Those of C and D are those of A and B and four more.
+  EXPECT_EQ(patterns.size(), 14U);
 }
 
 TEST(ShippedPlates, LargeTrianglesLookDifferentInEveryOtherMounting) {
@@ -126,7 +135,7 @@ TEST(ShippedPlates, WindowOfTheObserverNeverMeetsANeighbourAndStaysOnThePlate) {
 TEST(ShippedPlates, PlacesInARowSpreadOverThePixel) {
   for (const char* name : names) {
     const TargetPlate plate = shipped_plate(name);
-    for (std::size_t row = 0; row < 5; ++row) {
+    for (std::size_t row = 0; row < rows_of(plate); ++row) {
       std::vector<double> phases;
       for (std::size_t i = 0; i < 4; ++i) {
         const double px = plate.triangles[4 * row + i].position_mm.x / mm_per_pixel;
@@ -139,6 +148,19 @@ TEST(ShippedPlates, PlacesInARowSpreadOverThePixel) {
         EXPECT_NEAR(gap, 0.25, 0.08) << name << " row " << row + 1;
       }
     }
+  }
+}
+
+TEST(ShippedPlates, WithReferencesHaveTheRowsOfTheOthersBetweenThem) {
+  for (const auto& [name, of] : {std::pair{"tcat-c", "tcat-a"}, std::pair{"tcat-d", "tcat-b"}}) {
+    const TargetPlate plate = shipped_plate(name), inner = shipped_plate(of);
+    for (std::size_t i = 0; i < inner.triangles.size(); ++i) {
+      const PlateTriangle &t = plate.triangles[4 + i], &same = inner.triangles[i];
+      EXPECT_EQ(t.position_mm, same.position_mm);
+      EXPECT_EQ(t.size_mm, same.size_mm);
+      EXPECT_EQ(t.apex, same.apex);
+    }
+    for (const std::size_t i : {0U, 3U, 24U, 27U}) EXPECT_EQ(plate.triangles[i].size_mm, 19);
   }
 }
 
